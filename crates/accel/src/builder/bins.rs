@@ -1,0 +1,110 @@
+//! The surface area heuristic over bins of equal width [Wald07].
+//!
+//! The cost of a split is `A_l·B_l + A_r·B_r`, with `A` the surface area of a side and `B` the number
+//! of blocks it fills. Divided by the area of the whole, that is the expected number of tests.
+
+use super::group::{Reference, area_in};
+use crate::aabb::Aabb;
+use crate::triangle::LANES;
+
+const MAX_BINS: usize = 32;
+
+/// Where to divide a group.
+pub(super) struct Split {
+    /// Expected tests, times the area of the group.
+    pub(super) cost: f32,
+    axis: usize,
+    /// The first bin of the right side, and how many there are.
+    first_right: usize,
+    bins: usize,
+}
+
+impl Split {
+    pub(super) fn is_left(&self, reference: &Reference, centers: &Aabb) -> bool {
+        let scale = bin_scale(centers, self.axis, self.bins);
+        bin_of(reference, centers, self.axis, scale).min(self.bins - 1) < self.first_right
+    }
+}
+
+/// Blocks that this many lanes fill.
+pub(super) fn blocks(lanes: u32) -> f32 {
+    lanes.div_ceil(LANES as u32) as f32
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Aabb,
+    lanes: u32,
+}
+
+impl Bin {
+    const EMPTY: Self = Self {
+        bounds: Aabb::EMPTY,
+        lanes: 0,
+    };
+
+    fn add(&mut self, other: &Self) {
+        self.bounds = self.bounds.union(other.bounds);
+        self.lanes += other.lanes;
+    }
+
+    fn cost(&self, unit: f32) -> f32 {
+        area_in(unit, &self.bounds) * blocks(self.lanes)
+    }
+}
+
+/// The split of least cost. None: all centers are in one place, or nearly.
+pub(super) fn best_split(references: &[Reference], centers: &Aabb, unit: f32) -> Option<Split> {
+    // Small groups do not deserve many bins.
+    let bins = (8 + references.len() / 2).min(MAX_BINS);
+    let mut best: Option<Split> = None;
+    let mut table = [[Bin::EMPTY; MAX_BINS]; 3];
+    let scales = [0, 1, 2].map(|axis| bin_scale(centers, axis, bins));
+    for reference in references {
+        let item = Bin {
+            bounds: reference.bounds,
+            lanes: reference.lanes(),
+        };
+        for axis in 0..3 {
+            let bin = bin_of(reference, centers, axis, scales[axis]).min(bins - 1);
+            table[axis][bin].add(&item);
+        }
+    }
+    for (axis, table) in table.iter().enumerate() {
+        let mut right_costs = [f32::INFINITY; MAX_BINS];
+        let mut right = Bin::EMPTY;
+        for bin in (1..bins).rev() {
+            right.add(&table[bin]);
+            if right.lanes > 0 {
+                right_costs[bin] = right.cost(unit);
+            }
+        }
+        let mut left = Bin::EMPTY;
+        for first_right in 1..bins {
+            left.add(&table[first_right - 1]);
+            let cost = left.cost(unit) + right_costs[first_right];
+            let least = best.as_ref().map_or(f32::INFINITY, |best| best.cost);
+            if left.lanes > 0 && cost < least {
+                best = Some(Split {
+                    cost,
+                    axis,
+                    first_right,
+                    bins,
+                });
+            }
+        }
+    }
+    best
+}
+
+/// Bins per unit of length. Infinite for tiny extents, which [`bin_of`] copes with.
+fn bin_scale(centers: &Aabb, axis: usize, bins: usize) -> f32 {
+    bins as f32 / (centers.max[axis] - centers.min[axis])
+}
+
+/// The bin of a reference; the far end is one beyond the last.
+fn bin_of(reference: &Reference, centers: &Aabb, axis: usize, scale: f32) -> usize {
+    let offset = reference.bounds.center()[axis] - centers.min[axis];
+    // The cast puts a NaN (nothing times infinity) into the first bin and too much into the last.
+    (offset * scale) as usize
+}

@@ -1,0 +1,162 @@
+//! Sets of primitives that become a leaf or are split.
+
+use glam::Vec3;
+
+use super::bins::{self, Split};
+use crate::aabb::{Aabb, half_area};
+use crate::node::Child;
+use crate::primitive::Primitive;
+use crate::triangle::LANES;
+
+/// What a leaf can hold: primitives of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Triangle,
+    Quadric,
+}
+
+/// What the builder knows of a primitive.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reference {
+    pub(super) bounds: Aabb,
+    pub(super) primitive: u32,
+    kind: Kind,
+}
+
+impl Reference {
+    pub(super) fn new(index: u32, primitive: &Primitive, bounds: Aabb) -> Self {
+        let kind = match primitive {
+            Primitive::Triangle(_) => Kind::Triangle,
+            Primitive::Sphere(_) | Primitive::Disk(_) => Kind::Quadric,
+        };
+        Self {
+            bounds,
+            primitive: index,
+            kind,
+        }
+    }
+
+    /// The work of intersecting it, in lanes: a quadric costs what a block of triangles does.
+    pub(super) fn lanes(&self) -> u32 {
+        match self.kind {
+            Kind::Triangle => 1,
+            Kind::Quadric => LANES as u32,
+        }
+    }
+}
+
+/// The power of two near the size of `total`, as the unit of length: areas neither overflow nor
+/// vanish in it, whatever the scale of the scene.
+pub(super) fn unit_of(total: &Aabb) -> f32 {
+    let size = total.max.abs().max(total.min.abs()).max_element();
+    let exponent_only = f32::from_bits(size.to_bits() & f32::INFINITY.to_bits());
+    exponent_only.max(f32::MIN_POSITIVE)
+}
+
+/// References that are in no other group.
+pub(super) struct Group<'a> {
+    pub(super) references: &'a mut [Reference],
+    pub(super) bounds: Aabb,
+    /// None: both kinds occur.
+    pub(super) kind: Option<Kind>,
+    centers: Aabb,
+    area: f32,
+    split: Option<Split>,
+}
+
+/// Lanes of the largest leaf. One block less than a [`Child`] can say.
+const MAX_LEAF_LANES: u32 = ((Child::MAX_LEAF - 1) * LANES) as u32;
+
+impl<'a> Group<'a> {
+    /// Groups at least one reference.
+    pub(super) fn new(references: &'a mut [Reference], unit: f32) -> Self {
+        let (mut bounds, mut centers) = (Aabb::EMPTY, Aabb::EMPTY);
+        for reference in references.iter() {
+            bounds = bounds.union(reference.bounds);
+            let center = reference.bounds.center();
+            centers = centers.union(Aabb {
+                min: center,
+                max: center,
+            });
+        }
+        let first = references[0].kind;
+        let kind = references.iter().all(|r| r.kind == first).then_some(first);
+        let split = bins::best_split(references, &centers, unit);
+        let area = area_in(unit, &bounds);
+        Self {
+            references,
+            bounds,
+            kind,
+            centers,
+            area,
+            split,
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.references.len()
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Whether to make a leaf: always if it is one test, never if a leaf has no room for it, and
+    /// otherwise if testing all is expected to cost no more than a node and its children.
+    /// A node's test counts as much as a block's.
+    pub(super) fn is_leaf(&self) -> bool {
+        let lanes: u32 = match self.kind {
+            Some(_) if self.len() <= MAX_LEAF_LANES as usize => {
+                self.references.iter().map(Reference::lanes).sum()
+            }
+            _ => return false,
+        };
+        let split_cost = self
+            .split
+            .as_ref()
+            .map_or(f32::INFINITY, |split| split.cost);
+        lanes <= LANES as u32
+            || (lanes <= MAX_LEAF_LANES
+                && self.area * bins::blocks(lanes) <= self.area + split_cost)
+    }
+
+    /// Divides by the heuristic, or in two halves if it knows no way.
+    pub(super) fn split(self, unit: f32) -> [Self; 2] {
+        let Some(split) = &self.split else {
+            return self.halve(unit);
+        };
+        let middle = partition(self.references, |r| split.is_left(r, &self.centers));
+        self.cut(middle, unit)
+    }
+
+    /// Divides in two halves of equal count, or nearly.
+    pub(super) fn halve(self, unit: f32) -> [Self; 2] {
+        let middle = self.len() / 2;
+        self.cut(middle, unit)
+    }
+
+    fn cut(self, middle: usize, unit: f32) -> [Self; 2] {
+        let (left, right) = self.references.split_at_mut(middle);
+        [Self::new(left, unit), Self::new(right, unit)]
+    }
+}
+
+/// Half of the surface area in squares of `unit`.
+pub(super) fn area_in(unit: f32, bounds: &Aabb) -> f32 {
+    // Divided before subtracting, which could overflow.
+    half_area((bounds.max / unit - bounds.min / unit).max(Vec3::ZERO))
+}
+
+/// Moves what is left to the front and returns how many these are.
+fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) -> usize {
+    let (mut begin, mut end) = (0, references.len());
+    while begin < end {
+        if is_left(&references[begin]) {
+            begin += 1;
+        } else {
+            end -= 1;
+            references.swap(begin, end);
+        }
+    }
+    begin
+}

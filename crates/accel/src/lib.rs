@@ -1,0 +1,67 @@
+//! Watertight ray intersection: an 8-wide BVH over triangles, spheres and disks.
+//!
+//! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
+//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`].
+//! Both take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
+//! and nothing where they are not used ([`accept_all`]).
+//!
+//! ```
+//! use bidir_accel::{Bvh, BuildOptions, Primitive, Ray, accept_all};
+//! use glam::Vec3;
+//!
+//! let floor = |z| Primitive::Triangle([
+//!     Vec3::new(-1.0, -1.0, z),
+//!     Vec3::new(3.0, -1.0, z),
+//!     Vec3::new(-1.0, 3.0, z),
+//! ]);
+//! let bvh = Bvh::build(&[floor(0.0), floor(1.0)], &BuildOptions::default())?;
+//!
+//! let down = Ray::new(Vec3::new(0.0, 0.0, 5.0), -Vec3::Z);
+//! let hit = bvh.closest(&down, accept_all).expect("the upper floor is in the way");
+//! assert_eq!((hit.primitive, hit.t), (1, 4.0));
+//!
+//! // A filter makes hits vanish: here the upper floor is glass.
+//! let hit = bvh.closest(&down, |hit| hit.primitive != 1).expect("the lower floor remains");
+//! assert_eq!((hit.primitive, hit.t), (0, 5.0));
+//! # Ok::<(), bidir_accel::BuildError>(())
+//! ```
+//!
+//! # What is promised
+//!
+//! - **Watertight.** A ray cannot pass between triangles that share an edge or a vertex: whether it
+//!   passes a triangle is decided *exactly* for the vertices as seen from the ray's origin
+//!   (the `exact` module), and boxes are tested conservatively (the `node` module).
+//! - **The same bits everywhere.** `t`, `u` and `v` are computed by one scalar function in `f64`.
+//!   SIMD code only discards, conservatively, what that function would refuse, so the instruction
+//!   set has no influence on an answer.
+//! - **One answer.** Of hits at equal `t` the lowest `(instance, primitive)` wins, whatever the order
+//!   of traversal. The tree does not depend on the number of threads that build it.
+//! - **No allocation per ray**, and a stack whose bound is proved by the builder.
+//!
+//! Not here: motion, curves, and anything about surfaces (normals, materials).
+
+#![warn(missing_docs)]
+
+mod aabb;
+mod builder;
+mod bvh;
+mod disk;
+mod exact;
+mod isa;
+mod node;
+mod primitive;
+mod quadric;
+mod ray;
+mod simd;
+mod sphere;
+mod traverse;
+mod triangle;
+mod validate;
+
+pub use aabb::Aabb;
+pub use bvh::{BuildError, BuildOptions, Bvh};
+pub use disk::Disk;
+pub use isa::{Isa, UnknownIsa};
+pub use primitive::Primitive;
+pub use ray::{Hit, Ray, accept_all};
+pub use sphere::Sphere;

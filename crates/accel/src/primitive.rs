@@ -1,0 +1,84 @@
+//! What a [`Bvh`](crate::Bvh) is built from.
+
+use glam::{DAffine3, DVec3, Vec3};
+
+use crate::aabb::Aabb;
+use crate::disk::Disk;
+use crate::quadric::to_f64;
+use crate::sphere::Sphere;
+
+/// A surface that rays can hit, in world space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Primitive {
+    /// Three vertices. Without area it is never hit.
+    Triangle([Vec3; 3]),
+    /// A sphere, part of one, or its image under an affine map.
+    Sphere(Sphere),
+    /// A disk, ring or sector, or its image under an affine map.
+    Disk(Disk),
+}
+
+impl Primitive {
+    /// A box that contains the primitive.
+    ///
+    /// Tight for triangles; curved primitives get the box of a whole sphere or disk (cut at
+    /// `z_min` and `z_max`, but not at `phi_max`), a little widened against rounding.
+    /// Not [valid](Aabb::is_valid) if a coordinate is not finite or a map has no inverse.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            // `min` and `max` would skip a NaN.
+            Self::Triangle(vertices) if !vertices.iter().all(|v| v.is_finite()) => Aabb::EMPTY,
+            Self::Triangle(vertices) => Aabb::around(vertices),
+            Self::Sphere(sphere) => sphere.bounds(),
+            Self::Disk(disk) => disk.bounds(),
+        }
+    }
+}
+
+/// Bounds in world space of the ellipsoid that `x² + y² + z² ≤ 1` becomes after scaling by `radii`
+/// and moving by `center` in the space of `local_from_world`.
+///
+/// Each world coordinate is a linear function of the unit ball: its largest value is the length
+/// of its row in the combined matrix.
+pub(crate) fn ellipsoid_bounds(
+    local_from_world: &glam::Affine3A,
+    center: DVec3,
+    radii: DVec3,
+) -> Aabb {
+    let world_from_local = to_f64(local_from_world).inverse();
+    let [x, y, z] = world_from_local
+        .matrix3
+        .to_cols_array_2d()
+        .map(DVec3::from_array);
+    let columns = [x * radii.x, y * radii.y, z * radii.z];
+    let squares = columns.map(|column| column * column);
+    let reach = (squares[0] + squares[1] + squares[2]).map(f64::sqrt);
+    padded(world_from_local.transform_point3(center), reach)
+}
+
+/// Bounds in world space of a box in the space of `local_from_world`.
+pub(crate) fn box_bounds(local_from_world: &glam::Affine3A, center: DVec3, half: DVec3) -> Aabb {
+    let world_from_local: DAffine3 = to_f64(local_from_world).inverse();
+    let matrix = world_from_local.matrix3;
+    let reach =
+        matrix.x_axis.abs() * half.x + matrix.y_axis.abs() * half.y + matrix.z_axis.abs() * half.z;
+    padded(world_from_local.transform_point3(center), reach)
+}
+
+/// The box of `center ± reach`, rounded outward after widening by a millionth of its size: more
+/// than what mapping a ray into local space loses, unless the map is close to singular.
+fn padded(center: DVec3, reach: DVec3) -> Aabb {
+    let reach = reach + DVec3::splat(1e-6 * reach.max_element());
+    let outward = |value: f64, direction: f64| {
+        let rounded = value as f32;
+        match direction * (f64::from(rounded) - value) {
+            inward if inward >= 0.0 => rounded,
+            _ if direction > 0.0 => rounded.next_up(),
+            _ => rounded.next_down(),
+        }
+    };
+    Aabb {
+        min: Vec3::from_array((center - reach).to_array().map(|x| outward(x, -1.0))),
+        max: Vec3::from_array((center + reach).to_array().map(|x| outward(x, 1.0))),
+    }
+}

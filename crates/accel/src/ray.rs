@@ -1,0 +1,61 @@
+//! Questions and answers: [`Ray`] and [`Hit`].
+
+use glam::Vec3;
+
+/// The points `origin + t·direction` with `t_min ≤ t ≤ t_max`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where `t = 0` is.
+    pub origin: Vec3,
+    /// Any non-zero length, which is the unit of `t`.
+    /// Components smaller than the smallest normal `f32` count as zero.
+    pub direction: Vec3,
+    /// The smallest `t` that counts as a hit, itself included. A negative value counts as zero.
+    pub t_min: f32,
+    /// The largest `t` that counts as a hit, itself included. May be infinite; a hit never is.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// The whole half-line from `origin`: `t` in `[0, ∞)`.
+    pub const fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self {
+            origin,
+            direction,
+            t_min: 0.0,
+            t_max: f32::INFINITY,
+        }
+    }
+}
+
+/// Where a ray met a primitive. All numbers are finite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Distance from the ray's origin in units of its direction's length.
+    pub t: f32,
+    /// Which instance was hit; 0, because there is only one so far.
+    pub instance: u32,
+    /// Index of the primitive in the slice the [`Bvh`](crate::Bvh) was built from.
+    pub primitive: u32,
+    /// First surface parameter, in `[0, 1]`.
+    /// Triangle: the weight of vertex 1. Sphere and disk: the angle φ over its maximum.
+    pub u: f32,
+    /// Second surface parameter, in `[0, 1]`.
+    /// Triangle: the weight of vertex 2; `1 - u - v` can fall below zero by one rounding.
+    /// Sphere: 0 at `z_min`, 1 at `z_max`, linear in θ. Disk: 0 at the rim, 1 at the inner radius.
+    pub v: f32,
+}
+
+impl Hit {
+    /// Orders hits by `t`, then by instance, then by primitive.
+    pub(crate) fn is_before(&self, other: &Self) -> bool {
+        let id = |hit: &Self| (hit.instance, hit.primitive);
+        self.t < other.t || (self.t <= other.t && id(self) < id(other))
+    }
+}
+
+/// The hit filter that lets every hit exist.
+#[inline(always)]
+pub fn accept_all(_: &Hit) -> bool {
+    true
+}

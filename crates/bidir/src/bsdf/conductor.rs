@@ -1,0 +1,99 @@
+use super::microfacet::Ggx;
+use super::{BsdfSample, fresnel, same_hemisphere};
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
+
+/// A metal: Fresnel reflection from GGX facets, or from a mirror where the surface is smooth.
+///
+/// f = F(wo·m) D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) with m halfway between [Walter07, eq. 20].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductor {
+    /// Real part of the index of refraction.
+    pub eta: Spectrum,
+    /// Imaginary part of the index of refraction: absorption.
+    pub k: Spectrum,
+    /// The distribution of facets.
+    pub ggx: Ggx,
+}
+
+impl Conductor {
+    #[inline]
+    pub(super) fn is_smooth(&self) -> bool {
+        self.ggx.is_smooth()
+    }
+
+    #[inline]
+    fn fresnel(&self, cos: f32) -> Spectrum {
+        fresnel::conductor(cos, self.eta, self.k)
+    }
+
+    #[inline]
+    pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
+        self.fresnel(wo.z)
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if self.is_smooth() || !same_hemisphere(wo, wi) {
+            return Spectrum::ZERO;
+        }
+        let m = (wo + wi).normalize();
+        let facets = self.ggx.d(m) * self.ggx.g2(wo, wi);
+        self.fresnel(wo.dot(m)) * (facets / (4.0 * wo.z * wi.z))
+    }
+
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_smooth() || !same_hemisphere(wo, wi) {
+            return 0.0;
+        }
+        let m = (wo + wi).normalize();
+        self.ggx.visible_pdf(wo, m) / (4.0 * wo.dot(m).abs()) // [Walter07, eq. 14]
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        if self.is_smooth() {
+            return Some(BsdfSample {
+                wi: Vec3::new(-wo.x, -wo.y, wo.z),
+                weight: self.fresnel(wo.z),
+                pdf: wo.z.abs(),
+                pdf_reverse: wo.z.abs(),
+                is_delta: true,
+            });
+        }
+        let m = self.ggx.sample_visible(wo, u);
+        let wi = m * (2.0 * wo.dot(m)) - wo;
+        if !same_hemisphere(wo, wi) {
+            return None;
+        }
+        // The facets' density cancels but for the shadowing of wi.
+        let weight = self.fresnel(wo.dot(m)) * (self.ggx.g2(wo, wi) / self.ggx.g1(wo));
+        let (pdf, pdf_reverse) = (self.pdf(wo, wi), self.pdf(wi, wo));
+        Some(BsdfSample {
+            wi,
+            weight,
+            pdf,
+            pdf_reverse,
+            is_delta: false,
+        })
+    }
+
+    pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        let gold = |alpha_x, alpha_y| Self {
+            eta: Spectrum([0.168, 0.350, 1.508, 1.508]),
+            k: Spectrum([3.138, 2.714, 1.879, 1.879]),
+            ggx: Ggx::new(alpha_x, alpha_y),
+        };
+        [
+            ("conductor smooth", gold(0.0, 0.0)),
+            ("conductor sharp", gold(0.05, 0.05)),
+            ("conductor rough", gold(0.3, 0.3)),
+            ("conductor anisotropic", gold(0.5, 0.1)),
+        ]
+        .into_iter()
+    }
+}

@@ -1,0 +1,205 @@
+use super::microfacet::Ggx;
+use super::{BsdfSample, TransportMode, fresnel, same_hemisphere};
+use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
+use crate::spectrum::Spectrum;
+
+/// An interface between two transparent media; the normal points to the outside.
+///
+/// Radiance that crosses it is scaled by (η_o/η_i)², o the side it goes to and i the side it comes
+/// from; importance is not [Veach97, §5.2]. Rough: [Walter07, eq. 20 and 21].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dielectric {
+    /// Index of refraction inside, divided by that outside.
+    pub eta: f32,
+    /// The distribution of facets.
+    pub ggx: Ggx,
+}
+
+/// The two things a facet does.
+#[derive(Clone, Copy, PartialEq)]
+enum Lobe {
+    Reflection,
+    Transmission,
+}
+
+impl Dielectric {
+    /// An index-matched interface bends nothing, so roughness has no meaning there.
+    #[inline]
+    pub(super) fn is_smooth(&self) -> bool {
+        self.ggx.is_smooth() || (self.eta - 1.0).abs() < 1e-6
+    }
+
+    /// η of the other side divided by η of the side of `w`.
+    #[inline]
+    fn eta_across(&self, w: Vec3) -> f32 {
+        if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
+
+    /// The absolute index on the side of `w`, the outside counting 1.
+    #[inline]
+    fn eta_at(&self, w: Vec3) -> f32 {
+        if w.z > 0.0 { 1.0 } else { self.eta }
+    }
+
+    /// What crossing does to the quantity of `mode` that a walk from `wo` carries.
+    #[inline]
+    fn crossing_scale(&self, wo: Vec3, mode: TransportMode) -> f32 {
+        match mode {
+            TransportMode::Radiance => 1.0 / sqr(self.eta_across(wo)),
+            TransportMode::Importance => 1.0,
+        }
+    }
+
+    /// The facet that sends `wo` to `wi`, in the upper hemisphere, and how it does.
+    ///
+    /// None: where that facet is seen from behind, or the directions are degenerate.
+    #[inline]
+    fn facet(&self, wo: Vec3, wi: Vec3) -> Option<(Vec3, Lobe)> {
+        if wo.z == 0.0 || wi.z == 0.0 {
+            return None;
+        }
+        let (half, lobe) = if same_hemisphere(wo, wi) {
+            (wo + wi, Lobe::Reflection)
+        } else {
+            (wo + wi * self.eta_across(wo), Lobe::Transmission)
+        };
+        if half.length_squared() == 0.0 {
+            return None;
+        }
+        let m = half.normalize();
+        let m = if m.z < 0.0 { -m } else { m };
+        let seen = wo.dot(m) * wo.z > 0.0 && wi.dot(m) * wi.z > 0.0;
+        seen.then_some((m, lobe))
+    }
+
+    /// |dω_m / dω_i| of refraction at `m`, without the |wi·m| factor [Walter07, eq. 17].
+    #[inline]
+    fn refraction_jacobian(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
+        1.0 / sqr(wi.dot(m) + wo.dot(m) / self.eta_across(wo))
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
+        if self.is_smooth() {
+            return Spectrum::ZERO;
+        }
+        let Some((m, lobe)) = self.facet(wo, wi) else {
+            return Spectrum::ZERO;
+        };
+        let fresnel = fresnel::dielectric(wo.dot(m), self.eta);
+        let facets = self.ggx.d(m) * self.ggx.g2(wo, wi) / (wo.z * wi.z).abs();
+        Spectrum::splat(match lobe {
+            Lobe::Reflection => facets * fresnel / 4.0,
+            Lobe::Transmission => {
+                let bend = (wo.dot(m) * wi.dot(m)).abs() * self.refraction_jacobian(wo, wi, m);
+                facets * (1.0 - fresnel) * bend * self.crossing_scale(wo, mode)
+            }
+        })
+    }
+
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_smooth() {
+            return 0.0;
+        }
+        let Some((m, lobe)) = self.facet(wo, wi) else {
+            return 0.0;
+        };
+        let fresnel = fresnel::dielectric(wo.dot(m), self.eta);
+        let facet_pdf = self.ggx.visible_pdf(wo, m);
+        match lobe {
+            Lobe::Reflection => facet_pdf * fresnel / (4.0 * wo.dot(m).abs()),
+            Lobe::Transmission => {
+                facet_pdf * (1.0 - fresnel) * wi.dot(m).abs() * self.refraction_jacobian(wo, wi, m)
+            }
+        }
+    }
+
+    /// Draws the facet, then reflection or refraction by its Fresnel reflectance.
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        wo: Vec3,
+        mode: TransportMode,
+        u_lobe: f32,
+        u: Vec2,
+    ) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        let smooth = self.is_smooth();
+        let m = if smooth {
+            Vec3::Z
+        } else {
+            self.ggx.sample_visible(wo, u)
+        };
+        let fresnel = fresnel::dielectric(wo.dot(m), self.eta);
+        let (lobe, prob) = if u_lobe < fresnel {
+            (Lobe::Reflection, fresnel)
+        } else {
+            (Lobe::Transmission, 1.0 - fresnel)
+        };
+        let (wi, scale) = match lobe {
+            Lobe::Reflection => (m * (2.0 * wo.dot(m)) - wo, 1.0),
+            Lobe::Transmission => (
+                refract(wo, m, self.eta_across(wo))?,
+                self.crossing_scale(wo, mode),
+            ),
+        };
+        // A facet may send light to the wrong side of the surface: that light is lost.
+        if wi.z == 0.0 || same_hemisphere(wo, wi) != (lobe == Lobe::Reflection) {
+            return None;
+        }
+        if smooth {
+            return Some(BsdfSample {
+                wi,
+                weight: Spectrum::splat(scale),
+                pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),
+                pdf_reverse: prob * sqr(self.eta_at(wo)) * wo.z.abs(),
+                is_delta: true,
+            });
+        }
+        let weight = Spectrum::splat(scale * self.ggx.g2(wo, wi) / self.ggx.g1(wo));
+        let (pdf, pdf_reverse) = (self.pdf(wo, wi), self.pdf(wi, wo));
+        Some(BsdfSample {
+            wi,
+            weight,
+            pdf,
+            pdf_reverse,
+            is_delta: false,
+        })
+    }
+
+    pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        [
+            ("dielectric smooth", 1.5, 0.0, 0.0),
+            ("dielectric smooth, from within", 1.0 / 1.33, 0.0, 0.0),
+            ("dielectric rough", 1.5, 0.3, 0.3),
+            ("dielectric rough, less dense inside", 0.75, 0.4, 0.4),
+            ("dielectric anisotropic", 1.8, 0.5, 0.15),
+        ]
+        .into_iter()
+        .map(|(name, eta, x, y)| {
+            (
+                name,
+                Self {
+                    eta,
+                    ggx: Ggx::new(x, y),
+                },
+            )
+        })
+    }
+}
+
+/// Refracts `wo` at a facet with normal `m`; `eta` is the index across divided by that of the side
+/// of `wo`. None: total internal reflection.
+#[inline]
+fn refract(wo: Vec3, m: Vec3, eta: f32) -> Option<Vec3> {
+    let cos_o = wo.dot(m);
+    let sin2_t = (1.0 - sqr(cos_o)).max(0.0) / sqr(eta);
+    if sin2_t >= 1.0 {
+        return None;
+    }
+    let cos_t = safe_sqrt(1.0 - sin2_t).copysign(cos_o);
+    Some((m * (cos_o / eta - cos_t) - wo / eta).normalize())
+}

@@ -1,0 +1,57 @@
+use super::{BsdfSample, same_hemisphere};
+use crate::math::{INV_PI, Vec2, Vec3, warp};
+use crate::spectrum::Spectrum;
+
+/// Lambertian reflection on the side that is looked at: f = ρ/π.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diffuse {
+    /// The reflectance ρ. Range: `[0, 1]` per lane.
+    pub reflectance: Spectrum,
+}
+
+impl Diffuse {
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if same_hemisphere(wo, wi) {
+            self.reflectance * INV_PI
+        } else {
+            Spectrum::ZERO
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<BsdfSample> {
+        let mut wi = warp::cosine_hemisphere(u);
+        wi.z = wi.z.copysign(wo.z);
+        // At the rim the density is zero and says nothing.
+        if wi.z == 0.0 || wo.z == 0.0 || self.reflectance.is_black() {
+            return None;
+        }
+        Some(BsdfSample {
+            wi,
+            weight: self.reflectance,
+            pdf: Self::pdf(wo, wi),
+            pdf_reverse: Self::pdf(wi, wo),
+            is_delta: false,
+        })
+    }
+
+    #[inline]
+    pub(super) fn pdf(wo: Vec3, wi: Vec3) -> f32 {
+        if same_hemisphere(wo, wi) {
+            warp::cosine_hemisphere_pdf(wi.z.abs())
+        } else {
+            0.0
+        }
+    }
+
+    pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        [
+            ("diffuse grey", Spectrum::splat(0.5)),
+            ("diffuse red", Spectrum([0.8, 0.1, 0.05, 0.0])),
+            ("diffuse white", Spectrum::ONE),
+        ]
+        .into_iter()
+        .map(|(name, reflectance)| (name, Self { reflectance }))
+    }
+}

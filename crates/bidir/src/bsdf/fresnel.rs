@@ -1,0 +1,104 @@
+//! Fresnel's equations for unpolarised light.
+
+use crate::math::{safe_sqrt, sqr};
+use crate::spectrum::Spectrum;
+
+/// The reflectance of an interface between dielectrics.
+///
+/// `cos_i` is the cosine on the side that light arrives from: positive outside, negative inside.
+/// `eta` is the index inside divided by the index outside. The value is the same for both
+/// directions along one refracted path.
+#[inline]
+pub fn dielectric(cos_i: f32, eta: f32) -> f32 {
+    // η_t / η_i for the side at hand.
+    let ratio = if cos_i > 0.0 { eta } else { 1.0 / eta };
+    let cos_i = cos_i.abs().min(1.0);
+    let sin2_t = (1.0 - sqr(cos_i)) / sqr(ratio);
+    if sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = safe_sqrt(1.0 - sin2_t);
+    let parallel = (ratio * cos_i - cos_t) / (ratio * cos_i + cos_t);
+    let perpendicular = (cos_i - ratio * cos_t) / (cos_i + ratio * cos_t);
+    (sqr(parallel) + sqr(perpendicular)) / 2.0
+}
+
+/// The reflectance of a conductor with index `eta + i·k` against vacuum, lane by lane
+/// [Lagarde13, "Fresnel term of conductors"].
+#[inline]
+pub fn conductor(cos_i: f32, eta: Spectrum, k: Spectrum) -> Spectrum {
+    let cos_i = cos_i.abs().min(1.0);
+    eta.zip(k, |eta, k| conductor_lane(cos_i, eta, k))
+}
+
+#[inline]
+fn conductor_lane(cos_i: f32, eta: f32, k: f32) -> f32 {
+    let cos2 = sqr(cos_i);
+    let sin2 = 1.0 - cos2;
+    let (eta2, k2) = (sqr(eta), sqr(k));
+    let difference = eta2 - k2 - sin2;
+    let a2_plus_b2 = safe_sqrt(sqr(difference) + 4.0 * eta2 * k2);
+    let a = safe_sqrt((a2_plus_b2 + difference) / 2.0);
+    let sum = a2_plus_b2 + cos2;
+    let cross = 2.0 * cos_i * a;
+    let perpendicular = (sum - cross) / (sum + cross);
+    let sum = cos2 * a2_plus_b2 + sqr(sin2);
+    let cross = cross * sin2;
+    // At normal incidence both polarisations agree and the quotient may be 0/0 for eta = k = 0.
+    let parallel = perpendicular
+        * if sum + cross > 0.0 {
+            (sum - cross) / (sum + cross)
+        } else {
+            1.0
+        };
+    ((perpendicular + parallel) / 2.0).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(actual: f32, expected: f32) {
+        assert!(
+            (actual - expected).abs() < 1e-5,
+            "{actual} instead of {expected}"
+        );
+    }
+
+    #[test]
+    fn normal_incidence_is_the_square_of_the_index_step() {
+        check(dielectric(1.0, 1.5), 0.04);
+        check(dielectric(-1.0, 1.5), 0.04);
+        let gold = Spectrum::splat(0.2);
+        check(
+            conductor(1.0, gold, Spectrum::splat(3.0))[0],
+            (0.64 + 9.0) / (1.44 + 9.0),
+        );
+    }
+
+    #[test]
+    fn brewster_angle_total_reflection_and_grazing() {
+        // At Brewster's angle, tanθ = η, only the perpendicular part is left.
+        let cos_brewster = 1.0 / (1.0f32 + 2.25).sqrt();
+        let perpendicular = (2.25f32 - 1.0) / (2.25 + 1.0);
+        check(dielectric(cos_brewster, 1.5), sqr(perpendicular) / 2.0);
+        check(dielectric(-0.5, 1.5), 1.0);
+        check(dielectric(1e-7, 1.5), 1.0);
+    }
+
+    #[test]
+    fn a_conductor_without_absorption_is_a_dielectric() {
+        for cos_i in [0.1, 0.4, 0.9] {
+            let metal = conductor(cos_i, Spectrum::splat(1.5), Spectrum::ZERO)[0];
+            check(metal, dielectric(cos_i, 1.5));
+        }
+    }
+
+    #[test]
+    fn both_directions_along_a_refracted_path_reflect_alike() {
+        let (cos_i, eta) = (0.3f32, 1.33f32);
+        let cos_t = (1.0 - (1.0 - cos_i * cos_i) / (eta * eta)).sqrt();
+        check(dielectric(cos_i, eta), dielectric(-cos_t, eta));
+    }
+}

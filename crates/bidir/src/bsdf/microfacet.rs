@@ -1,0 +1,144 @@
+//! The anisotropic GGX distribution of microfacet normals, with Smith's shadowing.
+//!
+//! With slopes α_x and α_y along the local axes [Heitz14, §5]:
+//!
+//! - D(m) = 1 / (π α_x α_y ((m_x/α_x)² + (m_y/α_y)² + m_z²)²) is the area of facets with normal m,
+//!   so that ∫ D(m) m_z dm = 1;
+//! - Λ(v) = (√(1 + (α_x² v_x² + α_y² v_y²)/v_z²) - 1) / 2, G₁(v) = 1/(1 + Λ(v)), and the
+//!   height-correlated G₂(o, i) = 1/(1 + Λ(o) + Λ(i));
+//! - D_v(m) = G₁(v) |v·m| D(m) / |v_z| is the density of the normals visible from v.
+
+use crate::math::{INV_PI, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};
+
+/// Below this slope a surface counts as smooth: a Dirac distribution.
+pub const SMOOTH_ALPHA: f32 = 1e-3;
+
+/// GGX with slopes along local x and y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ggx {
+    alpha_x: f32,
+    alpha_y: f32,
+}
+
+impl Ggx {
+    /// Slopes α_x and α_y. Smooth where both are below [`SMOOTH_ALPHA`]; else each is at least
+    /// 10⁻⁴, so that no term overflows.
+    pub fn new(alpha_x: f32, alpha_y: f32) -> Self {
+        if alpha_x.max(alpha_y) < SMOOTH_ALPHA {
+            return Self {
+                alpha_x: 0.0,
+                alpha_y: 0.0,
+            };
+        }
+        Self {
+            alpha_x: alpha_x.max(1e-4),
+            alpha_y: alpha_y.max(1e-4),
+        }
+    }
+
+    /// True where the surface has no facets: a Dirac distribution of normals.
+    #[inline]
+    pub fn is_smooth(&self) -> bool {
+        self.alpha_x <= 0.0
+    }
+
+    /// D(m), the density of facet area. Unit: 1/sr.
+    #[inline]
+    pub fn d(&self, m: Vec3) -> f32 {
+        let slope = sqr(m.x / self.alpha_x) + sqr(m.y / self.alpha_y) + sqr(m.z);
+        INV_PI / (self.alpha_x * self.alpha_y * sqr(slope))
+    }
+
+    #[inline]
+    fn lambda(&self, v: Vec3) -> f32 {
+        let tan2 = (sqr(self.alpha_x * v.x) + sqr(self.alpha_y * v.y)) / sqr(v.z);
+        if tan2.is_finite() {
+            ((1.0 + tan2).sqrt() - 1.0) / 2.0
+        } else {
+            f32::INFINITY
+        }
+    }
+
+    /// The part of facets seen from `v` that nothing shadows.
+    #[inline]
+    pub fn g1(&self, v: Vec3) -> f32 {
+        1.0 / (1.0 + self.lambda(v))
+    }
+
+    /// The part of facets seen from both `wo` and `wi` that nothing shadows.
+    #[inline]
+    pub fn g2(&self, wo: Vec3, wi: Vec3) -> f32 {
+        1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
+    }
+
+    /// The density of [`sample_visible`](Self::sample_visible). Measure: solid angle of m, 1/sr.
+    #[inline]
+    pub fn visible_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+        self.g1(v) * v.dot(m).abs() * self.d(m) / v.z.abs()
+    }
+
+    /// A normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
+    /// surface, of the facets seen from beneath [Heitz18].
+    #[inline]
+    pub fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
+        // Stretch to the hemisphere configuration, α = 1.
+        let v = if v.z < 0.0 { -v } else { v };
+        let stretched = Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z).normalize();
+        let (t1, t2) = tilt_axes(stretched);
+        // A point of the projected hemisphere: half a disk, half an ellipse squeezed by v_z.
+        let radius = u.x.sqrt();
+        let (sin, cos) = sin_cos(2.0 * PI * u.y);
+        let x = radius * cos;
+        let squeeze = (1.0 + stretched.z) / 2.0;
+        let y = (1.0 - squeeze) * safe_sqrt(1.0 - sqr(x)) + squeeze * radius * sin;
+        let z = safe_sqrt(1.0 - sqr(x) - sqr(y));
+        let m = t1 * x + t2 * y + stretched * z;
+        Vec3::new(m.x * self.alpha_x, m.y * self.alpha_y, m.z.max(1e-6)).normalize()
+    }
+}
+
+/// Axes perpendicular to `v`: the first horizontal, the second completing a right-handed frame.
+#[inline]
+fn tilt_axes(v: Vec3) -> (Vec3, Vec3) {
+    let horizontal = sqr(v.x) + sqr(v.y);
+    let t1 = if horizontal > 1e-12 {
+        Vec3::new(-v.y, v.x, 0.0) / horizontal.sqrt()
+    } else {
+        Vec3::X
+    };
+    (t1, v.cross(t1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::warp;
+
+    /// Checks ∫ D(m) m_z dm = 1 and ∫ D_v(m) dm = 1, both by uniform directions on a fine grid.
+    #[track_caller]
+    fn check_normalised(ggx: Ggx, v: Vec3) {
+        let n = 1500;
+        let (mut area, mut visible) = (0.0, 0.0);
+        for i in 0..n {
+            for j in 0..n {
+                let u = Vec2::new((i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32);
+                let m = warp::uniform_cone(u, 1.0);
+                let d_omega = f64::from(2.0 * PI) / f64::from(n * n);
+                area += f64::from(ggx.d(m) * m.z) * d_omega;
+                if v.dot(m) > 0.0 {
+                    visible += f64::from(ggx.visible_pdf(v, m)) * d_omega;
+                }
+            }
+        }
+        assert!((area - 1.0).abs() < 5e-3, "area {area}");
+        assert!((visible - 1.0).abs() < 5e-3, "visible {visible}");
+    }
+
+    #[test]
+    fn facet_area_and_visible_normals_are_normalised() {
+        let oblique = Vec3::new(0.6, 0.3, 0.5).normalize();
+        check_normalised(Ggx::new(0.3, 0.3), Vec3::Z);
+        check_normalised(Ggx::new(0.5, 0.2), oblique);
+        check_normalised(Ggx::new(0.9, 0.4), Vec3::new(0.9, -0.3, 0.1).normalize());
+    }
+}

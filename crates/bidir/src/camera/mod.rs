@@ -1,0 +1,91 @@
+//! Where paths end: the camera.
+//!
+//! The film's plane is measured in **raster** units: one pixel is one unit, (0, 0) the top left
+//! corner. Importance and densities count per raster area, so that they do not change with a crop
+//! and a pixel's value is ∫ h(x) L(x) dx over raster positions x:
+//!
+//! - W_e(p, ω) = (dx/dω) / (A_lens cosθ): importance at the lens point p, so that ∫∫ W_e cosθ dω dA
+//!   over the lens and the directions of one pixel is 1;
+//! - the density of ω given p is dx/dω: expected camera samples per pixel, 1.
+//!
+//! A pinhole's position is a Dirac distribution; its area counts 1.
+//!
+//! **Adding one**: a file, a variant in [`Camera`] with an arm in each match, and a mapping in the
+//! scene reader.
+
+mod perspective;
+
+pub use perspective::{Perspective, PerspectiveSettings};
+
+use crate::math::{Vec2, Vec3};
+
+/// A point on the lens.
+#[derive(Clone, Copy, Debug)]
+pub struct LensSample {
+    /// The point. Space: world.
+    pub point: Vec3,
+    /// The optical axis, towards the scene: the lens's normal.
+    pub n_g: Vec3,
+    /// Its density. Measure: area, 1/m²; 1 for a pinhole.
+    pub pdf: f32,
+}
+
+/// A ray that leaves the lens.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraRay {
+    /// Where it leaves.
+    pub lens: LensSample,
+    /// The unit direction.
+    pub direction: Vec3,
+}
+
+/// The camera of the scene.
+#[derive(Clone, Copy, Debug)]
+pub enum Camera {
+    /// A pinhole or thin lens in front of a plane.
+    Perspective(Perspective),
+}
+
+impl Camera {
+    /// A point of the lens.
+    #[inline]
+    pub fn sample_lens(&self, u: Vec2) -> LensSample {
+        match self {
+            Self::Perspective(camera) => camera.sample_lens(u),
+        }
+    }
+
+    /// The ray from the lens point of `u` whose image is `raster`.
+    #[inline]
+    pub fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
+        match self {
+            Self::Perspective(camera) => camera.sample_ray(raster, u),
+        }
+    }
+
+    /// The raster position of the ray from the lens point `p` along the unit direction `w`.
+    /// None: it leaves backwards.
+    #[inline]
+    pub fn raster(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
+        match self {
+            Self::Perspective(camera) => camera.raster(p, w),
+        }
+    }
+
+    /// Importance W_e of the unit direction `w` at any point of the lens; zero backwards.
+    #[inline]
+    pub fn importance(&self, w: Vec3) -> f32 {
+        match self {
+            Self::Perspective(camera) => camera.importance(w),
+        }
+    }
+
+    /// The density of leaving the lens along `w`. Measure: solid angle, camera samples per pass
+    /// and sr.
+    #[inline]
+    pub fn pdf_direction(&self, w: Vec3) -> f32 {
+        match self {
+            Self::Perspective(camera) => camera.pdf_direction(w),
+        }
+    }
+}

@@ -1,0 +1,212 @@
+use super::{CameraRay, LensSample};
+use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
+
+/// What a [`Perspective`] camera is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct PerspectiveSettings {
+    /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.
+    pub world_from_camera: Affine3A,
+    /// The film's width and height. Unit: pixels.
+    pub resolution: Vec2,
+    /// Top left and bottom right corner of the film on the plane z = 1 of camera space.
+    pub screen: [Vec2; 2],
+    /// Radius of the lens in camera space; 0 is a pinhole.
+    pub lens_radius: f32,
+    /// Distance of the plane in focus, along the axis, in camera space.
+    pub focal_distance: f32,
+}
+
+/// A pinhole or thin lens in front of a plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Perspective {
+    origin: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    /// Screen position = `screen_origin` + raster · `screen_per_raster`.
+    screen_origin: Vec2,
+    screen_per_raster: Vec2,
+    /// Raster area per area of the plane z = 1.
+    raster_density: f32,
+    lens_radius: f32,
+    focal_distance: f32,
+}
+
+impl Perspective {
+    /// The camera. None: its map is no even scaling with rotation and mirroring, or a size is not
+    /// finite and positive where it must be.
+    pub fn new(settings: &PerspectiveSettings) -> Option<Self> {
+        let m = settings.world_from_camera.matrix3;
+        let axes = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::from);
+        let scale = axes[0].length();
+        let even = axes
+            .iter()
+            .all(|axis| (axis.length() - scale).abs() <= 1e-3 * scale);
+        let square = (0..3).all(|i| axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-3 * sqr(scale));
+        let screen_per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;
+        let raster_density = 1.0 / (screen_per_raster.x * screen_per_raster.y).abs();
+        let finite = raster_density.is_finite()
+            && settings.world_from_camera.is_finite()
+            && settings.lens_radius >= 0.0
+            && settings.focal_distance > 0.0;
+        (even && square && scale > 0.0 && finite).then(|| Self {
+            origin: settings.world_from_camera.translation.into(),
+            right: axes[0] / scale,
+            up: axes[1] / scale,
+            forward: axes[2] / scale,
+            screen_origin: settings.screen[0],
+            screen_per_raster,
+            raster_density,
+            lens_radius: settings.lens_radius * scale,
+            focal_distance: settings.focal_distance * scale,
+        })
+    }
+
+    #[inline]
+    pub(super) fn sample_lens(&self, u: Vec2) -> LensSample {
+        let offset = warp::concentric_disk(u) * self.lens_radius;
+        LensSample {
+            point: self.origin + self.right * offset.x + self.up * offset.y,
+            n_g: self.forward,
+            pdf: 1.0 / self.lens_area(),
+        }
+    }
+
+    /// The area of the lens; 1 for a pinhole, whose Dirac distribution cancels.
+    #[inline]
+    fn lens_area(&self) -> f32 {
+        if self.lens_radius > 0.0 {
+            PI * sqr(self.lens_radius)
+        } else {
+            1.0
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
+        let lens = self.sample_lens(u);
+        let screen = self.screen_origin + raster * self.screen_per_raster;
+        let through_centre = self.right * screen.x + self.up * screen.y + self.forward;
+        // All rays of a raster position meet in the plane of focus; a pinhole needs no plane.
+        let direction = if self.lens_radius > 0.0 {
+            self.origin + through_centre * self.focal_distance - lens.point
+        } else {
+            through_centre
+        };
+        CameraRay {
+            lens,
+            direction: direction.normalize(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn raster(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
+        let cos = self.forward.dot(w);
+        if cos <= 0.0 {
+            return None;
+        }
+        let direction = Vec2::new(self.right.dot(w), self.up.dot(w)) / cos;
+        let from_centre = p - self.origin;
+        let lens = Vec2::new(self.right.dot(from_centre), self.up.dot(from_centre));
+        let screen = direction + lens / self.focal_distance;
+        Some((screen - self.screen_origin) / self.screen_per_raster)
+    }
+
+    /// dx/dω = raster density / cos³θ: the plane z = 1 seen at an angle.
+    #[inline]
+    pub(super) fn pdf_direction(&self, w: Vec3) -> f32 {
+        let cos = self.forward.dot(w);
+        if cos <= 0.0 {
+            0.0
+        } else {
+            self.raster_density / (cos * cos * cos)
+        }
+    }
+
+    #[inline]
+    pub(super) fn importance(&self, w: Vec3) -> f32 {
+        let cos = self.forward.dot(w);
+        if cos <= 0.0 {
+            0.0
+        } else {
+            self.pdf_direction(w) / (cos * self.lens_area())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(lens_radius: f32) -> Perspective {
+        let eye = Vec3::new(1.0, 2.0, 3.0);
+        Perspective::new(&PerspectiveSettings {
+            world_from_camera: Affine3A::from_cols(
+                Vec3::new(0.0, 0.0, -2.0).into(),
+                Vec3::new(0.0, 2.0, 0.0).into(),
+                Vec3::new(2.0, 0.0, 0.0).into(),
+                eye.into(),
+            ),
+            resolution: Vec2::new(40.0, 30.0),
+            screen: [Vec2::new(-0.8, 0.6), Vec2::new(0.8, -0.6)],
+            lens_radius,
+            focal_distance: 4.0,
+        })
+        .unwrap()
+    }
+
+    #[test]
+    fn raster_to_ray_to_raster() {
+        for lens_radius in [0.0, 0.25] {
+            let camera = camera(lens_radius);
+            for raster in [
+                Vec2::new(0.0, 0.0),
+                Vec2::new(39.5, 3.25),
+                Vec2::new(20.0, 15.0),
+            ] {
+                let ray = camera.sample_ray(raster, Vec2::new(0.3, 0.8));
+                let back = camera.raster(ray.lens.point, ray.direction).unwrap();
+                assert!(
+                    (back - raster).length() < 1e-3,
+                    "{back} instead of {raster}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_density_is_the_jacobian_of_raster_positions() {
+        let camera = camera(0.0);
+        let at = |x: f32, y: f32| {
+            camera
+                .sample_ray(Vec2::new(x, y), Vec2::splat(0.5))
+                .direction
+        };
+        let (x, y, h) = (33.0, 7.0, 0.5);
+        let (dx, dy) = (at(x + h, y) - at(x - h, y), at(x, y + h) - at(x, y - h));
+        let solid_angle_per_pixel = dx.cross(dy).length();
+        let density = camera.pdf_direction(at(x, y));
+        assert!((solid_angle_per_pixel * density - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn nothing_leaves_backwards_and_sheared_cameras_are_refused() {
+        let camera = camera(0.0);
+        assert!(camera.raster(Vec3::ZERO, -Vec3::X).is_none());
+        assert!(camera.importance(-Vec3::X) == 0.0 && camera.pdf_direction(-Vec3::X) == 0.0);
+        let sheared = Affine3A::from_cols(
+            Vec3::X.into(),
+            Vec3::new(0.5, 1.0, 0.0).into(),
+            Vec3::Z.into(),
+            Vec3::ZERO.into(),
+        );
+        let settings = PerspectiveSettings {
+            world_from_camera: sheared,
+            resolution: Vec2::splat(8.0),
+            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+            lens_radius: 0.0,
+            focal_distance: 1.0,
+        };
+        assert!(Perspective::new(&settings).is_none());
+    }
+}

@@ -1,0 +1,92 @@
+//! Rendering: passes of samples into a film.
+//!
+//! A pass is one sample of every pixel and one light subpath for each. [`Session`] renders pass by
+//! pass for hosts that want to look, stop and go on; [`render`] does all at once. The state is
+//! (settings, next pass, film, counters) and nothing hidden. Whatever the number of threads, the
+//! same passes give the same bits.
+//!
+//! A host that wants a time budget looks at its own clock between passes: there is none here.
+
+mod session;
+mod training;
+
+pub use session::{Replay, Session};
+pub use training::Training;
+
+use crate::film::{Film, FilmError};
+use crate::integrator::IntegratorKind;
+use crate::path::PathSettings;
+use crate::sampler::SamplerKind;
+use crate::scene::Scene;
+use crate::select::ShadowRays;
+
+/// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
+/// passes.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// The estimator.
+    pub integrator: IntegratorKind,
+    /// Which connections are traced.
+    pub shadow_rays: ShadowRays,
+    /// How paths are made and weighted.
+    pub path: PathSettings,
+    /// The random numbers.
+    pub sampler: SamplerKind,
+    /// Other seeds give unrelated images.
+    pub seed: u64,
+}
+
+/// What a render may use; nothing here changes an image.
+#[derive(Clone, Copy, Debug)]
+pub struct Resources {
+    /// Threads; 0 is one per processor.
+    pub threads: usize,
+    /// The largest film. Unit: bytes.
+    pub film_memory: u64,
+}
+
+impl Default for Resources {
+    fn default() -> Self {
+        Self {
+            threads: 0,
+            film_memory: Self::DEFAULT_FILM_MEMORY,
+        }
+    }
+}
+
+impl Resources {
+    /// 16 GiB: about 80 million pixels.
+    pub const DEFAULT_FILM_MEMORY: u64 = 16 << 30;
+}
+
+/// Told of progress by all threads, and asked whether to go on.
+pub trait Progress: Sync {
+    /// Some `samples` more are done.
+    fn advance(&self, samples: u64);
+
+    /// True to give up the running pass, which is then forgotten.
+    fn should_stop(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody listens.
+impl Progress for () {
+    fn advance(&self, _samples: u64) {}
+}
+
+/// Renders `passes` passes.
+///
+/// Errors: the film needs more memory than `resources` allow.
+pub fn render(
+    scene: &Scene,
+    settings: &Settings,
+    passes: u64,
+    resources: &Resources,
+) -> Result<Film, FilmError> {
+    let mut session = Session::new(scene, settings.clone(), resources)?;
+    for _ in 0..passes {
+        session.step(&());
+    }
+    Ok(session.into_film())
+}

@@ -1,0 +1,209 @@
+use super::{Progress, Resources, Settings, Training};
+use crate::film::{Film, FilmError, PassBuffer};
+use crate::integrator::{Integrator, Sample, Workspace};
+use crate::path::PathContext;
+use crate::sampler::{Domain, Sampler};
+use crate::scene::Scene;
+use crate::spectrum::Wavelengths;
+use crate::stats::Stats;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Pixels are handed to threads in runs of this length.
+const RUN: u64 = 256;
+
+/// A render that goes pass by pass.
+pub struct Session<'a> {
+    scene: &'a Scene,
+    settings: Settings,
+    integrator: Box<dyn Integrator>,
+    training: Option<Training>,
+    film: Film,
+    buffer: PassBuffer,
+    stats: Stats,
+    pool: rayon::ThreadPool,
+    /// One per thread, kept so that no sample allocates.
+    workspaces: Vec<Mutex<Workspace>>,
+}
+
+/// One sample again, with all that it made.
+pub struct Replay {
+    /// The buffers as the sample left them: subpaths, candidates, chosen rays, contributions.
+    pub workspace: Workspace,
+    /// The training that the choice of rays went by.
+    pub training: Option<Training>,
+}
+
+impl<'a> Session<'a> {
+    /// A session that has rendered nothing but its training.
+    ///
+    /// Errors: the film needs more memory than `resources` allow.
+    pub fn new(
+        scene: &'a Scene,
+        settings: Settings,
+        resources: &Resources,
+    ) -> Result<Self, FilmError> {
+        let light_paths = scene.film().crop.area();
+        let film = Film::new(scene.film().clone(), light_paths, resources.film_memory)?;
+        let buffer = PassBuffer::new(scene.film());
+        let pool = thread_pool(resources.threads);
+        let threads = pool.current_num_threads();
+        let context = path_context(scene, &settings);
+        let training = settings
+            .shadow_rays
+            .needs_mean()
+            .then(|| Training::run(&context, &settings));
+        let mean = training.map_or(0.0, |training| training.mean_luminance);
+        let integrator = settings
+            .integrator
+            .integrator(settings.shadow_rays.selector(mean));
+        Ok(Self {
+            scene,
+            settings,
+            integrator,
+            training,
+            film,
+            buffer,
+            stats: Stats::default(),
+            pool,
+            workspaces: std::iter::repeat_with(Mutex::default)
+                .take(threads)
+                .collect(),
+        })
+    }
+
+    /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
+    pub fn step(&mut self, progress: &dyn Progress) -> bool {
+        let next = AtomicU64::new(0);
+        let this = &*self;
+        this.pool.broadcast(|thread| {
+            let Some(workspace) = this.workspaces.get(thread.index()) else {
+                return;
+            };
+            // Only this thread locks it; a panic elsewhere does not make its buffers wrong.
+            let mut workspace = workspace
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            this.render_runs(&next, &mut workspace, progress);
+        });
+        let mut stats = Stats::default();
+        for workspace in &mut self.workspaces {
+            let workspace = workspace
+                .get_mut()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
+            stats += &std::mem::take(&mut workspace.stats);
+        }
+        let finished = !progress.should_stop();
+        if finished {
+            self.stats += &stats;
+            let (film, buffer) = (&mut self.film, &self.buffer);
+            self.pool.install(|| film.add_pass(buffer));
+        }
+        self.buffer.clear();
+        finished
+    }
+
+    /// Renders runs of pixels until none is left.
+    fn render_runs(&self, next: &AtomicU64, workspace: &mut Workspace, progress: &dyn Progress) {
+        let context = path_context(self.scene, &self.settings);
+        let pixels = self.scene.film().crop.area();
+        loop {
+            let begin = next.fetch_add(RUN, Ordering::Relaxed);
+            if begin >= pixels || progress.should_stop() {
+                return;
+            }
+            let end = (begin + RUN).min(pixels);
+            for pixel in begin..end {
+                let sample = self.sample(pixel, self.film.passes());
+                self.integrator.sample(&context, &sample, workspace);
+                self.deposit(pixel as usize, workspace);
+            }
+            progress.advance(end - begin);
+        }
+    }
+
+    /// Sample number `pixel` (row order of the crop) of a pass, with light path number `pixel`.
+    fn sample(&self, pixel: u64, pass: u64) -> Sample {
+        let film = self.scene.film();
+        let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
+        let [x, y] = film.crop.pixel(pixel as usize);
+        let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
+        Sample {
+            pass,
+            pixel: [x, y],
+            camera: sampler.stream(Domain::Camera, stream, pass),
+            light: sampler.stream(Domain::Light, 0, pass * film.crop.area() + pixel),
+        }
+    }
+
+    /// Moves the contributions of the last sample to the film.
+    fn deposit(&self, pixel: usize, workspace: &Workspace) {
+        let (color, wavelengths) = (self.scene.color(), Wavelengths::default());
+        self.buffer
+            .set_camera_sample(pixel, color.to_rgb(workspace.value, &wavelengths));
+        for splat in &workspace.splats {
+            let rgb = color.to_rgb(splat.value, &wavelengths);
+            self.buffer
+                .splat(self.scene.film(), splat.raster, rgb, splat.u);
+        }
+    }
+
+    /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
+    pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
+        let index = self
+            .scene
+            .film()
+            .crop
+            .index(i64::from(pixel[0]), i64::from(pixel[1]))?;
+        let mut workspace = Workspace::default();
+        let context = path_context(self.scene, &self.settings);
+        let sample = self.sample(index as u64, pass);
+        self.integrator.sample(&context, &sample, &mut workspace);
+        Some(Replay {
+            workspace,
+            training: self.training,
+        })
+    }
+
+    /// What was rendered so far.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// What was counted so far, without training.
+    pub fn stats(&self) -> &Stats {
+        &self.stats
+    }
+
+    /// What was learnt before the first pass, if anything had to be.
+    pub fn training(&self) -> Option<&Training> {
+        self.training.as_ref()
+    }
+
+    /// The number of threads.
+    pub fn threads(&self) -> usize {
+        self.workspaces.len()
+    }
+
+    /// The film, without the session.
+    pub fn into_film(self) -> Film {
+        self.film
+    }
+}
+
+fn path_context<'a>(scene: &'a Scene, settings: &'a Settings) -> PathContext<'a> {
+    PathContext {
+        scene,
+        settings: &settings.path,
+        wavelengths: scene.color().sample_wavelengths(0.0),
+        light_paths: scene.film().crop.area() as f32,
+    }
+}
+
+/// A pool of `threads` threads, or of as many as can be had.
+fn thread_pool(threads: usize) -> rayon::ThreadPool {
+    let build = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    build(threads)
+        .or_else(|_| build(1))
+        .unwrap_or_else(|error| panic!("no thread can be started: {error}"))
+}

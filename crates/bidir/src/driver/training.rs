@@ -1,0 +1,67 @@
+use super::Settings;
+use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace};
+use crate::path::PathContext;
+use crate::sampler::{Domain, Sampler};
+use crate::select::ShadowRays;
+use crate::spectrum::{Wavelengths, luminance};
+use crate::stats::RayCounts;
+
+/// What a short render before the first pass found: a pure function of scene and settings. Its
+/// samples have random numbers of their own and never enter the film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Training {
+    /// The mean luminance of the image.
+    pub mean_luminance: f32,
+    /// The samples it took.
+    pub samples: u64,
+    /// The rays it cost.
+    pub rays: RayCounts,
+}
+
+/// Enough for the mean luminance to within a few percent in most scenes.
+const SAMPLES: u64 = 1 << 14;
+
+impl Training {
+    /// Renders a few samples spread over the film, tracing every connection.
+    pub(super) fn run(context: &PathContext<'_>, settings: &Settings) -> Self {
+        let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0));
+        let mut workspace = Workspace::default();
+        let sum: f64 = (0..SAMPLES)
+            .map(|i| sample(context, settings, &*integrator, i, &mut workspace))
+            .sum();
+        Self {
+            mean_luminance: (sum / SAMPLES as f64) as f32,
+            samples: SAMPLES,
+            rays: workspace.stats.rays,
+        }
+    }
+}
+
+/// The luminance that sample `i` adds to the mean pixel.
+fn sample(
+    context: &PathContext<'_>,
+    settings: &Settings,
+    integrator: &dyn Integrator,
+    i: u64,
+    workspace: &mut Workspace,
+) -> f64 {
+    let (scene, crop) = (context.scene, context.scene.film().crop);
+    let sampler = Sampler::new(settings.sampler, settings.seed);
+    // A stride coprime to any number of pixels below its own size spreads the samples evenly.
+    const STRIDE: u64 = 2_654_435_761;
+    let pixel = crop.pixel((i.wrapping_mul(STRIDE) % crop.area()) as usize);
+    let sample = Sample {
+        pass: 0,
+        pixel,
+        camera: sampler.stream(Domain::TrainingCamera, i, 0),
+        light: sampler.stream(Domain::TrainingLight, 0, i),
+    };
+    integrator.sample(context, &sample, workspace);
+    let y = |light| {
+        f64::from(luminance(
+            scene.color().to_rgb(light, &Wavelengths::default()),
+        ))
+    };
+    let splats: f64 = workspace.splats.iter().map(|splat| y(splat.value)).sum();
+    y(workspace.value) + splats / crop.area() as f64
+}

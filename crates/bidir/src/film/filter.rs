@@ -1,0 +1,325 @@
+use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
+
+/// The shape of a filter along one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FilterKind {
+    /// Constant.
+    Box,
+    /// Falling linearly to zero at the radius.
+    Triangle,
+    /// A Gaussian of this standard deviation, lowered to reach zero at the radius.
+    Gaussian {
+        /// Standard deviation. Unit: pixels.
+        sigma: f32,
+    },
+    /// The cubic of Mitchell and Netravali [Mitchell88], stretched to the radius.
+    Mitchell {
+        /// Blur.
+        b: f32,
+        /// Ringing.
+        c: f32,
+    },
+    /// sinc windowed by another, wider sinc (Lanczos).
+    Sinc {
+        /// Cycles before the window ends.
+        tau: f32,
+    },
+}
+
+/// A pixel filter: the product of the same shape along x and y, normalised to ∫∫ h = 1.
+#[derive(Clone, Debug)]
+pub struct Filter {
+    x: Axis,
+    y: Axis,
+}
+
+impl Default for Filter {
+    /// The box of one pixel.
+    fn default() -> Self {
+        Self::new(FilterKind::Box, Vec2::splat(0.5))
+    }
+}
+
+impl Filter {
+    /// A filter with half widths `radius`, positive. Unit: pixels.
+    pub fn new(kind: FilterKind, radius: Vec2) -> Self {
+        Self {
+            x: Axis::new(kind, radius.x),
+            y: Axis::new(kind, radius.y),
+        }
+    }
+
+    /// The half widths. Unit: pixels.
+    pub fn radius(&self) -> Vec2 {
+        Vec2::new(self.x.radius, self.y.radius)
+    }
+
+    /// h at `offset` from the pixel's centre. Unit: 1/pixel².
+    pub fn eval(&self, offset: Vec2) -> f32 {
+        self.x.eval(offset.x) * self.y.eval(offset.y)
+    }
+
+    /// Draws an offset from the pixel's centre by |h|: the offset, and h divided by its density.
+    #[inline]
+    pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
+        let (x, weight_x) = self.x.sample(u.x);
+        let (y, weight_y) = self.y.sample(u.y);
+        (Vec2::new(x, y), weight_x * weight_y)
+    }
+
+    /// Draws a pixel q by |h(raster - q)| among all pixels whose filter reaches `raster`: its
+    /// coordinates, and sign(h) · Σ|h|. None: none reaches it.
+    #[inline]
+    pub fn pick_pixel(&self, raster: Vec2, u: Vec2) -> Option<(i64, i64, f32)> {
+        let (x, weight_x) = self.x.pick(raster.x, u.x)?;
+        let (y, weight_y) = self.y.pick(raster.y, u.y)?;
+        Some((x, y, weight_x * weight_y))
+    }
+}
+
+/// A filter along one axis.
+#[derive(Clone, Debug)]
+struct Axis {
+    kind: FilterKind,
+    radius: f32,
+    /// 1 / ∫ of the shape.
+    normalisation: f32,
+    /// |shape| in cells over [-radius, radius]; not used by kinds that are inverted in closed form.
+    table: Distribution1d,
+}
+
+const TABLE_CELLS: usize = 512;
+/// A filter wider than this is refused by readers; pixels are gathered into a buffer of this size.
+const MAX_PIXELS: usize = 66;
+
+impl Axis {
+    fn new(kind: FilterKind, radius: f32) -> Self {
+        let radius = radius.clamp(1e-3, 32.0);
+        let position = |i: usize, n: usize| radius * (2.0 * i as f32 / n as f32 - 1.0);
+        // Every cell gets the largest of five values, so that no part of h has density zero.
+        let cell = |i: usize| {
+            (0..=4)
+                .map(|k| shape(kind, radius, position(4 * i + k, 4 * TABLE_CELLS)).abs())
+                .fold(0.0, f32::max)
+        };
+        let n = 16_384;
+        let sum: f64 = (0..n)
+            .map(|i| f64::from(shape(kind, radius, position(2 * i + 1, 2 * n))))
+            .sum();
+        let integral = match kind {
+            FilterKind::Box => 2.0 * radius,
+            FilterKind::Triangle => sqr(radius),
+            _ => (sum / n as f64) as f32 * 2.0 * radius,
+        };
+        let table = Distribution1d::new((0..TABLE_CELLS).map(cell));
+        Self {
+            kind,
+            radius,
+            normalisation: 1.0 / integral,
+            table,
+        }
+    }
+
+    #[inline]
+    fn eval(&self, x: f32) -> f32 {
+        shape(self.kind, self.radius, x) * self.normalisation
+    }
+
+    #[inline]
+    fn sample(&self, u: f32) -> (f32, f32) {
+        match self.kind {
+            FilterKind::Box => ((2.0 * u - 1.0) * self.radius, 1.0),
+            FilterKind::Triangle => (tent(u) * self.radius, 1.0),
+            _ => {
+                let (p, pdf, _) = self.table.sample_continuous(u);
+                let x = (2.0 * p - 1.0) * self.radius;
+                (x, self.eval(x) * 2.0 * self.radius / pdf)
+            }
+        }
+    }
+
+    #[inline]
+    fn pick(&self, x: f32, u: f32) -> Option<(i64, f32)> {
+        // A pixel's centre lies at q + 1/2. The interval is half open, so that a box of one pixel
+        // always reaches exactly one.
+        let first = (x - 0.5 - self.radius).floor() as i64 + 1;
+        let last = (x - 0.5 + self.radius).floor() as i64;
+        let mut values = [0.0f32; MAX_PIXELS];
+        let values = &mut values[..usize::try_from(last - first + 1).ok()?.min(MAX_PIXELS)];
+        let mut sum = 0.0;
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = self.eval(x - 0.5 - (first + i as i64) as f32);
+            sum += value.abs();
+        }
+        let mut rest = u.min(ONE_MINUS_EPSILON) * sum;
+        let mut picked = None;
+        for (i, value) in values
+            .iter()
+            .enumerate()
+            .filter(|(_, value)| **value != 0.0)
+        {
+            picked = Some((first + i as i64, sum.copysign(*value)));
+            rest -= value.abs();
+            if rest < 0.0 {
+                break;
+            }
+        }
+        picked
+    }
+}
+
+/// The inverse of the cumulative tent over [-1, 1].
+#[inline]
+fn tent(u: f32) -> f32 {
+    if u < 0.5 {
+        safe_sqrt(2.0 * u) - 1.0
+    } else {
+        1.0 - safe_sqrt(2.0 - 2.0 * u)
+    }
+}
+
+/// The shape of a filter at `x`, not normalised.
+fn shape(kind: FilterKind, radius: f32, x: f32) -> f32 {
+    let x = x.abs();
+    // The box includes its rim: which pixel a rim belongs to is decided by the caller.
+    if x > radius {
+        return 0.0;
+    }
+    match kind {
+        FilterKind::Box => 1.0,
+        FilterKind::Triangle => radius - x,
+        FilterKind::Gaussian { sigma } => {
+            let gaussian = |x: f32| libm::expf(-sqr(x) / (2.0 * sqr(sigma)));
+            (gaussian(x) - gaussian(radius)).max(0.0)
+        }
+        FilterKind::Mitchell { b, c } => mitchell(2.0 * x / radius, b, c),
+        FilterKind::Sinc { tau } => sinc(x) * sinc(x / tau),
+    }
+}
+
+/// [Mitchell88, eq. 8] times 6, for x in [0, 2].
+fn mitchell(x: f32, b: f32, c: f32) -> f32 {
+    if x <= 1.0 {
+        ((12.0 - 9.0 * b - 6.0 * c) * x + (-18.0 + 12.0 * b + 6.0 * c)) * x * x + (6.0 - 2.0 * b)
+    } else {
+        (((-b - 6.0 * c) * x + (6.0 * b + 30.0 * c)) * x + (-12.0 * b - 48.0 * c)) * x
+            + (8.0 * b + 24.0 * c)
+    }
+}
+
+fn sinc(x: f32) -> f32 {
+    let x = PI * x;
+    if x < 1e-4 {
+        1.0 - x * x / 6.0
+    } else {
+        libm::sinf(x) / x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn examples() -> Vec<Filter> {
+        [
+            (FilterKind::Box, 0.5),
+            (FilterKind::Box, 1.3),
+            (FilterKind::Triangle, 2.0),
+            (FilterKind::Gaussian { sigma: 0.5 }, 1.5),
+            (
+                FilterKind::Mitchell {
+                    b: 1.0 / 3.0,
+                    c: 1.0 / 3.0,
+                },
+                2.0,
+            ),
+            (FilterKind::Sinc { tau: 3.0 }, 4.0),
+        ]
+        .map(|(kind, radius)| Filter::new(kind, Vec2::new(radius, radius * 0.8)))
+        .into()
+    }
+
+    /// ∫ g(x) h(x) dx over both axes for the test function g.
+    fn integral(filter: &Filter, g: impl Fn(Vec2) -> f64) -> f64 {
+        let (n, r) = (800, filter.radius());
+        let mut sum = 0.0;
+        for i in 0..n {
+            for j in 0..n {
+                let p = (Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * (2.0 / n as f32) - 1.0) * r;
+                sum += f64::from(filter.eval(p)) * g(p);
+            }
+        }
+        sum * f64::from(4.0 * r.x * r.y) / f64::from(n * n)
+    }
+
+    fn test_function(p: Vec2) -> f64 {
+        1.0 + f64::from(p.x) + 0.5 * f64::from(p.y * p.y) + 0.3 * f64::from(p.x * p.x)
+    }
+
+    #[test]
+    fn filters_are_normalised() {
+        for filter in examples() {
+            assert!(
+                (integral(&filter, |_| 1.0) - 1.0).abs() < 2e-3,
+                "{filter:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn drawn_offsets_reproduce_the_filter() {
+        for filter in examples() {
+            // Where h changes sign, a grid of numbers errs by 1/n.
+            let n = 2048;
+            let mut sum = 0.0;
+            for i in 0..n * n {
+                let u = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
+                let (p, weight) = filter.sample(u);
+                sum += test_function(p) * f64::from(weight);
+            }
+            let (mean, expected) = (sum / f64::from(n * n), integral(&filter, test_function));
+            assert!(
+                (mean - expected).abs() < 5e-3,
+                "{:?}: {mean} {expected}",
+                filter.x.kind
+            );
+        }
+    }
+
+    #[test]
+    fn picked_pixels_reproduce_the_filter() {
+        let g = |x: f32| f64::from(1.0 + x + 0.3 * x * x);
+        for axis in examples()
+            .into_iter()
+            .flat_map(|filter| [filter.x, filter.y])
+        {
+            let (raster, n) = (10.3f32, 100_000);
+            let mut mean = 0.0;
+            for i in 0..n {
+                let Some((x, weight)) = axis.pick(raster, (i as f32 + 0.5) / n as f32) else {
+                    continue;
+                };
+                mean += f64::from(weight) * g(raster - x as f32 - 0.5) / f64::from(n);
+            }
+            let offsets = (0..20).map(|x| raster - x as f32 - 0.5);
+            let expected: f64 = offsets.map(|x| f64::from(axis.eval(x)) * g(x)).sum();
+            assert!(
+                (mean - expected).abs() < 1e-3,
+                "{:?}: {mean} {expected}",
+                axis.kind
+            );
+        }
+    }
+
+    #[test]
+    fn the_box_of_one_pixel_picks_the_pixel_under_the_point() {
+        let filter = Filter::default();
+        for (x, expected) in [(3.0, 3), (3.999, 3), (3.5, 3), (4.0, 4), (-0.25, -1)] {
+            let (picked, _, weight) = filter
+                .pick_pixel(Vec2::new(x, 0.5), Vec2::splat(0.7))
+                .unwrap();
+            assert_eq!(picked, expected, "{x}");
+            assert!((weight - 1.0).abs() < 1e-6);
+        }
+    }
+}

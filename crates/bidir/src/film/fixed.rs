@@ -1,0 +1,113 @@
+//! Fixed-point sums: integers, so that the order of addition cannot matter.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Values are kept at 2⁻⁶⁰.
+pub const VALUE_SCALE: i32 = 60;
+/// Squares are kept at 2⁻⁴⁰, which leaves room for 2⁸⁰ and 128 passes of it.
+pub const MOMENT_SCALE: i32 = 40;
+/// A contribution above this is dropped and counted.
+pub const LARGEST_CONTRIBUTION: f32 = 1_099_511_627_776.0; // 2⁴⁰
+
+/// 2^exponent, exactly.
+#[inline]
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}
+
+/// `value`·2^scale, rounded towards zero, which is the same on every machine.
+#[inline]
+pub fn from_f64(value: f64, scale: i32) -> i128 {
+    (value * power_of_two(scale)) as i128
+}
+
+/// `fixed`·2^-scale.
+#[inline]
+pub fn to_f64(fixed: i128, scale: i32) -> f64 {
+    fixed as f64 * power_of_two(-scale)
+}
+
+/// A sum that threads add to without a lock: the low limb carries into the high one. It may be
+/// read only when no thread adds.
+#[derive(Debug, Default)]
+pub(super) struct FixedSum {
+    low: AtomicU64,
+    high: AtomicU64,
+}
+
+impl FixedSum {
+    #[inline]
+    pub(super) fn add(&self, value: i128) {
+        let (low, high) = (value as u64, (value >> 64) as u64);
+        let before = self.low.fetch_add(low, Ordering::Relaxed);
+        let carry = u64::from(before.checked_add(low).is_none());
+        let high = high.wrapping_add(carry);
+        if high != 0 {
+            self.high.fetch_add(high, Ordering::Relaxed);
+        }
+    }
+
+    #[inline]
+    pub(super) fn get(&self) -> i128 {
+        let high = i128::from(self.high.load(Ordering::Relaxed) as i64);
+        (high << 64) | i128::from(self.low.load(Ordering::Relaxed))
+    }
+
+    #[inline]
+    pub(super) fn clear(&self) {
+        self.low.store(0, Ordering::Relaxed);
+        self.high.store(0, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limbs_carry_and_borrow() {
+        let values = [
+            1i128 << 63,
+            1 << 63,
+            -1,
+            5 << 70,
+            -(3 << 70),
+            i128::from(u64::MAX),
+            -(1 << 90),
+        ];
+        let sum = FixedSum::default();
+        let mut expected = 0;
+        for value in values {
+            sum.add(value);
+            expected += value;
+            assert_eq!(sum.get(), expected);
+        }
+        sum.clear();
+        assert_eq!(sum.get(), 0);
+    }
+
+    #[test]
+    fn threads_lose_nothing() {
+        let sum = FixedSum::default();
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| (0..10_000).for_each(|i| sum.add((i128::from(i) << 50) - 7)));
+            }
+        });
+        assert_eq!(
+            sum.get(),
+            4 * (0..10_000i128).map(|i| (i << 50) - 7).sum::<i128>()
+        );
+    }
+
+    #[test]
+    fn floats_survive_the_round_trip() {
+        for value in [0.0, 1.0, -2.5, 1e-9, 1e12] {
+            let back = to_f64(from_f64(value, VALUE_SCALE), VALUE_SCALE);
+            assert!(
+                (back - value).abs() <= 1e-17 + value.abs() * 1e-15,
+                "{value} {back}"
+            );
+        }
+    }
+}

@@ -1,0 +1,94 @@
+use super::Filter;
+use thiserror::Error;
+
+/// A rectangle of pixels: `min` inclusive, `max` exclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelRect {
+    /// Left and top.
+    pub min: [u32; 2],
+    /// Right and bottom, exclusive.
+    pub max: [u32; 2],
+}
+
+impl PixelRect {
+    /// Pixels per row.
+    pub fn width(&self) -> u32 {
+        self.max[0].saturating_sub(self.min[0])
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.max[1].saturating_sub(self.min[1])
+    }
+
+    /// The number of pixels.
+    pub fn area(&self) -> u64 {
+        u64::from(self.width()) * u64::from(self.height())
+    }
+
+    /// The position of a pixel in row order. None: it is outside.
+    #[inline]
+    pub fn index(&self, x: i64, y: i64) -> Option<usize> {
+        let (dx, dy) = (x - i64::from(self.min[0]), y - i64::from(self.min[1]));
+        let inside = (0..i64::from(self.width())).contains(&dx)
+            && (0..i64::from(self.height())).contains(&dy);
+        inside.then(|| dy as usize * self.width() as usize + dx as usize)
+    }
+
+    /// The pixel at position `i` of row order.
+    #[inline]
+    pub fn pixel(&self, i: usize) -> [u32; 2] {
+        let width = self.width() as usize;
+        [
+            self.min[0] + (i % width) as u32,
+            self.min[1] + (i / width) as u32,
+        ]
+    }
+}
+
+/// The film's geometry, filter and exposure.
+#[derive(Clone, Debug)]
+pub struct FilmSettings {
+    /// Width and height of the whole film. Unit: pixels.
+    pub resolution: [u32; 2],
+    /// The part that is rendered.
+    pub crop: PixelRect,
+    /// The pixel filter.
+    pub filter: Filter,
+    /// What developed values are multiplied by.
+    pub exposure: f32,
+}
+
+impl FilmSettings {
+    /// An uncropped film with exposure 1.
+    pub fn new(resolution: [u32; 2], filter: Filter) -> Self {
+        let crop = PixelRect {
+            min: [0, 0],
+            max: resolution,
+        };
+        Self {
+            resolution,
+            crop,
+            filter,
+            exposure: 1.0,
+        }
+    }
+
+    /// The number of pixels of the whole film.
+    pub fn area(&self) -> u64 {
+        u64::from(self.resolution[0]) * u64::from(self.resolution[1])
+    }
+}
+
+/// Why a film cannot be made.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum FilmError {
+    /// It would need too much memory.
+    #[error("the film needs {} GiB of memory, more than the limit of {} GiB", needed >> 30, limit >> 30)]
+    TooLarge {
+        /// Bytes needed.
+        needed: u128,
+        /// Bytes allowed.
+        limit: u64,
+    },
+}

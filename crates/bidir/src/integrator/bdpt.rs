@@ -1,0 +1,210 @@
+//! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen [Lafortune95].
+
+use super::light::light_image;
+use super::{Integrator, Sample, Workspace};
+use crate::light::LightPoint;
+use crate::path::{
+    Escape, Junction, LightPointChoice, PathContext, Strategy, Vertex, connect, next_event_vertex,
+    weight,
+};
+use crate::sampler::{Dimension, Purpose};
+use crate::select::{Candidate, Draws, Selector};
+use crate::spectrum::Spectrum;
+
+/// Bidirectional path tracing: every strategy (s, t), weighted, with the connections that
+/// `selector` chooses.
+pub struct Bdpt {
+    /// Chooses the connections that are traced.
+    pub selector: Box<dyn Selector>,
+}
+
+impl Integrator for Bdpt {
+    fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+        workspace.begin();
+        workspace.walk_camera(context, sample);
+        workspace.walk_light(context, sample);
+        hits(context, sample, workspace);
+        light_images(context, sample, workspace);
+        gather_candidates(context, sample, workspace);
+        let Workspace {
+            candidates, chosen, ..
+        } = workspace;
+        self.selector
+            .select(candidates, Draws(&sample.camera), chosen);
+        trace_chosen(context, sample, workspace);
+    }
+}
+
+/// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
+fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    for i in 1..workspace.camera.vertices.len() {
+        let vertex = workspace.camera.vertices[i];
+        let Some(light) = vertex.light else { continue };
+        let mut x0 = Vertex::light(context, light, &vertex.light_point());
+        (x0.beta, x0.wo, x0.pdf_rev) = (vertex.beta, vertex.wo, vertex.pdf_fwd);
+        hit(context, sample, workspace, i, &x0);
+    }
+    let Some(Escape {
+        direction,
+        beta,
+        pdf_fwd,
+    }) = workspace.camera.escape
+    else {
+        return;
+    };
+    for &light in context.scene.environment() {
+        let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(direction));
+        (x0.beta, x0.wo, x0.pdf_rev) = (beta, -direction, pdf_fwd);
+        hit(
+            context,
+            sample,
+            workspace,
+            workspace.camera.vertices.len(),
+            &x0,
+        );
+    }
+}
+
+/// Adds the path whose camera vertices are the first `i`, and whose x_0 is the light vertex that
+/// was hit, with the throughput, direction and density of the camera walk.
+fn hit(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+    i: usize,
+    x0: &Vertex,
+) {
+    let strategy = Strategy::new(0, i + 1);
+    if context.count(0, i + 1) == 0.0 {
+        return;
+    }
+    let value = x0.beta
+        * x0.scatter(
+            context,
+            x0.wo,
+            x0.wo,
+            crate::bsdf::TransportMode::Importance,
+        );
+    if value == Spectrum::ZERO {
+        return;
+    }
+    let Workspace {
+        camera, densities, ..
+    } = workspace;
+    let camera = &camera.vertices[..i];
+    let weight = weight(context, densities, &[*x0], camera, Junction::Hit);
+    workspace.add(sample, strategy, value * weight);
+}
+
+/// t = 1: every light vertex is connected to a lens point of its own. All of these rays are traced.
+fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    for s in 1..=workspace.light.vertices.len() {
+        if context.count(s, 1) == 0.0 {
+            continue;
+        }
+        let Workspace {
+            light, densities, ..
+        } = workspace;
+        let light = &light.vertices[..s];
+        let Some((lens, mut splat)) = light_image(context, sample, light) else {
+            continue;
+        };
+        splat.value *= weight(context, densities, light, &[lens], Junction::Connection);
+        workspace.splat(context, sample, s, &lens, splat);
+    }
+}
+
+/// s ≥ 1 and t ≥ 2: evaluates every connection, before visibility.
+fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    let fresh = context.settings.light_point == LightPointChoice::Fresh;
+    workspace
+        .next_events
+        .resize(workspace.camera.vertices.len(), None);
+    for t in 2..=workspace.camera.vertices.len() {
+        let y = workspace.camera.vertices[t - 1];
+        if y.is_delta() {
+            continue;
+        }
+        if fresh && t < context.settings.max_vertices() && context.count(1, t) > 0.0 {
+            let at = |purpose| Dimension::at(t - 1, purpose);
+            let u_light = sample.camera.get_1d(at(Purpose::NextEventLight));
+            let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+            if let Some(x0) = next_event_vertex(context, &y, u_light, u) {
+                workspace.next_events[t - 1] = Some(x0);
+                candidate(context, sample, workspace, 1, t);
+            }
+        }
+        let longest = workspace
+            .light
+            .vertices
+            .len()
+            .min(context.settings.max_vertices() - t);
+        for s in if fresh { 2 } else { 1 }..=longest {
+            candidate(context, sample, workspace, s, t);
+        }
+    }
+}
+
+/// Evaluates the connection (s, t).
+fn candidate(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+    s: usize,
+    t: usize,
+) {
+    if context.count(s, t) == 0.0 {
+        return;
+    }
+    let Workspace {
+        light,
+        camera,
+        next_events,
+        densities,
+        ..
+    } = workspace;
+    let camera = &camera.vertices[..t];
+    let light = match &next_events[t - 1] {
+        Some(x0) if s == 1 => std::slice::from_ref(x0),
+        _ => &light.vertices[..s],
+    };
+    let value = connect(context, light, camera);
+    if value == Spectrum::ZERO {
+        return;
+    }
+    let value = value * weight(context, densities, light, camera, Junction::Connection);
+    workspace.stats.candidates += 1;
+    let strategy = Strategy::new(s, t);
+    if workspace.accepts(sample, strategy, value) && !value.is_black() {
+        let luminance = context
+            .scene
+            .color()
+            .luminance(value.map(f32::abs), &context.wavelengths);
+        // What underflows must keep a chance.
+        let score = luminance.max(f32::MIN_POSITIVE);
+        workspace.candidates.push(Candidate {
+            value,
+            score,
+            strategy,
+        });
+    }
+}
+
+/// Traces the chosen connections and adds what arrives, divided by its probability.
+fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    for i in 0..workspace.chosen.len() {
+        let chosen = workspace.chosen[i];
+        let Candidate {
+            value, strategy, ..
+        } = workspace.candidates[chosen.candidate as usize];
+        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+        let y = workspace.camera.vertices[t - 1];
+        let z = match workspace.next_events[t - 1] {
+            Some(x0) if s == 1 => x0,
+            _ => workspace.light.vertices[s - 1],
+        };
+        if workspace.trace_connection(context.scene, &z, &y) {
+            workspace.add(sample, strategy, value / chosen.prob);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Estimators: what one sample does.
+//!
+//! An [`Integrator`] makes the contributions of one camera sample and of the light subpath that
+//! goes with it. It knows no film: contributions go into the [`Workspace`], from where the driver
+//! takes them.
+//!
+//! **Adding one**: a file, and a variant of [`IntegratorKind`] with its name.
+
+mod bdpt;
+mod light;
+mod path;
+mod workspace;
+
+pub use bdpt::Bdpt;
+pub use light::LightTracer;
+pub use path::PathTracer;
+pub use workspace::{Sample, Splat, Workspace};
+
+use crate::path::PathContext;
+use crate::select::Selector;
+
+/// An estimator of the image, unbiased but for the limit of path length.
+pub trait Integrator: Sync + Send {
+    /// Adds the contributions of one sample to the workspace, which is cleared first.
+    fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
+}
+
+/// The estimators by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IntegratorKind {
+    /// Path tracing: next-event estimation and hits of lights, combined.
+    Path,
+    /// Light tracing: every vertex of a light subpath is connected to the lens.
+    Light,
+    /// Bidirectional path tracing with every strategy.
+    #[default]
+    Bdpt,
+}
+
+impl IntegratorKind {
+    /// Every estimator with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("path", Self::Path),
+        ("light", Self::Light),
+        ("bdpt", Self::Bdpt),
+    ];
+
+    /// The estimator; `selector` chooses the shadow rays of those that have candidates.
+    pub fn integrator(self, selector: Box<dyn Selector>) -> Box<dyn Integrator> {
+        match self {
+            Self::Path => Box::new(PathTracer),
+            Self::Light => Box::new(LightTracer),
+            Self::Bdpt => Box::new(Bdpt { selector }),
+        }
+    }
+}

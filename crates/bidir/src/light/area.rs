@@ -1,0 +1,133 @@
+use super::{EmissionSample, LightContext, LightPoint, LightSample};
+use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
+use crate::shape::{Shape, ShapeSample};
+use crate::spectrum::{Rgb, luminance};
+
+/// Which sides of a surface emit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EmissionSides {
+    /// The front.
+    #[default]
+    Front,
+    /// Front and back alike.
+    Both,
+}
+
+/// A shape that emits the same radiance everywhere and in all directions of its emitting sides.
+#[derive(Clone, Debug)]
+pub struct AreaLight {
+    /// The shape, by index.
+    shape: usize,
+    radiance: Rgb,
+    sides: EmissionSides,
+    /// The choice of a primitive, by area.
+    primitives: Distribution1d,
+}
+
+impl AreaLight {
+    /// The light of `shape`, which is number `index` of the scene.
+    pub fn new(index: usize, shape: &Shape, radiance: Rgb, sides: EmissionSides) -> Self {
+        let areas = (0..shape.primitive_count()).map(|i| shape.primitive_area(i));
+        Self {
+            shape: index,
+            radiance,
+            sides,
+            primitives: Distribution1d::new(areas),
+        }
+    }
+
+    pub(super) fn power(&self) -> f32 {
+        let sides = match self.sides {
+            EmissionSides::Front => 1.0,
+            EmissionSides::Both => 2.0,
+        };
+        sides * PI * self.primitives.total() as f32 * luminance(self.radiance)
+    }
+
+    #[inline]
+    pub(super) fn emitted(&self, at: &LightPoint, w: Vec3) -> Rgb {
+        if self.sides == EmissionSides::Both || at.n_g.dot(w) > 0.0 {
+            self.radiance
+        } else {
+            [0.0; 3]
+        }
+    }
+
+    /// Draws a point of the shape with `sample`, given the primitive and the rest of the numbers.
+    #[inline]
+    fn sample_shape(&self, u: Vec2, sample: impl Fn(usize, Vec2) -> ShapeSample) -> LightSample {
+        let (primitive, prob, rest) = self.primitives.sample(u.x);
+        let drawn = sample(primitive, Vec2::new(rest, u.y));
+        let at = LightPoint::on_surface(&drawn.surface, primitive as u32);
+        LightSample {
+            at,
+            pdf: drawn.pdf * prob,
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample_emission(
+        &self,
+        context: &LightContext<'_>,
+        u_position: Vec2,
+        u_direction: Vec2,
+    ) -> Option<EmissionSample> {
+        let shape = &context.shapes[self.shape];
+        let from = self.sample_shape(u_position, |i, u| shape.sample(i, u));
+        let mut u = u_direction;
+        let mut side = 1.0;
+        if self.sides == EmissionSides::Both {
+            side = if u.x < 0.5 { 1.0 } else { -1.0 };
+            u.x = (u.x * 2.0).fract();
+        }
+        let local = warp::cosine_hemisphere(u);
+        let direction = Frame::from_z(from.at.n_g * side).to_world(local);
+        let pdf_direction = self.pdf_direction(&from.at, direction);
+        (pdf_direction > 0.0 && from.pdf > 0.0).then(|| EmissionSample {
+            from,
+            origin: from.at.point,
+            direction,
+            pdf_direction,
+            emitted_cos: self.radiance.map(|l| l * from.at.n_g.dot(direction).abs()),
+        })
+    }
+
+    #[inline]
+    pub(super) fn pdf_position(&self, context: &LightContext<'_>, at: &LightPoint) -> f32 {
+        let i = at.primitive as usize;
+        self.primitives.prob(i) * context.shapes[self.shape].pdf(i, at.point)
+    }
+
+    #[inline]
+    pub(super) fn pdf_direction(&self, at: &LightPoint, w: Vec3) -> f32 {
+        let cos = at.n_g.dot(w);
+        match self.sides {
+            EmissionSides::Front => warp::cosine_hemisphere_pdf(cos),
+            EmissionSides::Both => warp::cosine_hemisphere_pdf(cos.abs()) / 2.0,
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample_next_event(
+        &self,
+        context: &LightContext<'_>,
+        reference: Vec3,
+        u: Vec2,
+    ) -> Option<LightSample> {
+        let shape = &context.shapes[self.shape];
+        let sample = self.sample_shape(u, |i, u| shape.sample_from(i, reference, u));
+        (sample.pdf > 0.0).then_some(sample)
+    }
+
+    #[inline]
+    pub(super) fn pdf_next_event(
+        &self,
+        context: &LightContext<'_>,
+        reference: Vec3,
+        at: &LightPoint,
+    ) -> f32 {
+        let i = at.primitive as usize;
+        let shape = &context.shapes[self.shape];
+        self.primitives.prob(i) * shape.pdf_from(i, reference, at.point, at.n_g)
+    }
+}

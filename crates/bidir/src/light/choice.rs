@@ -1,0 +1,36 @@
+use super::{Light, LightContext};
+use crate::math::Distribution1d;
+
+/// The choice of one light: by power, the same for light subpaths and for next-event estimation.
+#[derive(Clone, Debug)]
+pub struct LightChoice {
+    by_power: Distribution1d,
+    count: usize,
+}
+
+impl LightChoice {
+    /// The choice among `lights`.
+    pub fn new(lights: &[Light], context: &LightContext<'_>) -> Self {
+        let by_power = Distribution1d::new(lights.iter().map(|light| light.power(context)));
+        Self {
+            by_power,
+            count: lights.len(),
+        }
+    }
+
+    /// Draws a light: its index and its probability. None: there are none.
+    #[inline]
+    pub fn sample(&self, u: f32) -> Option<(usize, f32)> {
+        if self.count == 0 {
+            return None;
+        }
+        let (light, prob, _) = self.by_power.sample(u);
+        Some((light, prob))
+    }
+
+    /// The probability of light `i`. Unitless.
+    #[inline]
+    pub fn prob(&self, i: usize) -> f32 {
+        self.by_power.prob(i)
+    }
+}

@@ -1,0 +1,243 @@
+//! Where light comes from.
+//!
+//! A path starts at a [`LightPoint`]: a point on a light, or, for lights at infinity, a direction.
+//! Three densities describe how one is drawn, and each says its measure:
+//!
+//! | | finite light | light at infinity |
+//! |---|---|---|
+//! | `pdf_position` of the light point (a light subpath's x₀) | area, 1/m² | solid angle, 1/sr |
+//! | `pdf_direction` of leaving it (x₁) | solid angle, 1/sr | area of the disk that the rays cross, 1/m² |
+//! | `pdf_next_event` of the point drawn for a given receiver | area, 1/m² | solid angle, 1/sr |
+//!
+//! A Dirac endpoint (point, spot and distant lights) counts 1 for the density it lacks: it cancels,
+//! because no strategy can hit such a light by chance ([`Light::is_delta`]).
+//!
+//! **Adding one**: a file, a variant in [`Light`] with an arm in each match, and a mapping in the
+//! scene reader.
+
+mod area;
+mod choice;
+mod infinite;
+mod point;
+
+pub use area::{AreaLight, EmissionSides};
+pub use choice::LightChoice;
+pub use infinite::{DistantLight, InfiniteLight, Radiance};
+pub use point::{PointLight, SpotLight};
+
+use crate::math::{Vec2, Vec3};
+use crate::shape::{Shape, SurfacePoint};
+use crate::spectrum::Rgb;
+
+/// Where a path starts.
+#[derive(Clone, Copy, Debug)]
+pub struct LightPoint {
+    /// The point; for a light at infinity the unit direction towards it.
+    pub point: Vec3,
+    /// The normal of the emitting surface; zero where there is none.
+    pub n_g: Vec3,
+    /// What ray origins are pushed off the surface by; see [`SurfacePoint::error`].
+    pub error: f32,
+    /// The primitive of the emitting shape; 0 where there is none.
+    pub primitive: u32,
+    /// True for a light at infinity, where `point` is a direction.
+    pub is_infinite: bool,
+}
+
+impl LightPoint {
+    /// A point on an emitting surface.
+    pub fn on_surface(surface: &SurfacePoint, primitive: u32) -> Self {
+        Self {
+            point: surface.point,
+            n_g: surface.n_g,
+            error: surface.error,
+            primitive,
+            is_infinite: false,
+        }
+    }
+
+    /// A point in space.
+    pub fn in_space(point: Vec3) -> Self {
+        Self {
+            point,
+            n_g: Vec3::ZERO,
+            error: 0.0,
+            primitive: 0,
+            is_infinite: false,
+        }
+    }
+
+    /// The unit `direction` towards a light at infinity.
+    pub fn at_infinity(direction: Vec3) -> Self {
+        Self {
+            is_infinite: true,
+            ..Self::in_space(direction)
+        }
+    }
+}
+
+/// A light point with its density.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// The point or direction.
+    pub at: LightPoint,
+    /// Its density, in the measure that the module's table says.
+    pub pdf: f32,
+}
+
+/// A ray that leaves a light.
+#[derive(Clone, Copy, Debug)]
+pub struct EmissionSample {
+    /// Where it leaves.
+    pub from: LightSample,
+    /// The origin of the ray: the light point, or for a light at infinity a point outside the
+    /// scene.
+    pub origin: Vec3,
+    /// The unit direction it travels in.
+    pub direction: Vec3,
+    /// The density of `direction`, in the measure that the module's table says.
+    pub pdf_direction: f32,
+    /// Emitted radiance, or intensity, times the cosine at the light where it has a surface.
+    pub emitted_cos: Rgb,
+}
+
+/// What lights need to know of the scene around them.
+#[derive(Clone, Copy)]
+pub struct LightContext<'a> {
+    /// The shapes that area lights refer to.
+    pub shapes: &'a [Shape],
+    /// Centre of a sphere around everything.
+    pub centre: Vec3,
+    /// Its radius.
+    pub radius: f32,
+}
+
+/// A light of the scene.
+#[derive(Clone, Debug)]
+pub enum Light {
+    /// A shape that emits.
+    Area(AreaLight),
+    /// A point that emits evenly.
+    Point(PointLight),
+    /// A point that emits into a cone.
+    Spot(SpotLight),
+    /// Parallel rays from one direction.
+    Distant(DistantLight),
+    /// An environment around the scene.
+    Infinite(InfiniteLight),
+}
+
+impl Light {
+    /// True where no ray can hit the light by chance: its position, or its direction, is a Dirac
+    /// distribution.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        matches!(self, Self::Point(_) | Self::Spot(_) | Self::Distant(_))
+    }
+
+    /// True for lights outside the scene.
+    #[inline]
+    pub fn is_infinite(&self) -> bool {
+        matches!(self, Self::Distant(_) | Self::Infinite(_))
+    }
+
+    /// About how much light it sends into the scene: what lights are chosen by. Unit: W, luminance.
+    pub fn power(&self, context: &LightContext<'_>) -> f32 {
+        match self {
+            Self::Area(light) => light.power(),
+            Self::Point(light) => light.power(),
+            Self::Spot(light) => light.power(),
+            Self::Distant(light) => light.power(context),
+            Self::Infinite(light) => light.power(context),
+        }
+    }
+
+    /// Radiance from `at` along the unit direction `w` away from the light; intensity for point
+    /// and spot lights, irradiance on a facing surface for a distant light.
+    #[inline]
+    pub fn emitted(&self, at: &LightPoint, w: Vec3) -> Rgb {
+        match self {
+            Self::Area(light) => light.emitted(at, w),
+            Self::Point(light) => light.intensity,
+            Self::Spot(light) => light.intensity(w),
+            Self::Distant(light) => light.irradiance,
+            Self::Infinite(light) => light.radiance(at.point),
+        }
+    }
+
+    /// Draws a ray that leaves the light. None: the draw has no density.
+    #[inline]
+    pub fn sample_emission(
+        &self,
+        context: &LightContext<'_>,
+        u_position: Vec2,
+        u_direction: Vec2,
+    ) -> Option<EmissionSample> {
+        match self {
+            Self::Area(light) => light.sample_emission(context, u_position, u_direction),
+            Self::Point(light) => Some(light.sample_emission(u_direction)),
+            Self::Spot(light) => Some(light.sample_emission(u_direction)),
+            Self::Distant(light) => Some(light.sample_emission(context, u_direction)),
+            Self::Infinite(light) => light.sample_emission(context, u_position, u_direction),
+        }
+    }
+
+    /// The density of the light point `at` in [`sample_emission`](Self::sample_emission).
+    #[inline]
+    pub fn pdf_position(&self, context: &LightContext<'_>, at: &LightPoint) -> f32 {
+        match self {
+            Self::Area(light) => light.pdf_position(context, at),
+            Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
+            Self::Infinite(light) => light.pdf(at.point),
+        }
+    }
+
+    /// The density of leaving `at` along `w` in [`sample_emission`](Self::sample_emission).
+    #[inline]
+    pub fn pdf_direction(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> f32 {
+        match self {
+            Self::Area(light) => light.pdf_direction(at, w),
+            Self::Point(_) => PointLight::PDF_DIRECTION,
+            Self::Spot(light) => light.pdf_direction(w),
+            Self::Distant(_) | Self::Infinite(_) => infinite::pdf_disk(context),
+        }
+    }
+
+    /// Draws a light point for a receiver at `reference`. None: the draw has no density.
+    #[inline]
+    pub fn sample_next_event(
+        &self,
+        context: &LightContext<'_>,
+        reference: Vec3,
+        u: Vec2,
+    ) -> Option<LightSample> {
+        match self {
+            Self::Area(light) => light.sample_next_event(context, reference, u),
+            Self::Point(light) => Some(LightSample {
+                at: LightPoint::in_space(light.position),
+                pdf: 1.0,
+            }),
+            Self::Spot(light) => Some(LightSample {
+                at: LightPoint::in_space(light.position),
+                pdf: 1.0,
+            }),
+            Self::Distant(light) => Some(light.at()),
+            Self::Infinite(light) => light.sample(u),
+        }
+    }
+
+    /// The density of `at` in [`sample_next_event`](Self::sample_next_event).
+    #[inline]
+    pub fn pdf_next_event(
+        &self,
+        context: &LightContext<'_>,
+        reference: Vec3,
+        at: &LightPoint,
+    ) -> f32 {
+        match self {
+            Self::Area(light) => light.pdf_next_event(context, reference, at),
+            Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
+            Self::Infinite(light) => light.pdf(at.point),
+        }
+    }
+}

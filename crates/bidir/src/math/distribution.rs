@@ -1,0 +1,189 @@
+use super::ONE_MINUS_EPSILON;
+use glam::Vec2;
+
+/// A piecewise-constant distribution over `[0, 1)`: also the choice of one of `n` things.
+///
+/// Sums are kept in f64, so that a million small weights lose nothing.
+#[derive(Clone, Debug)]
+pub struct Distribution1d {
+    /// Sums of the first `i` weights, normalised: `n + 1` values from 0 to 1.
+    cdf: Vec<f64>,
+    /// The sum of the weights as they were given.
+    total: f64,
+}
+
+impl Distribution1d {
+    /// The distribution proportional to `weights`, which are finite and not negative. Where all are
+    /// zero, or there are none, it is uniform over `max(1, n)` cells and its [`total`](Self::total) is zero.
+    pub fn new(weights: impl IntoIterator<Item = f32>) -> Self {
+        let mut cdf = vec![0.0];
+        let mut total = 0.0;
+        for weight in weights {
+            debug_assert!(weight.is_finite() && weight >= 0.0);
+            total += f64::from(weight);
+            cdf.push(total);
+        }
+        if cdf.len() == 1 {
+            cdf.push(0.0);
+        }
+        let cells = cdf.len() - 1;
+        for (i, value) in cdf.iter_mut().enumerate() {
+            *value = if total > 0.0 {
+                *value / total
+            } else {
+                i as f64 / cells as f64
+            };
+        }
+        Self { cdf, total }
+    }
+
+    /// The number of cells.
+    pub fn len(&self) -> usize {
+        self.cdf.len() - 1
+    }
+
+    /// Never: there is at least one cell.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The sum of the weights.
+    pub fn total(&self) -> f64 {
+        self.total
+    }
+
+    /// The probability of cell `i`. Unitless.
+    #[inline]
+    pub fn prob(&self, i: usize) -> f32 {
+        (self.cdf[i + 1] - self.cdf[i]) as f32
+    }
+
+    /// Draws a cell: its index, its probability, and what is left of `u`, uniform in `[0, 1)`.
+    #[inline]
+    pub fn sample(&self, u: f32) -> (usize, f32, f32) {
+        let u = f64::from(u);
+        // The last cell that begins at or before u; cells of no width are stepped over.
+        let i = self.cdf[1..]
+            .partition_point(|&end| end <= u)
+            .min(self.last_possible());
+        let width = self.cdf[i + 1] - self.cdf[i];
+        let rest = ((u - self.cdf[i]) / width) as f32;
+        (i, width as f32, rest.clamp(0.0, ONE_MINUS_EPSILON))
+    }
+
+    /// The last cell of positive probability: where rounding of `u` near 1 must end.
+    fn last_possible(&self) -> usize {
+        let mut i = self.len() - 1;
+        while i > 0 && self.cdf[i] >= self.cdf[i + 1] {
+            i -= 1;
+        }
+        i
+    }
+
+    /// Draws a point of `[0, 1)`: the point, its density, and its cell.
+    #[inline]
+    pub fn sample_continuous(&self, u: f32) -> (f32, f32, usize) {
+        let (i, prob, rest) = self.sample(u);
+        let n = self.len() as f32;
+        (((i as f32 + rest) / n).min(ONE_MINUS_EPSILON), prob * n, i)
+    }
+
+    /// The density of [`sample_continuous`](Self::sample_continuous) at `x` in `[0, 1)`.
+    #[inline]
+    pub fn pdf(&self, x: f32) -> f32 {
+        let n = self.len();
+        let i = ((x * n as f32) as usize).min(n - 1);
+        self.prob(i) * n as f32
+    }
+}
+
+/// A piecewise-constant distribution over the unit square: a row, then a cell of the row.
+#[derive(Clone, Debug)]
+pub struct Distribution2d {
+    rows: Distribution1d,
+    columns: Vec<Distribution1d>,
+}
+
+impl Distribution2d {
+    /// The distribution proportional to `weights`, row by row, each row `width` long.
+    pub fn new(weights: &[f32], width: usize) -> Self {
+        let columns: Vec<_> = weights
+            .chunks_exact(width.max(1))
+            .map(|row| Distribution1d::new(row.iter().copied()))
+            .collect();
+        let rows = Distribution1d::new(columns.iter().map(|row| row.total() as f32));
+        Self { rows, columns }
+    }
+
+    /// Draws a point `(x, y)` of the unit square and its density over the square's area.
+    #[inline]
+    pub fn sample(&self, u: Vec2) -> (Vec2, f32) {
+        let (y, pdf_y, row) = self.rows.sample_continuous(u.y);
+        let (x, pdf_x, _) = self.columns[row].sample_continuous(u.x);
+        (Vec2::new(x, y), pdf_x * pdf_y)
+    }
+
+    /// The density of [`sample`](Self::sample) at `p`, over the square's area.
+    #[inline]
+    pub fn pdf(&self, p: Vec2) -> f32 {
+        let n = self.rows.len();
+        let row = ((p.y * n as f32) as usize).min(n - 1);
+        self.rows.pdf(p.y) * self.columns[row].pdf(p.x)
+    }
+
+    /// The mean of the weights.
+    pub fn mean(&self) -> f64 {
+        self.rows.total() / (self.columns.len() * self.columns[0].len()) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_frequencies(weights: &[f32]) {
+        let distribution = Distribution1d::new(weights.iter().copied());
+        let n = 100_000;
+        let mut counts = vec![0usize; distribution.len()];
+        for i in 0..n {
+            let (cell, prob, rest) = distribution.sample((i as f32 + 0.5) / n as f32);
+            assert!(prob > 0.0 && (0.0..1.0).contains(&rest));
+            counts[cell] += 1;
+        }
+        for (cell, &count) in counts.iter().enumerate() {
+            let frequency = count as f32 / n as f32;
+            assert!(
+                (frequency - distribution.prob(cell)).abs() < 2e-5,
+                "cell {cell}"
+            );
+        }
+    }
+
+    #[test]
+    fn cells_are_drawn_with_their_probabilities() {
+        check_frequencies(&[1.0, 2.0, 3.0]);
+        check_frequencies(&[0.0, 2.0, 0.0, 5.0, 0.0]);
+        check_frequencies(&[0.0, 0.0]);
+        check_frequencies(&[1e-6, 1e6]);
+        check_frequencies(&[]);
+    }
+
+    #[test]
+    fn the_largest_random_number_ends_in_a_possible_cell() {
+        let distribution = Distribution1d::new([1.0, 1.0, 0.0]);
+        let (cell, prob, _) = distribution.sample(ONE_MINUS_EPSILON);
+        assert_eq!(cell, 1);
+        assert!(prob > 0.0);
+    }
+
+    #[test]
+    fn densities_of_the_square_are_those_of_its_cells() {
+        let distribution = Distribution2d::new(&[1.0, 3.0, 0.0, 4.0], 2);
+        let (p, pdf) = distribution.sample(Vec2::new(0.99, 0.99));
+        assert!(p.x > 0.5 && p.y > 0.5);
+        assert!((pdf - 2.0).abs() < 1e-6 && (distribution.pdf(p) - pdf).abs() < 1e-6);
+        assert!((distribution.pdf(Vec2::new(0.2, 0.2)) - 0.5).abs() < 1e-6);
+        assert!((distribution.mean() - 2.0).abs() < 1e-9);
+    }
+}

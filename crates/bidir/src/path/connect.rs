@@ -1,0 +1,86 @@
+use super::{Junction, PathContext, PathDensities, Vertex, mis_weight};
+use crate::bsdf::TransportMode;
+use crate::math::Vec2;
+use crate::spectrum::Spectrum;
+
+/// The contribution of joining the ends of two subpaths, before weight and visibility:
+/// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering.
+#[inline]
+pub fn connect(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) -> Spectrum {
+    let (Some(z), Some(y)) = (light.last(), camera.last()) else {
+        return Spectrum::ZERO;
+    };
+    if z.is_delta() || y.is_delta() {
+        return Spectrum::ZERO;
+    }
+    let geometry = z.geometry_term(y);
+    if geometry == 0.0 {
+        return Spectrum::ZERO;
+    }
+    let w = z.toward(y);
+    let at_light = z.scatter(context, z.wo, w, TransportMode::Importance);
+    if at_light.is_black() {
+        return Spectrum::ZERO;
+    }
+    let at_camera = y.scatter(context, y.wo, -w, TransportMode::Radiance);
+    z.beta * at_light * at_camera * y.beta * geometry
+}
+
+/// A light point of its own for the camera vertex `receiver`: the light subpath of strategy s = 1.
+///
+/// None: there is no light, or the draw has no density.
+#[inline]
+pub fn next_event_vertex(
+    context: &PathContext<'_>,
+    receiver: &Vertex,
+    u_light: f32,
+    u: Vec2,
+) -> Option<Vertex> {
+    let scene = context.scene;
+    let (light, prob) = scene.light_choice().sample(u_light)?;
+    let lights = scene.light_context();
+    let sample = scene.lights()[light].sample_next_event(&lights, receiver.point, u)?;
+    let mut vertex = Vertex::light(context, light as u32, &sample.at);
+    vertex.beta = Spectrum::splat(1.0 / (prob * sample.pdf));
+    Some(vertex)
+}
+
+/// The weight of making the path that joins `light` and `camera` by strategy `s`.
+///
+/// For s = 0 the light subpath is the vertex that was hit, as a light vertex
+/// ([`Junction::Hit`]); else `s` is its length.
+#[inline]
+pub fn weight(
+    context: &PathContext<'_>,
+    densities: &mut PathDensities,
+    light: &[Vertex],
+    camera: &[Vertex],
+    junction: Junction,
+) -> f32 {
+    densities.gather(context, light, camera, junction);
+    let n = light.len() + camera.len();
+    let s = match junction {
+        Junction::Hit => 0,
+        Junction::Connection => light.len(),
+    };
+    mis_weight(
+        densities,
+        |j| context.count(j, n - j),
+        context.settings.mis,
+        s,
+    ) as f32
+}
+
+impl PathContext<'_> {
+    /// n_j: how many samples strategy (s, t) takes of each of its paths in a pass. Camera densities
+    /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
+    /// one per light subpath. This is the only place where normalisation meets weights.
+    #[inline]
+    pub fn count(&self, s: usize, t: usize) -> f64 {
+        match t {
+            _ if !self.settings.strategies.contains(s, t) => 0.0,
+            1 => f64::from(self.light_paths),
+            _ => 1.0,
+        }
+    }
+}

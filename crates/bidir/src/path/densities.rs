@@ -1,0 +1,161 @@
+use super::{LightPointChoice, PathContext, Vertex};
+
+/// How likely one vertex of a path is to be drawn from either side, roulette included.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexDensities {
+    /// By a walk from the light. Measure: area, 1/m²; see [`crate::path`] for x_0.
+    pub from_light: f32,
+    /// By a walk from the camera. The same measure.
+    pub from_camera: f32,
+    /// True where the path scatters by a Dirac distribution here.
+    pub is_delta: bool,
+}
+
+/// The densities of a whole path x_0 … x_{n-1}: all that weights depend on.
+#[derive(Clone, Debug, Default)]
+pub struct PathDensities {
+    /// One entry per vertex, from the light.
+    pub vertices: Vec<VertexDensities>,
+    /// The density e of x_0 when strategy s = 1 draws it.
+    pub next_event: f32,
+    /// True where no ray can hit the light by chance.
+    pub light_is_delta: bool,
+}
+
+/// How the two subpaths of a path came together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Junction {
+    /// Their ends were connected.
+    Connection,
+    /// The camera walk hit x_0: the light subpath is that one vertex, and its `pdf_rev` is the
+    /// density with which the walk drew it.
+    Hit,
+}
+
+impl PathDensities {
+    /// Collects the densities of the path that joins `light` and `camera`.
+    ///
+    /// Stored densities hold but next to the junction, where each end has a new neighbour: the two
+    /// ends and the vertices before them are evaluated again.
+    pub fn gather(
+        &mut self,
+        context: &PathContext<'_>,
+        light: &[Vertex],
+        camera: &[Vertex],
+        junction: Junction,
+    ) {
+        let (s, n) = (light.len(), light.len() + camera.len());
+        self.vertices.clear();
+        let empty = |vertex: &Vertex| VertexDensities {
+            from_light: 0.0,
+            from_camera: 0.0,
+            is_delta: vertex.is_delta(),
+        };
+        self.vertices
+            .extend(light.iter().chain(camera.iter().rev()).map(empty));
+        for (i, pdf) in walked_densities(context, light, n).enumerate() {
+            self.vertices[i].from_light = pdf[0];
+            if i + 2 < s {
+                self.vertices[i].from_camera = pdf[1];
+            }
+        }
+        for (c, pdf) in walked_densities(context, camera, n).enumerate() {
+            let x = &mut self.vertices[n - 1 - c];
+            x.from_camera = pdf[0];
+            if c + 2 < camera.len() || junction == Junction::Hit {
+                x.from_light = pdf[1];
+            }
+        }
+        self.join(context, light, camera, junction);
+        self.describe_light(context, light, camera, n);
+    }
+
+    /// Evaluates the densities next to the junction.
+    fn join(
+        &mut self,
+        context: &PathContext<'_>,
+        light: &[Vertex],
+        camera: &[Vertex],
+        junction: Junction,
+    ) {
+        let (s, t) = (light.len(), camera.len());
+        let (z, y) = (&light[s - 1], &camera[t - 1]);
+        let x = &mut self.vertices;
+        x[s].from_light = z.pdf_to(context, z.wo, y) * factor(context, s, z.albedo_fwd);
+        if junction == Junction::Hit {
+            x[0].from_camera = z.pdf_rev * factor(context, t, y.albedo_fwd);
+            return;
+        }
+        x[s - 1].from_camera = y.pdf_to(context, y.wo, z) * factor(context, t, y.albedo_fwd);
+        if let [.., before, _] = light {
+            let wo = z.toward(y);
+            let survival = factor(context, t + 1, z.albedo_from(wo));
+            x[s - 2].from_camera = z.pdf_to(context, wo, before) * survival;
+        }
+        if let [.., before, _] = camera {
+            let wo = y.toward(z);
+            let survival = factor(context, s + 1, y.albedo_from(wo));
+            x[s + 1].from_light = y.pdf_to(context, wo, before) * survival;
+        }
+    }
+
+    /// Notes how next-event estimation would draw x_0 for x_1.
+    fn describe_light(
+        &mut self,
+        context: &PathContext<'_>,
+        light: &[Vertex],
+        camera: &[Vertex],
+        n: usize,
+    ) {
+        let Some(index) = light[0].light else { return };
+        let emitter = context.scene.light(index);
+        self.light_is_delta = emitter.is_delta();
+        // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
+        let shared = context.settings.light_point == LightPointChoice::Shared || n == 2;
+        self.next_event = if shared {
+            self.vertices[0].from_light
+        } else {
+            let receiver = if light.len() > 1 {
+                &light[1]
+            } else {
+                &camera[camera.len() - 1]
+            };
+            let prob = context.scene.light_choice().prob(index as usize);
+            let lights = context.scene.light_context();
+            prob * emitter.pdf_next_event(&lights, receiver.point, &light[0].light_point())
+        };
+    }
+}
+
+/// The roulette's part of the density of vertex number `index` of a walk (0 is its end of the
+/// path), with the albedo that the walk meets at the vertex before it.
+#[inline]
+fn factor(context: &PathContext<'_>, index: usize, albedo: f32) -> f32 {
+    // Vertex 1 is drawn by the end of the path itself, which no roulette guards.
+    if index < 2 {
+        1.0
+    } else {
+        context.settings.roulette.density_factor(index - 2, albedo)
+    }
+}
+
+/// The densities of a subpath's vertices as stored: by its own walk, and by one from the other end
+/// of a path of `n` vertices. The latter is not valid for the last two.
+fn walked_densities(
+    context: &PathContext<'_>,
+    subpath: &[Vertex],
+    n: usize,
+) -> impl Iterator<Item = [f32; 2]> {
+    subpath.iter().enumerate().map(move |(i, vertex)| {
+        let before = if i > 0 {
+            subpath[i - 1].albedo_fwd
+        } else {
+            1.0
+        };
+        let after = subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
+        [
+            vertex.pdf_fwd * factor(context, i, before),
+            vertex.pdf_rev * factor(context, n - 1 - i, after),
+        ]
+    })
+}

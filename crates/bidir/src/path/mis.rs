@@ -1,0 +1,171 @@
+//! Multiple importance sampling: the weight of a strategy as a pure function of its whole path.
+
+use super::densities::{PathDensities, VertexDensities};
+
+/// How strategies that can make the same path share it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MisHeuristic {
+    /// w_s ∝ n_s p_s [Veach95].
+    #[default]
+    Balance,
+    /// w_s ∝ (n_s p_s)² [Veach95].
+    Power,
+    /// w_s = 1 / (number of strategies that can make the path): the weights under which the claim
+    /// of [Lafortune95] holds.
+    Uniform,
+}
+
+impl MisHeuristic {
+    /// Every heuristic with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("balance", Self::Balance),
+        ("power", Self::Power),
+        ("uniform", Self::Uniform),
+    ];
+
+    /// What a strategy with n_j p_j = `density`, relative to another, counts.
+    #[inline]
+    fn share(self, density: f64) -> f64 {
+        match self {
+            Self::Balance => density,
+            Self::Power => density * density,
+            Self::Uniform => f64::from(density > 0.0),
+        }
+    }
+}
+
+/// The weight of strategy `s`: share(n_s p_s) / Σ_j share(n_j p_j).
+///
+/// `counts(j)` is n_j, the expected number of samples that strategy j takes of this path in a pass; 0
+/// switches it off. With a_i and b_i the densities of x_i drawn from the light and from the camera,
+/// p_{j+1} / p_j = a_j / b_j, except that s = 1 draws x_0 by next-event estimation, with density e:
+///
+/// p_1 / p_0 = e / b_0 and p_2 / p_1 = (a_0 / e) · (a_1 / b_1).
+///
+/// The sums run outwards from s as running ratios [Veach97, §10.2.1].
+#[inline]
+pub fn mis_weight(
+    path: &PathDensities,
+    counts: impl Fn(usize) -> f64,
+    heuristic: MisHeuristic,
+    s: usize,
+) -> f64 {
+    let x = &path.vertices[..];
+    let n = x.len();
+    // Never zero: where s = 1 is impossible, the ratios across it must still cancel.
+    let next_event = f64::from(path.next_event).max(f64::from(f32::MIN_POSITIVE));
+    let up = |j: usize| match j {
+        0 => next_event / f64::from(x[0].from_camera),
+        1 => f64::from(x[0].from_light) / next_event * x[1].ratio(),
+        _ => x[j].ratio(),
+    };
+    let share = |j: usize, ratio: f64| {
+        if is_possible(x, j, path.light_is_delta) {
+            heuristic.share(counts(j) * ratio)
+        } else {
+            0.0
+        }
+    };
+    let own = heuristic.share(counts(s));
+    let mut sum = own;
+    let mut ratio = 1.0; // p_j / p_s
+    for j in s..n - 1 {
+        ratio *= up(j);
+        sum += share(j + 1, ratio);
+    }
+    ratio = 1.0;
+    for j in (0..s).rev() {
+        ratio /= up(j);
+        sum += share(j, ratio);
+    }
+    own / sum
+}
+
+/// True where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at
+/// either of them, or a light that cannot be hit (j = 0), forbids that. t = 0 is no strategy.
+#[inline]
+fn is_possible(x: &[VertexDensities], j: usize, light_is_delta: bool) -> bool {
+    match j {
+        0 => !light_is_delta,
+        j if j == x.len() => false,
+        j => !x[j - 1].is_delta && !x[j].is_delta,
+    }
+}
+
+impl VertexDensities {
+    #[inline]
+    fn ratio(&self) -> f64 {
+        f64::from(self.from_light) / f64::from(self.from_camera)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vertex() -> impl Strategy<Value = VertexDensities> {
+        (1e-6f32..1e6, 1e-6f32..1e6, prop::bool::weighted(0.2)).prop_map(
+            |(from_light, from_camera, is_delta)| VertexDensities {
+                from_light,
+                from_camera,
+                is_delta,
+            },
+        )
+    }
+
+    fn path() -> impl Strategy<Value = PathDensities> {
+        (
+            prop::collection::vec(vertex(), 2..9),
+            1e-6f32..1e6,
+            any::<bool>(),
+        )
+            .prop_map(|(mut vertices, next_event, light_is_delta)| {
+                // The ends do not scatter.
+                let last = vertices.len() - 1;
+                vertices[0].is_delta = false;
+                vertices[last].is_delta = false;
+                PathDensities {
+                    vertices,
+                    next_event,
+                    light_is_delta,
+                }
+            })
+    }
+
+    /// p_j by its definition, as a product over the whole path.
+    fn density(path: &PathDensities, j: usize) -> f64 {
+        let product: f64 = path
+            .vertices
+            .iter()
+            .enumerate()
+            .map(|(i, x)| match (i < j, i, j) {
+                (true, 0, 1) => f64::from(path.next_event),
+                (true, ..) => f64::from(x.from_light),
+                (false, ..) => f64::from(x.from_camera),
+            })
+            .product();
+        let possible = is_possible(&path.vertices, j, path.light_is_delta);
+        if possible { product } else { 0.0 }
+    }
+
+    proptest! {
+        #[test]
+        fn weights_are_those_of_the_definition_and_sum_to_one(
+            path in path(),
+            counts in prop::collection::vec(prop_oneof![Just(0.0), 0.1f64..1e6], 10),
+            heuristic in prop::sample::select(MisHeuristic::NAMES.map(|(_, h)| h).to_vec()),
+        ) {
+            let n = path.vertices.len();
+            let share = |j: usize| heuristic.share(counts[j] * density(&path, j));
+            let total: f64 = (0..n).map(share).sum();
+            let mut sum = 0.0;
+            for s in (0..n).filter(|&s| share(s) > 0.0) {
+                let weight = mis_weight(&path, |j| counts[j], heuristic, s);
+                prop_assert!((weight - share(s) / total).abs() < 1e-9);
+                sum += weight;
+            }
+            prop_assert!(total == 0.0 || (sum - 1.0).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! Paths: vertices, the walks that make them, their connections, and their weights.
+//!
+//! A path is x_0 … x_{n-1}, counted from the light; strategy (s, t) makes it from `s` vertices of a
+//! light subpath and `t` of a camera subpath, `s + t = n`:
+//!
+//! ```text
+//!     x_0 ── x_1 ── … ── x_{s-1}  ┄┄┄┄  x_s ── … ── x_{n-1}
+//!     light subpath, walked →     link     ← walked, camera subpath
+//! ```
+//!
+//! - Densities are **area densities**, 1/m², but for x_0 on a light at infinity: solid angle, 1/sr.
+//! - `beta` of a vertex is the throughput up to it, without the scattering at it, divided by the
+//!   density of drawing it.
+//! - s = 0: the camera subpath hits a light. s = 1: next-event estimation, with a light point of
+//!   its own for each camera vertex. t = 1: the light image, with a lens point of its own for each
+//!   light vertex. Everything else is a connection.
+//! - Path length is limited by the number of vertices n, the same for all strategies.
+//!
+//! Nothing here knows the film, and no ray is traced but those of the walks.
+
+mod connect;
+mod densities;
+mod mis;
+mod roulette;
+mod strategy;
+mod vertex;
+mod walk;
+
+pub use connect::{connect, next_event_vertex, weight};
+pub use densities::{Junction, PathDensities, VertexDensities};
+pub use mis::{MisHeuristic, mis_weight};
+pub use roulette::PathRoulette;
+pub use strategy::{LightPointChoice, Strategies, Strategy};
+pub use vertex::{Vertex, VertexKind};
+pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
+
+use crate::scene::Scene;
+use crate::spectrum::Wavelengths;
+
+/// The most vertices of any path, whatever the limits: a walk between perfect mirrors would not
+/// end.
+pub const MAX_VERTICES: usize = 1024;
+
+/// How paths are made and weighted.
+#[derive(Clone, Debug)]
+pub struct PathSettings {
+    /// The most scattering events; None: no limit but [`MAX_VERTICES`].
+    pub max_depth: Option<u32>,
+    /// How walks end at random.
+    pub roulette: PathRoulette,
+    /// Which strategies take part.
+    pub strategies: Strategies,
+    /// Where s = 1 takes its light point from.
+    pub light_point: LightPointChoice,
+    /// How strategies are combined.
+    pub mis: MisHeuristic,
+}
+
+impl Default for PathSettings {
+    fn default() -> Self {
+        Self {
+            max_depth: Some(5),
+            roulette: PathRoulette::default(),
+            strategies: Strategies::default(),
+            light_point: LightPointChoice::default(),
+            mis: MisHeuristic::default(),
+        }
+    }
+}
+
+impl PathSettings {
+    /// The most vertices of a path, both ends included.
+    #[inline]
+    pub fn max_vertices(&self) -> usize {
+        self.max_depth
+            .map_or(MAX_VERTICES, |depth| (depth as usize).saturating_add(2))
+            .min(MAX_VERTICES)
+    }
+}
+
+/// What every step of making a path needs.
+#[derive(Clone, Copy)]
+pub struct PathContext<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// How paths are made and weighted.
+    pub settings: &'a PathSettings,
+    /// The wavelengths of the sample.
+    pub wavelengths: Wavelengths,
+    /// Light subpaths per pass: how often the light image samples each path.
+    pub light_paths: f32,
+}

@@ -1,0 +1,115 @@
+use std::fmt;
+use std::str::FromStr;
+
+/// How walks end at random.
+///
+/// Bounces are counted along the walk: bounce 0 is the scattering at its first surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PathRoulette {
+    /// From bounce `start` on, a walk survives with the albedo that it meets. The probability is
+    /// local, so it is part of the densities in both directions.
+    Albedo {
+        /// The first bounce that may end a walk.
+        start: u32,
+    },
+    /// From bounce `start` on, a walk survives with its throughput, up to 1. The probability
+    /// depends on the walk's history, so it is in no density.
+    Throughput {
+        /// The first bounce that may end a walk.
+        start: u32,
+    },
+    /// Walks end by the limit of path length, or by escaping.
+    Off,
+}
+
+impl Default for PathRoulette {
+    fn default() -> Self {
+        Self::Albedo { start: 0 }
+    }
+}
+
+impl PathRoulette {
+    /// The probability that a walk goes on at `bounce`. `throughput` is relative to the walk's
+    /// start and includes the scattering at hand.
+    #[inline]
+    pub fn survival_prob(self, bounce: usize, albedo: f32, throughput: f32) -> f32 {
+        match self {
+            Self::Albedo { .. } => self.density_factor(bounce, albedo),
+            Self::Throughput { start } if bounce >= start as usize => throughput.clamp(0.0, 1.0),
+            Self::Throughput { .. } | Self::Off => 1.0,
+        }
+    }
+
+    /// The part of the survival probability that belongs to the density of the next vertex.
+    #[inline]
+    pub fn density_factor(self, bounce: usize, albedo: f32) -> f32 {
+        match self {
+            Self::Albedo { start } if bounce >= start as usize => albedo.clamp(0.0, 1.0),
+            _ => 1.0,
+        }
+    }
+}
+
+/// Why a roulette cannot be read.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]` or `off`")]
+pub struct PathRouletteError(String);
+
+impl FromStr for PathRoulette {
+    type Err = PathRouletteError;
+
+    fn from_str(text: &str) -> Result<Self, PathRouletteError> {
+        let error = || PathRouletteError(text.to_owned());
+        let (name, start) = match text.split_once(':') {
+            Some((name, start)) => (name, Some(start.parse::<u32>().map_err(|_| error())?)),
+            None => (text, None),
+        };
+        match (name, start) {
+            ("albedo", start) => Ok(Self::Albedo {
+                start: start.unwrap_or(0),
+            }),
+            ("throughput", start) => Ok(Self::Throughput {
+                start: start.unwrap_or(0),
+            }),
+            ("off", None) => Ok(Self::Off),
+            _ => Err(error()),
+        }
+    }
+}
+
+impl fmt::Display for PathRoulette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Albedo { start } => write!(f, "albedo:{start}"),
+            Self::Throughput { start } => write!(f, "throughput:{start}"),
+            Self::Off => write!(f, "off"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_written() {
+        for text in ["albedo:0", "albedo:3", "throughput:2", "off"] {
+            assert_eq!(text.parse::<PathRoulette>().unwrap().to_string(), text);
+        }
+        assert_eq!("albedo".parse(), Ok(PathRoulette::Albedo { start: 0 }));
+        for text in ["", "albedo:", "off:2", "throughput:x"] {
+            assert!(text.parse::<PathRoulette>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn only_local_probabilities_are_in_densities() {
+        let albedo = PathRoulette::Albedo { start: 1 };
+        assert!((albedo.survival_prob(1, 0.3, 0.9) - 0.3).abs() < 1e-6);
+        assert!((albedo.density_factor(1, 0.3) - 0.3).abs() < 1e-6);
+        assert!((albedo.density_factor(0, 0.3) - 1.0).abs() < 1e-6);
+        let throughput = PathRoulette::Throughput { start: 0 };
+        assert!((throughput.survival_prob(0, 0.3, 0.9) - 0.9).abs() < 1e-6);
+        assert!((throughput.density_factor(0, 0.3) - 1.0).abs() < 1e-6);
+    }
+}

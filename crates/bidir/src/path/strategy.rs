@@ -1,0 +1,175 @@
+use std::fmt;
+use std::str::FromStr;
+
+/// A way to make a path: `s` vertices from the light, `t` from the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Strategy {
+    /// Vertices of the light subpath.
+    pub s: u16,
+    /// Vertices of the camera subpath, the lens included.
+    pub t: u16,
+}
+
+impl Strategy {
+    /// The strategy of `s` light and `t` camera vertices.
+    #[inline]
+    pub fn new(s: usize, t: usize) -> Self {
+        Self {
+            s: s as u16,
+            t: t as u16,
+        }
+    }
+}
+
+impl fmt::Display for Strategy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "s{}t{}", self.s, self.t)
+    }
+}
+
+/// Where next-event estimation (s = 1) takes its light point from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightPointChoice {
+    /// Each camera vertex draws its own.
+    #[default]
+    Fresh,
+    /// All use the start of the light subpath, as in [Lafortune93].
+    Shared,
+}
+
+impl LightPointChoice {
+    /// Every choice with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 2] = [("fresh", Self::Fresh), ("shared", Self::Shared)];
+}
+
+/// Adds or removes the strategies that match it; a missing number matches all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Rule {
+    enable: bool,
+    s: Option<u16>,
+    t: Option<u16>,
+}
+
+/// A set of strategies: a list of rules, of which the last that matches decides.
+///
+/// Written as a comma-separated list: `all`, `-s0` (without s = 0), `-t1`, `s2t3` or `+s2t3` (with
+/// this one). A list that does not begin with `all` begins with none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Strategies(Vec<Rule>);
+
+impl Default for Strategies {
+    fn default() -> Self {
+        Self(vec![Rule {
+            enable: true,
+            s: None,
+            t: None,
+        }])
+    }
+}
+
+impl Strategies {
+    /// True where strategy (s, t) takes part.
+    #[inline]
+    pub fn contains(&self, s: usize, t: usize) -> bool {
+        let matches = |rule: &&Rule| {
+            rule.s.is_none_or(|only| usize::from(only) == s)
+                && rule.t.is_none_or(|only| usize::from(only) == t)
+        };
+        self.0
+            .iter()
+            .rev()
+            .find(matches)
+            .is_some_and(|rule| rule.enable)
+    }
+}
+
+/// Why a list of strategies cannot be read.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error("`{0}` is no strategy: expected `all`, or parts like `-s0`, `-t1`, `s2t3`")]
+pub struct StrategiesError(String);
+
+impl FromStr for Strategies {
+    type Err = StrategiesError;
+
+    fn from_str(text: &str) -> Result<Self, StrategiesError> {
+        let rules = text.split(',').map(|item| {
+            parse_rule(item.trim()).ok_or_else(|| StrategiesError(item.trim().to_owned()))
+        });
+        Ok(Self(rules.collect::<Result<_, _>>()?))
+    }
+}
+
+fn parse_rule(item: &str) -> Option<Rule> {
+    if item == "all" {
+        return Some(Rule {
+            enable: true,
+            s: None,
+            t: None,
+        });
+    }
+    let (enable, rest) = match item.strip_prefix('-') {
+        Some(rest) => (false, rest),
+        None => (true, item.strip_prefix('+').unwrap_or(item)),
+    };
+    let (s, t) = match (rest.strip_prefix('s'), rest.strip_prefix('t')) {
+        (Some(numbers), _) => match numbers.split_once('t') {
+            Some((s, t)) => (Some(s.parse().ok()?), Some(t.parse().ok()?)),
+            None => (Some(numbers.parse().ok()?), None),
+        },
+        (None, Some(t)) => (None, Some(t.parse().ok()?)),
+        (None, None) => return None,
+    };
+    Some(Rule { enable, s, t })
+}
+
+impl fmt::Display for Strategies {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, rule) in self.0.iter().enumerate() {
+            let comma = if i > 0 { "," } else { "" };
+            let sign = if rule.enable { "" } else { "-" };
+            write!(f, "{comma}{sign}")?;
+            match (rule.s, rule.t) {
+                (None, None) => write!(f, "all")?,
+                (Some(s), None) => write!(f, "s{s}")?,
+                (None, Some(t)) => write!(f, "t{t}")?,
+                (Some(s), Some(t)) => write!(f, "s{s}t{t}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, inside: &[(usize, usize)], outside: &[(usize, usize)]) {
+        let strategies: Strategies = text.parse().unwrap();
+        assert!(
+            inside.iter().all(|&(s, t)| strategies.contains(s, t)),
+            "{text}"
+        );
+        assert!(
+            outside.iter().all(|&(s, t)| !strategies.contains(s, t)),
+            "{text}"
+        );
+        assert_eq!(strategies.to_string().parse(), Ok(strategies));
+    }
+
+    #[test]
+    fn lists_are_read_from_left_to_right() {
+        check("all", &[(0, 2), (1, 1), (7, 9)], &[]);
+        check("all,-s0,-t1", &[(1, 2), (3, 3)], &[(0, 2), (2, 1)]);
+        check("s2t3", &[(2, 3)], &[(2, 2), (0, 5)]);
+        check("all,-s1,+s1t4", &[(1, 4), (2, 2)], &[(1, 3)]);
+        check("t1", &[(1, 1), (5, 1)], &[(1, 2)]);
+    }
+
+    #[test]
+    fn what_is_no_strategy_is_named() {
+        for text in ["", "some", "s", "all,-x3", "s1t", "s-1"] {
+            assert!(text.parse::<Strategies>().is_err(), "{text}");
+        }
+    }
+}

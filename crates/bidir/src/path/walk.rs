@@ -1,0 +1,190 @@
+use super::{PathContext, Vertex};
+use crate::bsdf::TransportMode;
+use crate::camera::CameraRay;
+use crate::math::Vec3;
+use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::scene::offset_origin;
+use crate::spectrum::Spectrum;
+use crate::stats::Stats;
+
+/// A camera walk that left the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Escape {
+    /// The unit direction.
+    pub direction: Vec3,
+    /// Throughput, the last scattering included.
+    pub beta: Spectrum,
+    /// The density of the direction, without roulette. Measure: solid angle, 1/sr.
+    pub pdf_fwd: f32,
+}
+
+/// The vertices of one walk, from its end of the path.
+#[derive(Debug, Default)]
+pub struct Subpath {
+    /// The vertices; empty where the walk could not start.
+    pub vertices: Vec<Vertex>,
+    /// Where the walk left the scene, if it did.
+    pub escape: Option<Escape>,
+    /// For a light subpath: the density p₁(x₀|x₁) with which next-event estimation from the second
+    /// vertex would draw the first. Measure: that of the light point.
+    pub next_event_pdf: f32,
+}
+
+/// The state of a walk between two vertices.
+struct Step {
+    direction: Vec3,
+    beta: Spectrum,
+    /// The density of `direction` at the last vertex.
+    pdf_w: f32,
+}
+
+/// What a walk does not change.
+struct Walker<'a> {
+    context: &'a PathContext<'a>,
+    mode: TransportMode,
+    stream: &'a SampleStream,
+    max_vertices: usize,
+}
+
+/// Walks a camera subpath that starts with `ray` and the weight `weight` of its film position.
+pub fn camera_subpath(
+    context: &PathContext<'_>,
+    stream: &SampleStream,
+    ray: &CameraRay,
+    weight: f32,
+    subpath: &mut Subpath,
+    stats: &mut Stats,
+) {
+    subpath.clear();
+    subpath.vertices.push(Vertex::camera(&ray.lens));
+    let walker = Walker {
+        context,
+        mode: TransportMode::Radiance,
+        stream,
+        max_vertices: context.settings.max_vertices(),
+    };
+    let step = Step {
+        direction: ray.direction,
+        beta: Spectrum::splat(weight),
+        pdf_w: context.scene.camera().pdf_direction(ray.direction),
+    };
+    walker.walk(subpath, ray.lens.point, step, &mut stats.rays.camera);
+}
+
+/// Walks a light subpath.
+pub fn light_subpath(
+    context: &PathContext<'_>,
+    stream: &SampleStream,
+    subpath: &mut Subpath,
+    stats: &mut Stats,
+) {
+    subpath.clear();
+    let scene = context.scene;
+    let at = |purpose| Dimension::at(0, purpose);
+    let choice = scene
+        .light_choice()
+        .sample(stream.get_1d(at(Purpose::Light)));
+    let Some((light, prob)) = choice else { return };
+    let u_position = stream.get_2d(at(Purpose::LightPosition));
+    let u_direction = stream.get_2d(at(Purpose::LightDirection));
+    let lights = scene.light_context();
+    let Some(emission) = scene.lights()[light].sample_emission(&lights, u_position, u_direction)
+    else {
+        return;
+    };
+    let mut start = Vertex::light(context, light as u32, &emission.from.at);
+    start.pdf_fwd = prob * emission.from.pdf;
+    start.beta = Spectrum::splat(1.0 / start.pdf_fwd);
+    let emitted = scene
+        .color()
+        .illuminant(emission.emitted_cos, &context.wavelengths);
+    let step = Step {
+        direction: emission.direction,
+        beta: emitted * (1.0 / (start.pdf_fwd * emission.pdf_direction)),
+        pdf_w: emission.pdf_direction,
+    };
+    let origin = offset_origin(emission.origin, start.n_g, start.error, emission.direction);
+    subpath.vertices.push(start);
+    let walker = Walker {
+        context,
+        mode: TransportMode::Importance,
+        stream,
+        // At least the lens is the camera's.
+        max_vertices: context.settings.max_vertices() - 1,
+    };
+    walker.walk(subpath, origin, step, &mut stats.rays.light);
+    if let [first, second, ..] = subpath.vertices[..] {
+        let at = first.light_point();
+        let pdf = scene.lights()[light].pdf_next_event(&lights, second.point, &at);
+        subpath.next_event_pdf = prob * pdf;
+    }
+}
+
+impl Subpath {
+    fn clear(&mut self) {
+        self.vertices.clear();
+        self.escape = None;
+        self.next_event_pdf = 0.0;
+    }
+}
+
+impl Walker<'_> {
+    /// Extends the subpath vertex by vertex until it escapes, ends by roulette, or is full.
+    fn walk(&self, subpath: &mut Subpath, origin: Vec3, step: Step, rays: &mut u64) {
+        let (mut origin, mut step) = (origin, step);
+        let start = step.beta.max_lane();
+        while subpath.vertices.len() < self.max_vertices {
+            *rays += 1;
+            let Some(hit) = self.context.scene.intersect(origin, step.direction) else {
+                subpath.escape = Some(Escape {
+                    direction: step.direction,
+                    beta: step.beta,
+                    pdf_fwd: step.pdf_w,
+                });
+                return;
+            };
+            let mut vertex = Vertex::surface(self.context, &hit, -step.direction, step.beta);
+            let last = subpath.vertices.len() - 1;
+            vertex.pdf_fwd = subpath.vertices[last].density_at(step.pdf_w, &vertex);
+            subpath.vertices.push(vertex);
+            if subpath.vertices.len() == self.max_vertices {
+                return;
+            }
+            let Some(next) = self.scatter(&mut subpath.vertices, start) else {
+                return;
+            };
+            let vertex = &subpath.vertices[last + 1];
+            origin = offset_origin(vertex.point, vertex.n_g, vertex.error, next.direction);
+            step = next;
+        }
+    }
+
+    /// Scatters at the last of `vertices`. None: the walk ends there.
+    fn scatter(&self, vertices: &mut [Vertex], start: f32) -> Option<Step> {
+        let index = vertices.len() - 1;
+        let [.., previous, vertex] = vertices else {
+            return None;
+        };
+        let at = |purpose| Dimension::at(index, purpose);
+        let u_lobe = self.stream.get_1d(at(Purpose::Lobe));
+        let scattered =
+            vertex.sample_scatter(self.mode, u_lobe, self.stream.get_2d(at(Purpose::Scatter)))?;
+        previous.pdf_rev = vertex.density_at(scattered.pdf_reverse, previous);
+        vertex.albedo_rev = vertex.albedo_from(scattered.wi);
+        let beta = vertex.beta * scattered.weight;
+        let survival = self.context.settings.roulette.survival_prob(
+            index - 1,
+            vertex.albedo_fwd,
+            beta.max_lane() / start,
+        );
+        // Only a probability below 1 costs a number; zero ends the walk for sure.
+        if survival < 1.0 && self.stream.get_1d(at(Purpose::Roulette)) >= survival {
+            return None;
+        }
+        Some(Step {
+            direction: scattered.wi,
+            beta: beta / survival,
+            pdf_w: scattered.pdf,
+        })
+    }
+}

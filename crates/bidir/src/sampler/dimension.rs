@@ -1,0 +1,50 @@
+/// What a random number decides at one vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Position within the pixel's filter (vertex 0 of a camera subpath).
+    Film,
+    /// Position on the lens (vertex 0 of a camera subpath).
+    Lens,
+    /// Wavelengths of the sample (vertex 0 of a camera subpath).
+    Wavelengths,
+    /// Which light a light subpath starts on.
+    Light,
+    /// Where on the light it starts.
+    LightPosition,
+    /// In what direction it leaves.
+    LightDirection,
+    /// Direction of scattering.
+    Scatter,
+    /// Choice of the lobe that scatters.
+    Lobe,
+    /// Path roulette.
+    Roulette,
+    /// Which light next-event estimation connects to.
+    NextEventLight,
+    /// Where on that light.
+    NextEventPosition,
+    /// The lens point that a light vertex connects to (t = 1).
+    LightImageLens,
+    /// The pixel, within the filter, that receives the connection (t = 1).
+    LightImagePixel,
+    /// The draw of shadow-ray selection; the vertex counts the groups.
+    Select,
+}
+
+/// The address of a random number, or of a pair, within a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension(u64);
+
+impl Dimension {
+    /// The number that decides `purpose` at vertex `vertex` of the subpath.
+    #[inline]
+    pub const fn at(vertex: usize, purpose: Purpose) -> Self {
+        Self(((vertex as u64) << 8) | purpose as u64)
+    }
+
+    /// A well-spread key: an odd multiple, so that neighbouring dimensions differ in many bits.
+    #[inline]
+    pub(super) const fn key(self) -> u64 {
+        self.0.wrapping_add(1).wrapping_mul(0xd1b5_4a32_d192_ed03)
+    }
+}

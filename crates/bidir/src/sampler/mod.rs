@@ -1,0 +1,204 @@
+//! Random numbers as a pure function of where they are used.
+//!
+//! A number is addressed by (seed, [`Domain`], stream, index, [`Dimension`]) and by nothing else: no
+//! state, no thread, no task. Hence one sample can be replayed alone, a render can stop and go on,
+//! and any split of the work gives the same bits.
+//!
+//! - Camera sample of pass `p` at pixel `q`: stream `q`, index `p`.
+//! - Light path `j` of pass `p` with `N` light paths a pass: stream 0, index `p·N + j`, so that light
+//!   paths are stratified over the image's whole budget.
+//!
+//! Any range of indices is exact; ranges aligned to powers of two are also well stratified.
+
+mod dimension;
+mod hash;
+mod sobol;
+
+pub use dimension::{Dimension, Purpose};
+
+use crate::math::Vec2;
+use hash::mix;
+
+/// How the numbers of a stream relate to each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Uncorrelated numbers: the choice for statistics.
+    Independent,
+    /// Owen-scrambled Sobol' points, two dimensions at a time, each pair shuffled on its own
+    /// [Burley20]: the choice for pictures.
+    #[default]
+    Sobol,
+}
+
+impl SamplerKind {
+    /// Every kind with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("independent", Self::Independent), ("sobol", Self::Sobol)];
+}
+
+/// What a stream is drawn for; streams of different domains are unrelated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// Camera subpaths of the image.
+    Camera,
+    /// Light subpaths of the image.
+    Light,
+    /// Camera subpaths of the training render, which never enter the film.
+    TrainingCamera,
+    /// Light subpaths of the training render, which never enter the film.
+    TrainingLight,
+}
+
+/// The source of all streams of a render.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    kind: SamplerKind,
+    seed: u64,
+}
+
+impl Sampler {
+    /// A sampler; different seeds give unrelated renders.
+    pub fn new(kind: SamplerKind, seed: u64) -> Self {
+        Self { kind, seed }
+    }
+
+    /// The numbers of point `index` of a stream.
+    #[inline]
+    pub fn stream(&self, domain: Domain, stream: u64, index: u64) -> SampleStream {
+        let key = mix(mix(self.seed ^ mix(domain as u64 + 1)) ^ stream);
+        match self.kind {
+            SamplerKind::Independent => SampleStream {
+                kind: self.kind,
+                key: mix(key ^ mix(index)),
+                index,
+            },
+            SamplerKind::Sobol => SampleStream {
+                kind: self.kind,
+                key,
+                index,
+            },
+        }
+    }
+}
+
+/// The random numbers of one sample, addressed by dimension.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleStream {
+    kind: SamplerKind,
+    key: u64,
+    index: u64,
+}
+
+impl SampleStream {
+    /// The number of `dimension`. Range: `[0, 1)`.
+    #[inline]
+    pub fn get_1d(&self, dimension: Dimension) -> f32 {
+        self.get_2d(dimension).x
+    }
+
+    /// The pair of numbers of `dimension`. Range: `[0, 1)²`.
+    #[inline]
+    pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
+        let key = mix(self.key ^ dimension.key());
+        match self.kind {
+            SamplerKind::Independent => Vec2::new(unit(key as u32), unit((key >> 32) as u32)),
+            SamplerKind::Sobol => {
+                let (x, y) = sobol::scrambled_point(self.index, key);
+                Vec2::new(unit(x), unit(y))
+            }
+        }
+    }
+}
+
+/// The upper 24 bits as a number of `[0, 1)`: exact in `f32`, never rounded up to 1.
+#[inline]
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DIMENSION: Dimension = Dimension::at(3, Purpose::Scatter);
+
+    /// Checks that the points `begin .. begin + 2^log2_n` of a stream have exactly one point in
+    /// every elementary interval of area 2^-log2_n.
+    #[track_caller]
+    fn check_elementary_intervals(domain: Domain, begin: u64, log2_n: u32) {
+        let sampler = Sampler::new(SamplerKind::Sobol, 7);
+        let n = 1u64 << log2_n;
+        for log2_columns in 0..=log2_n {
+            let (columns, rows) = (1u64 << log2_columns, 1u64 << (log2_n - log2_columns));
+            let mut seen = vec![false; n as usize];
+            for index in begin..begin + n {
+                let p = sampler.stream(domain, 5, index).get_2d(DIMENSION);
+                let cell = (p.y * rows as f32) as u64 * columns + (p.x * columns as f32) as u64;
+                assert!(
+                    !std::mem::replace(&mut seen[cell as usize], true),
+                    "{columns}x{rows}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn aligned_ranges_are_nets() {
+        check_elementary_intervals(Domain::Camera, 0, 8);
+        check_elementary_intervals(Domain::Camera, 3 << 8, 8);
+        check_elementary_intervals(Domain::Light, 1 << 20, 10);
+        check_elementary_intervals(Domain::Light, (1 << 40) + (5 << 10), 10);
+    }
+
+    #[test]
+    fn numbers_beyond_two_to_the_32_differ_from_those_below() {
+        let sampler = Sampler::new(SamplerKind::Sobol, 1);
+        let low = sampler.stream(Domain::Light, 0, 17).get_2d(DIMENSION);
+        let high = sampler
+            .stream(Domain::Light, 0, 17 + (1 << 32))
+            .get_2d(DIMENSION);
+        assert_ne!(low, high);
+    }
+
+    /// Checks the mean and the variance of a uniform number, and its correlation with another's.
+    #[track_caller]
+    fn check_moments(draw: impl Fn(u64) -> (f32, f32)) {
+        let n = 1u64 << 16;
+        let (mut mean, mut square, mut product) = (0.0, 0.0, 0.0);
+        for i in 0..n {
+            let (a, b) = draw(i);
+            let (a, b) = (f64::from(a) - 0.5, f64::from(b) - 0.5);
+            mean += a / n as f64;
+            square += a * a / n as f64;
+            product += a * b / n as f64;
+        }
+        // Five standard deviations of the mean of n independent numbers.
+        let bound = 5.0 * (1.0 / 12.0 / n as f64).sqrt();
+        assert!(mean.abs() < bound, "mean {mean}");
+        assert!((square - 1.0 / 12.0).abs() < bound, "variance {square}");
+        assert!(product.abs() < bound, "covariance {product}");
+    }
+
+    #[test]
+    fn numbers_are_uniform_and_unrelated_across_every_part_of_the_address() {
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+            let sampler = Sampler::new(kind, 3);
+            let get = |domain, stream, index, dimension: Dimension| {
+                sampler.stream(domain, stream, index).get_1d(dimension)
+            };
+            let other = Dimension::at(4, Purpose::Scatter);
+            let base = |i| get(Domain::Camera, 9, i, DIMENSION);
+            check_moments(|i| (base(i), get(Domain::Camera, 9, i, other)));
+            check_moments(|i| (base(i), get(Domain::Camera, 10, i, DIMENSION)));
+            check_moments(|i| (base(i), get(Domain::Light, 9, i, DIMENSION)));
+            check_moments(|i| (get(Domain::Camera, i, 4, DIMENSION), base(i)));
+            let seeded = Sampler::new(kind, 4);
+            check_moments(|i| {
+                (
+                    base(i),
+                    seeded.stream(Domain::Camera, 9, i).get_1d(DIMENSION),
+                )
+            });
+        }
+    }
+}

@@ -1,0 +1,279 @@
+use super::{PrimitiveRef, Scene, Surface};
+use crate::camera::Camera;
+use crate::film::FilmSettings;
+use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
+use crate::material::Material;
+use crate::math::Vec3;
+use crate::shape::{Mesh, Shape};
+use crate::spectrum::{ColorModel, Rgb};
+use thiserror::Error;
+
+/// A material added to a [`SceneBuilder`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(u32);
+
+/// The light that a shape emits.
+#[derive(Clone, Copy, Debug)]
+pub struct Emission {
+    /// Emitted radiance.
+    pub radiance: Rgb,
+    /// Which sides emit.
+    pub sides: EmissionSides,
+}
+
+/// Why a scene cannot be built.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SceneError {
+    /// A triangle refers to a vertex that its mesh does not have.
+    #[error("triangle {triangle} refers to vertex {vertex}, but the mesh has {vertices} vertices")]
+    VertexIndex {
+        /// The shape, in the order of addition.
+        shape: usize,
+        /// The triangle of the mesh.
+        triangle: usize,
+        /// The vertex it refers to.
+        vertex: u32,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A mesh has normals or parameters, but not one per vertex.
+    #[error("the mesh has {vertices} vertices, but {count} {what}")]
+    AttributeCount {
+        /// The shape, in the order of addition.
+        shape: usize,
+        /// The number of vertices.
+        vertices: usize,
+        /// The number of values.
+        count: usize,
+        /// What is counted.
+        what: &'static str,
+    },
+    /// A coordinate is NaN or infinite, or a size overflows.
+    #[error("a coordinate of the shape is not finite")]
+    NotFinite {
+        /// The shape, in the order of addition.
+        shape: usize,
+    },
+    /// There are more primitives than the intersector counts.
+    #[error("the scene has too many primitives: {0}")]
+    Intersector(String),
+    /// The camera was not set.
+    #[error("the scene has no camera")]
+    NoCamera,
+    /// A part of the film that is rendered is empty or outside it.
+    #[error("the crop is empty or outside of the film")]
+    EmptyCrop,
+}
+
+impl SceneError {
+    /// The shape at fault, in the order of addition.
+    pub fn shape(&self) -> Option<usize> {
+        match self {
+            Self::VertexIndex { shape, .. }
+            | Self::AttributeCount { shape, .. }
+            | Self::NotFinite { shape } => Some(*shape),
+            Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
+        }
+    }
+}
+
+/// Collects the parts of a scene and checks them.
+#[derive(Debug)]
+pub struct SceneBuilder {
+    film: FilmSettings,
+    camera: Option<Camera>,
+    color: ColorModel,
+    shapes: Vec<Shape>,
+    surfaces: Vec<Surface>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    isa: accel::Isa,
+}
+
+impl SceneBuilder {
+    /// An empty scene with a film.
+    pub fn new(film: FilmSettings) -> Self {
+        Self {
+            film,
+            camera: None,
+            color: ColorModel::default(),
+            shapes: Vec::new(),
+            surfaces: Vec::new(),
+            materials: Vec::new(),
+            lights: Vec::new(),
+            isa: accel::Isa::detect(),
+        }
+    }
+
+    /// Sets the camera.
+    pub fn camera(&mut self, camera: Camera) -> &mut Self {
+        self.camera = Some(camera);
+        self
+    }
+
+    /// Sets the instruction set of the intersector; by default the best that the machine has.
+    pub fn isa(&mut self, isa: accel::Isa) -> &mut Self {
+        self.isa = isa;
+        self
+    }
+
+    /// Adds a material.
+    pub fn material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// Adds a shape of `material`, which emits where there is `emission`. Returns its number.
+    pub fn shape(
+        &mut self,
+        shape: Shape,
+        material: MaterialId,
+        emission: Option<Emission>,
+    ) -> usize {
+        let index = self.shapes.len();
+        // A broken mesh is found when the scene is built; until then it must not be measured.
+        let valid = check_shape(index, &shape).is_ok();
+        let light = emission.filter(|_| valid).map(|emission| {
+            let light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
+            self.light(Light::Area(light))
+        });
+        self.surfaces.push(Surface {
+            material: material.0,
+            light,
+        });
+        self.shapes.push(shape);
+        index
+    }
+
+    /// Adds a light that is no shape. Returns its number.
+    pub fn light(&mut self, light: Light) -> u32 {
+        self.lights.push(light);
+        self.lights.len() as u32 - 1
+    }
+
+    /// Checks everything and builds the acceleration structure.
+    pub fn build(self) -> Result<Scene, SceneError> {
+        let camera = self.camera.ok_or(SceneError::NoCamera)?;
+        check_crop(&self.film)?;
+        let mut primitives = Vec::new();
+        let mut geometry = Vec::new();
+        for (number, shape) in self.shapes.iter().enumerate() {
+            check_shape(number, shape)?;
+            for index in 0..shape.primitive_count() {
+                primitives.push(PrimitiveRef {
+                    shape: number as u32,
+                    index: index as u32,
+                });
+                geometry.push(shape.primitive(index));
+            }
+        }
+        let bvh = accel::Bvh::build(&geometry, &accel::BuildOptions { isa: self.isa })
+            .map_err(|error| SceneError::Intersector(error.to_string()))?;
+        let (centre, radius) = bounding_sphere(&bvh, &self.lights);
+        let context = LightContext {
+            shapes: &self.shapes,
+            centre,
+            radius,
+        };
+        let light_choice = LightChoice::new(&self.lights, &context);
+        let is_environment = |light: &Light| light.is_infinite() && !light.is_delta();
+        let environment = (0..self.lights.len())
+            .filter(|&i| is_environment(&self.lights[i]))
+            .map(|i| i as u32);
+        Ok(Scene {
+            camera,
+            film: self.film,
+            color: self.color,
+            environment: environment.collect(),
+            shapes: self.shapes,
+            surfaces: self.surfaces,
+            primitives,
+            materials: self.materials,
+            lights: self.lights,
+            light_choice,
+            bvh,
+            centre,
+            radius,
+        })
+    }
+}
+
+fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
+    let [width, height] = film.resolution;
+    let inside = film.crop.max[0] <= width && film.crop.max[1] <= height;
+    if inside && film.crop.area() > 0 {
+        Ok(())
+    } else {
+        Err(SceneError::EmptyCrop)
+    }
+}
+
+fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {
+    let finite = match shape {
+        Shape::Mesh(mesh) => {
+            check_indices(number, mesh)?;
+            mesh.positions
+                .iter()
+                .chain(&mesh.normals)
+                .all(|v| v.is_finite())
+                && mesh.uvs.iter().all(|uv| uv.is_finite())
+        }
+        Shape::Sphere(_) | Shape::Disk(_) => {
+            let bounds = shape.primitive(0).bounds();
+            bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
+        }
+    };
+    if finite {
+        Ok(())
+    } else {
+        Err(SceneError::NotFinite { shape: number })
+    }
+}
+
+fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
+    let vertices = mesh.positions.len();
+    for (what, count) in [
+        ("normals", mesh.normals.len()),
+        ("parameters", mesh.uvs.len()),
+    ] {
+        if count != 0 && count != vertices {
+            return Err(SceneError::AttributeCount {
+                shape,
+                vertices,
+                count,
+                what,
+            });
+        }
+    }
+    for (triangle, indices) in mesh.triangles.iter().enumerate() {
+        if let Some(&vertex) = indices.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Err(SceneError::VertexIndex {
+                shape,
+                triangle,
+                vertex,
+                vertices,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A sphere around all surfaces, and around the lights in space, with a little room.
+fn bounding_sphere(bvh: &accel::Bvh, lights: &[Light]) -> (Vec3, f32) {
+    let bounds = bvh.bounds();
+    let (mut min, mut max) = (bounds.min, bounds.max);
+    for light in lights {
+        let position = match light {
+            Light::Point(light) => light.position,
+            Light::Spot(light) => light.position,
+            Light::Area(_) | Light::Distant(_) | Light::Infinite(_) => continue,
+        };
+        (min, max) = (min.min(position), max.max(position));
+    }
+    if !min.cmple(max).all() {
+        return (Vec3::ZERO, 1.0);
+    }
+    let centre = (min + max) / 2.0;
+    let radius = centre.distance(max) * 1.001;
+    (centre, if radius > 0.0 { radius } else { 1.0 })
+}

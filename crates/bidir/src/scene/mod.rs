@@ -1,0 +1,161 @@
+//! The scene: everything that is rendered, checked and immutable.
+//!
+//! A [`Scene`] comes from a [`SceneBuilder`], the only place where errors are possible. All indices
+//! in a built scene are valid.
+
+mod builder;
+mod visibility;
+
+pub use builder::{Emission, MaterialId, SceneBuilder, SceneError};
+pub use visibility::{SegmentEnd, offset_origin};
+
+use crate::camera::Camera;
+use crate::film::FilmSettings;
+use crate::light::{Light, LightChoice, LightContext, LightPoint};
+use crate::material::Material;
+use crate::math::{Vec2, Vec3};
+use crate::shape::{Shape, SurfacePoint};
+use crate::spectrum::ColorModel;
+
+/// A primitive of the intersector as a part of a shape.
+#[derive(Clone, Copy, Debug)]
+struct PrimitiveRef {
+    shape: u32,
+    /// Its number within the shape.
+    index: u32,
+}
+
+/// A shape with what it is made of.
+#[derive(Clone, Copy, Debug)]
+struct Surface {
+    material: u32,
+    light: Option<u32>,
+}
+
+/// Where a ray meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceHit {
+    /// Local geometry.
+    pub surface: SurfacePoint,
+    /// The material, by index.
+    pub material: u32,
+    /// The light that the surface is, by index, with the light point that was hit.
+    pub light: Option<(u32, LightPoint)>,
+}
+
+/// A built scene.
+#[derive(Debug)]
+pub struct Scene {
+    camera: Camera,
+    film: FilmSettings,
+    color: ColorModel,
+    shapes: Vec<Shape>,
+    surfaces: Vec<Surface>,
+    primitives: Vec<PrimitiveRef>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    light_choice: LightChoice,
+    /// The lights that escaping rays hit, by index.
+    environment: Vec<u32>,
+    bvh: accel::Bvh,
+    centre: Vec3,
+    radius: f32,
+}
+
+impl Scene {
+    /// The camera.
+    #[inline]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The film's geometry, filter and exposure.
+    #[inline]
+    pub fn film(&self) -> &FilmSettings {
+        &self.film
+    }
+
+    /// What the lanes of a spectrum mean.
+    #[inline]
+    pub fn color(&self) -> ColorModel {
+        self.color
+    }
+
+    /// All lights.
+    #[inline]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// Light number `i`.
+    #[inline]
+    pub fn light(&self, i: u32) -> &Light {
+        &self.lights[i as usize]
+    }
+
+    /// The choice of a light.
+    #[inline]
+    pub fn light_choice(&self) -> &LightChoice {
+        &self.light_choice
+    }
+
+    /// The lights that escaping rays hit, by index.
+    #[inline]
+    pub fn environment(&self) -> &[u32] {
+        &self.environment
+    }
+
+    /// What lights need to know of the scene.
+    #[inline]
+    pub fn light_context(&self) -> LightContext<'_> {
+        LightContext {
+            shapes: &self.shapes,
+            centre: self.centre,
+            radius: self.radius,
+        }
+    }
+
+    /// All materials.
+    #[inline]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Material number `i`.
+    #[inline]
+    pub fn material(&self, i: u32) -> &Material {
+        &self.materials[i as usize]
+    }
+
+    /// All shapes.
+    pub fn shapes(&self) -> &[Shape] {
+        &self.shapes
+    }
+
+    /// The acceleration structure.
+    pub fn bvh(&self) -> &accel::Bvh {
+        &self.bvh
+    }
+
+    /// The nearest surface along a ray. None: it escapes.
+    #[inline]
+    pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<SurfaceHit> {
+        let hit = self
+            .bvh
+            .closest(&accel::Ray::new(origin, direction), accel::accept_all)?;
+        let primitive = self.primitives[hit.primitive as usize];
+        let shape = &self.shapes[primitive.shape as usize];
+        let uv = Vec2::new(hit.u, hit.v);
+        let point = origin + direction * hit.t;
+        let surface = shape.surface_point(primitive.index as usize, uv, point);
+        let of_shape = self.surfaces[primitive.shape as usize];
+        let light = of_shape
+            .light
+            .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
+        Some(SurfaceHit {
+            surface,
+            material: of_shape.material,
+            light,
+        })
+    }
+}

@@ -1,0 +1,60 @@
+use super::{Candidate, Chosen, Draws, Selector};
+
+/// Traces at most `rays` candidates: π = min(1, g_c / δ) with Σ π = `rays`, and one systematic
+/// draw for all.
+///
+/// With one ray this is one per pair. With more it has less variance than as many single choices:
+/// large candidates are certain, and one uniform number places evenly spaced pointers over the
+/// rest, so that neighbours are not chosen together. This is the threshold sampling of [Cohen09].
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// The expected number of rays.
+    pub rays: u32,
+}
+
+impl Budget {
+    /// δ with Σ min(1, g_c / δ) = `rays`. None: there are no more candidates than rays, so that all
+    /// are traced.
+    fn threshold(&self, candidates: &[Candidate]) -> Option<f64> {
+        if candidates.len() <= self.rays as usize {
+            return None;
+        }
+        // Scores at or above δ count one ray each; the others share what is left. δ falls from one
+        // round to the next, and no round changes nothing more often than there are candidates.
+        let mut threshold = f64::INFINITY;
+        loop {
+            let (mut certain, mut rest) = (0u32, 0.0);
+            for candidate in candidates {
+                let score = f64::from(candidate.score);
+                if score >= threshold {
+                    certain += 1;
+                } else {
+                    rest += score;
+                }
+            }
+            let next = rest / f64::from(self.rays - certain.min(self.rays - 1));
+            if next >= threshold || rest <= 0.0 {
+                return Some(threshold);
+            }
+            threshold = next;
+        }
+    }
+}
+
+impl Selector for Budget {
+    fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
+        let threshold = self.threshold(candidates);
+        let mut pointer = f64::from(draws.get(0));
+        for (i, candidate) in candidates.iter().enumerate() {
+            let prob = threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0));
+            pointer += prob;
+            if pointer >= 1.0 {
+                pointer -= 1.0;
+                chosen.push(Chosen {
+                    candidate: i as u32,
+                    prob: prob as f32,
+                });
+            }
+        }
+    }
+}

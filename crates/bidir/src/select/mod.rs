@@ -1,0 +1,173 @@
+//! Choosing the shadow rays that are traced.
+//!
+//! All connections of a sample are [`Candidate`]s: their value, weighted, before visibility. A
+//! [`Selector`] gives each an inclusion probability π and draws; the chosen ones are traced and
+//! count value·v/π. With π > 0 wherever the value is not zero, and with π a function of the
+//! candidates alone, the sum keeps its expectation Σ value·v, whatever the rule
+//! [`docs/derivations`]: the weights, and so the densities, of the strategies do not change.
+//!
+//! The value of a chosen candidate is divided by its own π; the sum of the group is never used in
+//! its place, which would be biased for coloured light. s = 0 needs no ray and t = 1 belongs to other
+//! pixels: neither is a candidate.
+//!
+//! **Adding one**: a file, and a variant of [`ShadowRays`] with its name.
+
+mod budget;
+mod grouped;
+mod simple;
+
+pub use budget::Budget;
+pub use grouped::{Group, OnePerGroup};
+pub use simple::{All, RayRoulette};
+
+use crate::path::Strategy;
+use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::spectrum::Spectrum;
+use std::fmt;
+use std::str::FromStr;
+
+/// A connection that may be traced.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    /// The weighted contribution if nothing blocks it.
+    pub value: Spectrum,
+    /// Its luminance: what candidates are compared by. Positive.
+    pub score: f32,
+    /// How it was made; s ≥ 1 and t ≥ 2.
+    pub strategy: Strategy,
+}
+
+/// A candidate that is traced.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chosen {
+    /// Its number among the candidates.
+    pub candidate: u32,
+    /// The probability π with which it was included.
+    pub prob: f32,
+}
+
+/// The random numbers of a selection.
+#[derive(Clone, Copy)]
+pub struct Draws<'a>(pub &'a SampleStream);
+
+impl Draws<'_> {
+    /// Draw number `i`. Range: `[0, 1)`.
+    #[inline]
+    pub fn get(&self, i: usize) -> f32 {
+        self.0.get_1d(Dimension::at(i, Purpose::Select))
+    }
+}
+
+/// A rule that chooses shadow rays. One call serves a whole sample.
+pub trait Selector: Sync + Send {
+    /// Appends the chosen ones of `candidates` to `chosen`, each with its inclusion probability.
+    /// A candidate may be appended once.
+    fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>);
+}
+
+/// The rules by name, with their settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShadowRays {
+    /// Every candidate.
+    All,
+    /// One for each light vertex: optimisation 1 of [Lafortune95].
+    PerLightVertex,
+    /// One for each camera vertex: optimisation 2 of [Lafortune95].
+    PerCameraVertex,
+    /// One for each pair of subpaths: optimisation 3 of [Lafortune95].
+    PerPair,
+    /// Independent coins, against a threshold that is this part of the image's mean luminance,
+    /// which a training render finds [Veach97, §10.4.1].
+    RayRoulette(f32),
+    /// This many rays for each pair of subpaths.
+    Budget(u32),
+}
+
+impl Default for ShadowRays {
+    fn default() -> Self {
+        Self::All
+    }
+}
+
+impl ShadowRays {
+    /// The threshold of `ray-roulette` where none is given.
+    pub const DEFAULT_ROULETTE: f32 = 0.1;
+
+    /// The rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
+    pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
+        match self {
+            Self::All => Box::new(All),
+            Self::PerLightVertex => Box::new(OnePerGroup {
+                group: Group::LightVertex,
+            }),
+            Self::PerCameraVertex => Box::new(OnePerGroup {
+                group: Group::CameraVertex,
+            }),
+            Self::PerPair => Box::new(OnePerGroup { group: Group::Pair }),
+            Self::RayRoulette(part) => Box::new(RayRoulette {
+                threshold: part * mean_luminance,
+            }),
+            Self::Budget(rays) => Box::new(Budget { rays }),
+        }
+    }
+
+    /// True where the rule needs the mean luminance of a training render.
+    pub fn needs_mean(self) -> bool {
+        matches!(self, Self::RayRoulette(_))
+    }
+}
+
+impl fmt::Display for ShadowRays {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => write!(f, "all"),
+            Self::PerLightVertex => write!(f, "per-light-vertex"),
+            Self::PerCameraVertex => write!(f, "per-camera-vertex"),
+            Self::PerPair => write!(f, "per-pair"),
+            Self::RayRoulette(part) => write!(f, "ray-roulette:{part}"),
+            Self::Budget(rays) => write!(f, "budget:{rays}"),
+        }
+    }
+}
+
+/// Why a rule cannot be read.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error(
+    "`{0}` is no choice of shadow rays: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
+     `per-pair`, `ray-roulette[:PART]` (a positive part of the image's mean) or `budget:K` \
+     (a positive number of rays)"
+)]
+pub struct ShadowRaysError(String);
+
+impl FromStr for ShadowRays {
+    type Err = ShadowRaysError;
+
+    fn from_str(text: &str) -> Result<Self, ShadowRaysError> {
+        let (name, value) = match text.split_once(':') {
+            Some((name, value)) => (name, Some(value)),
+            None => (text, None),
+        };
+        let rule = match (name, value) {
+            ("all", None) => Some(Self::All),
+            ("per-light-vertex", None) => Some(Self::PerLightVertex),
+            ("per-camera-vertex", None) => Some(Self::PerCameraVertex),
+            ("per-pair", None) => Some(Self::PerPair),
+            ("ray-roulette", None) => Some(Self::RayRoulette(Self::DEFAULT_ROULETTE)),
+            ("ray-roulette", Some(part)) => part
+                .parse()
+                .ok()
+                .filter(|part: &f32| part.is_finite() && *part > 0.0)
+                .map(Self::RayRoulette),
+            ("budget", Some(rays)) => rays
+                .parse()
+                .ok()
+                .filter(|&rays: &u32| rays > 0)
+                .map(Self::Budget),
+            _ => None,
+        };
+        rule.ok_or_else(|| ShadowRaysError(text.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,37 @@
+use super::{Candidate, Chosen, Draws, Selector};
+
+/// Traces every candidate.
+#[derive(Clone, Copy, Debug)]
+pub struct All;
+
+impl Selector for All {
+    fn select(&self, candidates: &[Candidate], _draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
+        chosen.extend((0..candidates.len() as u32).map(|candidate| Chosen {
+            candidate,
+            prob: 1.0,
+        }));
+    }
+}
+
+/// Keeps each candidate by a coin of its own: π = min(1, score / threshold)
+/// [Veach97, §10.4.1].
+#[derive(Clone, Copy, Debug)]
+pub struct RayRoulette {
+    /// The score from which on a candidate is always traced. Unit: luminance.
+    pub threshold: f32,
+}
+
+impl Selector for RayRoulette {
+    fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
+        for (i, candidate) in candidates.iter().enumerate() {
+            // A black training image has threshold 0: then everything is traced.
+            let prob = (candidate.score / self.threshold).min(1.0);
+            if prob >= 1.0 || draws.get(i) < prob {
+                chosen.push(Chosen {
+                    candidate: i as u32,
+                    prob,
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+use super::*;
+use crate::sampler::{Domain, Sampler, SamplerKind};
+
+fn candidate(s: usize, t: usize, score: f32) -> Candidate {
+    Candidate {
+        value: Spectrum::splat(score),
+        score,
+        strategy: Strategy::new(s, t),
+    }
+}
+
+/// Two light and three camera vertices, with scores that span eight orders of magnitude.
+fn candidates() -> Vec<Candidate> {
+    let scores = [0.5, 2e-3, 40.0, 1e-6, 3.0, 2.0];
+    let pairs = [(1, 2), (1, 3), (1, 4), (2, 2), (2, 3), (2, 4)];
+    pairs
+        .iter()
+        .zip(scores)
+        .map(|(&(s, t), score)| candidate(s, t, score))
+        .collect()
+}
+
+const RULES: [ShadowRays; 8] = [
+    ShadowRays::All,
+    ShadowRays::PerLightVertex,
+    ShadowRays::PerCameraVertex,
+    ShadowRays::PerPair,
+    ShadowRays::RayRoulette(0.3),
+    ShadowRays::Budget(1),
+    ShadowRays::Budget(2),
+    ShadowRays::Budget(6),
+];
+
+/// How often each candidate was chosen in `n` draws, and the probability it was said to have;
+/// `check` sees every draw.
+fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Vec<(f64, f64)> {
+    let (candidates, selector) = (candidates(), rule.selector(10.0));
+    let sampler = Sampler::new(SamplerKind::Independent, 11);
+    let mut result = vec![(0.0, 0.0); candidates.len()];
+    let mut chosen = Vec::new();
+    for index in 0..n {
+        chosen.clear();
+        let stream = sampler.stream(Domain::Camera, 0, index);
+        selector.select(&candidates, Draws(&stream), &mut chosen);
+        check(&chosen);
+        for c in &chosen {
+            let entry = &mut result[c.candidate as usize];
+            *entry = (entry.0 + 1.0 / n as f64, f64::from(c.prob));
+        }
+    }
+    result
+}
+
+#[test]
+fn candidates_are_chosen_with_the_probability_that_is_stated() {
+    let n = 200_000;
+    for rule in RULES {
+        for (i, (frequency, prob)) in frequencies(rule, n, |_| ()).into_iter().enumerate() {
+            // Five standard deviations of a binomial frequency.
+            let bound = 5.0 * (prob * (1.0 - prob) / n as f64).sqrt() + 1e-9;
+            assert!(
+                (frequency - prob).abs() <= bound,
+                "{rule} {i}: {frequency} {prob}"
+            );
+        }
+    }
+}
+
+#[test]
+fn no_rule_traces_more_rays_than_it_says() {
+    let limit = |rule| match rule {
+        ShadowRays::PerLightVertex => 2,
+        ShadowRays::PerCameraVertex => 3,
+        ShadowRays::PerPair => 1,
+        ShadowRays::Budget(rays) => rays as usize,
+        ShadowRays::All | ShadowRays::RayRoulette(_) => 6,
+    };
+    for rule in RULES {
+        frequencies(rule, 2000, |chosen| {
+            assert!(chosen.len() <= limit(rule), "{rule}")
+        });
+    }
+}
+
+#[test]
+fn one_ray_of_budget_is_one_per_pair() {
+    let probabilities = |rule| frequencies(rule, 100_000, |_| ());
+    let (budget, pair) = (
+        probabilities(ShadowRays::Budget(1)),
+        probabilities(ShadowRays::PerPair),
+    );
+    for (a, b) in budget
+        .iter()
+        .zip(&pair)
+        .filter(|(a, b)| a.1 > 0.0 && b.1 > 0.0)
+    {
+        assert!((a.1 - b.1).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn no_candidates_no_rays() {
+    let sampler = Sampler::new(SamplerKind::Independent, 1);
+    let stream = sampler.stream(Domain::Camera, 0, 0);
+    for rule in RULES {
+        let mut chosen = Vec::new();
+        rule.selector(1.0).select(&[], Draws(&stream), &mut chosen);
+        assert!(chosen.is_empty());
+    }
+}
+
+#[test]
+fn rules_are_read_and_written() {
+    for rule in RULES {
+        assert_eq!(rule.to_string().parse(), Ok(rule));
+    }
+    assert_eq!(
+        "ray-roulette".parse(),
+        Ok(ShadowRays::RayRoulette(ShadowRays::DEFAULT_ROULETTE))
+    );
+    for text in [
+        "",
+        "none",
+        "budget",
+        "budget:0",
+        "budget:x",
+        "ray-roulette:-1",
+        "all:2",
+    ] {
+        assert!(text.parse::<ShadowRays>().is_err(), "{text}");
+    }
+}

@@ -1,0 +1,92 @@
+use super::{Orientation, ShapeSample, SurfacePoint, position_error};
+use crate::math::{Frame, Vec2, Vec3, warp};
+
+/// Triangles that share vertices, in world space.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertex positions.
+    pub positions: Vec<Vec3>,
+    /// Shading normals per vertex; empty: the surface is faceted.
+    pub normals: Vec<Vec3>,
+    /// Parameters per vertex; empty: each triangle has (0,0), (1,0), (1,1).
+    pub uvs: Vec<Vec2>,
+    /// Three vertices per triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Which side of the winding (p1 - p0) × (p2 - p0) is the front. Where there are normals,
+    /// they decide.
+    pub orientation: Orientation,
+}
+
+impl Mesh {
+    /// The number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The corners of triangle `i`.
+    #[inline]
+    pub fn triangle(&self, i: usize) -> [Vec3; 3] {
+        self.triangles[i].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The area of triangle `i`. Unit: m².
+    pub fn triangle_area(&self, i: usize) -> f32 {
+        let [a, b, c] = self.triangle(i);
+        (b - a).cross(c - a).length() / 2.0
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, i: usize, u: Vec2) -> ShapeSample {
+        let surface = self.surface_point(i, warp::triangle(u));
+        ShapeSample {
+            surface,
+            pdf: 1.0 / self.triangle_area(i),
+        }
+    }
+
+    /// The geometry at barycentric coordinates `b` of vertices 1 and 2.
+    #[inline]
+    pub(super) fn surface_point(&self, i: usize, b: Vec2) -> SurfacePoint {
+        let [p0, p1, p2] = self.triangle(i);
+        let b0 = 1.0 - b.x - b.y;
+        let magnitude = p0.abs().max(p1.abs()).max(p2.abs()).max_element();
+        let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
+        let n_g = winding * self.orientation.sign();
+        let n_s = self.shading_normal(i, b0, b).unwrap_or(n_g);
+        let n_g = if n_g.dot(n_s) < 0.0 { -n_g } else { n_g };
+        let uvs = self.triangle_uvs(i);
+        SurfacePoint {
+            point: p0 * b0 + p1 * b.x + p2 * b.y,
+            error: position_error(magnitude),
+            n_g,
+            shading: Frame::from_z_and_tangent(n_s, tangent([p0, p1, p2], uvs)),
+            uv: uvs[0] * b0 + uvs[1] * b.x + uvs[2] * b.y,
+        }
+    }
+
+    /// The interpolated normal. None: there are none, or they cancel.
+    #[inline]
+    fn shading_normal(&self, i: usize, b0: f32, b: Vec2) -> Option<Vec3> {
+        if self.normals.is_empty() {
+            return None;
+        }
+        let [n0, n1, n2] = self.triangles[i].map(|vertex| self.normals[vertex as usize]);
+        (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
+    }
+
+    #[inline]
+    fn triangle_uvs(&self, i: usize) -> [Vec2; 3] {
+        if self.uvs.is_empty() {
+            return [Vec2::ZERO, Vec2::X, Vec2::ONE];
+        }
+        self.triangles[i].map(|vertex| self.uvs[vertex as usize])
+    }
+}
+
+/// ∂p/∂u, up to scale; zero where the parameters are degenerate.
+#[inline]
+fn tangent([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
+    let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
+    let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+    ((p1 - p0) * duv2.y - (p2 - p0) * duv1.y) * determinant.signum() * f32::from(determinant != 0.0)
+}

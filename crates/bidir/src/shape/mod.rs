@@ -1,0 +1,225 @@
+//! Surfaces: where rays meet them, and how points are drawn on them.
+//!
+//! All geometry is in world space. A shape gives its primitives to [`accel`], turns a hit into a
+//! [`SurfacePoint`], and, where it is a light, draws points by area. Densities are **area
+//! measure**, 1/m².
+//!
+//! The geometric normal `n_g` says which side is the front: the side that a one-sided light emits
+//! to, and the outside of a dielectric. It is always on the side of the shading normal `n_s`.
+//!
+//! **Adding one**: a file, a variant in [`Shape`] with an arm in each match, its intersection in
+//! `accel`, and a mapping in the scene reader.
+
+mod disk;
+mod mesh;
+mod sphere;
+
+pub use disk::Disk;
+pub use mesh::Mesh;
+pub use sphere::Sphere;
+
+use crate::math::{Affine3A, Frame, Vec2, Vec3};
+
+/// The local geometry at a point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// The point.
+    pub point: Vec3,
+    /// A bound of the distance between `point` and the surface that the intersector sees: what ray
+    /// origins are pushed off by.
+    pub error: f32,
+    /// The geometric normal, unit, towards the front.
+    pub n_g: Vec3,
+    /// The shading frame: z is `n_s`, x follows ∂p/∂u.
+    pub shading: Frame,
+    /// Surface parameters, for textures.
+    pub uv: Vec2,
+}
+
+/// A point drawn on a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct ShapeSample {
+    /// The point.
+    pub surface: SurfacePoint,
+    /// Its density. Measure: area, 1/m².
+    pub pdf: f32,
+}
+
+/// A surface of the scene.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Triangles that share vertices.
+    Mesh(Mesh),
+    /// A sphere, or part of one, under any affine map.
+    Sphere(Sphere),
+    /// A disk or ring, or a sector of one, under any affine map.
+    Disk(Disk),
+}
+
+impl Shape {
+    /// The number of primitives that [`primitive`](Self::primitive) counts.
+    pub fn primitive_count(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.triangle_count(),
+            Self::Sphere(_) | Self::Disk(_) => 1,
+        }
+    }
+
+    /// Primitive `i` for the intersector.
+    pub fn primitive(&self, i: usize) -> accel::Primitive {
+        match self {
+            Self::Mesh(mesh) => accel::Primitive::Triangle(mesh.triangle(i)),
+            Self::Sphere(sphere) => accel::Primitive::Sphere(sphere.primitive()),
+            Self::Disk(disk) => accel::Primitive::Disk(disk.primitive()),
+        }
+    }
+
+    /// The local geometry where primitive `i` was hit at parameters `uv` of the intersector;
+    /// `point` is the hit as the ray computed it.
+    #[inline]
+    pub fn surface_point(&self, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
+        match self {
+            Self::Mesh(mesh) => mesh.surface_point(i, uv),
+            Self::Sphere(sphere) => sphere.surface_point(uv, point),
+            Self::Disk(disk) => disk.surface_point(uv, point),
+        }
+    }
+
+    /// The area of primitive `i`. Unit: m².
+    pub fn primitive_area(&self, i: usize) -> f32 {
+        match self {
+            Self::Mesh(mesh) => mesh.triangle_area(i),
+            Self::Sphere(sphere) => sphere.area(),
+            Self::Disk(disk) => disk.area(),
+        }
+    }
+
+    /// Draws a point of primitive `i`, evenly over its area where it can be done.
+    #[inline]
+    pub fn sample(&self, i: usize, u: Vec2) -> ShapeSample {
+        match self {
+            Self::Mesh(mesh) => mesh.sample(i, u),
+            Self::Sphere(sphere) => sphere.sample(u),
+            Self::Disk(disk) => disk.sample(u),
+        }
+    }
+
+    /// The density of [`sample`](Self::sample) at `point`. Measure: area, 1/m².
+    #[inline]
+    pub fn pdf(&self, i: usize, point: Vec3) -> f32 {
+        match self {
+            Self::Mesh(mesh) => 1.0 / mesh.triangle_area(i),
+            Self::Sphere(sphere) => sphere.pdf(point),
+            Self::Disk(disk) => 1.0 / disk.area(),
+        }
+    }
+
+    /// Draws a point of primitive `i` that `reference` is likely to see.
+    #[inline]
+    pub fn sample_from(&self, i: usize, reference: Vec3, u: Vec2) -> ShapeSample {
+        match self {
+            Self::Mesh(_) | Self::Disk(_) => self.sample(i, u),
+            Self::Sphere(sphere) => sphere.sample_from(reference, u),
+        }
+    }
+
+    /// The density of [`sample_from`](Self::sample_from) at `point`, whose normal is `n_g`.
+    /// Measure: area, 1/m².
+    #[inline]
+    pub fn pdf_from(&self, i: usize, reference: Vec3, point: Vec3, n_g: Vec3) -> f32 {
+        match self {
+            Self::Mesh(_) | Self::Disk(_) => self.pdf(i, point),
+            Self::Sphere(sphere) => sphere.pdf_from(reference, point, n_g),
+        }
+    }
+}
+
+/// Which side of a surface is the front.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Orientation {
+    /// The side that the shape's own parametrisation or winding says.
+    #[default]
+    Natural,
+    /// The other side.
+    Reversed,
+}
+
+impl Orientation {
+    /// 1, or -1 where reversed.
+    #[inline]
+    pub fn sign(self) -> f32 {
+        match self {
+            Self::Natural => 1.0,
+            Self::Reversed => -1.0,
+        }
+    }
+}
+
+/// A bound of the rounding error of a surface point computed from coordinates up to `magnitude`:
+/// interpolation, the intersector's translation and its own arithmetic, with room.
+#[inline]
+fn position_error(magnitude: f32) -> f32 {
+    32.0 * f32::EPSILON * magnitude
+}
+
+/// The map of a quadric between its own space and the world.
+#[derive(Clone, Copy, Debug)]
+struct Placement {
+    world_from_local: Affine3A,
+    local_from_world: Affine3A,
+    /// |det| of the linear part.
+    volume_scale: f32,
+}
+
+impl Placement {
+    fn new(world_from_local: Affine3A) -> Self {
+        Self {
+            world_from_local,
+            local_from_world: world_from_local.inverse(),
+            volume_scale: world_from_local.matrix3.determinant().abs(),
+        }
+    }
+
+    /// The inverse transpose applied to a local normal: not normalised.
+    #[inline]
+    fn normal(&self, local: Vec3) -> Vec3 {
+        self.local_from_world.matrix3.transpose() * local
+    }
+
+    /// World area per local area at a point with unit local normal `n`: |det M|·|M⁻ᵀ n|.
+    #[inline]
+    fn area_scale(&self, n: Vec3) -> f32 {
+        self.volume_scale * self.normal(n).length()
+    }
+
+    /// The surface point of local geometry.
+    #[inline]
+    fn surface_point(
+        &self,
+        local: Vec3,
+        normal: Vec3,
+        orientation: Orientation,
+        uv: Vec2,
+    ) -> SurfacePoint {
+        let point = self.world_from_local.transform_point3(local);
+        let n_g = self.normal(normal).normalize() * orientation.sign();
+        let tangent = self
+            .world_from_local
+            .transform_vector3(Vec3::new(-local.y, local.x, 0.0));
+        let reach = self
+            .world_from_local
+            .transform_vector3(local)
+            .abs()
+            .max_element();
+        let origin = Vec3::from(self.world_from_local.translation)
+            .abs()
+            .max_element();
+        SurfacePoint {
+            point,
+            error: position_error(origin + reach),
+            n_g,
+            shading: Frame::from_z_and_tangent(n_g, tangent),
+            uv,
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! Four lanes of light.
+//!
+//! Everything that travels along a path is a [`Spectrum`]: four `f32` lanes, multiplied and added
+//! lane by lane. What the lanes mean is decided once per render by a [`ColorModel`]; BSDFs, paths,
+//! weights and selection never ask. Only three edges convert, and each takes the sample's
+//! [`Wavelengths`]: emission, texture look-up and film development.
+
+use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
+
+/// Four lanes of radiance, importance, reflectance or throughput.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
+pub struct Spectrum(pub [f32; 4]);
+
+impl Spectrum {
+    /// No light.
+    pub const ZERO: Self = Self([0.0; 4]);
+    /// One in every lane.
+    pub const ONE: Self = Self([1.0; 4]);
+
+    /// The same value in every lane.
+    #[inline]
+    pub const fn splat(value: f32) -> Self {
+        Self([value; 4])
+    }
+
+    /// Applies `f` lane by lane.
+    #[inline]
+    pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// Combines two spectra lane by lane.
+    #[inline]
+    pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+
+    /// The largest lane.
+    #[inline]
+    pub fn max_lane(self) -> f32 {
+        self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
+    }
+
+    /// True where every lane is exactly zero.
+    #[inline]
+    pub fn is_black(self) -> bool {
+        self.0 == [0.0; 4]
+    }
+
+    /// True where no lane is NaN or infinite.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|lane| lane.is_finite())
+    }
+}
+
+impl Index<usize> for Spectrum {
+    type Output = f32;
+    #[inline]
+    fn index(&self, lane: usize) -> &f32 {
+        &self.0[lane]
+    }
+}
+
+impl Add for Spectrum {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl AddAssign for Spectrum {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sub for Spectrum {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Spectrum {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |a, b| a * b)
+    }
+}
+
+impl MulAssign for Spectrum {
+    #[inline]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl Mul<f32> for Spectrum {
+    type Output = Self;
+    #[inline]
+    fn mul(self, scale: f32) -> Self {
+        self.map(|lane| lane * scale)
+    }
+}
+
+impl MulAssign<f32> for Spectrum {
+    #[inline]
+    fn mul_assign(&mut self, scale: f32) {
+        *self = *self * scale;
+    }
+}
+
+impl Div<f32> for Spectrum {
+    type Output = Self;
+    #[inline]
+    fn div(self, divisor: f32) -> Self {
+        self * (1.0 / divisor)
+    }
+}
+
+/// A colour in linear Rec. 709 primaries: what scenes are described in and films are developed to.
+pub type Rgb = [f32; 3];
+
+/// The luminance Y of a linear Rec. 709 colour.
+#[inline]
+pub fn luminance(rgb: Rgb) -> f32 {
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+/// The wavelengths of one sample, drawn once and handed to every edge that converts colour.
+///
+/// Under [`ColorModel::Rgb`] the lanes are red, green and blue and this holds nothing of interest.
+/// Unit: nm.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wavelengths([f32; 4]);
+
+/// What the lanes of a [`Spectrum`] mean in this render.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorModel {
+    /// Linear Rec. 709 red, green and blue; the fourth lane is zero in all light.
+    #[default]
+    Rgb,
+}
+
+impl ColorModel {
+    /// Draws the wavelengths of a sample from `u` in `[0, 1)`.
+    #[inline]
+    pub fn sample_wavelengths(self, _u: f32) -> Wavelengths {
+        match self {
+            Self::Rgb => Wavelengths([0.0; 4]),
+        }
+    }
+
+    /// The lanes of a reflectance or transmittance.
+    #[inline]
+    pub fn albedo(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
+        match self {
+            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], 0.0]),
+        }
+    }
+
+    /// The lanes of a quantity without an upper bound, such as an index of refraction.
+    #[inline]
+    pub fn unbounded(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
+        match self {
+            // The unused lane must stay harmless under division: it repeats blue.
+            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], rgb[2]]),
+        }
+    }
+
+    /// The lanes of an emitted radiance or intensity.
+    #[inline]
+    pub fn illuminant(self, rgb: Rgb, _wavelengths: &Wavelengths) -> Spectrum {
+        match self {
+            Self::Rgb => Spectrum([rgb[0], rgb[1], rgb[2], 0.0]),
+        }
+    }
+
+    /// The colour that a sample's light adds to the film.
+    #[inline]
+    pub fn to_rgb(self, light: Spectrum, _wavelengths: &Wavelengths) -> Rgb {
+        match self {
+            Self::Rgb => [light[0], light[1], light[2]],
+        }
+    }
+
+    /// The luminance of a sample's light: the scalar by which candidates are compared.
+    #[inline]
+    pub fn luminance(self, light: Spectrum, wavelengths: &Wavelengths) -> f32 {
+        luminance(self.to_rgb(light, wavelengths))
+    }
+}

@@ -1,0 +1,125 @@
+//! What a render counts: rays where they are traced, candidates, and contributions that were
+//! dropped.
+
+use crate::path::Strategy;
+use std::collections::BTreeSet;
+use std::ops::AddAssign;
+
+/// Rays by kind, counted where they are traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Rays of camera walks.
+    pub camera: u64,
+    /// Rays of light walks.
+    pub light: u64,
+    /// Shadow rays that join s ≥ 1 with t ≥ 2.
+    pub connection: u64,
+    /// Shadow rays of the light image, t = 1.
+    pub light_image: u64,
+}
+
+impl RayCounts {
+    /// All rays.
+    pub fn total(&self) -> u64 {
+        self.camera + self.light + self.connection + self.light_image
+    }
+}
+
+impl AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.light += other.light;
+        self.connection += other.connection;
+        self.light_image += other.light_image;
+    }
+}
+
+/// A contribution that was not finite, or too large: where it came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Dropped {
+    /// The pass.
+    pub pass: u64,
+    /// The pixel whose sample made it.
+    pub pixel: [u32; 2],
+    /// The strategy that made it.
+    pub strategy: Strategy,
+}
+
+/// How many dropped contributions are listed: the first by (pass, pixel, strategy).
+pub const LISTED_DROPS: usize = 64;
+
+/// The counters of a render, or of a part of one; adding parts in any order gives the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Camera samples taken.
+    pub samples: u64,
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// Connection rays that something blocked.
+    pub connections_blocked: u64,
+    /// Light-image rays that something blocked.
+    pub light_image_blocked: u64,
+    /// Candidate connections evaluated.
+    pub candidates: u64,
+    /// Contributions dropped.
+    pub dropped: u64,
+    /// The first of them.
+    pub dropped_list: BTreeSet<Dropped>,
+}
+
+impl Stats {
+    /// Counts a contribution that was dropped.
+    pub fn drop_contribution(&mut self, dropped: Dropped) {
+        self.dropped += 1;
+        self.list(dropped);
+    }
+
+    fn list(&mut self, dropped: Dropped) {
+        self.dropped_list.insert(dropped);
+        if self.dropped_list.len() > LISTED_DROPS {
+            self.dropped_list.pop_last();
+        }
+    }
+}
+
+impl AddAssign<&Self> for Stats {
+    fn add_assign(&mut self, other: &Self) {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.connections_blocked += other.connections_blocked;
+        self.light_image_blocked += other.light_image_blocked;
+        self.candidates += other.candidates;
+        self.dropped += other.dropped;
+        other
+            .dropped_list
+            .iter()
+            .for_each(|&dropped| self.list(dropped));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_of_drops_does_not_depend_on_order() {
+        let at = |pass| Dropped {
+            pass,
+            pixel: [1, 2],
+            strategy: Strategy::new(0, 2),
+        };
+        let (mut forwards, mut backwards) = (Stats::default(), Stats::default());
+        (0..200).for_each(|pass| forwards.drop_contribution(at(pass)));
+        (0..200)
+            .rev()
+            .for_each(|pass| backwards.drop_contribution(at(pass)));
+        assert_eq!(forwards, backwards);
+        assert_eq!(
+            (forwards.dropped, forwards.dropped_list.len()),
+            (200, LISTED_DROPS)
+        );
+        let mut sum = Stats::default();
+        sum += &backwards;
+        assert_eq!(sum, forwards);
+    }
+}

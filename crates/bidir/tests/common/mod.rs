@@ -1,0 +1,136 @@
+#![allow(dead_code, reason = "every test file uses a part of this module")]
+//! Small scenes in memory, for the tests of whole paths.
+
+use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+use bidir::film::{FilmSettings, Filter};
+use bidir::light::EmissionSides;
+use bidir::material::{ConductorIndex, Material, Roughness, RoughnessMapping};
+use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder};
+use bidir::shape::{Mesh, Orientation, Shape, Sphere};
+use bidir::spectrum::Rgb;
+use bidir::texture::{ColorTexture, FloatTexture};
+
+/// A camera at `eye` that looks along +z through a film of `size` pixels.
+pub(crate) fn camera(eye: Vec3, size: u32, lens_radius: f32) -> Camera {
+    let settings = PerspectiveSettings {
+        world_from_camera: Affine3A::from_translation(eye),
+        resolution: Vec2::splat(size as f32),
+        screen: [Vec2::new(-0.6, 0.6), Vec2::new(0.6, -0.6)],
+        lens_radius,
+        focal_distance: 3.0,
+    };
+    Camera::Perspective(Perspective::new(&settings).expect("the camera is rigid"))
+}
+
+/// A builder with a square film and a box filter, and the camera of [`camera`] at z = -1.8.
+pub(crate) fn builder(size: u32, lens_radius: f32) -> SceneBuilder {
+    let mut builder = SceneBuilder::new(FilmSettings::new([size; 2], Filter::default()));
+    builder.camera(camera(Vec3::new(0.0, 0.0, -1.8), size, lens_radius));
+    builder
+}
+
+pub(crate) fn diffuse(reflectance: Rgb) -> Material {
+    Material::Diffuse {
+        reflectance: ColorTexture::Constant(reflectance),
+    }
+}
+
+fn roughness(alpha: f32) -> Roughness {
+    let texture = FloatTexture::Constant(alpha);
+    Roughness {
+        u: texture.clone(),
+        v: texture,
+        mapping: RoughnessMapping::Identity,
+    }
+}
+
+pub(crate) fn metal(alpha: f32) -> Material {
+    let reflectance = ColorTexture::Constant([0.9, 0.7, 0.4]);
+    Material::Conductor {
+        index: ConductorIndex::Reflectance(reflectance),
+        roughness: roughness(alpha),
+    }
+}
+
+pub(crate) fn glass(alpha: f32) -> Material {
+    Material::Dielectric {
+        eta: 1.5,
+        roughness: roughness(alpha),
+    }
+}
+
+/// The parallelogram at `corner` with edges `a` and `b`; the front is the side of a × b.
+pub(crate) fn quad(corner: Vec3, a: Vec3, b: Vec3) -> Mesh {
+    Mesh {
+        positions: vec![corner, corner + a, corner + a + b, corner + b],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+pub(crate) fn sphere(centre: Vec3, radius: f32) -> Shape {
+    Shape::Sphere(Sphere::new(
+        Affine3A::from_translation(centre),
+        radius,
+        Orientation::Natural,
+    ))
+}
+
+/// The inside of a cube of half width 2, its walls facing inwards.
+pub(crate) fn add_walls(builder: &mut SceneBuilder, material: MaterialId) {
+    for axis in 0..3 {
+        for sign in [-2.0, 2.0] {
+            let at = |k: usize| Vec3::AXES[(axis + k) % 3];
+            let corner = at(0) * sign - (at(1) + at(2)) * 2.0;
+            let (a, b) = if sign < 0.0 {
+                (at(1), at(2))
+            } else {
+                (at(2), at(1))
+            };
+            let wall = quad(corner, a * 4.0, b * 4.0);
+            builder.shape(Shape::Mesh(wall), material, None);
+        }
+    }
+}
+
+pub(crate) fn emission(radiance: Rgb) -> Option<Emission> {
+    Some(Emission {
+        radiance,
+        sides: EmissionSides::Front,
+    })
+}
+
+/// Tilts the shading normals of a mesh: they are no longer the geometric ones.
+pub(crate) fn tilt(mut mesh: Mesh, towards: Vec3) -> Mesh {
+    let [a, b, c] = mesh.triangle(0);
+    let n = (b - a).cross(c - a).normalize();
+    mesh.normals = (0..mesh.positions.len())
+        .map(|i| (n + towards * (0.3 + 0.2 * i as f32)).normalize())
+        .collect();
+    mesh
+}
+
+/// A closed room with a ceiling light, a sphere light, a tilted-normal panel, rough metal and
+/// rough glass: every density differs from every other, and nothing is a Dirac distribution but
+/// the lens.
+pub(crate) fn room(lens_radius: f32) -> Scene {
+    let mut builder = builder(8, lens_radius);
+    let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
+    let rough_metal = builder.material(metal(0.4));
+    let rough_glass = builder.material(glass(0.5));
+    add_walls(&mut builder, wall);
+    let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+    builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
+    builder.shape(
+        sphere(Vec3::new(1.3, -0.4, 0.8), 0.3),
+        wall,
+        emission([2.0, 3.0, 4.0]),
+    );
+    let panel = quad(Vec3::new(-1.8, -1.0, 1.5), Vec3::Y * 2.0, Vec3::X * 2.0);
+    let panel = tilt(panel, Vec3::new(0.5, 0.8, 0.0));
+    builder.shape(Shape::Mesh(panel), wall, None);
+    builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), rough_metal, None);
+    builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None);
+    builder.build().expect("the room is valid")
+}

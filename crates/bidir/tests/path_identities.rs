@@ -1,0 +1,322 @@
+//! What must hold exactly for every path, on real subpaths.
+//!
+//! A path that one strategy made is taken apart and made again, from its points alone, as every
+//! other strategy would have made it. The product that is stored with a subpath is so compared
+//! with one that is computed from scratch.
+
+mod common;
+
+use bidir::bsdf::TransportMode;
+use bidir::math::Vec2;
+use bidir::math::Vec3;
+use bidir::path::{
+    Junction, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext, PathDensities,
+    PathRoulette, PathSettings, Subpath, Vertex, camera_subpath, connect, light_subpath, weight,
+};
+use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
+use bidir::spectrum::{Spectrum, Wavelengths};
+use bidir::stats::Stats;
+
+fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
+    PathSettings {
+        max_depth: Some(6),
+        roulette: PathRoulette::Albedo { start: 1 },
+        mis,
+        light_point,
+        ..PathSettings::default()
+    }
+}
+
+fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
+    let sampler = Sampler::new(SamplerKind::Independent, 5);
+    let camera = sampler.stream(Domain::Camera, 0, index);
+    let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
+    let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
+    let ray = context.scene.camera().sample_ray(raster, lens);
+    let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
+    let mut stats = Stats::default();
+    camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
+    let light = sampler.stream(Domain::Light, 0, index);
+    light_subpath(context, &light, &mut light_walk, &mut stats);
+    (light_walk, camera_walk)
+}
+
+/// The part of roulette in the density of vertex `index` of a walk.
+fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
+    if index < 2 {
+        return 1.0;
+    }
+    let albedo = before
+        .bsdf
+        .albedo(before.shading.to_local(before.wo))
+        .max_lane();
+    context.settings.roulette.density_factor(index - 2, albedo)
+}
+
+/// Walks again over `points`, the first of which is an end with its own `pdf_fwd` and `beta`:
+/// everything that a walk stores is computed from scratch. Returns the subpath, and the density of
+/// each vertex with roulette.
+fn rewalk(
+    context: &PathContext<'_>,
+    points: &[Vertex],
+    mode: TransportMode,
+) -> (Vec<Vertex>, Vec<f64>) {
+    let mut walk: Vec<Vertex> = Vec::new();
+    let mut densities = Vec::new();
+    for (i, point) in points.iter().enumerate() {
+        let mut vertex = *point;
+        let mut density = f64::from(point.pdf_fwd);
+        if i > 0 {
+            let before = walk[i - 1];
+            vertex.wo = vertex.toward(&before);
+            vertex.pdf_fwd = before.pdf_to(context, before.wo, &vertex);
+            let roulette = survival(context, i, &before);
+            density = f64::from(vertex.pdf_fwd * roulette);
+            let scatter = before.scatter(context, before.wo, -vertex.wo, mode);
+            let step = before.geometry_term(&vertex) / (vertex.pdf_fwd * roulette);
+            // The first camera density counts samples per pixel, and so does importance.
+            vertex.beta = before.beta * scatter * step;
+            let local = vertex.shading.to_local(vertex.wo);
+            vertex.albedo_fwd = vertex.bsdf.albedo(local).max_lane();
+        }
+        walk.push(vertex);
+        densities.push(density);
+    }
+    for i in 0..walk.len().saturating_sub(1) {
+        let (next, vertex) = (walk[i + 1], walk[i]);
+        if let Some(after) = walk.get(i + 2).copied() {
+            let wi = next.toward(&after);
+            walk[i].pdf_rev = next.pdf_to(context, wi, &vertex);
+            walk[i + 1].albedo_rev = next.bsdf.albedo(next.shading.to_local(wi)).max_lane();
+        }
+    }
+    (walk, densities)
+}
+
+#[track_caller]
+fn assert_close(a: f32, b: f32, what: &str) {
+    assert!(
+        (a - b).abs() <= 2e-3 * a.abs().max(b.abs()) + 1e-12,
+        "{what}: {a} and {b}"
+    );
+}
+
+#[track_caller]
+fn assert_spectra_close(a: Spectrum, b: Spectrum, what: &str) {
+    (0..3).for_each(|lane| assert_close(a[lane], b[lane], what));
+}
+
+/// Calls `f` with the context of the room and a number of subpath pairs.
+fn for_each_pair(
+    settings: &PathSettings,
+    lens_radius: f32,
+    mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
+) {
+    let scene = common::room(lens_radius);
+    let context = PathContext {
+        scene: &scene,
+        settings,
+        wavelengths: Wavelengths::default(),
+        light_paths: 64.0,
+    };
+    for index in 0..400 {
+        let (light, camera) = subpaths(&context, index);
+        f(&context, &light, &camera);
+    }
+}
+
+/// True where the direction between two points, found again from the points, has few digits left
+/// in its cosines: it is rounded the more the nearer they are.
+fn is_fragile(before: &Vertex, vertex: &Vertex) -> bool {
+    let w = vertex.toward(before);
+    let cos = [before, vertex].map(|v| {
+        if v.n_g == Vec3::ZERO {
+            1.0
+        } else {
+            v.n_g.dot(w).abs()
+        }
+    });
+    cos[0].min(cos[1]) * before.point.distance(vertex.point) < 0.03
+}
+
+/// Counts comparisons, and those that differ by more than rounding.
+#[derive(Default)]
+struct Comparisons {
+    all: usize,
+    different: usize,
+}
+
+impl Comparisons {
+    fn compare(&mut self, a: f32, b: f32) {
+        self.all += 1;
+        self.different += usize::from((a - b).abs() > 2e-3 * a.abs().max(b.abs()) + 1e-12);
+    }
+}
+
+#[test]
+fn stored_quantities_are_those_of_a_walk_from_scratch() {
+    let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
+    let mut comparisons: [Comparisons; 5] = Default::default();
+    let [pdf_fwd, pdf_rev, albedo_fwd, albedo_rev, beta] = &mut comparisons;
+    for_each_pair(&settings, 0.05, |context, light, camera| {
+        let modes = [TransportMode::Importance, TransportMode::Radiance];
+        for (subpath, mode) in [light, camera].into_iter().zip(modes) {
+            let stored = &subpath.vertices[..];
+            let (fresh, _) = rewalk(context, stored, mode);
+            for i in 1..stored.len() {
+                if is_fragile(&fresh[i - 1], &fresh[i]) {
+                    continue;
+                }
+                pdf_fwd.compare(stored[i].pdf_fwd, fresh[i].pdf_fwd);
+                albedo_fwd.compare(stored[i].albedo_fwd, fresh[i].albedo_fwd);
+                // Step by step, so that no error is carried along.
+                let step = |walk: &[Vertex]| walk[i].beta[0] / walk[i - 1].beta[0];
+                beta.compare(step(stored), step(&fresh));
+                if fresh
+                    .get(i + 1)
+                    .is_some_and(|after| !is_fragile(&fresh[i], after))
+                {
+                    pdf_rev.compare(stored[i - 1].pdf_rev, fresh[i - 1].pdf_rev);
+                    albedo_rev.compare(stored[i].albedo_rev, fresh[i].albedo_rev);
+                }
+            }
+        }
+    });
+    for (i, Comparisons { all, different }) in comparisons.iter().enumerate() {
+        // Near the angle of total reflection Fresnel's equations magnify rounding.
+        assert!(
+            *all > 1000 && different * 200 <= *all,
+            "{i}: {different} of {all} differ"
+        );
+    }
+}
+
+/// The whole path as points, from the light, with ends that have the densities of subpaths.
+fn whole_path(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) -> Vec<Vertex> {
+    let mut path: Vec<Vertex> = light.iter().chain(camera.iter().rev()).copied().collect();
+    let at = path[0].light_point();
+    let index = path[0].light.expect("a light subpath begins on a light");
+    path[0] = Vertex::light(context, index, &at);
+    path[0].beta = Spectrum::splat(1.0 / path[0].pdf_fwd);
+    path
+}
+
+/// For every strategy that can make the path: its index, its weight, and f / (p n) with the
+/// density p as the product over the vertices.
+fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Spectrum)> {
+    let n = path.len();
+    let reversed: Vec<Vertex> = path.iter().rev().copied().collect();
+    let mut densities = PathDensities::default();
+    let mut result = Vec::new();
+    for s in 0..n {
+        let (camera, _) = rewalk(context, &reversed[..n - s], TransportMode::Radiance);
+        if s == 0 {
+            let mut x0 = path[0];
+            x0.pdf_rev = camera[n - 1].pdf_fwd;
+            let w = weight(
+                context,
+                &mut densities,
+                &[x0],
+                &camera[..n - 1],
+                Junction::Hit,
+            );
+            let emitted = x0.scatter(context, x0.wo, camera[n - 1].wo, TransportMode::Importance);
+            result.push((s, w, camera[n - 1].beta * emitted));
+            continue;
+        }
+        let (mut light, _) = rewalk(context, &path[..s], TransportMode::Importance);
+        let w = weight(
+            context,
+            &mut densities,
+            &light,
+            &camera,
+            Junction::Connection,
+        );
+        if s == 1 {
+            light[0].beta = Spectrum::splat(1.0 / densities.next_event);
+        }
+        let count = context.count(s, n - s) as f32;
+        result.push((s, w, connect(context, &light, &camera) * (1.0 / count)));
+    }
+    result
+}
+
+fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, lens_radius: f32) {
+    let settings = settings(mis, light_point);
+    let mut paths = 0;
+    for_each_pair(&settings, lens_radius, |context, light, camera| {
+        for s in 1..=light.vertices.len() {
+            for t in 1..=camera.vertices.len() {
+                let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
+                let contributes = !connect(context, light, camera).is_black();
+                if s + t > settings.max_vertices() || !contributes {
+                    continue;
+                }
+                let path = whole_path(context, light, camera);
+                check_path(context, &path, mis);
+                paths += 1;
+            }
+        }
+    });
+    assert!(paths > 1000, "{paths} paths");
+}
+
+/// Weights sum to 1, f is the same whatever strategy makes the path, and under the balance
+/// heuristic w_s / (n_s p_s) is the same for all.
+fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
+    let all = strategies(context, path);
+    let possible: Vec<_> = all
+        .iter()
+        .filter(|(_, _, value)| !value.is_black())
+        .collect();
+    if possible.is_empty() {
+        return;
+    }
+    let sum: f32 = possible.iter().map(|(_, w, _)| w).sum();
+    assert!(
+        (sum - 1.0).abs() < 2e-3,
+        "the weights of {} vertices sum to {sum}",
+        path.len()
+    );
+    if mis == MisHeuristic::Balance {
+        // w_s ∝ n_s p_s and the value is f / (n_s p_s): their product is one constant.
+        let constant = possible[0].2 * possible[0].1;
+        for (s, w, value) in &possible {
+            if *w > 1e-5 {
+                assert_spectra_close(*value * *w, constant, &format!("w·f/(n·p), s = {s}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_sum_to_one_and_all_strategies_see_the_same_integrand() {
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, 0.0);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, 0.1);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Shared, 0.1);
+    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, 0.1);
+    check_paths(MisHeuristic::Uniform, LightPointChoice::Shared, 0.0);
+}
+
+#[test]
+fn densities_of_points_in_front_of_each_other_are_reciprocal() {
+    // G is symmetric, and a walk's first camera density is the raster's Jacobian.
+    let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
+    for_each_pair(&settings, 0.0, |context, light, camera| {
+        let (z, y) = (
+            &light.vertices[0],
+            &camera.vertices[camera.vertices.len() - 1],
+        );
+        assert_close(z.geometry_term(y), y.geometry_term(z), "G");
+        if let [lens, first, ..] = &camera.vertices[..] {
+            let raster = context
+                .scene
+                .camera()
+                .raster(lens.point, lens.toward(first));
+            let inside =
+                raster.is_some_and(|r| r.cmpge(Vec2::ZERO).all() && r.max_element() <= 8.0);
+            assert!(inside && first.point != Vec3::ZERO);
+        }
+    });
+    assert!(settings.max_vertices() <= MAX_VERTICES);
+}
