@@ -1,6 +1,8 @@
 #![allow(dead_code, reason = "every test file uses a part of this module")]
 //! Small scenes in memory, for the tests of whole paths.
 
+pub(crate) mod statistics;
+
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter};
 use bidir::light::EmissionSides;
@@ -13,10 +15,19 @@ use bidir::texture::{ColorTexture, FloatTexture};
 
 /// A camera at `eye` that looks along +z through a film of `size` pixels.
 pub(crate) fn camera(eye: Vec3, size: u32, lens_radius: f32) -> Camera {
+    camera_with(eye, size, 0.6, lens_radius)
+}
+
+/// A pinhole camera at `eye` that looks along +z, half as wide as `half_width` per distance.
+pub(crate) fn narrow_camera(eye: Vec3, size: u32, half_width: f32) -> Camera {
+    camera_with(eye, size, half_width, 0.0)
+}
+
+fn camera_with(eye: Vec3, size: u32, half_width: f32, lens_radius: f32) -> Camera {
     let settings = PerspectiveSettings {
         world_from_camera: Affine3A::from_translation(eye),
         resolution: Vec2::splat(size as f32),
-        screen: [Vec2::new(-0.6, 0.6), Vec2::new(0.6, -0.6)],
+        screen: [Vec2::new(-half_width, half_width), Vec2::new(half_width, -half_width)],
         lens_radius,
         focal_distance: 3.0,
     };

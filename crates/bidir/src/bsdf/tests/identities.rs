@@ -1,0 +1,111 @@
+use super::{MODES, cases, numbers};
+use crate::bsdf::{Bsdf, BsdfSample, TransportMode, same_hemisphere};
+use crate::math::{Vec3, sqr};
+use crate::spectrum::Spectrum;
+use crate::testing::{check_close, samples};
+
+#[track_caller]
+fn check_spectra(actual: Spectrum, expected: Spectrum, case: &str) {
+    for lane in 0..4 {
+        check_close(actual[lane], expected[lane], 1e-3, case);
+    }
+}
+
+/// Checks what one draw must have in common with `eval` and `pdf`.
+#[track_caller]
+fn check_sample(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, drawn: &BsdfSample, case: &str) {
+    let wi = drawn.wi;
+    assert!((wi.length() - 1.0).abs() < 1e-4, "{case}: wi {wi}");
+    assert!(!drawn.is_delta && drawn.pdf > 0.0, "{case}");
+    check_close(drawn.pdf, bsdf.pdf(wo, wi), 1e-3, case);
+    check_close(drawn.pdf_reverse, bsdf.pdf(wi, wo), 1e-3, case);
+    let weight = bsdf.eval(wo, wi, mode) * (wi.z.abs() / drawn.pdf);
+    check_spectra(drawn.weight, weight, case);
+}
+
+/// Checks that light flows alike in both directions, up to the radiance that crossing scales.
+#[track_caller]
+fn check_reciprocity(bsdf: &Bsdf, wo: Vec3, wi: Vec3, case: &str) {
+    let [radiance, importance] = MODES.map(|mode| bsdf.eval(wo, wi, mode));
+    check_spectra(radiance, bsdf.eval(wi, wo, TransportMode::Importance), case);
+    if same_hemisphere(wo, wi) {
+        check_spectra(radiance, bsdf.eval(wi, wo, TransportMode::Radiance), case);
+        check_spectra(radiance, importance, case);
+    } else {
+        // (η_o/η_i)², with wo on the side that radiance goes to.
+        let index = |w: Vec3| if w.z > 0.0 { 1.0 } else { index_inside(bsdf) };
+        check_spectra(radiance, importance * sqr(index(wo) / index(wi)), case);
+    }
+}
+
+fn index_inside(bsdf: &Bsdf) -> f32 {
+    match bsdf {
+        Bsdf::Diffuse(_) | Bsdf::Conductor(_) => 1.0,
+        Bsdf::Dielectric(dielectric) => dielectric.eta,
+    }
+}
+
+#[test]
+fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
+    for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
+        for sample in samples(&name, 2000) {
+            let (u_lobe, u) = numbers(&sample);
+            for mode in MODES {
+                let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else { continue };
+                check_sample(&bsdf, wo, mode, &drawn, &name);
+                check_reciprocity(&bsdf, wo, drawn.wi, &name);
+            }
+        }
+    }
+}
+
+/// Checks a draw of a Dirac distribution: nothing but a draw finds it, and a walk the other way
+/// comes back with the densities exchanged.
+#[track_caller]
+fn check_dirac(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, u_lobe: f32, case: &str) {
+    let u = crate::math::Vec2::splat(0.5);
+    let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
+        panic!("{case}: a Dirac distribution loses nothing");
+    };
+    assert!(drawn.is_delta && drawn.pdf > 0.0 && drawn.pdf_reverse > 0.0, "{case}");
+    assert!(bsdf.eval(wo, drawn.wi, mode).is_black() && bsdf.pdf(wo, drawn.wi) <= 0.0, "{case}");
+    let back = bsdf.sample(drawn.wi, mode.reversed(), u_lobe, u).expect("the way back");
+    assert!((back.wi - wo).length() < 1e-4, "{case}: back along {} instead of {wo}", back.wi);
+    check_close(back.pdf, drawn.pdf_reverse, 1e-3, case);
+    check_close(back.pdf_reverse, drawn.pdf, 1e-3, case);
+    // Both walks carry the same f·cos: their weights differ as the probabilities' measures do.
+    check_spectra(back.weight, drawn.weight, case);
+}
+
+#[test]
+fn dirac_distributions_are_the_same_from_both_ends() {
+    for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| bsdf.is_delta()) {
+        for mode in MODES {
+            check_dirac(&bsdf, wo, mode, 0.0, &name);
+            check_dirac(&bsdf, wo, mode, 0.9999, &name);
+        }
+    }
+}
+
+/// pdf = P η² |cosθ_i| for each lobe, P summing to one.
+#[test]
+fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
+    for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| bsdf.is_delta()) {
+        let index = |w: Vec3| if w.z > 0.0 { 1.0 } else { index_inside(&bsdf) };
+        let prob = |u_lobe| {
+            let drawn = bsdf.sample(wo, TransportMode::Importance, u_lobe, wo.truncate());
+            let drawn = drawn.expect("a Dirac distribution loses nothing");
+            let reflected = same_hemisphere(wo, drawn.wi);
+            (drawn.pdf / (sqr(index(drawn.wi)) * drawn.wi.z.abs()), reflected)
+        };
+        let [(low, low_reflected), (high, high_reflected)] = [0.0, 0.9999].map(prob);
+        let sum = if low_reflected == high_reflected { low } else { low + high };
+        check_close(sum, 1.0, 1e-3, &name);
+        // The lobe is chosen with that probability.
+        if low_reflected != high_reflected {
+            let n = 10_000;
+            let reflected = (0..n).filter(|&i| prob((i as f32 + 0.5) / n as f32).1).count();
+            assert!((reflected as f32 / n as f32 - low).abs() < 2e-4, "{name}");
+        }
+    }
+}

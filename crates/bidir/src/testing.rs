@@ -1,0 +1,164 @@
+//! What the statistical tests share: random numbers, verdicts over many cases, and the χ² test of
+//! samples against the density that is claimed for them.
+//!
+//! Every battery keeps the chance of a false alarm at [`LEVEL`] over all of its cases, and shows
+//! that it would have noticed: each case must fail where two per cent of the probability are moved.
+//! Seeds are fixed; `BIDIR_TEST_SEED=n` runs all batteries with others.
+
+mod chi2;
+mod gamma;
+mod math;
+
+pub(crate) use chi2::{Domain, Grid};
+
+use crate::sampler::{Domain as StreamDomain, SampleStream, Sampler, SamplerKind};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// The chance that a battery fails though nothing is wrong, for a seed chosen at random.
+const LEVEL: f64 = 1e-3;
+
+/// The seed where the environment names none.
+const SEED: u64 = 1;
+
+/// What a bias must be for every case to notice it.
+const BIAS: f64 = 0.02;
+
+fn seed() -> u64 {
+    let chosen = std::env::var("BIDIR_TEST_SEED").ok();
+    chosen.map_or(SEED, |text| text.parse().expect("BIDIR_TEST_SEED is a whole number"))
+}
+
+/// `n` independent samples; those of different cases have nothing in common.
+pub(crate) fn samples(case: &str, n: u64) -> impl Iterator<Item = SampleStream> {
+    // FNV-1a, so that a case keeps its numbers when others come and go.
+    let hash = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    let stream = case.bytes().fold(0xcbf2_9ce4_8422_2325, hash);
+    let sampler = Sampler::new(SamplerKind::Independent, seed());
+    (0..n).map(move |index| sampler.stream(StreamDomain::Camera, stream, index))
+}
+
+/// Checks `property` for many values of `strategy`, the same ones for the same seed.
+#[track_caller]
+pub(crate) fn check_property<S: Strategy>(
+    strategy: &S,
+    property: impl Fn(S::Value) -> Result<(), TestCaseError>,
+) {
+    let config = Config { cases: 4096, failure_persistence: None, ..Config::default() };
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&seed().to_le_bytes());
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
+    if let Err(error) = TestRunner::new_with_rng(config, rng).run(strategy, property) {
+        panic!("seed {}: {error}", seed());
+    }
+}
+
+/// Checks that two numbers agree up to the relative error `tolerance`.
+#[track_caller]
+pub(crate) fn check_close(actual: f32, expected: f32, tolerance: f32, case: &str) {
+    let bound = tolerance * actual.abs().max(expected.abs());
+    let close = (actual - expected).abs() <= bound;
+    assert!(close, "{case}: {actual} instead of {expected}");
+}
+
+/// Many tests of one kind, judged together.
+pub(crate) struct Battery {
+    name: &'static str,
+    cases: Vec<Case>,
+}
+
+struct Case {
+    name: String,
+    /// The chance of data at least as far off as these.
+    p: f64,
+    /// The same under the hypothesis that is off by [`BIAS`].
+    p_biased: f64,
+}
+
+impl Battery {
+    pub(crate) fn new(name: &'static str) -> Self {
+        Self { name, cases: Vec::new() }
+    }
+
+    /// Adds a χ² test: `draws` against `pdf`, a density over the grid's domain in its measure. What
+    /// the density lacks to 1 is the chance of a draw that is None.
+    #[track_caller]
+    pub(crate) fn chi2(
+        &mut self,
+        case: &str,
+        grid: &Grid,
+        pdf: impl Fn(crate::math::Vec3) -> f32,
+        draws: impl Iterator<Item = Option<crate::math::Vec3>>,
+    ) {
+        let observed = grid.histogram(draws);
+        let expected = grid.expected(pdf, observed.iter().sum());
+        let total: f64 = expected[..grid.cells()].iter().sum();
+        assert!(total < 1.0 + 1e-3, "{case}: the density integrates to {total}");
+        self.counts(case, &observed, &expected);
+    }
+
+    /// Adds a χ² test of counts against probabilities.
+    pub(crate) fn counts(&mut self, case: &str, observed: &[u64], expected: &[f64]) {
+        let p = chi2::p_value(observed, expected);
+        let p_biased = chi2::p_value(observed, &chi2::biased(expected, BIAS));
+        self.cases.push(Case { name: case.to_owned(), p, p_biased });
+    }
+
+    /// Adds a test of the mean of `values` against `expected`.
+    pub(crate) fn mean(&mut self, case: &str, values: impl Iterator<Item = f64>, expected: f64) {
+        let (mut n, mut sum, mut sum_of_squares) = (0.0, 0.0, 0.0);
+        for value in values {
+            n += 1.0;
+            sum += value - expected;
+            sum_of_squares += (value - expected) * (value - expected);
+        }
+        let offset: f64 = sum / n;
+        let variance: f64 = (sum_of_squares / n - offset * offset) / n;
+        // Single precision is no statistical error: allow for it.
+        let deviation = (variance.max(0.0) + (1e-5 * expected) * (1e-5 * expected)).sqrt();
+        let p = |offset: f64| libm::erfc(offset.abs() / deviation / std::f64::consts::SQRT_2);
+        let p_biased = p(offset - BIAS * expected).max(p(offset + BIAS * expected));
+        self.cases.push(Case { name: case.to_owned(), p: p(offset), p_biased });
+    }
+
+    /// The verdict over all cases, at a level that Šidák's correction divides between them.
+    #[track_caller]
+    pub(crate) fn check(self) {
+        assert!(!self.cases.is_empty());
+        let level = -libm::expm1(libm::log1p(-LEVEL) / self.cases.len() as f64);
+        let mut report = String::new();
+        for Case { name, p, p_biased } in &self.cases {
+            if p.is_nan() || *p < level {
+                report += &format!("\n  {name}: p = {p:.2e}");
+            }
+            if p_biased.is_nan() || *p_biased >= level {
+                report += &format!("\n  {name}: blind to a bias, p = {p_biased:.2e}");
+            }
+        }
+        let count = self.cases.len();
+        println!("{}: {count} cases, seed {}", self.name, seed());
+        assert!(report.is_empty(), "{}, seed {}, level {level:.1e}:{report}", self.name, seed());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "p = ")]
+    fn a_battery_with_one_wrong_case_fails() {
+        let mut battery = Battery::new("power");
+        battery.counts("right", &[500_000, 500_000], &[0.5, 0.5]);
+        battery.counts("two per cent off", &[510_000, 490_000], &[0.5, 0.5]);
+        battery.check();
+    }
+
+    #[test]
+    #[should_panic(expected = "blind")]
+    fn a_battery_with_too_few_samples_fails() {
+        let mut battery = Battery::new("power");
+        battery.counts("few", &[50, 50], &[0.5, 0.5]);
+        battery.check();
+    }
+}

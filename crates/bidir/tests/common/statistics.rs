@@ -1,0 +1,105 @@
+//! Do two estimators have the same expectation? Welch's t-test on block means.
+//!
+//! Each estimator renders independent replicates (other seeds, independent sampler). The film is
+//! cut into blocks, and each block's mean in each channel is compared, and so is the mean of the
+//! whole film. Block means over whole renders are close to normal even where single samples have
+//! heavy tails, and their variance is that of both film layers together.
+
+use bidir::driver::{Resources, Settings, render};
+use bidir::sampler::SamplerKind;
+use bidir::scene::Scene;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Replicates of each estimator.
+const REPLICATES: usize = 16;
+/// The level of a whole comparison: the probability that equal estimators are called different.
+const LEVEL: f64 = 1e-3;
+
+/// Block means: one list per replicate, the film's own mean last.
+pub(crate) type Replicates = Vec<Vec<f64>>;
+
+/// Renders the replicates of an estimator, with blocks of `block` × `block` pixels.
+pub(crate) fn replicates(
+    scene: &Scene,
+    settings: &Settings,
+    passes: u64,
+    block: usize,
+) -> Replicates {
+    (0..REPLICATES as u64)
+        .map(|seed| {
+            let settings =
+                Settings { seed, sampler: SamplerKind::Independent, ..settings.clone() };
+            let film = render(scene, &settings, passes, &Resources::default());
+            let picture = film.expect("the film is small").develop();
+            let columns = picture.width.div_ceil(block);
+            let rows = picture.height.div_ceil(block);
+            let mut sums = vec![(0.0, 0.0); columns * rows * 3];
+            let (mut total, mut count) = (0.0, 0.0);
+            for (i, pixel) in picture.pixels.iter().enumerate() {
+                let (x, y) = (i % picture.width / block, i / picture.width / block);
+                for (channel, value) in pixel.iter().enumerate() {
+                    let sum = &mut sums[(y * columns + x) * 3 + channel];
+                    *sum = (sum.0 + f64::from(*value), sum.1 + 1.0);
+                    total += f64::from(*value);
+                    count += 1.0;
+                }
+            }
+            let means = sums.into_iter().map(|(sum, n)| sum / n);
+            means.chain([total / count]).collect()
+        })
+        .collect()
+}
+
+/// The smallest p-value over all blocks, corrected for their number [Sidak67], with the index of
+/// that block and its two means.
+pub(crate) fn smallest_p(a: &Replicates, b: &Replicates) -> (f64, usize, [f64; 2]) {
+    let blocks = a[0].len();
+    let test = |i: usize| {
+        let (x, y) = (moments(a, i), moments(b, i));
+        (welch(x, y), i, [x.0, y.0])
+    };
+    let smallest = (0..blocks).map(test).min_by(|a, b| a.0.total_cmp(&b.0));
+    let (p, i, means) = smallest.expect("a film has blocks");
+    (1.0 - (1.0 - p).powi(blocks as i32), i, means)
+}
+
+/// Mean and variance of the mean of block `i`.
+fn moments(replicates: &Replicates, i: usize) -> (f64, f64) {
+    let n = replicates.len() as f64;
+    let mean = replicates.iter().map(|r| r[i]).sum::<f64>() / n;
+    let square = replicates.iter().map(|r| (r[i] - mean).powi(2)).sum::<f64>();
+    (mean, square / (n - 1.0) / n)
+}
+
+/// The two-sided p-value of Welch's t-test.
+fn welch(a: (f64, f64), b: (f64, f64)) -> f64 {
+    let variance = a.1 + b.1;
+    // Estimators without variance must agree to rounding.
+    if variance.sqrt() <= 1e-6 * (a.0.abs() + b.0.abs()) {
+        let same = (a.0 - b.0).abs() <= 1e-5 * (a.0.abs() + b.0.abs());
+        return f64::from(same);
+    }
+    let freedom = variance.powi(2) / ((a.1.powi(2) + b.1.powi(2)) / (REPLICATES as f64 - 1.0));
+    let t = (a.0 - b.0) / variance.sqrt();
+    let distribution = StudentsT::new(0.0, 1.0, freedom).expect("freedom is positive");
+    2.0 * distribution.cdf(-t.abs())
+}
+
+/// Checks that two estimators agree, and that the same test would see a bias of 2 %.
+#[track_caller]
+pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates) {
+    let (p, block, means) = smallest_p(a, b);
+    assert!(p > LEVEL, "{name}: block {block} differs, p = {p:.2e}, means {means:?}");
+    let biased: Replicates =
+        a.iter().map(|means| means.iter().map(|mean| mean * 1.02).collect()).collect();
+    let (p, ..) = smallest_p(&biased, b);
+    assert!(p < LEVEL, "{name}: the test is blind to a bias of 2 %, p = {p:.2e}");
+}
+
+/// Checks that an estimator has a known expectation everywhere, and that the same test would see
+/// a bias of 2 %.
+#[track_caller]
+pub(crate) fn check_expectation(name: &str, a: &Replicates, expected: f64) {
+    let exact = vec![vec![expected; a[0].len()]; a.len()];
+    check_agree(name, a, &exact);
+}
