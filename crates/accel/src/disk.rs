@@ -1,12 +1,10 @@
 //! Disks, rings and sectors.
 
-use std::f64::consts::TAU;
-
 use glam::{Affine3A, DVec3};
 
 use crate::aabb::Aabb;
 use crate::primitive::ellipsoid_bounds;
-use crate::quadric::{LocalLine, Roots, azimuth};
+use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit};
 
 /// The points of the plane `z = height` of its local space at a distance from the z axis between
 /// `inner_radius` and `radius` and an azimuth of at most `phi_max`; the conventions are those
@@ -60,7 +58,7 @@ impl DiskTest {
             height: f64::from(disk.height),
             radius: f64::from(disk.radius),
             inner_radius: f64::from(disk.inner_radius),
-            phi_max: f64::from(disk.phi_max).min(TAU),
+            phi_max: azimuth_limit(disk.phi_max),
         }
     }
 

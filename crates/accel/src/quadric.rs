@@ -3,6 +3,8 @@
 //! Affine maps keep `t`, so a quadric is intersected in its own space, in `f64`: the error there
 //! is far below that of the `f32` answer.
 
+use std::f64::consts::TAU;
+
 use glam::{DAffine3, DVec3};
 
 use crate::aabb::Aabb;
@@ -85,7 +87,9 @@ impl Quadric {
                     Shape::Sphere(sphere) => sphere.parameters(line.at(t)),
                     Shape::Disk(disk) => disk.parameters(line.at(t)),
                 };
-                if let Some(parameters) = parameters {
+                // A shape without height, width or angle divides zero by zero.
+                if let Some(parameters) = parameters.filter(|[u, v]| u.is_finite() && v.is_finite())
+                {
                     found(t as f32, parameters);
                 }
             }
@@ -102,12 +106,14 @@ pub(crate) fn to_f64(map: &glam::Affine3A) -> DAffine3 {
     )
 }
 
+/// The largest azimuth in `f64`; what is 2π up to rounding becomes 2π, lest a seam remain open.
+pub(crate) fn azimuth_limit(phi_max: f32) -> f64 {
+    let phi_max = f64::from(phi_max);
+    if phi_max > TAU - 1e-6 { TAU } else { phi_max }
+}
+
 /// The angle of `p` around the z axis from `+x` toward `+y`, in `[0, 2π]`.
 pub(crate) fn azimuth(p: DVec3) -> f64 {
     let phi = libm::atan2(p.y, p.x);
-    if phi < 0.0 {
-        phi + std::f64::consts::TAU
-    } else {
-        phi
-    }
+    if phi < 0.0 { phi + TAU } else { phi }
 }

@@ -1,12 +1,10 @@
 //! Spheres, parts of spheres and ellipsoids.
 
-use std::f64::consts::TAU;
-
 use glam::{Affine3A, DVec3};
 
 use crate::aabb::Aabb;
 use crate::primitive::{box_bounds, ellipsoid_bounds};
-use crate::quadric::{LocalLine, Roots, azimuth};
+use crate::quadric::{LocalLine, Roots, azimuth, azimuth_limit};
 
 /// The points of a sphere around the origin of its local space with `z_min ≤ z ≤ z_max` and
 /// an azimuth of at most `phi_max`; the conventions are those of pbrt-v4.
@@ -35,8 +33,8 @@ impl Sphere {
         if !shape.iter().all(|x| x.is_finite()) {
             return Aabb::EMPTY;
         }
-        let radius = f64::from(self.radius.abs());
         let test = SphereTest::new(self);
+        let radius = test.radius;
         let z_center = 0.5 * (test.z_min + test.z_max);
         let half = DVec3::new(radius, radius, 0.5 * (test.z_max - test.z_min).abs());
         let whole = ellipsoid_bounds(&self.local_from_world, DVec3::ZERO, DVec3::splat(radius));
@@ -62,15 +60,14 @@ pub(crate) struct SphereTest {
 
 impl SphereTest {
     pub(crate) fn new(sphere: &Sphere) -> Self {
-        let radius = f64::from(sphere.radius);
-        // `max` and `min` rather than `clamp`, which would panic at a negative radius.
-        let inside = |z: f32| f64::from(z).min(radius).max(-radius);
+        let radius = f64::from(sphere.radius.max(0.0));
+        let inside = |z: f32| f64::from(z).clamp(-radius, radius);
         let (z_min, z_max) = (inside(sphere.z_min), inside(sphere.z_max));
         Self {
             radius,
             z_min,
             z_max,
-            phi_max: f64::from(sphere.phi_max).min(TAU),
+            phi_max: azimuth_limit(sphere.phi_max),
             theta_min: libm::acos(z_min / radius),
             theta_max: libm::acos(z_max / radius),
         }

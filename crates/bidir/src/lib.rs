@@ -36,3 +36,6 @@ pub mod shape;
 pub mod spectrum;
 pub mod stats;
 pub mod texture;
+
+#[cfg(test)]
+pub(crate) mod testing;

@@ -11,6 +11,7 @@ mod math;
 
 pub(crate) use chi2::{Domain, Grid};
 
+use crate::math::Vec3;
 use crate::sampler::{Domain as StreamDomain, SampleStream, Sampler, SamplerKind};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -26,7 +27,9 @@ const BIAS: f64 = 0.02;
 
 fn seed() -> u64 {
     let chosen = std::env::var("BIDIR_TEST_SEED").ok();
-    chosen.map_or(SEED, |text| text.parse().expect("BIDIR_TEST_SEED is a whole number"))
+    chosen.map_or(SEED, |text| {
+        text.parse().expect("BIDIR_TEST_SEED is a whole number")
+    })
 }
 
 /// `n` independent samples; those of different cases have nothing in common.
@@ -44,7 +47,11 @@ pub(crate) fn check_property<S: Strategy>(
     strategy: &S,
     property: impl Fn(S::Value) -> Result<(), TestCaseError>,
 ) {
-    let config = Config { cases: 4096, failure_persistence: None, ..Config::default() };
+    let config = Config {
+        cases: 4096,
+        failure_persistence: None,
+        ..Config::default()
+    };
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed().to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
@@ -75,9 +82,24 @@ struct Case {
     p_biased: f64,
 }
 
+impl Case {
+    /// What is wrong with it, as a line. None: nothing.
+    fn failure(&self, level: f64) -> Option<String> {
+        let Self { name, p, p_biased } = self;
+        if p.is_nan() || *p < level {
+            return Some(format!("\n  {name}: p = {p:.2e}"));
+        }
+        let blind = p_biased.is_nan() || *p_biased >= level;
+        blind.then(|| format!("\n  {name}: blind to a bias, p = {p_biased:.2e}"))
+    }
+}
+
 impl Battery {
     pub(crate) fn new(name: &'static str) -> Self {
-        Self { name, cases: Vec::new() }
+        Self {
+            name,
+            cases: Vec::new(),
+        }
     }
 
     /// Adds a χ² test: `draws` against `pdf`, a density over the grid's domain in its measure. What
@@ -87,13 +109,16 @@ impl Battery {
         &mut self,
         case: &str,
         grid: &Grid,
-        pdf: impl Fn(crate::math::Vec3) -> f32,
-        draws: impl Iterator<Item = Option<crate::math::Vec3>>,
+        pdf: impl Fn(Vec3) -> f32,
+        draws: impl Iterator<Item = Option<Vec3>>,
     ) {
         let observed = grid.histogram(draws);
         let expected = grid.expected(pdf, observed.iter().sum());
         let total: f64 = expected[..grid.cells()].iter().sum();
-        assert!(total < 1.0 + 1e-3, "{case}: the density integrates to {total}");
+        assert!(
+            total < 1.0 + 1e-3,
+            "{case}: the density integrates to {total}"
+        );
         self.counts(case, &observed, &expected);
     }
 
@@ -101,7 +126,11 @@ impl Battery {
     pub(crate) fn counts(&mut self, case: &str, observed: &[u64], expected: &[f64]) {
         let p = chi2::p_value(observed, expected);
         let p_biased = chi2::p_value(observed, &chi2::biased(expected, BIAS));
-        self.cases.push(Case { name: case.to_owned(), p, p_biased });
+        self.cases.push(Case {
+            name: case.to_owned(),
+            p,
+            p_biased,
+        });
     }
 
     /// Adds a test of the mean of `values` against `expected`.
@@ -118,7 +147,11 @@ impl Battery {
         let deviation = (variance.max(0.0) + (1e-5 * expected) * (1e-5 * expected)).sqrt();
         let p = |offset: f64| libm::erfc(offset.abs() / deviation / std::f64::consts::SQRT_2);
         let p_biased = p(offset - BIAS * expected).max(p(offset + BIAS * expected));
-        self.cases.push(Case { name: case.to_owned(), p: p(offset), p_biased });
+        self.cases.push(Case {
+            name: case.to_owned(),
+            p: p(offset),
+            p_biased,
+        });
     }
 
     /// The verdict over all cases, at a level that Šidák's correction divides between them.
@@ -126,18 +159,20 @@ impl Battery {
     pub(crate) fn check(self) {
         assert!(!self.cases.is_empty());
         let level = -libm::expm1(libm::log1p(-LEVEL) / self.cases.len() as f64);
-        let mut report = String::new();
-        for Case { name, p, p_biased } in &self.cases {
-            if p.is_nan() || *p < level {
-                report += &format!("\n  {name}: p = {p:.2e}");
-            }
-            if p_biased.is_nan() || *p_biased >= level {
-                report += &format!("\n  {name}: blind to a bias, p = {p_biased:.2e}");
-            }
-        }
+        let failures: Vec<String> = self
+            .cases
+            .iter()
+            .filter_map(|case| case.failure(level))
+            .collect();
+        let report = failures.concat();
         let count = self.cases.len();
         println!("{}: {count} cases, seed {}", self.name, seed());
-        assert!(report.is_empty(), "{}, seed {}, level {level:.1e}:{report}", self.name, seed());
+        assert!(
+            report.is_empty(),
+            "{}, seed {}, level {level:.1e}:{report}",
+            self.name,
+            seed()
+        );
     }
 }
 

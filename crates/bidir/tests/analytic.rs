@@ -16,7 +16,10 @@ use common::{builder, diffuse, emission, glass, metal, narrow_camera, quad, sphe
 fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
     Settings {
         integrator,
-        path: PathSettings { max_depth, ..PathSettings::default() },
+        path: PathSettings {
+            max_depth,
+            ..PathSettings::default()
+        },
         ..Settings::default()
     }
 }
@@ -56,7 +59,13 @@ fn every_limit_of_depth_cuts_the_same_paths() {
 #[test]
 fn roulette_does_not_change_the_mean() {
     let scene = closed_sphere();
-    for roulette in ["albedo:0", "albedo:2", "throughput:0", "throughput:3", "off"] {
+    for roulette in [
+        "albedo:0",
+        "albedo:2",
+        "throughput:0",
+        "throughput:3",
+        "off",
+    ] {
         for (name, integrator) in IntegratorKind::NAMES {
             let mut settings = settings(integrator, Some(8));
             settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
@@ -113,7 +122,13 @@ fn a_ring_light_over_a_floor_gives_its_form_factor() {
     let spot = quad(Vec3::new(-0.5, -0.5, height), Vec3::X, Vec3::Y);
     builder.shape(Shape::Mesh(spot), wall, None);
     let ring = [inner, radius];
-    let ring = Disk::new(Affine3A::IDENTITY, 0.0, ring, 2.0 * PI, Orientation::Natural);
+    let ring = Disk::new(
+        Affine3A::IDENTITY,
+        0.0,
+        ring,
+        2.0 * PI,
+        Orientation::Natural,
+    );
     builder.shape(Shape::Disk(ring), wall, emission([2.0; 3]));
     let scene = builder.build().expect("the scene is valid");
     let disk = |r: f32| f64::from(r * r / (r * r + height * height));
@@ -142,7 +157,13 @@ fn rough_surfaces_lose_but_never_gain() {
 #[test]
 fn selection_keeps_the_closed_sphere() {
     let scene = closed_sphere();
-    for rule in ["per-light-vertex", "per-camera-vertex", "per-pair", "ray-roulette", "budget:2"] {
+    for rule in [
+        "per-light-vertex",
+        "per-camera-vertex",
+        "per-pair",
+        "ray-roulette",
+        "budget:2",
+    ] {
         let mut settings = settings(IntegratorKind::Bdpt, Some(8));
         settings.shadow_rays = rule.parse::<ShadowRays>().expect("a rule");
         let result = replicates(&scene, &settings, 128, 8);

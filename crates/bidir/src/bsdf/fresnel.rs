@@ -39,19 +39,21 @@ fn conductor_lane(cos_i: f32, eta: f32, k: f32) -> f32 {
     let difference = eta2 - k2 - sin2;
     let a2_plus_b2 = safe_sqrt(sqr(difference) + 4.0 * eta2 * k2);
     let a = safe_sqrt((a2_plus_b2 + difference) / 2.0);
-    let sum = a2_plus_b2 + cos2;
     let cross = 2.0 * cos_i * a;
-    let perpendicular = (sum - cross) / (sum + cross);
-    let sum = cos2 * a2_plus_b2 + sqr(sin2);
-    let cross = cross * sin2;
-    // At normal incidence both polarisations agree and the quotient may be 0/0 for eta = k = 0.
-    let parallel = perpendicular
-        * if sum + cross > 0.0 {
-            (sum - cross) / (sum + cross)
-        } else {
-            1.0
-        };
+    let perpendicular = contrast(a2_plus_b2 + cos2, cross);
+    let parallel = perpendicular * contrast(cos2 * a2_plus_b2 + sqr(sin2), cross * sin2);
     ((perpendicular + parallel) / 2.0).clamp(0.0, 1.0)
+}
+
+/// (sum - cross) / (sum + cross); 1 where both are zero: at normal incidence for a black index of
+/// zero, and at grazing incidence for the index of vacuum.
+#[inline]
+fn contrast(sum: f32, cross: f32) -> f32 {
+    if sum + cross > 0.0 {
+        (sum - cross) / (sum + cross)
+    } else {
+        1.0
+    }
 }
 
 #[cfg(test)]

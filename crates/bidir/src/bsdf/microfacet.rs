@@ -52,11 +52,8 @@ impl Ggx {
     #[inline]
     fn lambda(&self, v: Vec3) -> f32 {
         let tan2 = (sqr(self.alpha_x * v.x) + sqr(self.alpha_y * v.y)) / sqr(v.z);
-        if tan2.is_finite() {
-            ((1.0 + tan2).sqrt() - 1.0) / 2.0
-        } else {
-            f32::INFINITY
-        }
+        // Finite even where z² vanishes, so that quotients of two such terms stay numbers.
+        ((1.0 + tan2.min(f32::MAX)).sqrt() - 1.0) / 2.0
     }
 
     /// The part of facets seen from `v` that nothing shadows.

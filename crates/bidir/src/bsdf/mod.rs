@@ -10,7 +10,7 @@
 //! - `pdf(wo, wi)` is the density of `sample`. Measure: solid angle, 1/sr. Zero for Dirac
 //!   distributions.
 //!
-//! The three describe the same distribution; the battery in `tests/bsdf.rs` proves it for every
+//! The three describe the same distribution; the batteries in `bsdf/tests` prove it for every
 //! value of [`Bsdf::examples`].
 //!
 //! **Dirac distributions.** A smooth interface scatters into one direction, so its density has a
@@ -28,6 +28,8 @@ mod dielectric;
 mod diffuse;
 pub mod fresnel;
 pub mod microfacet;
+#[cfg(test)]
+mod tests;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;

@@ -20,7 +20,7 @@ fn direction(cos: f32, phi: f32) -> Vec3 {
 
 /// Known directions: along the normal, oblique and grazing, from above and from below.
 fn directions() -> [(&'static str, Vec3); 6] {
-    let [normal, oblique, grazing] = [Vec3::Z, direction(0.7071, 0.5), direction(0.1, 2.0)];
+    let [normal, oblique, grazing] = [Vec3::Z, direction(0.7, 0.5), direction(0.1, 2.0)];
     [
         ("normal", normal),
         ("oblique", oblique),

@@ -15,6 +15,9 @@
 
 mod perspective;
 
+#[cfg(test)]
+mod tests;
+
 pub use perspective::{Perspective, PerspectiveSettings};
 
 use crate::math::{Vec2, Vec3};

@@ -20,6 +20,9 @@ mod choice;
 mod infinite;
 mod point;
 
+#[cfg(test)]
+mod tests;
+
 pub use area::{AreaLight, EmissionSides};
 pub use choice::LightChoice;
 pub use infinite::{DistantLight, InfiniteLight, Radiance};

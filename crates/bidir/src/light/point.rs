@@ -1,5 +1,5 @@
 use super::{EmissionSample, LightPoint, LightSample};
-use crate::math::{Frame, PI, Vec2, Vec3, warp};
+use crate::math::{Frame, PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::{Rgb, luminance};
 
 /// A point that emits the same intensity in all directions.
@@ -35,46 +35,53 @@ impl PointLight {
 }
 
 /// A point that emits into a cone, with a soft rim.
+///
+/// Angles are kept as 1 - cosθ, which has its digits where the cone is narrow.
 #[derive(Clone, Copy, Debug)]
 pub struct SpotLight {
     /// Where it is.
     pub position: Vec3,
     axis: Frame,
     intensity: Rgb,
-    cos_full: f32,
-    cos_end: f32,
+    full_height: f32,
+    end_height: f32,
 }
 
 impl SpotLight {
     /// A spot along the unit vector `axis` with `intensity` (W/sr) within the half angle `full`,
     /// falling to nothing at the half angle `end`. Unit: radians.
     pub fn new(position: Vec3, axis: Vec3, intensity: Rgb, [full, end]: [f32; 2]) -> Self {
-        let (cos_full, cos_end) = (libm::cosf(full), libm::cosf(end));
+        let [full_height, end_height] = [full, end].map(|angle| 2.0 * sqr(libm::sinf(angle / 2.0)));
         Self {
             position,
             axis: Frame::from_z(axis),
             intensity,
-            cos_full,
-            cos_end,
+            full_height,
+            end_height,
         }
     }
 
     pub(super) fn power(&self) -> f32 {
-        let full = 1.0 - self.cos_full;
-        let rim = (self.cos_full - self.cos_end) / 2.0;
-        2.0 * PI * (full + rim) * luminance(self.intensity)
+        // The mean of the smooth step is a half.
+        PI * (self.full_height + self.end_height) * luminance(self.intensity)
+    }
+
+    /// 1 - cosθ of the unit direction `w`.
+    #[inline]
+    fn height(&self, w: Vec3) -> f32 {
+        self.axis.z.distance_squared(w) / 2.0
     }
 
     /// A smooth step in the cosine, from the rim to the full cone.
     #[inline]
     pub(super) fn intensity(&self, w: Vec3) -> Rgb {
-        let cos = self.axis.z.dot(w);
-        let falloff = if cos >= self.cos_full {
+        let height = self.height(w);
+        let falloff = if height <= self.full_height {
             1.0
-        } else if cos <= self.cos_end {
+        } else if height >= self.end_height {
             0.0
         } else {
-            let x = (cos - self.cos_end) / (self.cos_full - self.cos_end);
+            let x = (self.end_height - height) / (self.end_height - self.full_height);
             x * x * (3.0 - 2.0 * x)
         };
         self.intensity.map(|i| i * falloff)
@@ -82,9 +89,7 @@ impl SpotLight {
 
     #[inline]
     pub(super) fn sample_emission(&self, u: Vec2) -> EmissionSample {
-        let direction = self
-            .axis
-            .to_world(warp::uniform_cone(u, 1.0 - self.cos_end));
+        let direction = self.axis.to_world(warp::uniform_cone(u, self.end_height));
         EmissionSample {
             from: LightSample {
                 at: LightPoint::in_space(self.position),
@@ -92,16 +97,20 @@ impl SpotLight {
             },
             origin: self.position,
             direction,
-            pdf_direction: 1.0 / (2.0 * PI * (1.0 - self.cos_end)),
+            pdf_direction: self.pdf_cone(),
             emitted_cos: self.intensity(direction),
         }
     }
 
     #[inline]
+    fn pdf_cone(&self) -> f32 {
+        1.0 / (2.0 * PI * self.end_height)
+    }
+
+    #[inline]
     pub(super) fn pdf_direction(&self, w: Vec3) -> f32 {
-        let inside = self.axis.z.dot(w) >= self.cos_end;
-        if inside {
-            1.0 / (2.0 * PI * (1.0 - self.cos_end))
+        if self.height(w) <= self.end_height {
+            self.pdf_cone()
         } else {
             0.0
         }

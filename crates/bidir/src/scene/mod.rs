@@ -6,6 +6,7 @@
 mod builder;
 mod visibility;
 
+pub use accel::Isa;
 pub use builder::{Emission, MaterialId, SceneBuilder, SceneError};
 pub use visibility::{SegmentEnd, offset_origin};
 

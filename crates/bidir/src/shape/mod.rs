@@ -14,6 +14,9 @@ mod disk;
 mod mesh;
 mod sphere;
 
+#[cfg(test)]
+mod tests;
+
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use sphere::Sphere;

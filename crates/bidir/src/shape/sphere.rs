@@ -144,11 +144,8 @@ impl Sphere {
         let (centre, radius) = self.ball?;
         let distance2 = centre.distance_squared(reference);
         let sin2 = sqr(radius) / distance2;
-        if !(sin2 < 0.9999) {
-            return None;
-        }
         let height = sin2 / (1.0 + safe_sqrt(1.0 - sin2));
-        Some((height, distance2.sqrt(), centre, radius))
+        (sin2 < 0.9999).then(|| (height, distance2.sqrt(), centre, radius))
     }
 
     #[inline]
@@ -156,11 +153,12 @@ impl Sphere {
         let Some((height, distance, centre, radius)) = self.cone(reference) else {
             return self.sample(u);
         };
-        // The direction in the cone, then the angle α at the centre of the point it meets first.
+        // The direction in the cone, then the angle α at the centre of the point it meets first,
+        // without the distances, whose difference has no digits far away [PBRT4, §6.2.4].
         let direction = warp::uniform_cone(u, height);
         let sin2 = sqr(direction.x) + sqr(direction.y);
-        let near = distance * direction.z - safe_sqrt(sqr(radius) - sqr(distance) * sin2);
-        let cos_alpha = (sqr(distance) + sqr(radius) - sqr(near)) / (2.0 * distance * radius);
+        let sin_max = radius / distance;
+        let cos_alpha = sin2 / sin_max + direction.z * safe_sqrt(1.0 - sin2 / sqr(sin_max));
         let cos_alpha = cos_alpha.clamp(-1.0, 1.0);
         let sin_alpha = safe_sqrt(1.0 - sqr(cos_alpha));
         let around = Vec2::new(direction.x, direction.y).normalize_or(Vec2::X) * sin_alpha;

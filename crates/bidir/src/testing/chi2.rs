@@ -17,7 +17,14 @@ impl Domain {
     /// The sphere of directions, its poles along ±y: the horizon is then a line of every grid, and
     /// the lobes in the xz plane lie where cells are near to square.
     pub(crate) fn sphere() -> Self {
-        Self::Cone(Frame { x: Vec3::Z, y: Vec3::X, z: Vec3::Y }, 2.0)
+        Self::Cone(
+            Frame {
+                x: Vec3::Z,
+                y: Vec3::X,
+                z: Vec3::Y,
+            },
+            2.0,
+        )
     }
 
     fn measure(&self) -> f64 {
@@ -59,8 +66,11 @@ impl Domain {
                 let local = frame.to_local(p);
                 // 1 - cosθ, with its digits where the cone is narrow.
                 let sin2 = local.truncate().length_squared();
-                let drop =
-                    if local.z > 0.0 { sin2 / (1.0 + local.z) } else { 1.0 - local.z };
+                let drop = if local.z > 0.0 {
+                    sin2 / (1.0 + local.z)
+                } else {
+                    1.0 - local.z
+                };
                 Vec2::new(drop / height, turn(local.x, local.y))
             }
         }
@@ -92,7 +102,10 @@ impl Grid {
     fn cell(&self, point: Vec3) -> usize {
         let p = self.domain.square(point);
         // Rounding may lead out of the square, error much farther: that must not go unseen.
-        assert!(p.min_element() > -1e-3 && p.max_element() < 1.001, "{point} is out of the domain");
+        assert!(
+            p.min_element() > -1e-3 && p.max_element() < 1.001,
+            "{point} is out of the domain"
+        );
         let x = ((p.x * self.columns as f32) as usize).min(self.columns - 1);
         let y = ((p.y * self.rows as f32) as usize).min(self.rows - 1);
         y * self.columns + x
@@ -107,8 +120,13 @@ impl Grid {
         let mut expected: Vec<f64> = (0..self.cells())
             .map(|cell| {
                 let (x, y) = ((cell % self.columns) as f64, (cell / self.columns) as f64);
-                let square = Rectangle { corner: [x * size[0], y * size[1]], size };
-                square.quarters().map(|quarter| quarter.integrate(&integrand, n as f64)).iter().sum()
+                let square = Rectangle {
+                    corner: [x * size[0], y * size[1]],
+                    size,
+                };
+                // A corner of a step that all points of a coarse rule miss would go unnoticed.
+                let parts = square.quarters().into_iter().flat_map(Rectangle::quarters);
+                parts.map(|part| part.integrate(&integrand, n as f64)).sum()
             })
             .collect();
         expected.push((1.0 - expected.iter().sum::<f64>()).max(0.0));
@@ -125,18 +143,26 @@ struct Rectangle {
 impl Rectangle {
     fn quarters(self) -> [Self; 4] {
         let [w, h] = self.size.map(|size| size / 2.0);
-        [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
-            .map(|(x, y)| Self { corner: [self.corner[0] + x, self.corner[1] + y], size: [w, h] })
+        [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(x, y)| Self {
+            corner: [self.corner[0] + x, self.corner[1] + y],
+            size: [w, h],
+        })
     }
 
     fn gauss(&self, f: &impl Fn(f64, f64) -> f64) -> f64 {
         let offset = 0.15f64.sqrt();
-        let nodes = [(0.5 - offset, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + offset, 5.0 / 18.0)];
+        let nodes = [
+            (0.5 - offset, 5.0 / 18.0),
+            (0.5, 8.0 / 18.0),
+            (0.5 + offset, 5.0 / 18.0),
+        ];
         let mut sum = 0.0;
         for (x, weight_x) in nodes {
             for (y, weight_y) in nodes {
-                let [x, y] =
-                    [self.corner[0] + x * self.size[0], self.corner[1] + y * self.size[1]];
+                let [x, y] = [
+                    self.corner[0] + x * self.size[0],
+                    self.corner[1] + y * self.size[1],
+                ];
                 sum += weight_x * weight_y * f(x, y);
             }
         }
@@ -198,7 +224,12 @@ pub(super) fn biased(expected: &[f64], bias: f64) -> Vec<f64> {
     let shift = |probability: &f64| {
         let low = sum < 0.5;
         sum += probability;
-        probability * if low { 1.0 + bias } else { 1.0 - bias * raised / (1.0 - raised) }
+        probability
+            * if low {
+                1.0 + bias
+            } else {
+                1.0 - bias * raised / (1.0 - raised)
+            }
     };
     expected.iter().map(shift).collect()
 }
@@ -211,7 +242,10 @@ mod tests {
     fn check_inverse(domain: Domain) {
         for (x, y) in [(0.1, 0.2), (0.9, 0.6), (0.5, 0.97)] {
             let back = domain.square(domain.point(x, y));
-            assert!((back - Vec2::new(x as f32, y as f32)).length() < 1e-4, "{back}");
+            assert!(
+                (back - Vec2::new(x as f32, y as f32)).length() < 1e-4,
+                "{back}"
+            );
         }
     }
 
@@ -228,12 +262,24 @@ mod tests {
         // A step along a slanted line, on top of a peak.
         let step = |p: Vec3| if p.x + 0.3 * p.y < 0.7 { 1.0 } else { 0.2 };
         let peak = |p: Vec3| 1.0 / (1e-3 + sqr(p.x - 0.31) + sqr(p.y - 0.52));
-        let grid = Grid { domain: Domain::Square, columns: 4, rows: 4 };
+        let grid = Grid {
+            domain: Domain::Square,
+            columns: 4,
+            rows: 4,
+        };
         let expected: f64 = grid.expected(step, 1 << 20)[..16].iter().sum();
         assert!((expected - (0.55 + 0.2 * 0.45)).abs() < 1e-4, "{expected}");
         let coarse = grid.expected(peak, 1 << 20);
-        let fine = Grid { columns: 64, rows: 64, ..grid }.expected(peak, 1 << 20);
-        let cell: f64 = (0..16).flat_map(|y| (0..16).map(move |x| y * 64 + x)).map(|i| fine[i]).sum();
+        let fine = Grid {
+            columns: 64,
+            rows: 64,
+            ..grid
+        }
+        .expected(peak, 1 << 20);
+        let cell: f64 = (0..16)
+            .flat_map(|y| (0..16).map(move |x| y * 64 + x))
+            .map(|i| fine[i])
+            .sum();
         assert!((coarse[0] / cell - 1.0).abs() < 1e-5);
     }
 }

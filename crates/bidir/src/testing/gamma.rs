@@ -5,7 +5,11 @@ pub(super) fn upper_tail(a: f64, x: f64) -> f64 {
         return 1.0;
     }
     let factor = libm::exp(a * libm::log(x) - x - libm::lgamma(a));
-    if x < a + 1.0 { 1.0 - factor * series(a, x) } else { factor * continued_fraction(a, x) }
+    if x < a + 1.0 {
+        1.0 - factor * series(a, x)
+    } else {
+        factor * continued_fraction(a, x)
+    }
 }
 
 fn series(a: f64, x: f64) -> f64 {
@@ -46,7 +50,10 @@ mod tests {
     #[track_caller]
     fn check(freedom: f64, statistic: f64, expected: f64) {
         let p = upper_tail(freedom / 2.0, statistic / 2.0);
-        assert!((p / expected - 1.0).abs() < 2e-3, "{p} instead of {expected}");
+        assert!(
+            (p / expected - 1.0).abs() < 2e-3,
+            "{p} instead of {expected}"
+        );
     }
 
     #[test]

@@ -27,7 +27,10 @@ fn camera_with(eye: Vec3, size: u32, half_width: f32, lens_radius: f32) -> Camer
     let settings = PerspectiveSettings {
         world_from_camera: Affine3A::from_translation(eye),
         resolution: Vec2::splat(size as f32),
-        screen: [Vec2::new(-half_width, half_width), Vec2::new(half_width, -half_width)],
+        screen: [
+            Vec2::new(-half_width, half_width),
+            Vec2::new(half_width, -half_width),
+        ],
         lens_radius,
         focal_distance: 3.0,
     };

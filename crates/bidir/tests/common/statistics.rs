@@ -27,8 +27,11 @@ pub(crate) fn replicates(
 ) -> Replicates {
     (0..REPLICATES as u64)
         .map(|seed| {
-            let settings =
-                Settings { seed, sampler: SamplerKind::Independent, ..settings.clone() };
+            let settings = Settings {
+                seed,
+                sampler: SamplerKind::Independent,
+                ..settings.clone()
+            };
             let film = render(scene, &settings, passes, &Resources::default());
             let picture = film.expect("the film is small").develop();
             let columns = picture.width.div_ceil(block);
@@ -67,7 +70,10 @@ pub(crate) fn smallest_p(a: &Replicates, b: &Replicates) -> (f64, usize, [f64; 2
 fn moments(replicates: &Replicates, i: usize) -> (f64, f64) {
     let n = replicates.len() as f64;
     let mean = replicates.iter().map(|r| r[i]).sum::<f64>() / n;
-    let square = replicates.iter().map(|r| (r[i] - mean).powi(2)).sum::<f64>();
+    let square = replicates
+        .iter()
+        .map(|r| (r[i] - mean).powi(2))
+        .sum::<f64>();
     (mean, square / (n - 1.0) / n)
 }
 
@@ -89,11 +95,19 @@ fn welch(a: (f64, f64), b: (f64, f64)) -> f64 {
 #[track_caller]
 pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates) {
     let (p, block, means) = smallest_p(a, b);
-    assert!(p > LEVEL, "{name}: block {block} differs, p = {p:.2e}, means {means:?}");
-    let biased: Replicates =
-        a.iter().map(|means| means.iter().map(|mean| mean * 1.02).collect()).collect();
+    assert!(
+        p > LEVEL,
+        "{name}: block {block} differs, p = {p:.2e}, means {means:?}"
+    );
+    let biased: Replicates = a
+        .iter()
+        .map(|means| means.iter().map(|mean| mean * 1.02).collect())
+        .collect();
     let (p, ..) = smallest_p(&biased, b);
-    assert!(p < LEVEL, "{name}: the test is blind to a bias of 2 %, p = {p:.2e}");
+    assert!(
+        p < LEVEL,
+        "{name}: the test is blind to a bias of 2 %, p = {p:.2e}"
+    );
 }
 
 /// Checks that an estimator has a known expectation everywhere, and that the same test would see

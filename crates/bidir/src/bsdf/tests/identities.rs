@@ -1,6 +1,6 @@
 use super::{MODES, cases, numbers};
 use crate::bsdf::{Bsdf, BsdfSample, TransportMode, same_hemisphere};
-use crate::math::{Vec3, sqr};
+use crate::math::{Vec2, Vec3, sqr};
 use crate::spectrum::Spectrum;
 use crate::testing::{check_close, samples};
 
@@ -51,7 +51,9 @@ fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
         for sample in samples(&name, 2000) {
             let (u_lobe, u) = numbers(&sample);
             for mode in MODES {
-                let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else { continue };
+                let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
+                    continue;
+                };
                 check_sample(&bsdf, wo, mode, &drawn, &name);
                 check_reciprocity(&bsdf, wo, drawn.wi, &name);
             }
@@ -63,18 +65,31 @@ fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
 /// comes back with the densities exchanged.
 #[track_caller]
 fn check_dirac(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, u_lobe: f32, case: &str) {
-    let u = crate::math::Vec2::splat(0.5);
+    let u = Vec2::splat(0.5);
     let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
         panic!("{case}: a Dirac distribution loses nothing");
     };
-    assert!(drawn.is_delta && drawn.pdf > 0.0 && drawn.pdf_reverse > 0.0, "{case}");
-    assert!(bsdf.eval(wo, drawn.wi, mode).is_black() && bsdf.pdf(wo, drawn.wi) <= 0.0, "{case}");
-    let back = bsdf.sample(drawn.wi, mode.reversed(), u_lobe, u).expect("the way back");
-    assert!((back.wi - wo).length() < 1e-4, "{case}: back along {} instead of {wo}", back.wi);
+    assert!(
+        drawn.is_delta && drawn.pdf > 0.0 && drawn.pdf_reverse > 0.0,
+        "{case}"
+    );
+    assert!(
+        bsdf.eval(wo, drawn.wi, mode).is_black() && bsdf.pdf(wo, drawn.wi) <= 0.0,
+        "{case}"
+    );
+    let back = bsdf
+        .sample(drawn.wi, mode.reversed(), u_lobe, u)
+        .expect("the way back");
+    assert!(
+        (back.wi - wo).length() < 1e-4,
+        "{case}: back along {} instead of {wo}",
+        back.wi
+    );
     check_close(back.pdf, drawn.pdf_reverse, 1e-3, case);
     check_close(back.pdf_reverse, drawn.pdf, 1e-3, case);
-    // Both walks carry the same f·cos: their weights differ as the probabilities' measures do.
-    check_spectra(back.weight, drawn.weight, case);
+    // f without its Dirac factor, which both walks share: weight · pdf / |cosθ_i|.
+    let value = drawn.weight * (drawn.pdf / drawn.wi.z.abs());
+    check_spectra(back.weight * (back.pdf / back.wi.z.abs()), value, case);
 }
 
 #[test]
@@ -87,7 +102,7 @@ fn dirac_distributions_are_the_same_from_both_ends() {
     }
 }
 
-/// pdf = P η² |cosθ_i| for each lobe, P summing to one.
+/// `pdf = P η² |cosθ_i|` for each lobe, P summing to one.
 #[test]
 fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| bsdf.is_delta()) {
@@ -96,15 +111,24 @@ fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
             let drawn = bsdf.sample(wo, TransportMode::Importance, u_lobe, wo.truncate());
             let drawn = drawn.expect("a Dirac distribution loses nothing");
             let reflected = same_hemisphere(wo, drawn.wi);
-            (drawn.pdf / (sqr(index(drawn.wi)) * drawn.wi.z.abs()), reflected)
+            (
+                drawn.pdf / (sqr(index(drawn.wi)) * drawn.wi.z.abs()),
+                reflected,
+            )
         };
         let [(low, low_reflected), (high, high_reflected)] = [0.0, 0.9999].map(prob);
-        let sum = if low_reflected == high_reflected { low } else { low + high };
+        let sum = if low_reflected == high_reflected {
+            low
+        } else {
+            low + high
+        };
         check_close(sum, 1.0, 1e-3, &name);
         // The lobe is chosen with that probability.
         if low_reflected != high_reflected {
             let n = 10_000;
-            let reflected = (0..n).filter(|&i| prob((i as f32 + 0.5) / n as f32).1).count();
+            let reflected = (0..n)
+                .filter(|&i| prob((i as f32 + 0.5) / n as f32).1)
+                .count();
             assert!((reflected as f32 / n as f32 - low).abs() < 2e-4, "{name}");
         }
     }

@@ -1,0 +1,71 @@
+//! The same bits for every instruction set, number of threads and order of asking.
+
+use bidir_accel::{Isa, Primitive, Ray, accept_all};
+
+use crate::oracle::hit_bits;
+use crate::scenes::{Mesh, Random, build_for, displace, mixed};
+
+#[track_caller]
+fn check_isas_agree(primitives: &[Primitive], mut ray: impl FnMut(&mut Random) -> Ray) {
+    let mut random = Random(20);
+    let supported = Isa::ALL.into_iter().filter(|isa| isa.is_supported());
+    let trees: Vec<_> = supported.map(|isa| build_for(isa, primitives)).collect();
+    let mut hits = 0;
+    for _ in 0..120_000 {
+        let ray = ray(&mut random);
+        let expected = trees[0].closest(&ray, accept_all);
+        hits += usize::from(expected.is_some());
+        for bvh in &trees[1..] {
+            assert_eq!(
+                hit_bits(bvh.closest(&ray, accept_all)),
+                hit_bits(expected),
+                "{ray:?}"
+            );
+            assert_eq!(
+                bvh.occluded(&ray, accept_all),
+                expected.is_some(),
+                "{ray:?}"
+            );
+        }
+    }
+    assert!(hits > 10_000, "{hits} hits do not say much");
+}
+
+#[test]
+fn isas_agree_on_a_mixed_scene() {
+    let primitives = mixed(&mut Random(21), 1000);
+    check_isas_agree(&primitives, Random::ray);
+}
+
+#[test]
+fn isas_agree_on_edges() {
+    let mesh = Mesh::sphere(3).map(displace);
+    check_isas_agree(&mesh.primitives(), |random| {
+        let origin = 3.0 * random.ball();
+        Ray::new(
+            origin,
+            mesh.vertices[random.below(mesh.vertices.len())] - origin,
+        )
+    });
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let primitives = mixed(&mut Random(22), 12_000);
+    let trees = [1, 2, 5].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| build_for(Isa::detect(), &primitives))
+    });
+    let mut random = Random(23);
+    for bvh in &trees[1..] {
+        assert_eq!(bvh.memory_bytes(), trees[0].memory_bytes());
+    }
+    for _ in 0..20_000 {
+        let ray = random.ray();
+        let [a, b, c] = [0, 1, 2].map(|i: usize| hit_bits(trees[i].closest(&ray, accept_all)));
+        assert_eq!((a, a), (b, c));
+    }
+}

@@ -1,0 +1,395 @@
+//! Spheres and disks against formulas.
+
+use std::f64::consts::{PI, TAU};
+
+use bidir_accel::{BuildError, BuildOptions, Bvh, Disk, Hit, Primitive, Ray, Sphere, accept_all};
+use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
+
+use crate::scenes::{Random, build, disk, sphere};
+
+/// A point of the surface in local space, from its parameters by the definition.
+fn local_point(primitive: &Primitive, hit: &Hit) -> DVec3 {
+    let (u, v) = (f64::from(hit.u), f64::from(hit.v));
+    match primitive {
+        Primitive::Sphere(sphere) => {
+            let theta = |z: f32| (f64::from(z) / f64::from(sphere.radius)).acos();
+            let theta = theta(sphere.z_min) + v * (theta(sphere.z_max) - theta(sphere.z_min));
+            let phi = u * f64::from(sphere.phi_max);
+            f64::from(sphere.radius) * from_angles(theta, phi)
+        }
+        Primitive::Disk(disk) => {
+            let distance = f64::from(disk.radius) * (1.0 - v) + f64::from(disk.inner_radius) * v;
+            let around = from_angles(0.5 * PI, u * f64::from(disk.phi_max));
+            DVec3::new(
+                distance * around.x,
+                distance * around.y,
+                f64::from(disk.height),
+            )
+        }
+        Primitive::Triangle(_) => unreachable!("not a quadric"),
+    }
+}
+
+fn from_angles(theta: f64, phi: f64) -> DVec3 {
+    let (sin, cos) = (libm::sin(theta), libm::cos(theta));
+    DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
+}
+
+fn local_from_world(primitive: &Primitive) -> impl Fn(DVec3) -> DVec3 {
+    let map = match primitive {
+        Primitive::Sphere(sphere) => sphere.local_from_world,
+        Primitive::Disk(disk) => disk.local_from_world,
+        Primitive::Triangle(_) => unreachable!("not a quadric"),
+    };
+    let matrix = Mat3::from(map.matrix3).as_dmat3();
+    move |p| matrix * p + Vec3::from(map.translation).as_dvec3()
+}
+
+/// All `t` of a line on the whole surface, found as roots of its equation in local space by the
+/// textbook formula, and whether the point there belongs to the part that is kept.
+fn passages(primitive: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
+    let kept = |p: DVec3, phi_max: f32| p.y.atan2(p.x).rem_euclid(TAU) <= f64::from(phi_max);
+    match primitive {
+        Primitive::Sphere(sphere) => {
+            let (a, b) = (d.dot(d), 2.0 * o.dot(d));
+            let c = o.dot(o) - f64::from(sphere.radius * sphere.radius);
+            let root = (b * b - 4.0 * a * c).sqrt();
+            let roots = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)];
+            let inside = |z: f64| z >= f64::from(sphere.z_min) && z <= f64::from(sphere.z_max);
+            let point = |t: f64| o + t * d;
+            let is_kept = |t: f64| inside(point(t).z) && kept(point(t), sphere.phi_max);
+            roots
+                .into_iter()
+                .filter(|t| t.is_finite())
+                .map(|t| (t, is_kept(t)))
+                .collect()
+        }
+        Primitive::Disk(disk) => {
+            let t = (f64::from(disk.height) - o.z) / d.z;
+            let p = o + t * d;
+            let (inner, outer) = (f64::from(disk.inner_radius), f64::from(disk.radius));
+            let distance = p.x.hypot(p.y);
+            vec![(
+                t,
+                inner <= distance && distance <= outer && kept(p, disk.phi_max),
+            )]
+        }
+        Primitive::Triangle(_) => unreachable!("not a quadric"),
+    }
+}
+
+/// Whether a surface point moves in or out of the kept part with a change of `1e-4`.
+fn is_near_a_cut(primitive: &Primitive, o: DVec3, d: DVec3) -> bool {
+    let shifts = [
+        DVec3::X,
+        DVec3::Y,
+        DVec3::Z,
+        -DVec3::X,
+        -DVec3::Y,
+        -DVec3::Z,
+    ];
+    let kept = |o: DVec3| {
+        passages(primitive, o, d)
+            .iter()
+            .map(|p| p.1)
+            .collect::<Vec<_>>()
+    };
+    let here = kept(o);
+    shifts.iter().any(|shift| kept(o + 1e-4 * *shift) != here)
+}
+
+#[track_caller]
+fn check_against_formula(make: fn(&mut Random) -> Primitive) {
+    let mut random = Random(30);
+    let (mut hits, mut misses) = (0, 0);
+    for _ in 0..300 {
+        let primitive = make(&mut random);
+        let bvh = build(&[primitive]);
+        let to_local = local_from_world(&primitive);
+        let bounds = bvh.bounds();
+        for _ in 0..200 {
+            let origin = 2.0 * random.cube();
+            let aim = bounds.min + bounds.extent() * (0.5 + 0.6 * random.cube());
+            let ray = Ray::new(origin, aim - origin);
+            let o = to_local(ray.origin.as_dvec3());
+            let d = to_local(ray.origin.as_dvec3() + ray.direction.as_dvec3()) - o;
+            if is_near_a_cut(&primitive, o, d) {
+                continue;
+            }
+            let found = passages(&primitive, o, d);
+            let expected = found
+                .iter()
+                .find(|(t, kept)| *kept && *t >= 0.0)
+                .map(|p| p.0);
+            let hit = bvh.closest(&ray, accept_all);
+            assert_eq!(hit.is_some(), expected.is_some(), "{primitive:?} {ray:?}");
+            if let (Some(hit), Some(t)) = (hit, expected) {
+                hits += 1;
+                assert!(
+                    (f64::from(hit.t) - t).abs() <= 1e-6 * t + 1e-9,
+                    "{hit:?} {t}"
+                );
+                let at = local_point(&primitive, &hit);
+                // Near a pole the polar angle needs more digits than `v` has.
+                assert!(at.distance(o + t * d) < 1e-6, "{primitive:?} {hit:?}");
+                assert!((0.0..=1.0).contains(&hit.u) && (0.0..=1.0).contains(&hit.v));
+            } else {
+                misses += 1;
+            }
+        }
+    }
+    assert!(
+        hits > 10_000 && misses > 5_000,
+        "{hits} hits, {misses} misses"
+    );
+}
+
+#[test]
+fn spheres_agree_with_the_formula() {
+    check_against_formula(sphere);
+}
+
+#[test]
+fn disks_agree_with_the_formula() {
+    check_against_formula(disk);
+}
+
+fn unit_sphere() -> Sphere {
+    let phi_max = 2.0 * std::f32::consts::PI;
+    Sphere {
+        local_from_world: Affine3A::IDENTITY,
+        radius: 1.0,
+        z_min: -1.0,
+        z_max: 1.0,
+        phi_max,
+    }
+}
+
+fn unit_disk() -> Disk {
+    let phi_max = 2.0 * std::f32::consts::PI;
+    Disk {
+        local_from_world: Affine3A::IDENTITY,
+        height: 0.0,
+        radius: 1.0,
+        inner_radius: 0.0,
+        phi_max,
+    }
+}
+
+#[track_caller]
+fn check_hit(primitive: Primitive, [origin, direction]: [Vec3; 2], expected: Option<[f32; 3]>) {
+    let hit = build(&[primitive]).closest(&Ray::new(origin, direction), accept_all);
+    match (hit, expected) {
+        (Some(hit), Some(expected)) => {
+            let found = Vec3::new(hit.t, hit.u, hit.v);
+            let expected = Vec3::from_array(expected);
+            assert!(found.abs_diff_eq(expected, 1e-6), "{hit:?}, not {expected}");
+        }
+        (hit, expected) => assert_eq!(hit.is_some(), expected.is_some(), "{hit:?}"),
+    }
+}
+
+#[test]
+fn conventions_of_the_sphere() {
+    let whole = Primitive::Sphere(unit_sphere());
+    check_hit(whole, [Vec3::X * 3.0, -Vec3::X], Some([2.0, 0.0, 0.5]));
+    check_hit(whole, [Vec3::Y * 3.0, -Vec3::Y], Some([2.0, 0.25, 0.5]));
+    check_hit(whole, [Vec3::Y * -3.0, Vec3::Y], Some([2.0, 0.75, 0.5]));
+    check_hit(
+        whole,
+        [Vec3::new(1e-9, 1e-9, 3.0), -Vec3::Z],
+        Some([2.0, 0.125, 1.0]),
+    );
+    check_hit(
+        whole,
+        [Vec3::new(1e-9, 1e-9, -3.0), Vec3::Z],
+        Some([2.0, 0.125, 0.0]),
+    );
+    check_hit(whole, [Vec3::ZERO, Vec3::X], Some([1.0, 0.0, 0.5]));
+    check_hit(whole, [Vec3::X * 3.0, Vec3::X], None);
+    // The upper half, seen through its open bottom, and a quarter around +x.
+    let upper = Primitive::Sphere(Sphere {
+        z_min: 0.0,
+        ..unit_sphere()
+    });
+    check_hit(
+        upper,
+        [Vec3::new(0.0, 1e-9, -3.0), Vec3::Z],
+        Some([4.0, 0.25, 1.0]),
+    );
+    let quarter = Primitive::Sphere(Sphere {
+        phi_max: 0.5 * std::f32::consts::PI,
+        ..unit_sphere()
+    });
+    check_hit(
+        quarter,
+        [Vec3::new(-3.0, 0.0, 0.0), Vec3::X],
+        Some([4.0, 0.0, 0.5]),
+    );
+    let diagonal = Vec3::new(1.0, 1.0, 0.0);
+    check_hit(
+        quarter,
+        [3.0 * diagonal, -diagonal],
+        Some([3.0 - 0.5_f32.sqrt(), 0.5, 0.5]),
+    );
+    // An ellipsoid three units long.
+    let scale = Affine3A::from_scale(Vec3::new(1.0, 1.0, 3.0)).inverse();
+    let long = Primitive::Sphere(Sphere {
+        local_from_world: scale,
+        ..unit_sphere()
+    });
+    check_hit(
+        long,
+        [Vec3::new(1e-9, 0.0, 5.0), -Vec3::Z],
+        Some([2.0, 0.0, 1.0]),
+    );
+    let bounds = build(&[long]).bounds();
+    assert!(
+        bounds.extent().abs_diff_eq(Vec3::new(2.0, 2.0, 6.0), 1e-4),
+        "{bounds:?}"
+    );
+}
+
+#[test]
+fn conventions_of_the_disk() {
+    let whole = Primitive::Disk(unit_disk());
+    let above = |x: f32, y: f32| [Vec3::new(x, y, 2.0), -Vec3::Z];
+    check_hit(whole, above(0.25, 0.0), Some([2.0, 0.0, 0.75]));
+    check_hit(whole, above(0.0, -1.0), Some([2.0, 0.75, 0.0]));
+    check_hit(whole, above(0.8, 0.8), None);
+    check_hit(whole, [Vec3::ZERO, Vec3::X], None);
+    check_hit(whole, [Vec3::Z, Vec3::X], None);
+    let ring = Primitive::Disk(Disk {
+        inner_radius: 0.5,
+        height: 1.0,
+        ..unit_disk()
+    });
+    check_hit(ring, above(0.0, 0.75), Some([1.0, 0.25, 0.5]));
+    check_hit(ring, above(0.25, 0.25), None);
+}
+
+#[test]
+fn pointless_parameters_are_never_hit() {
+    let spheres = [
+        Sphere {
+            radius: 0.0,
+            ..unit_sphere()
+        },
+        Sphere {
+            radius: -1.0,
+            ..unit_sphere()
+        },
+        Sphere {
+            z_min: 0.5,
+            z_max: 0.2,
+            ..unit_sphere()
+        },
+        Sphere {
+            z_min: 0.5,
+            z_max: 0.5,
+            ..unit_sphere()
+        },
+        Sphere {
+            z_min: 2.0,
+            z_max: 3.0,
+            ..unit_sphere()
+        },
+        Sphere {
+            phi_max: 0.0,
+            ..unit_sphere()
+        },
+        Sphere {
+            phi_max: -1.0,
+            ..unit_sphere()
+        },
+    ];
+    let disks = [
+        Disk {
+            radius: 0.0,
+            ..unit_disk()
+        },
+        Disk {
+            radius: -1.0,
+            ..unit_disk()
+        },
+        Disk {
+            inner_radius: 1.0,
+            ..unit_disk()
+        },
+        Disk {
+            phi_max: 0.0,
+            ..unit_disk()
+        },
+    ];
+    let all = spheres
+        .map(Primitive::Sphere)
+        .into_iter()
+        .chain(disks.map(Primitive::Disk));
+    let mut random = Random(31);
+    for primitive in all {
+        let bvh = build(&[primitive]);
+        // Also rays through the axis and the cuts, where 0/0 lurks.
+        for x in [0.0, 1.0, 0.5, 0.75_f32.sqrt(), random.unit()] {
+            for ray in [
+                Ray::new(Vec3::new(x, 0.0, 3.0), -Vec3::Z),
+                Ray::new(Vec3::new(3.0, 0.0, x), -Vec3::X),
+                Ray::new(Vec3::new(3.0, 0.0, x), Vec3::new(-3.0, 0.0, -x)),
+            ] {
+                assert_eq!(bvh.closest(&ray, accept_all), None, "{primitive:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn maps_must_be_invertible_and_finite() {
+    let flat = Affine3A::from_mat3(Mat3::from_diagonal(Vec3::new(1.0, 1.0, 0.0)));
+    let far = Affine3A::from_translation(Vec3::new(0.0, f32::INFINITY, 0.0));
+    let good = Primitive::Sphere(unit_sphere());
+    for local_from_world in [flat, far] {
+        for bad in [
+            Primitive::Sphere(Sphere {
+                local_from_world,
+                ..unit_sphere()
+            }),
+            Primitive::Disk(Disk {
+                local_from_world,
+                ..unit_disk()
+            }),
+        ] {
+            let error = Bvh::build(&[good, bad], &BuildOptions::default()).unwrap_err();
+            assert_eq!(error, BuildError::NotFinite { primitive: 1 });
+        }
+    }
+    assert!(DMat3::ZERO.inverse().x_axis.x.is_nan());
+}
+
+#[test]
+fn bounds_contain_the_surface() {
+    let mut random = Random(32);
+    for _ in 0..500 {
+        for primitive in [sphere(&mut random), disk(&mut random)] {
+            let map = match &primitive {
+                Primitive::Sphere(sphere) => sphere.local_from_world,
+                Primitive::Disk(disk) => disk.local_from_world,
+                Primitive::Triangle(_) => unreachable!("not a quadric"),
+            };
+            let bounds = primitive.bounds();
+            let matrix = Mat3::from(map.matrix3).as_dmat3().inverse();
+            for _ in 0..50 {
+                let (u, v) = (random.unit(), random.unit());
+                let hit = Hit {
+                    t: 0.0,
+                    instance: 0,
+                    primitive: 0,
+                    u,
+                    v,
+                };
+                let local = local_point(&primitive, &hit);
+                let p = matrix * (local - Vec3::from(map.translation).as_dvec3());
+                assert!(p.cmpge(bounds.min.as_dvec3()).all(), "{p} {bounds:?}");
+                assert!(p.cmple(bounds.max.as_dvec3()).all(), "{p} {bounds:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Lights of every kind in each battery: how rays leave them, how they are connected to, how they
+//! are chosen.
+
+mod densities;
+mod emission;
+mod power;
+
+use super::{
+    AreaLight, DistantLight, EmissionSides, InfiniteLight, Light, LightContext, PointLight,
+    SpotLight,
+};
+use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3};
+use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use crate::spectrum::Rgb;
+use crate::texture::Image;
+
+const COLOR: Rgb = [1.0, 2.0, 0.5];
+
+/// Shapes that the area lights below refer to.
+struct Surroundings {
+    shapes: Vec<Shape>,
+}
+
+impl Surroundings {
+    fn new() -> Self {
+        let map = Affine3A::from_mat3_translation(Mat3::from_rotation_x(0.8) * 1.5, Vec3::ONE);
+        let stretched = map * Affine3A::from_scale(Vec3::new(1.0, 0.6, 1.4));
+        let front = Orientation::Natural;
+        Self {
+            shapes: vec![
+                Shape::Mesh(kite()),
+                Shape::Sphere(Sphere::new(map, 0.5, front)),
+                Shape::Sphere(Sphere::new(stretched, 0.5, Orientation::Reversed)),
+                Shape::Disk(Disk::new(stretched, 0.1, [0.2, 1.0], 5.0, front)),
+            ],
+        }
+    }
+
+    fn context(&self) -> LightContext<'_> {
+        LightContext {
+            shapes: &self.shapes,
+            centre: Vec3::new(0.5, -1.0, 2.0),
+            radius: 4.0,
+        }
+    }
+}
+
+/// Two triangles of unlike size in one plane, and one without any.
+fn kite() -> Mesh {
+    let plane = |x: f32, y: f32| Vec3::new(1.0 + x, y, 0.5 * x - 0.25 * y);
+    Mesh {
+        positions: vec![
+            plane(0.0, 0.0),
+            plane(1.0, 0.0),
+            plane(1.0, 1.0),
+            plane(-1.0, 2.0),
+        ],
+        triangles: vec![[0, 1, 2], [0, 0, 1], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+/// A dark environment with a bright texel, some even ones and some black.
+fn environment() -> InfiniteLight {
+    let texel = |i: u16| match i {
+        27 => [40.0, 60.0, 30.0],
+        _ if i.is_multiple_of(3) => [0.0; 3],
+        _ => [0.5, f32::from(i % 7), 1.0],
+    };
+    let image = Image::new(8, (0..64).map(texel).collect()).unwrap();
+    let turn = Mat3::from_rotation_y(0.9) * Mat3::from_rotation_x(-0.4);
+    InfiniteLight::image(image, 1.5, turn)
+}
+
+fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
+    let area = |index: usize, sides| {
+        Light::Area(AreaLight::new(
+            index,
+            &surroundings.shapes[index],
+            COLOR,
+            sides,
+        ))
+    };
+    let position = Vec3::new(0.3, -2.0, 1.0);
+    let axis = Vec3::new(0.6, 0.0, -0.8);
+    let spot = |angles| Light::Spot(SpotLight::new(position, axis, COLOR, angles));
+    vec![
+        ("mesh", area(0, EmissionSides::Front)),
+        ("mesh, both sides", area(0, EmissionSides::Both)),
+        ("ball", area(1, EmissionSides::Front)),
+        ("ellipsoid, reversed", area(2, EmissionSides::Front)),
+        ("ring, both sides", area(3, EmissionSides::Both)),
+        (
+            "point",
+            Light::Point(PointLight {
+                position,
+                intensity: COLOR,
+            }),
+        ),
+        ("spot", spot([0.3, 0.7])),
+        ("spot, hard rim", spot([0.5, 0.5])),
+        ("spot, narrow", spot([0.001, 0.01])),
+        ("spot, wide", spot([1.0, 2.5])),
+        (
+            "distant",
+            Light::Distant(DistantLight {
+                to_light: -axis,
+                irradiance: COLOR,
+            }),
+        ),
+        (
+            "constant environment",
+            Light::Infinite(InfiniteLight::constant(COLOR)),
+        ),
+        ("environment", Light::Infinite(environment())),
+    ]
+}
+
+const VARIANTS: usize = 5;
+
+/// A new variant does not compile before it has a number here.
+fn variant(light: &Light) -> usize {
+    match light {
+        Light::Area(_) => 0,
+        Light::Point(_) => 1,
+        Light::Spot(_) => 2,
+        Light::Distant(_) => 3,
+        Light::Infinite(_) => 4,
+    }
+}
+
+#[test]
+fn every_variant_has_an_example() {
+    let mut seen = [false; VARIANTS];
+    for (_, light) in examples(&Surroundings::new()) {
+        seen[variant(&light)] = true;
+    }
+    assert_eq!(seen, [true; VARIANTS]);
+}
+
+/// The numbers that one emission takes: for the position, and for the direction.
+fn numbers(sample: &SampleStream) -> (Vec2, Vec2) {
+    let get = |purpose| sample.get_2d(Dimension::at(0, purpose));
+    (get(Purpose::LightPosition), get(Purpose::LightDirection))
+}
+
+/// A frame with narrow lights' axis as its pole.
+fn pole() -> Frame {
+    Frame::from_z(Vec3::new(0.6, 0.0, -0.8))
+}
+
+/// Places that light falls on.
+fn receivers() -> [Vec3; 3] {
+    [
+        Vec3::new(0.0, 0.0, 3.0),
+        Vec3::new(1.2, 1.0, 1.1),
+        Vec3::new(-6.0, 2.0, 0.0) * PI,
+    ]
+}

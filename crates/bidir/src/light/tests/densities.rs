@@ -1,0 +1,226 @@
+use super::{Surroundings, environment, examples, numbers, pole, receivers};
+use crate::light::{EmissionSides, InfiniteLight, Light, LightContext, LightPoint};
+use crate::math::{Frame, Vec2, Vec3};
+use crate::sampler::{Dimension, Purpose};
+use crate::shape::{Mesh, Shape};
+use crate::testing::{Battery, Domain, Grid, samples};
+
+const N: u64 = 1 << 20;
+
+/// The directions that a light may send rays to, around its normal or axis.
+fn directions(light: &Light) -> Domain {
+    match light {
+        Light::Spot(_) => Domain::Cone(pole(), 2.0),
+        _ => Domain::sphere(),
+    }
+}
+
+/// Local directions around the normal of a surface; world directions where there is none.
+fn frame(at: &LightPoint) -> Frame {
+    if at.n_g == Vec3::ZERO {
+        Frame {
+            x: Vec3::X,
+            y: Vec3::Y,
+            z: Vec3::Z,
+        }
+    } else {
+        Frame::from_z(at.n_g)
+    }
+}
+
+/// Rays leave finite lights in directions that follow the density.
+#[test]
+fn directions_follow_the_density() {
+    let surroundings = Surroundings::new();
+    let context = surroundings.context();
+    let mut battery = Battery::new("light directions");
+    for (name, light) in examples(&surroundings)
+        .into_iter()
+        .filter(|(_, l)| !l.is_infinite())
+    {
+        let narrow = name == "spot, narrow";
+        let domain = if narrow {
+            Domain::Cone(pole(), 5.5e-5)
+        } else {
+            directions(&light)
+        };
+        let grid = Grid {
+            domain,
+            columns: 20,
+            rows: 40,
+        };
+        let draws = samples(name, N).map(|sample| {
+            let (u_position, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            Some(frame(&drawn.from.at).to_local(drawn.direction))
+        });
+        let at = light
+            .sample_next_event(&context, receivers()[0], Vec2::splat(0.3))
+            .unwrap()
+            .at;
+        let pdf = |w| light.pdf_direction(&context, &at, frame(&at).to_world(w));
+        battery.chi2(name, &grid, pdf, draws);
+    }
+    battery.check();
+}
+
+/// Rays from infinity cross the scene's disk evenly.
+#[test]
+fn rays_from_infinity_cross_the_disk_by_the_density() {
+    let surroundings = Surroundings::new();
+    let context = surroundings.context();
+    let grid = Grid {
+        domain: Domain::Disk(context.radius),
+        columns: 16,
+        rows: 24,
+    };
+    let mut battery = Battery::new("rays from infinity");
+    for (name, light) in examples(&surroundings)
+        .into_iter()
+        .filter(|(_, l)| l.is_infinite())
+    {
+        let draws = samples(name, N).map(|sample| {
+            let (u_position, u_direction) = numbers(&sample);
+            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            let local = Frame::from_z(drawn.direction).to_local(drawn.origin - context.centre);
+            Some(local.with_z(0.0))
+        });
+        let at = LightPoint::at_infinity(Vec3::Z);
+        battery.chi2(
+            name,
+            &grid,
+            |_| light.pdf_direction(&context, &at, -Vec3::Z),
+            draws,
+        );
+    }
+    battery.check();
+}
+
+/// Environments are drawn by their density, for rays and for receivers alike.
+#[test]
+fn environments_are_drawn_by_the_density() {
+    let surroundings = Surroundings::new();
+    let context = surroundings.context();
+    let grid = Grid {
+        domain: Domain::sphere(),
+        columns: 20,
+        rows: 40,
+    };
+    let mut battery = Battery::new("environments");
+    let lights = [
+        ("image", environment()),
+        ("constant", InfiniteLight::constant([1.0; 3])),
+    ];
+    for (name, light) in lights.map(|(name, light)| (name, Light::Infinite(light))) {
+        let emission = samples(name, N).map(|sample| {
+            let (u_position, u_direction) = numbers(&sample);
+            Some(
+                light
+                    .sample_emission(&context, u_position, u_direction)?
+                    .from
+                    .at
+                    .point,
+            )
+        });
+        let position = |w| light.pdf_position(&context, &LightPoint::at_infinity(w));
+        battery.chi2(&format!("{name}, rays"), &grid, position, emission);
+        let next_event = samples(name, N).map(|sample| {
+            let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
+            Some(
+                light
+                    .sample_next_event(&context, receivers()[0], u)?
+                    .at
+                    .point,
+            )
+        });
+        let pdf = |w| light.pdf_next_event(&context, receivers()[0], &LightPoint::at_infinity(w));
+        battery.chi2(&format!("{name}, receivers"), &grid, pdf, next_event);
+    }
+    battery.check();
+}
+
+/// The point of the mesh for one of the square, whose x also says which triangle: of even area
+/// within each.
+fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
+    let count = mesh.triangle_count();
+    let scaled = p.x * count as f32;
+    let triangle = (scaled as usize).min(count - 1);
+    let (x, y) = ((scaled - triangle as f32).clamp(0.0, 1.0).sqrt(), p.y);
+    let [a, b, c] = mesh.triangle(triangle);
+    let point = a + (b - a) * (x * (1.0 - y)) + (c - a) * (x * y);
+    let at = LightPoint {
+        primitive: triangle as u32,
+        ..LightPoint::in_space(point)
+    };
+    (at, mesh.triangle_area(triangle) * count as f32)
+}
+
+/// The inverse of [`on_mesh`].
+fn on_square(mesh: &Mesh, at: &LightPoint) -> Vec3 {
+    let [a, b, c] = mesh.triangle(at.primitive as usize);
+    let normal = (b - a).cross(c - a);
+    let barycentric = |edge: Vec3| normal.dot(edge.cross(at.point - a)) / normal.length_squared();
+    let (b1, b2) = (-barycentric(c - a), barycentric(b - a));
+    let x = (b1 + b2).clamp(0.0, 1.0);
+    let y = if x > 0.0 { b2 / x } else { 0.0 };
+    let within = (x * x).min(0.999_999);
+    Vec3::new(
+        (at.primitive as f32 + within) / mesh.triangle_count() as f32,
+        y,
+        0.0,
+    )
+}
+
+/// Points of a mesh of unlike triangles are drawn by the density, for rays and for receivers.
+#[test]
+fn points_of_a_mesh_follow_the_density() {
+    let surroundings = Surroundings::new();
+    let context = surroundings.context();
+    let Shape::Mesh(mesh) = &surroundings.shapes[0] else {
+        panic!("the first shape is the mesh")
+    };
+    let light = super::AreaLight::new(0, &surroundings.shapes[0], [1.0; 3], EmissionSides::Front);
+    let light = Light::Area(light);
+    let grid = Grid {
+        domain: Domain::Square,
+        columns: 30,
+        rows: 16,
+    };
+    let over_square = |pdf: &dyn Fn(&LightContext<'_>, &LightPoint) -> f32, p: Vec3| {
+        let (at, area) = on_mesh(mesh, p);
+        if area > 0.0 {
+            pdf(&context, &at) * area
+        } else {
+            0.0
+        }
+    };
+    let mut battery = Battery::new("points of a mesh");
+    let rays = samples("mesh, rays", N).map(|sample| {
+        let (u_position, u_direction) = numbers(&sample);
+        Some(on_square(
+            mesh,
+            &light
+                .sample_emission(&context, u_position, u_direction)?
+                .from
+                .at,
+        ))
+    });
+    let position = |p| over_square(&|context, at| light.pdf_position(context, at), p);
+    battery.chi2("rays", &grid, position, rays);
+    let receiver = receivers()[0];
+    let points = samples("mesh, receivers", N).map(|sample| {
+        let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
+        Some(on_square(
+            mesh,
+            &light.sample_next_event(&context, receiver, u)?.at,
+        ))
+    });
+    let pdf = |p| {
+        over_square(
+            &|context, at| light.pdf_next_event(context, receiver, at),
+            p,
+        )
+    };
+    battery.chi2("receivers", &grid, pdf, points);
+    battery.check();
+}

@@ -1,0 +1,157 @@
+use super::{Example, disk, examples, mirrored, sphere, triangle, uneven};
+use crate::math::{PI, Vec2, Vec3};
+use crate::sampler::{Dimension, Purpose};
+use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere, SurfacePoint};
+use crate::testing::samples;
+
+/// Points of the surface, drawn.
+fn points(example: &Example) -> impl Iterator<Item = SurfacePoint> {
+    samples(example.name, 200).map(|sample| {
+        example
+            .shape
+            .sample(0, sample.get_2d(Dimension::at(0, Purpose::LightPosition)))
+            .surface
+    })
+}
+
+/// Checks that normal, shading frame and error are what they say.
+#[track_caller]
+fn check_surface(example: &Example, at: &SurfacePoint) {
+    let name = example.name;
+    assert!(
+        (at.n_g.length() - 1.0).abs() < 1e-5,
+        "{name}: n_g {}",
+        at.n_g
+    );
+    assert!(
+        (at.shading.z - at.n_g).length() < 1e-5,
+        "{name}: n_s {}",
+        at.shading.z
+    );
+    assert!(at.shading.x.dot(at.shading.z).abs() < 1e-5, "{name}");
+    assert!(
+        (at.shading.x.cross(at.shading.y) - at.shading.z).length() < 1e-5,
+        "{name}"
+    );
+    // Neighbours on the surface lie across the normal.
+    let square = (example.square)(at.point);
+    let h = 1e-3;
+    for (x, y) in [(h, 0.0), (-h, 0.0), (0.0, h), (0.0, -h)] {
+        let [x, y] = [square.x + x, square.y + y].map(f64::from);
+        if !(0.02..0.98).contains(&x) || !(0.0..1.0).contains(&y) {
+            continue;
+        }
+        let near = Vec3::from_array((example.point)(x, y).map(|x| x as f32));
+        let away = (near - at.point).normalize();
+        assert!(
+            away.dot(at.n_g).abs() < 0.02,
+            "{name}: {away} is not across {}",
+            at.n_g
+        );
+    }
+}
+
+#[test]
+fn normals_stand_upright_on_surfaces() {
+    for example in examples() {
+        for at in points(&example) {
+            check_surface(&example, &at);
+        }
+    }
+}
+
+/// Points are where the parametrisation says, within the error that rays are pushed off by.
+#[test]
+fn points_lie_on_the_surface_within_their_error() {
+    for example in examples() {
+        for at in points(&example) {
+            let square = (example.square)(at.point).clamp(Vec2::ZERO, Vec2::ONE);
+            let exact = (example.point)(f64::from(square.x), f64::from(square.y));
+            let offset: f64 = (0..3)
+                .map(|i| (exact[i] - f64::from(at.point[i])) * f64::from(at.n_g[i]))
+                .sum();
+            let distance = offset.abs();
+            assert!(
+                distance <= f64::from(at.error),
+                "{}: {distance} > {}",
+                example.name,
+                at.error
+            );
+        }
+    }
+}
+
+/// What the intersector finds at a drawn point is what was drawn.
+#[test]
+fn a_hit_has_the_geometry_of_the_sample() {
+    for example in examples() {
+        if matches!(example.shape, Shape::Mesh(_)) {
+            continue; // Its intersector's parameters are not its surface parameters.
+        }
+        for at in points(&example) {
+            let hit = example.shape.surface_point(0, at.uv, at.point);
+            let close = (hit.point - at.point).length() < 1e-4
+                && (hit.n_g - at.n_g).length() < 1e-3
+                && (hit.shading.x - at.shading.x).length() < 1e-2;
+            assert!(close, "{}: {hit:?} instead of {at:?}", example.name);
+        }
+    }
+}
+
+/// The outside of a sphere is its front under every map, mirrored or not; +z that of a disk.
+#[test]
+fn the_front_is_the_outside_unless_reversed() {
+    let whole = Vec3::new(-0.7, 0.7, 2.0 * PI);
+    for map in [uneven(), mirrored()] {
+        let ball = sphere("ellipsoid", map, 0.7, whole);
+        for at in points(&ball) {
+            let outward = at.point - Vec3::from(ball.world_from_local.translation);
+            assert!(at.n_g.dot(outward) > 0.0);
+        }
+        let reversed = Shape::Sphere(Sphere::new(map, 0.7, Orientation::Reversed));
+        let flat = disk("disk", map, [0.0, 1.0], 2.0 * PI);
+        let flat_reversed = Shape::Disk(Disk::new(
+            map,
+            0.3,
+            [0.0, 1.0],
+            2.0 * PI,
+            Orientation::Reversed,
+        ));
+        for u in [Vec2::new(0.2, 0.3), Vec2::new(0.9, 0.8)] {
+            let [natural, other] = [&ball.shape, &reversed].map(|s| s.sample(0, u).surface.n_g);
+            assert!((natural + other).length() < 1e-6);
+            let [natural, other] = [&flat.shape, &flat_reversed].map(|s| s.sample(0, u).surface);
+            assert!((natural.n_g + other.n_g).length() < 1e-6);
+            assert!(natural.n_g.dot(map.transform_vector3(Vec3::Z)) > 0.0);
+        }
+    }
+}
+
+/// The winding says the front of a mesh, unless it has normals: they do.
+#[test]
+fn the_front_of_a_mesh_follows_its_winding_or_its_normals() {
+    let faceted = triangle();
+    let [a, b, c] = faceted.triangle(0);
+    let winding = (b - a).cross(c - a).normalize();
+    let front = |mesh: &Mesh| {
+        Shape::Mesh(mesh.clone())
+            .sample(0, Vec2::splat(0.4))
+            .surface
+    };
+    assert!((front(&faceted).n_g - winding).length() < 1e-6);
+    let reversed = Mesh {
+        orientation: Orientation::Reversed,
+        ..faceted.clone()
+    };
+    assert!((front(&reversed).n_g + winding).length() < 1e-6);
+    let tilted = (-winding + (b - a).normalize() * 0.5).normalize();
+    for orientation in [Orientation::Natural, Orientation::Reversed] {
+        let smooth = Mesh {
+            normals: vec![tilted; 3],
+            orientation,
+            ..faceted.clone()
+        };
+        assert!((front(&smooth).shading.z - tilted).length() < 1e-6);
+        assert!((front(&smooth).n_g + winding).length() < 1e-6);
+    }
+}

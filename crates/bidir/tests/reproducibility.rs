@@ -1,0 +1,131 @@
+//! The same passes have the same bits, however they are computed.
+
+mod common;
+
+use bidir::driver::{Progress, Resources, Session, Settings, render};
+use bidir::film::{Film, PassBuffer};
+use bidir::integrator::IntegratorKind;
+use bidir::select::ShadowRays;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+fn settings(integrator: IntegratorKind, shadow_rays: &str) -> Settings {
+    let shadow_rays = shadow_rays.parse::<ShadowRays>().expect("a rule");
+    Settings {
+        integrator,
+        shadow_rays,
+        ..Settings::default()
+    }
+}
+
+fn with_threads(threads: usize) -> Resources {
+    Resources {
+        threads,
+        ..Resources::default()
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let scene = common::room(0.1);
+    for (name, integrator) in IntegratorKind::NAMES {
+        for rule in ["all", "per-pair", "ray-roulette", "budget:2"] {
+            let settings = settings(integrator, rule);
+            let film = |threads| {
+                render(&scene, &settings, 3, &with_threads(threads)).expect("the film is small")
+            };
+            let one = film(1);
+            assert!(one == film(2) && one == film(5), "{name}, {rule}");
+        }
+    }
+}
+
+#[test]
+fn a_session_counts_the_same_with_any_number_of_threads() {
+    let scene = common::room(0.0);
+    let stats = |threads| {
+        let settings = settings(IntegratorKind::Bdpt, "per-pair");
+        let mut session =
+            Session::new(&scene, settings, &with_threads(threads)).expect("the film is small");
+        (0..4).for_each(|_| assert!(session.step(&())));
+        session.stats().clone()
+    };
+    let one = stats(1);
+    assert_eq!(one, stats(3));
+    assert_eq!(one.samples, 4 * 64);
+    // One per pair is at most one ray per sample, and not every sample has one.
+    assert!(one.rays.connection > 0 && one.rays.connection <= one.samples);
+    assert!(one.candidates > one.rays.connection);
+}
+
+/// Stops after some samples.
+struct StopAfter(AtomicU64);
+
+impl Progress for StopAfter {
+    fn advance(&self, samples: u64) {
+        self.0.fetch_sub(
+            samples.min(self.0.load(Ordering::Relaxed)),
+            Ordering::Relaxed,
+        );
+    }
+
+    fn should_stop(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+}
+
+#[test]
+fn a_pass_that_is_given_up_leaves_no_trace() {
+    let scene = common::room(0.0);
+    let settings = settings(IntegratorKind::Bdpt, "all");
+    let resources = with_threads(2);
+    let mut session =
+        Session::new(&scene, settings.clone(), &resources).expect("the film is small");
+    assert!(session.step(&()));
+    let before = session.stats().clone();
+    assert!(!session.step(&StopAfter(AtomicU64::new(1))));
+    assert_eq!((session.film().passes(), session.stats()), (1, &before));
+    assert!(session.step(&()));
+    let whole = render(&scene, &settings, 2, &resources).expect("the film is small");
+    assert!(*session.film() == whole);
+}
+
+#[test]
+fn a_replayed_sample_is_the_sample() {
+    let scene = common::room(0.1);
+    let settings = settings(IntegratorKind::Bdpt, "budget:2");
+    let resources = with_threads(1);
+    let session = Session::new(&scene, settings.clone(), &resources).expect("the film is small");
+    let film = scene.film();
+    let light_paths = film.crop.area();
+    let mut again = Film::new(film.clone(), light_paths, u64::MAX).expect("the film is small");
+    for pass in 0..2 {
+        let buffer = PassBuffer::new(film);
+        for i in 0..film.crop.area() as usize {
+            let replay = session
+                .replay(film.crop.pixel(i), pass)
+                .expect("the pixel is inside");
+            let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
+            buffer.set_camera_sample(i, rgb(replay.workspace.value));
+            for splat in &replay.workspace.splats {
+                buffer.splat(film, splat.raster, rgb(splat.value), splat.u);
+            }
+        }
+        again.add_pass(&buffer);
+    }
+    assert!(again == render(&scene, &settings, 2, &resources).expect("the film is small"));
+    assert!(session.replay([8, 0], 0).is_none());
+}
+
+#[test]
+fn other_seeds_and_samplers_are_other_images() {
+    let scene = common::room(0.0);
+    let first = settings(IntegratorKind::Path, "all");
+    let other = Settings {
+        seed: 1,
+        ..first.clone()
+    };
+    let film = |settings: &Settings| {
+        render(&scene, settings, 1, &with_threads(1)).expect("the film is small")
+    };
+    assert!(film(&first) != film(&other));
+}

@@ -1,0 +1,136 @@
+//! The command line: what can be asked, and the help text that documents it.
+
+mod render;
+mod values;
+
+pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, OutputArgs, RenderArgs};
+pub(crate) use values::{Duration, ReplayTarget};
+
+use crate::exit::Exit;
+use clap::{Args, Parser, Subcommand, ValueHint};
+use std::path::PathBuf;
+
+/// Renders scenes by bidirectional path tracing, and spends its shadow rays where they matter.
+///
+/// Scenes are files of pbrt-v4. Images are written as OpenEXR, linear and exact, and as PNG to look
+/// at. The same scene, settings and seed give the same bits, whatever the number of threads.
+#[derive(Debug, Parser)]
+#[command(name = "bidir", version, propagate_version = true, max_term_width = 100, after_help = Exit::help())]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Colour.
+    #[command(flatten)]
+    pub(crate) color: ColorArgs,
+}
+
+/// Colour of messages.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ColorArgs {
+    /// No colour in messages, as with `NO_COLOR` or `TERM=dumb` in the environment.
+    #[arg(long, global = true)]
+    pub(crate) no_color: bool,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to an image.
+    ///
+    /// Every setting is taken from the first of these that has it: the flag, the environment
+    /// variable, the scene file, the default. Rendering goes pass by pass, one sample of every pixel
+    /// at a time.
+    ///
+    /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once.
+    Render(Box<RenderArgs>),
+    /// Tell what is in a scene.
+    ///
+    /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and
+    /// textures, its extent, and the memory that rendering takes.
+    Info(InfoArgs),
+    /// Compare image A with the reference B.
+    ///
+    /// Prints, over red, green and blue of all pixels, the root of the mean square error (rmse), the
+    /// mean of (a-b)²/(b²+0.01) (relmse), the mean of A divided by the mean of B (`mean_ratio`), and
+    /// whether both have the same size and the same bits (identical).
+    Compare(CompareArgs),
+    /// Print a completion script for a shell.
+    ///
+    /// For example: bidir completions bash > ~/.local/share/bash-completion/completions/bidir
+    Completions(CompletionsArgs),
+    /// Print the manual page, in the language of man(7).
+    ///
+    /// For example: bidir man render | man -l -
+    Man(ManArgs),
+}
+
+/// Which scene, and how it is read.
+#[derive(Args, Debug)]
+pub(crate) struct SceneArgs {
+    /// The scene: a file of pbrt-v4, or `-` for standard input.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: PathBuf,
+    /// Replace what is not supported by something near, with a warning, instead of stopping.
+    #[arg(long, help_heading = "Scene")]
+    pub(crate) lenient: bool,
+    /// Treat warnings as errors: exit with 6 before anything is rendered.
+    #[arg(long, help_heading = "Scene")]
+    pub(crate) strict: bool,
+    /// The instruction set that rays are traced with. It changes speed, never a bit.
+    ///
+    /// By default the best that this machine has.
+    #[arg(long, env = "BIDIR_ISA", value_name = "NAME", value_parser = values::isa)]
+    #[arg(help_heading = "Resources")]
+    pub(crate) isa: Option<accel::Isa>,
+}
+
+/// The flags of `bidir info`.
+#[derive(Args, Debug)]
+pub(crate) struct InfoArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Print JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The flags of `bidir compare`.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  bidir compare out.exr reference.exr\n  \
+    bidir compare a.exr b.exr --exact --json")]
+pub(crate) struct CompareArgs {
+    /// The image.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) a: PathBuf,
+    /// The reference.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) b: PathBuf,
+    /// Exit with 6 unless every pixel of both has the same bits.
+    #[arg(long, conflicts_with = "resample")]
+    pub(crate) exact: bool,
+    /// Where sizes differ, average the image of more pixels down to the size of the other.
+    ///
+    /// Each pixel is the mean of what it covers, weighted by area. Without this, different sizes are
+    /// an error.
+    #[arg(long)]
+    pub(crate) resample: bool,
+    /// Print JSON with the keys rmse, relmse, `mean_ratio`, identical, size and resampled.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// The flags of `bidir completions`.
+#[derive(Args, Debug)]
+pub(crate) struct CompletionsArgs {
+    /// The shell.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// The flags of `bidir man`.
+#[derive(Args, Debug)]
+pub(crate) struct ManArgs {
+    /// The command that the page is of; without it, the page of the whole.
+    pub(crate) command: Option<String>,
+}

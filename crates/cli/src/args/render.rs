@@ -1,0 +1,213 @@
+//! The flags of `bidir render`.
+
+use super::SceneArgs;
+use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
+use bidir::integrator::IntegratorKind;
+use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::sampler::SamplerKind;
+use bidir::select::ShadowRays;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// What is rendered, how, for how long, and where it goes.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  bidir render scenes/cornell.pbrt
+      512x512 pixels with 64 samples each, into cornell.exr and cornell.png
+  bidir render room.pbrt -o out/room.exr --time 10m --stats out/room.json
+      as many passes as fit into ten minutes
+  bidir render room.pbrt --shadow-rays per-pair --spp 256
+      one connection ray for each pair of subpaths
+  bidir render room.pbrt --strategies all,-s0
+      without the light that camera subpaths hit by chance
+  bidir render room.pbrt --replay 17,4,3
+      what sample 3 of the pixel in column 17 of row 4 did")]
+pub(crate) struct RenderArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Where results go.
+    #[command(flatten)]
+    pub(crate) output: OutputArgs,
+    /// How light is estimated.
+    #[command(flatten)]
+    pub(crate) estimator: EstimatorArgs,
+    /// When it is enough.
+    #[command(flatten)]
+    pub(crate) budget: BudgetArgs,
+    /// The picture's geometry.
+    #[command(flatten)]
+    pub(crate) film: FilmArgs,
+    /// Repeat one sample instead of rendering, and tell on stdout what it did.
+    ///
+    /// Prints the vertices of both subpaths, the candidate connections with their strategies,
+    /// values, scores and probabilities, which of them were chosen, which are visible, and what was
+    /// added to the film. Pixels count from the top left of the whole film, passes from 0; with the
+    /// flags of the render that is asked about.
+    #[arg(long, value_name = "X,Y,PASS", help_heading = "Debugging")]
+    pub(crate) replay: Option<ReplayTarget>,
+    /// Print the replayed sample as JSON.
+    #[arg(long, requires = "replay", help_heading = "Debugging")]
+    pub(crate) json: bool,
+}
+
+/// Where results go.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct OutputArgs {
+    /// The image. NAME.exr is written with NAME.png beside it; NAME.png alone.
+    ///
+    /// By default the name that the scene gives its film, with the ending .exr, in the current
+    /// folder.
+    #[arg(short, long, visible_alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: Option<PathBuf>,
+    /// Write what was counted and measured, with all settings, as JSON.
+    #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
+    pub(crate) stats: Option<PathBuf>,
+    /// Tell nothing but warnings and errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// How light is estimated.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Estimator")]
+pub(crate) struct EstimatorArgs {
+    /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
+    #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
+    pub(crate) integrator: Option<IntegratorKind>,
+    /// Which connections between subpaths are traced (bdpt) [default: all].
+    ///
+    /// all: every one. per-light-vertex, per-camera-vertex, per-pair: one for each light vertex, for
+    /// each camera vertex, for each pair of subpaths, drawn by unshadowed contribution.
+    /// ray-roulette[:PART]: each by chance, where it adds less than PART of the image's mean (0.1).
+    /// budget:K: at most K for each pair of subpaths.
+    #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
+    pub(crate) shadow_rays: Option<ShadowRays>,
+    /// How strategies that make the same path share it [default: balance].
+    #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
+    pub(crate) mis: Option<MisHeuristic>,
+    /// The strategies that take part (bdpt) [default: all].
+    ///
+    /// A list of rules, of which the last that matches decides: `all`, `-s0` (without s = 0), `-t1`,
+    /// `s2t3` (with this one). s counts vertices from the light, t from the camera. A list that does
+    /// not begin with `all` begins with none.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) strategies: Option<Strategies>,
+    /// Where next-event estimation takes its light point from (bdpt) [default: fresh].
+    ///
+    /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
+    #[arg(long, value_parser = named(LightPointChoice::NAMES))]
+    pub(crate) light_point: Option<LightPointChoice>,
+    /// How subpaths end by chance [default: albedo:0].
+    ///
+    /// albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
+    /// from bounce START on. off: only by --max-depth or escape.
+    #[arg(long, value_name = "RULE")]
+    pub(crate) path_roulette: Option<PathRoulette>,
+    /// The most bounces of a path; 0 is no limit [default: the scene's].
+    #[arg(long, value_name = "N")]
+    pub(crate) max_depth: Option<u32>,
+    /// The random numbers [default: the scene's].
+    #[arg(long, env = "BIDIR_SAMPLER", value_parser = named(SamplerKind::NAMES))]
+    pub(crate) sampler: Option<SamplerKind>,
+    /// Other seeds give unrelated noise [default: the scene's, or 0].
+    #[arg(long, env = "BIDIR_SEED", value_name = "N")]
+    pub(crate) seed: Option<u64>,
+}
+
+/// When it is enough: what is reached first ends the render.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Resources")]
+pub(crate) struct BudgetArgs {
+    /// Samples per pixel, which is the number of passes [default: the scene's].
+    ///
+    /// With --time alone there is no limit.
+    #[arg(long, env = "BIDIR_SPP", value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) spp: Option<u64>,
+    /// The time for rendering: 90, 90s, 10m, 1h30m.
+    ///
+    /// Reading the scene and writing the image do not count. A pass that would overrun is not begun,
+    /// but the first one always is.
+    #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
+    pub(crate) time: Option<Duration>,
+    /// Threads; 0 is one for each processor [default: 0].
+    #[arg(
+        long,
+        visible_alias = "nthreads",
+        env = "BIDIR_THREADS",
+        value_name = "N",
+        default_value_t = 0
+    )]
+    #[arg(hide_default_value = true, value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
+}
+
+/// The picture's geometry.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Film")]
+pub(crate) struct FilmArgs {
+    /// Width and height of the whole film in pixels.
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<Size>,
+    /// Render only these pixels, from x0,y0 up to but not including x1,y1.
+    #[arg(long, value_name = "X0,Y0,X1,Y1", group = "crops")]
+    pub(crate) crop: Option<PixelBounds>,
+    /// The same in the order of pbrt.
+    #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
+    #[arg(value_parser = PixelBounds::from_pbrt)]
+    pub(crate) pixelbounds: Option<PixelBounds>,
+    /// The same as fractions of the film, in the order of pbrt.
+    #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
+    pub(crate) cropwindow: Option<CropFractions>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LightPointChoice, MisHeuristic};
+    use crate::args::Cli;
+    use crate::settings::name_of;
+    use bidir::driver::Settings;
+    use clap::CommandFactory;
+
+    /// The help text of a flag of `bidir render`.
+    fn help_of(flag: &str) -> String {
+        let cli = Cli::command();
+        let render = cli.find_subcommand("render").unwrap();
+        let argument = render
+            .get_arguments()
+            .find(|argument| argument.get_long() == Some(flag));
+        argument.unwrap().get_help().unwrap().to_string()
+    }
+
+    #[track_caller]
+    fn check_default(flag: &str, default: impl std::fmt::Display) {
+        let help = help_of(flag);
+        assert!(
+            help.contains(&format!("[default: {default}]")),
+            "--{flag}: {help}"
+        );
+    }
+
+    #[test]
+    fn the_help_tells_the_true_defaults() {
+        let settings = Settings::default();
+        let path = &settings.path;
+        check_default("shadow-rays", settings.shadow_rays);
+        check_default("strategies", &path.strategies);
+        check_default("path-roulette", path.roulette);
+        check_default("mis", name_of(&MisHeuristic::NAMES, path.mis));
+        check_default(
+            "light-point",
+            name_of(&LightPointChoice::NAMES, path.light_point),
+        );
+        check_default("seed", format_args!("the scene's, or {}", settings.seed));
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

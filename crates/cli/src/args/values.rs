@@ -1,0 +1,272 @@
+//! Values of the command line.
+
+use bidir::film::PixelRect;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::fmt;
+use std::str::FromStr;
+
+/// A parser of the names in a table of the library, which stay in that one place.
+pub(crate) fn named<T, const N: usize>(
+    names: [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names.map(|(name, _)| name)).map(move |given| {
+        let entry = names.iter().find(|(name, _)| *name == given);
+        entry.expect("clap lets no other name through").1
+    })
+}
+
+/// Reads the name of an instruction set that this machine has.
+pub(crate) fn isa(name: &str) -> Result<accel::Isa, String> {
+    let isa = name
+        .parse::<accel::Isa>()
+        .map_err(|error| error.to_string())?;
+    let missing = || format!("this machine does not have the instruction set `{isa}`");
+    if isa.is_supported() {
+        Ok(isa)
+    } else {
+        Err(missing())
+    }
+}
+
+/// Width and height, written `1920x1080`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size(pub(crate) [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text
+            .split_once(['x', 'X'])
+            .and_then(|(width, height)| Some([positive(width)?, positive(height)?]));
+        numbers
+            .map(Self)
+            .ok_or_else(|| "expected WIDTHxHEIGHT, such as 1920x1080".into())
+    }
+}
+
+fn positive(text: &str) -> Option<u32> {
+    text.trim().parse().ok().filter(|&number| number > 0)
+}
+
+/// Numbers between commas, as many as there must be.
+fn list<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    numbers.ok()?.try_into().ok()
+}
+
+/// A rectangle of pixels, written `x0,y0,x1,y1`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PixelBounds(pub(crate) PixelRect);
+
+impl PixelBounds {
+    fn new([x0, y0, x1, y1]: [u32; 4]) -> Result<Self, String> {
+        if x0 < x1 && y0 < y1 {
+            Ok(Self(PixelRect {
+                min: [x0, y0],
+                max: [x1, y1],
+            }))
+        } else {
+            Err("the rectangle is empty: its end is not beyond its beginning".into())
+        }
+    }
+
+    /// pbrt's order, `x0,x1,y0,y1`.
+    pub(crate) fn from_pbrt(text: &str) -> Result<Self, String> {
+        let [x0, x1, y0, y1] = list(text).ok_or("expected four pixel numbers: x0,x1,y0,y1")?;
+        Self::new([x0, y0, x1, y1])
+    }
+}
+
+impl FromStr for PixelBounds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::new(list(text).ok_or("expected four pixel numbers: x0,y0,x1,y1")?)
+    }
+}
+
+/// A part of the film as fractions of its size, in pbrt's order: `x0,x1,y0,y1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CropFractions(pub(crate) [f32; 4]);
+
+impl FromStr for CropFractions {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let [x0, x1, y0, y1] =
+            list::<f32, 4>(text).ok_or("expected four numbers from 0 to 1: x0,x1,y0,y1")?;
+        let inside = [x0, x1, y0, y1]
+            .iter()
+            .all(|fraction| (0.0..=1.0).contains(fraction));
+        if inside && x0 < x1 && y0 < y1 {
+            Ok(Self([x0, x1, y0, y1]))
+        } else {
+            Err("expected 0 <= x0 < x1 <= 1 and 0 <= y0 < y1 <= 1".into())
+        }
+    }
+}
+
+/// A sample to repeat, written `x,y,pass`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ReplayTarget {
+    /// The pixel.
+    pub(crate) pixel: [u32; 2],
+    /// The pass, counted from 0.
+    pub(crate) pass: u64,
+}
+
+impl FromStr for ReplayTarget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = list::<u64, 3>(text).ok_or("expected three whole numbers: x,y,pass")?;
+        let [x, y, pass] = numbers;
+        let pixel = |at: u64| u32::try_from(at).map_err(|_| format!("there is no pixel {at}"));
+        Ok(Self {
+            pixel: [pixel(x)?, pixel(y)?],
+            pass,
+        })
+    }
+}
+
+/// A length of time, written `90`, `90s`, `10m`, `1h30m`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Duration(pub(crate) std::time::Duration);
+
+impl FromStr for Duration {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || "expected a time such as 90, 90s, 10m or 1h30m".to_owned();
+        let mut seconds = 0.0;
+        let mut rest = text.trim();
+        let mut largest = f64::INFINITY;
+        while !rest.is_empty() {
+            let end = rest
+                .find(|c: char| !c.is_ascii_digit() && c != '.')
+                .unwrap_or(rest.len());
+            let (number, after) = rest.split_at(end);
+            let mut letters = after.chars();
+            let unit = match letters.next() {
+                // A bare number is seconds, where it is all there is.
+                None if largest.is_infinite() => 1.0,
+                Some('s') => 1.0,
+                Some('m') => 60.0,
+                Some('h') => 3600.0,
+                _ => return Err(expected()),
+            };
+            if unit >= largest {
+                return Err(expected());
+            }
+            seconds += number.parse::<f64>().map_err(|_| expected())? * unit;
+            (largest, rest) = (unit, letters.as_str());
+        }
+        let time = std::time::Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
+        if time.is_zero() {
+            Err(expected())
+        } else {
+            Ok(Self(time))
+        }
+    }
+}
+
+impl fmt::Display for Duration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = self.0.as_secs_f64();
+        let (hours, minutes) = (self.0.as_secs() / 3600, self.0.as_secs() / 60 % 60);
+        match (hours, minutes) {
+            (0, 0) if seconds < 10.0 => write!(f, "{seconds:.2}s"),
+            (0, 0) => write!(f, "{seconds:.1}s"),
+            (0, _) => write!(f, "{minutes}m{:02}s", self.0.as_secs() % 60),
+            _ => write!(f, "{hours}h{minutes:02}m"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_duration(text: &str, expected: Option<f64>) {
+        let seconds = text
+            .parse::<Duration>()
+            .ok()
+            .map(|duration| duration.0.as_secs_f64());
+        assert_eq!(seconds, expected, "{text}");
+    }
+
+    #[test]
+    fn durations_are_as_people_write_them() {
+        check_duration("90", Some(90.0));
+        check_duration("90s", Some(90.0));
+        check_duration("0.5", Some(0.5));
+        check_duration("10m", Some(600.0));
+        check_duration("1h30m", Some(5400.0));
+        check_duration("1h30m5s", Some(5405.0));
+        for text in [
+            "",
+            "0",
+            "m",
+            "10x",
+            "1m2h",
+            "1h30",
+            "-5",
+            "1e9h",
+            "nan",
+            "99999999999999999999h",
+        ] {
+            check_duration(text, None);
+        }
+    }
+
+    #[test]
+    fn durations_are_written_shortly() {
+        let write = |seconds| Duration(std::time::Duration::from_secs_f64(seconds)).to_string();
+        assert_eq!(write(1.234), "1.23s");
+        assert_eq!(write(12.34), "12.3s");
+        assert_eq!(write(90.0), "1m30s");
+        assert_eq!(write(5400.0), "1h30m");
+    }
+
+    #[test]
+    fn rectangles_have_both_orders() {
+        let rect = PixelRect {
+            min: [1, 2],
+            max: [3, 4],
+        };
+        assert_eq!("1,2,3,4".parse(), Ok(PixelBounds(rect)));
+        assert_eq!(PixelBounds::from_pbrt("1,3,2,4"), Ok(PixelBounds(rect)));
+        for text in ["1,2,3", "1,2,1,4", "a,b,c,d", "-1,0,3,4"] {
+            assert!(text.parse::<PixelBounds>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn fractions_are_checked() {
+        assert_eq!(
+            "0.25,0.75,0,0.5".parse(),
+            Ok(CropFractions([0.25, 0.75, 0.0, 0.5]))
+        );
+        assert!("0.5,0.5,0,1".parse::<CropFractions>().is_err());
+        assert!("0,2,0,1".parse::<CropFractions>().is_err());
+    }
+
+    #[test]
+    fn sizes_and_samples_are_checked() {
+        assert_eq!("1920x1080".parse(), Ok(Size([1920, 1080])));
+        assert_eq!(
+            "3,4,17".parse(),
+            Ok(ReplayTarget {
+                pixel: [3, 4],
+                pass: 17
+            })
+        );
+        assert!("0x5".parse::<Size>().is_err());
+        assert!("1,2".parse::<ReplayTarget>().is_err());
+    }
+}

@@ -1,0 +1,228 @@
+//! `bidir info`: what is in a scene.
+
+use crate::args::InfoArgs;
+use crate::console::{Console, print, print_json};
+use crate::exit::{Exit, Failure};
+use crate::scene_io::{self, LoadedScene};
+use crate::settings::SettingsText;
+use bidir::camera::Camera;
+use bidir::film::Film;
+use bidir::light::Light;
+use bidir::material::Material;
+use bidir::scene::Scene;
+use bidir::shape::Shape;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// How many there are of each kind.
+type Counts = BTreeMap<&'static str, usize>;
+
+/// What is in a scene.
+#[derive(Debug, Serialize)]
+struct Info {
+    scene: String,
+    film: FilmInfo,
+    camera: &'static str,
+    settings: SettingsText,
+    spp: u64,
+    shapes: Counts,
+    triangles: usize,
+    primitives: usize,
+    instances: usize,
+    materials: Counts,
+    lights: Counts,
+    textures: usize,
+    /// The two corners of a box around all surfaces. None: there are none.
+    bounds: Option<[[f32; 3]; 2]>,
+    bvh_bytes: usize,
+    isa: String,
+    warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct FilmInfo {
+    resolution: [u32; 2],
+    /// Left, top, right and bottom (exclusive).
+    crop: [u32; 4],
+    /// Half widths of the pixel filter.
+    filter_radius: [f32; 2],
+    exposure: f32,
+    /// The name that the scene gives its image.
+    output: Option<String>,
+    bytes: u64,
+}
+
+/// Tells what is in a scene.
+pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
+    let loaded = scene_io::load(&args.scene, None)?;
+    loaded.tell_warnings(&args.scene, 0, console)?;
+    let info = Info::new(args.scene.scene.display().to_string(), &loaded);
+    if args.json {
+        print_json(&info)
+    } else {
+        print(&info.text())
+    }
+}
+
+impl Info {
+    fn new(name: String, loaded: &LoadedScene) -> Self {
+        let scene = &loaded.scene;
+        let bounds = scene.bvh().bounds();
+        let corners = [bounds.min.to_array(), bounds.max.to_array()];
+        let triangles = scene.shapes().iter().map(|shape| match shape {
+            Shape::Mesh(mesh) => mesh.triangle_count(),
+            Shape::Sphere(_) | Shape::Disk(_) => 0,
+        });
+        let camera = match scene.camera() {
+            Camera::Perspective(_) => "perspective",
+        };
+        Self {
+            scene: name,
+            film: FilmInfo::new(scene, loaded.output.as_deref()),
+            camera,
+            settings: SettingsText::from(&loaded.settings),
+            spp: loaded.spp,
+            shapes: count(scene.shapes(), shape_kind),
+            triangles: triangles.sum(),
+            primitives: scene.bvh().primitive_count(),
+            instances: loaded.summary.instances,
+            materials: count(scene.materials(), material_kind),
+            lights: count(scene.lights(), light_kind),
+            textures: loaded.summary.textures,
+            bounds: (scene.bvh().primitive_count() > 0).then_some(corners),
+            bvh_bytes: scene.bvh().memory_bytes(),
+            isa: scene.bvh().isa().to_string(),
+            warnings: loaded.warnings.clone(),
+        }
+    }
+
+    /// One line for each thing.
+    fn text(&self) -> String {
+        let film = &self.film;
+        let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
+        let settings = &self.settings;
+        let depth = match settings.max_depth {
+            0 => "no limit".to_owned(),
+            depth => format!("at most {depth} bounces"),
+        };
+        let lines = [
+            ("scene", self.scene.clone()),
+            (
+                "film",
+                format!("{width}x{height}, pixels {x0},{y0} to {x1},{y1}"),
+            ),
+            (
+                "output",
+                film.output.clone().unwrap_or_else(|| "not named".into()),
+            ),
+            ("camera", self.camera.to_owned()),
+            ("integrator", format!("{}, {depth}", settings.integrator)),
+            (
+                "sampler",
+                format!(
+                    "{}, {} spp, seed {}",
+                    settings.sampler, self.spp, settings.seed
+                ),
+            ),
+            ("shapes", list(&self.shapes)),
+            ("triangles", self.triangles.to_string()),
+            ("instances", self.instances.to_string()),
+            ("materials", list(&self.materials)),
+            ("lights", list(&self.lights)),
+            ("textures", self.textures.to_string()),
+            ("bounds", self.bounds_text()),
+            ("film memory", bytes(film.bytes)),
+            (
+                "BVH memory",
+                format!("{} ({})", bytes(self.bvh_bytes as u64), self.isa),
+            ),
+        ];
+        let mut text = String::new();
+        for (name, value) in lines {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{name:<12} {value}");
+        }
+        text
+    }
+
+    fn bounds_text(&self) -> String {
+        self.bounds.map_or_else(
+            || "no surfaces".into(),
+            |[[a, b, c], [x, y, z]]| format!("({a}, {b}, {c}) to ({x}, {y}, {z})"),
+        )
+    }
+}
+
+impl FilmInfo {
+    fn new(scene: &Scene, output: Option<&std::path::Path>) -> Self {
+        let film = scene.film();
+        Self {
+            resolution: film.resolution,
+            crop: [
+                film.crop.min[0],
+                film.crop.min[1],
+                film.crop.max[0],
+                film.crop.max[1],
+            ],
+            filter_radius: film.filter.radius().to_array(),
+            exposure: film.exposure,
+            output: output.map(|output| output.display().to_string()),
+            bytes: film.crop.area() * Film::BYTES_PER_PIXEL,
+        }
+    }
+}
+
+fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
+    let mut counts = Counts::new();
+    for item in items {
+        *counts.entry(kind(item)).or_default() += 1;
+    }
+    counts
+}
+
+fn shape_kind(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Mesh(_) => "mesh",
+        Shape::Sphere(_) => "sphere",
+        Shape::Disk(_) => "disk",
+    }
+}
+
+fn material_kind(material: &Material) -> &'static str {
+    match material {
+        Material::Diffuse { .. } => "diffuse",
+        Material::Conductor { .. } => "conductor",
+        Material::Dielectric { .. } => "dielectric",
+    }
+}
+
+fn light_kind(light: &Light) -> &'static str {
+    match light {
+        Light::Area(_) => "area",
+        Light::Point(_) => "point",
+        Light::Spot(_) => "spot",
+        Light::Distant(_) => "distant",
+        Light::Infinite(_) => "infinite",
+    }
+}
+
+/// `3: 2 disk, 1 mesh`.
+fn list(counts: &Counts) -> String {
+    let kinds: Vec<_> = counts
+        .iter()
+        .map(|(kind, count)| format!("{count} {kind}"))
+        .collect();
+    match counts.values().sum::<usize>() {
+        0 => "none".to_owned(),
+        total => format!("{total}: {}", kinds.join(", ")),
+    }
+}
+
+fn bytes(count: u64) -> String {
+    let units = [(1u64 << 30, "GiB"), (1 << 20, "MiB"), (1 << 10, "KiB")];
+    match units.into_iter().find(|(unit, _)| count >= *unit) {
+        Some((unit, name)) => format!("{:.1} {name}", count as f64 / unit as f64),
+        None => format!("{count} bytes"),
+    }
+}

@@ -1,0 +1,155 @@
+//! Everything that is read and written by the `formats` library passes here.
+
+use crate::args::{FilmArgs, SceneArgs};
+use crate::console::Console;
+use crate::exit::{Exit, Failure};
+use crate::metrics::Pixels;
+use bidir::driver::Settings;
+use bidir::film::{FilmSettings, Picture};
+use bidir::scene::Scene;
+use formats::ErrorKind;
+use formats::image::{ExrImage, ExrLayer};
+use formats::pbrt::{Crop, LoadOptions, Summary};
+use std::path::{Path, PathBuf};
+
+pub(crate) use formats::image::MetadataValue;
+
+/// A scene that was read, with what else its file says.
+pub(crate) struct LoadedScene {
+    /// The scene.
+    pub(crate) scene: Scene,
+    /// The file's settings, over the defaults.
+    pub(crate) settings: Settings,
+    /// The file's number of samples per pixel.
+    pub(crate) spp: u64,
+    /// The name that the file gives its image.
+    pub(crate) output: Option<PathBuf>,
+    /// What is odd but no error, each with its place.
+    pub(crate) warnings: Vec<String>,
+    /// What the scene is made of.
+    pub(crate) summary: Summary,
+}
+
+/// Reads a scene, with the film that `film` asks for instead of the file's.
+pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedScene, Failure> {
+    let options = LoadOptions {
+        lenient: args.lenient,
+        resolution: film.and_then(|film| film.size).map(|size| size.0),
+        crop: film.and_then(crop),
+        isa: args.isa,
+    };
+    let loaded = formats::pbrt::load(&args.scene, &options)
+        .map_err(|error| Failure::diagnostic(exit_of_scene(&error), error))?;
+    let mut settings = Settings {
+        integrator: loaded.settings.integrator,
+        sampler: loaded.settings.sampler,
+        seed: loaded.settings.seed.unwrap_or_default(),
+        ..Settings::default()
+    };
+    settings.path.max_depth = Some(loaded.settings.max_depth);
+    let mut warnings = loaded.warnings;
+    warnings.extend(film.and_then(|film| crop_warning(film, &loaded.scene)));
+    Ok(LoadedScene {
+        scene: loaded.scene,
+        settings,
+        spp: loaded.settings.samples_per_pixel.into(),
+        output: loaded.settings.output.map(PathBuf::from),
+        warnings,
+        summary: loaded.summary,
+    })
+}
+
+impl LoadedScene {
+    /// Tells the warnings, of which there are `others` more; with `--strict` they are errors.
+    pub(crate) fn tell_warnings(
+        &self,
+        args: &SceneArgs,
+        others: usize,
+        console: Console,
+    ) -> Result<(), Failure> {
+        for warning in &self.warnings {
+            console.warning(warning);
+        }
+        let count = self.warnings.len() + others;
+        if args.strict && count > 0 {
+            let plural = if count == 1 { "" } else { "s" };
+            let message = format!("{count} warning{plural}, which --strict makes an error");
+            return Err(Failure::new(Exit::Validation, message));
+        }
+        Ok(())
+    }
+}
+
+/// The crop that flags ask for; clap lets only one of them be given.
+fn crop(film: &FilmArgs) -> Option<Crop> {
+    let pixels = film.crop.or(film.pixelbounds).map(|bounds| {
+        let rect = bounds.0;
+        Crop::Pixels([rect.min[0], rect.max[0], rect.min[1], rect.max[1]])
+    });
+    pixels.or_else(|| {
+        film.cropwindow
+            .map(|fractions| Crop::Fractions(fractions.0))
+    })
+}
+
+/// Tells that a crop reaches beyond the film. None: it does not.
+fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
+    let asked = args.crop.or(args.pixelbounds)?.0;
+    let film = scene.film();
+    let [width, height] = film.resolution;
+    let message = format!("the crop reaches beyond the film, which has {width} x {height} pixels");
+    (film.crop != asked).then_some(message)
+}
+
+/// A scene file that cannot be opened is no fault of the scene; what it names and is not there is.
+fn exit_of_scene(error: &formats::Error) -> Exit {
+    match error.kind() {
+        ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,
+        _ => Exit::Scene,
+    }
+}
+
+/// Reads an image.
+pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
+    let image = formats::image::read(path, None)
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))?;
+    Ok(Pixels {
+        size: [image.width, image.height],
+        data: image.rgb().collect(),
+    })
+}
+
+/// Writes a picture as EXR with attributes.
+pub(crate) fn write_exr(
+    path: &Path,
+    film: &FilmSettings,
+    picture: &Picture,
+    metadata: &[(String, MetadataValue)],
+) -> Result<(), Failure> {
+    let crop = [
+        film.crop.min[0],
+        film.crop.min[1],
+        film.crop.max[0],
+        film.crop.max[1],
+    ];
+    let layer = ExrLayer {
+        name: "",
+        channels: &["R", "G", "B"],
+        data: picture.pixels.as_flattened(),
+    };
+    let image = ExrImage {
+        resolution: film.resolution.map(|side| side as usize),
+        crop: crop.map(|edge| edge as usize),
+        layers: &[layer],
+        metadata,
+    };
+    formats::image::write_exr(path, &image)
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Writes a picture as PNG.
+pub(crate) fn write_png(path: &Path, picture: &Picture) -> Result<(), Failure> {
+    let size = [picture.width as u32, picture.height as u32];
+    formats::image::write_png(path, size, &picture.pixels)
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}

@@ -1,0 +1,166 @@
+//! From flags, environment and scene to what is rendered. `clap` puts flags before the environment;
+//! here both come before the scene.
+
+use crate::args::{BudgetArgs, EstimatorArgs};
+use crate::console::Console;
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::path::{LightPointChoice, MisHeuristic};
+use bidir::sampler::SamplerKind;
+use serde::Serialize;
+use std::time::Duration;
+
+/// The settings of a render; `scene` holds what the scene file says, over the defaults.
+pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
+    let mut settings = scene;
+    let path = &mut settings.path;
+    path.mis = args.mis.unwrap_or(path.mis);
+    path.light_point = args.light_point.unwrap_or(path.light_point);
+    path.roulette = args.path_roulette.unwrap_or(path.roulette);
+    if let Some(depth) = args.max_depth {
+        path.max_depth = (depth > 0).then_some(depth);
+    }
+    if let Some(strategies) = &args.strategies {
+        path.strategies = strategies.clone();
+    }
+    settings.integrator = args.integrator.unwrap_or(settings.integrator);
+    settings.shadow_rays = args.shadow_rays.unwrap_or(settings.shadow_rays);
+    settings.sampler = args.sampler.unwrap_or(settings.sampler);
+    settings.seed = args.seed.unwrap_or(settings.seed);
+    settings
+}
+
+/// Tells which flags have no influence on this integrator. Returns how many there are.
+pub(crate) fn warn_unused(args: &EstimatorArgs, settings: &Settings, console: Console) -> usize {
+    if settings.integrator == IntegratorKind::Bdpt {
+        return 0;
+    }
+    let given = [
+        ("--strategies", args.strategies.is_some()),
+        ("--light-point", args.light_point.is_some()),
+        ("--shadow-rays", args.shadow_rays.is_some()),
+        (
+            "--mis",
+            args.mis.is_some() && settings.integrator == IntegratorKind::Light,
+        ),
+    ];
+    let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
+    let unused = given.iter().filter(|(_, is_given)| *is_given);
+    unused
+        .map(|(flag, _)| {
+            console.warning(format_args!(
+                "{flag} has no influence on the integrator `{integrator}`"
+            ));
+        })
+        .count()
+}
+
+/// When a render is enough: what is reached first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Budget {
+    /// The most passes.
+    pub(crate) passes: Option<u64>,
+    /// The most time.
+    pub(crate) time: Option<Duration>,
+}
+
+impl Budget {
+    /// The budget of a render; `scene` is the number of samples that the scene file says.
+    pub(crate) fn new(args: &BudgetArgs, scene: u64) -> Self {
+        let time = args.time.map(|time| time.0);
+        let passes = match (args.spp, time) {
+            (Some(spp), _) => Some(spp),
+            (None, Some(_)) => None,
+            (None, None) => Some(scene),
+        };
+        Self { passes, time }
+    }
+
+    /// True where another pass of about the time `pass` still fits.
+    pub(crate) fn allows(&self, passes: u64, elapsed: Duration, pass: Duration) -> bool {
+        let in_time = passes == 0 || self.time.is_none_or(|time| elapsed + pass <= time);
+        in_time && self.passes.is_none_or(|most| passes < most)
+    }
+
+    /// How much of the budget is used up, given passes as a fraction. Range: `[0, 1]`.
+    pub(crate) fn used(&self, passes: f64, elapsed: Duration) -> f64 {
+        let of_passes = self.passes.map_or(0.0, |most| passes / most as f64);
+        let of_time = self.time.map_or(0.0, |most| elapsed.div_duration_f64(most));
+        of_passes.max(of_time).clamp(0.0, 1.0)
+    }
+}
+
+/// The name of a value in a table of the library.
+pub(crate) fn name_of<T: Copy + PartialEq>(
+    names: &'static [(&'static str, T)],
+    value: T,
+) -> &'static str {
+    names
+        .iter()
+        .find(|(_, named)| *named == value)
+        .map_or("", |(name, _)| name)
+}
+
+/// All settings, as flags write them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct SettingsText {
+    pub(crate) integrator: &'static str,
+    pub(crate) shadow_rays: String,
+    pub(crate) mis: &'static str,
+    pub(crate) strategies: String,
+    pub(crate) light_point: &'static str,
+    pub(crate) path_roulette: String,
+    pub(crate) max_depth: u32,
+    pub(crate) sampler: &'static str,
+    pub(crate) seed: u64,
+}
+
+impl From<&Settings> for SettingsText {
+    fn from(settings: &Settings) -> Self {
+        let path = &settings.path;
+        Self {
+            integrator: name_of(&IntegratorKind::NAMES, settings.integrator),
+            shadow_rays: settings.shadow_rays.to_string(),
+            mis: name_of(&MisHeuristic::NAMES, path.mis),
+            strategies: path.strategies.to_string(),
+            light_point: name_of(&LightPointChoice::NAMES, path.light_point),
+            path_roulette: path.roulette.to_string(),
+            max_depth: path.max_depth.unwrap_or(0),
+            sampler: name_of(&SamplerKind::NAMES, settings.sampler),
+            seed: settings.seed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SECOND: Duration = Duration::from_secs(1);
+
+    #[test]
+    fn a_pass_that_would_overrun_is_not_begun() {
+        let budget = Budget {
+            passes: Some(9),
+            time: Some(SECOND * 10),
+        };
+        assert!(budget.allows(5, SECOND * 7, SECOND * 3));
+        assert!(!budget.allows(5, SECOND * 8, SECOND * 3));
+        assert!(!budget.allows(9, SECOND, SECOND));
+        assert!(
+            budget.allows(0, SECOND * 20, SECOND),
+            "there is always a first one"
+        );
+    }
+
+    #[test]
+    fn what_is_reached_first_counts() {
+        let budget = Budget {
+            passes: Some(10),
+            time: Some(SECOND * 10),
+        };
+        assert!((budget.used(5.0, SECOND) - 0.5).abs() < 1e-9);
+        assert!((budget.used(1.0, SECOND * 8) - 0.8).abs() < 1e-9);
+        assert!((budget.used(1.0, SECOND * 80) - 1.0).abs() < 1e-9);
+    }
+}

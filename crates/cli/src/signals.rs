@@ -1,0 +1,42 @@
+//! Ctrl-C and SIGTERM: the first asks to stop, the second stops.
+
+use crate::exit::{Exit, Failure};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// The signals that end a render, each with how the command then ends.
+const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)];
+
+/// Whether a signal asked to stop.
+#[derive(Debug)]
+pub(crate) struct Signals {
+    received: Arc<AtomicUsize>,
+}
+
+impl Signals {
+    /// Watches from now on; a second signal ends the process at once.
+    pub(crate) fn watch() -> Result<Self, Failure> {
+        let received = Arc::new(AtomicUsize::new(0));
+        let again = Arc::new(AtomicBool::new(false));
+        for (signal, exit) in SIGNALS {
+            // In this order: the first signal finds `again` unset.
+            flag::register_conditional_shutdown(signal, exit.code().into(), Arc::clone(&again))
+                .and_then(|_| flag::register(signal, Arc::clone(&again)))
+                .and_then(|_| flag::register_usize(signal, Arc::clone(&received), signal as usize))
+                .map_err(|error| {
+                    let message = format!("signals cannot be watched: {error}");
+                    Failure::new(Exit::RenderFailed, message)
+                })?;
+        }
+        Ok(Self { received })
+    }
+
+    /// How the command ends because of a signal. None: there was none.
+    pub(crate) fn exit(&self) -> Option<Exit> {
+        let received = self.received.load(Ordering::Relaxed);
+        let of = |&&(signal, _): &&(i32, Exit)| signal as usize == received;
+        SIGNALS.iter().find(of).map(|&(_, exit)| exit)
+    }
+}

@@ -1,0 +1,132 @@
+use crate::common::{Ran, Workplace, scenes};
+
+#[track_caller]
+fn check(arguments: &str, code: i32, says: &str) {
+    Workplace::new().run(arguments).expect(code).says(says);
+}
+
+#[test]
+fn faults_of_the_command_line_exit_with_2() {
+    check("", 2, "Usage");
+    check("render", 2, "SCENE");
+    check("render room.pbrt --integrator photon", 2, "bdpt");
+    check("render room.pbrt --shadow-rays some", 2, "per-light-vertex");
+    check("render room.pbrt --strategies s", 2, "strategy");
+    check("render room.pbrt --time soon", 2, "1h30m");
+    check("render room.pbrt --spp 0", 2, "--spp");
+    check("render room.pbrt --size 0x4", 2, "1920x1080");
+    check(
+        "render room.pbrt --crop 0,0,4,4 --cropwindow 0,1,0,1",
+        2,
+        "cannot be used with",
+    );
+    check("render room.pbrt -o room.jpg", 2, ".exr or .png");
+    check("render room.pbrt --replay 24,0,0", 2, "is not rendered");
+    check(
+        "compare room.exr room.exr --exact --resample",
+        2,
+        "cannot be used with",
+    );
+}
+
+#[test]
+fn the_environment_is_read_after_flags() {
+    let place = Workplace::new();
+    let spp = |arguments: &str, value: &str| {
+        let mut command = place.command(arguments);
+        Ran::of(command.env("BIDIR_SPP", value))
+    };
+    spp("render room.pbrt", "3").expect(0).says("3 spp");
+    spp("render room.pbrt --spp 1", "3").expect(0).says("1 spp");
+    spp("render room.pbrt", "many").expect(2).says("--spp");
+    let mut command = place.command("render room.pbrt");
+    Ran::of(command.env("BIDIR_ISA", "neon"))
+        .expect(2)
+        .says("scalar");
+}
+
+#[test]
+fn what_cannot_be_read_or_written_exits_with_4_before_anything_is_rendered() {
+    check("render missing.pbrt", 4, "missing.pbrt");
+    check("info missing.pbrt", 4, "missing.pbrt");
+    check("compare missing.exr missing.exr", 4, "missing.exr");
+    check("compare room.pbrt room.pbrt", 4, "room.pbrt");
+    let far = "--spp 1000000000";
+    check(
+        &format!("render room.pbrt {far} -o missing/room.exr"),
+        4,
+        "hint: there is no folder",
+    );
+    check(
+        &format!("render room.pbrt {far} --stats missing/a.json"),
+        4,
+        "missing/a.json",
+    );
+    let place = Workplace::new();
+    std::fs::create_dir(place.path("folder.exr")).unwrap();
+    place
+        .run(&format!("render room.pbrt {far} -o folder.exr"))
+        .expect(4)
+        .says("is a folder");
+}
+
+#[test]
+fn warnings_are_errors_where_they_shall_be() {
+    let place = Workplace::new();
+    let light = "render room.pbrt --integrator light --shadow-rays per-pair";
+    place
+        .run(light)
+        .expect(0)
+        .says("warning: --shadow-rays has no influence");
+    place
+        .run(&format!("{light} --strict"))
+        .expect(6)
+        .says("--strict");
+    place.run("render room.pbrt --strict").expect(0);
+    place
+        .run("render room.pbrt --crop 8,8,99,9")
+        .expect(0)
+        .says("warning: the crop reaches beyond");
+}
+
+/// Checks that a scene of `scenes/broken` is refused with its place.
+#[track_caller]
+fn check_broken(name: &str, says: &str) {
+    let scene = scenes().join("broken").join(name);
+    let mut command = Workplace::new().command("render");
+    let ran = Ran::of(command.current_dir(std::env::temp_dir()).arg(&scene))
+        .expect(3)
+        .says(says);
+    ran.says(&format!("{name}:")).says("╭─[");
+}
+
+#[test]
+fn broken_scenes_exit_with_3_and_show_the_place() {
+    check_broken("huge-film.pbrt", "1000000");
+    check_broken("missing-mesh.pbrt", "no-such-mesh.ply");
+    check_broken("misspelt-material.pbrt", "did you mean `diffuse`?");
+    check_broken("nan-vertex.pbrt", "nan-vertex.ply");
+    check_broken("unclosed-string.pbrt", "diffuse ");
+}
+
+#[test]
+fn a_film_beyond_memory_is_a_fault_of_the_scene() {
+    let message = "room.pbrt: a film of 65536 x 65536 pixels is too large";
+    check("render room.pbrt --size 65536x65536", 3, message);
+}
+
+#[test]
+fn colour_is_only_where_it_is_wanted() {
+    let place = Workplace::new();
+    let mut command = place.command("render missing.pbrt");
+    let plain = Ran::of(command.env_remove("FORCE_COLOR"));
+    assert!(!plain.stderr.contains('\x1b'));
+    let mut command = place.command("render missing.pbrt");
+    command
+        .env("FORCE_COLOR", "1")
+        .env_remove("NO_COLOR")
+        .env("TERM", "xterm");
+    Ran::of(&mut command).says("\x1b[");
+    let ran = Ran::of(command.arg("--no-color"));
+    assert!(!ran.stderr.contains('\x1b'));
+}

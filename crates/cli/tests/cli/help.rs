@@ -1,0 +1,87 @@
+use crate::common::Workplace;
+use std::collections::BTreeSet;
+
+/// The flags that a command's help describes: the words at the head of its lines.
+fn flags(help: &str) -> BTreeSet<&str> {
+    let heads = help.lines().filter_map(|line| {
+        let line = line.trim_start();
+        let line = line
+            .split_once(", ")
+            .filter(|(short, _)| short.len() == 2)
+            .map_or(line, |l| l.1);
+        line.starts_with("--")
+            .then(|| line.split_whitespace().next())?
+    });
+    heads.collect()
+}
+
+#[track_caller]
+fn check_flags(command: &str, expected: &str) {
+    let help = Workplace::new()
+        .run(&format!("{command} --help"))
+        .expect(0)
+        .stdout;
+    let expected: BTreeSet<_> = expected.split_whitespace().collect();
+    assert_eq!(flags(&help), expected, "{command}");
+}
+
+#[test]
+fn every_flag_is_described() {
+    check_flags("", "--help --no-color --version");
+    check_flags(
+        "render",
+        "--crop --cropwindow --help --integrator --isa --json --lenient --light-point --max-depth \
+         --mis --no-color --output --path-roulette --pixelbounds --quiet --replay --sampler --seed \
+         --shadow-rays --size --spp --stats --strategies --strict --threads --time --version",
+    );
+    check_flags(
+        "info",
+        "--help --isa --json --lenient --no-color --strict --version",
+    );
+    check_flags(
+        "compare",
+        "--exact --help --json --no-color --resample --version",
+    );
+}
+
+#[test]
+fn help_tells_exit_codes_defaults_environment_and_other_spellings() {
+    let place = Workplace::new();
+    place
+        .run("--help")
+        .expect(0)
+        .prints("75  stopped early")
+        .prints("143  stopped by SIGTERM");
+    let mut render = place.run("render --help").expect(0);
+    for part in [
+        "BIDIR_THREADS",
+        "BIDIR_SEED",
+        "BIDIR_ISA",
+        "outfile",
+        "nthreads",
+        "Examples:",
+    ] {
+        render = render.prints(part);
+    }
+    render
+        .prints("[default: fresh]")
+        .prints("[possible values: path, light, bdpt]");
+}
+
+#[test]
+fn version_completions_and_manual_are_printed() {
+    let place = Workplace::new();
+    place
+        .run("--version")
+        .expect(0)
+        .prints(env!("CARGO_PKG_VERSION"));
+    for shell in ["bash", "zsh", "fish"] {
+        place
+            .run(&format!("completions {shell}"))
+            .expect(0)
+            .prints("shadow-rays");
+    }
+    place.run("man").expect(0).prints(".TH bidir");
+    place.run("man render").expect(0).prints("shadow\\-rays");
+    place.run("man nothing").expect(2);
+}

@@ -1,0 +1,13 @@
+//! Tests of the `bidir` command from outside: what it prints, writes and returns.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
+
+mod common;
+mod compare;
+mod failures;
+mod help;
+mod info;
+mod render;
+mod replay;
+#[cfg(unix)]
+mod signals;

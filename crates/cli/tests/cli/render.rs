@@ -1,0 +1,160 @@
+use crate::common::{Ran, Workplace};
+
+#[test]
+fn the_image_has_the_name_that_the_scene_says_and_a_picture_beside_it() {
+    let place = Workplace::new();
+    let ran = place
+        .run("render room.pbrt")
+        .expect(0)
+        .says("2 spp")
+        .says("wrote room.exr, room.png");
+    assert_eq!(ran.stdout, "");
+    assert!(place.path("room.exr").exists() && place.path("room.png").exists());
+}
+
+#[test]
+fn quiet_is_silent_and_a_picture_may_stand_alone() {
+    let place = Workplace::new();
+    let ran = place.run("render room.pbrt -q -o alone.png").expect(0);
+    assert_eq!(ran.stdout + &ran.stderr, "");
+    assert!(place.path("alone.png").exists() && !place.path("alone.exr").exists());
+}
+
+#[test]
+fn lines_of_progress_end_where_no_terminal_listens() {
+    let ran = Workplace::new()
+        .run("render room.pbrt --time 1500ms")
+        .expect(2);
+    assert!(!ran.stderr.contains('\r'));
+    let ran = Workplace::new()
+        .run("render room.pbrt --time 1.3")
+        .expect(0)
+        .says("Progress: ");
+    assert!(!ran.stderr.contains('\r') && !ran.stderr.contains('\x1b'));
+}
+
+/// Checks that two ways to render give the same bits.
+#[track_caller]
+fn check_same(place: &Workplace, a: &str, b: &str) {
+    place
+        .run(&format!("render room.pbrt -o a.exr {a}"))
+        .expect(0);
+    place
+        .run(&format!("render room.pbrt -o b.exr {b}"))
+        .expect(0);
+    place.run("compare a.exr b.exr --exact").expect(0);
+}
+
+#[test]
+fn threads_instructions_and_spellings_do_not_change_a_bit() {
+    let place = Workplace::new();
+    check_same(&place, "--threads 1", "--nthreads 2");
+    check_same(&place, "--isa scalar", "");
+    check_same(&place, "--crop 4,2,20,10", "--pixelbounds 4,20,2,10");
+    check_same(
+        &place,
+        "--crop 6,4,18,12",
+        "--cropwindow 0.25,0.75,0.25,0.75",
+    );
+    check_same(&place, "--seed 0", "");
+    let mut command = place.command("render room.pbrt --outfile b.exr --seed 0");
+    Ran::of(command.env("BIDIR_ISA", "scalar").env("BIDIR_SEED", "7")).expect(0);
+    place.run("compare a.exr b.exr --exact").expect(0);
+}
+
+#[test]
+fn settings_change_the_image() {
+    let place = Workplace::new();
+    place.run("render room.pbrt -q -o a.exr").expect(0);
+    for setting in [
+        "--seed 1",
+        "--sampler independent",
+        "--integrator path",
+        "--mis uniform",
+        "--max-depth 1",
+        "--strategies all,-s0",
+        "--light-point shared",
+        "--path-roulette off",
+        "--shadow-rays budget:2",
+        "--spp 3",
+    ] {
+        place
+            .run(&format!("render room.pbrt -q -o b.exr {setting}"))
+            .expect(0);
+        place.run("compare a.exr b.exr --exact").expect(6);
+    }
+}
+
+#[test]
+fn time_or_samples_end_a_render_whichever_is_first() {
+    let place = Workplace::new();
+    place
+        .run("render room.pbrt --time 1h --spp 3")
+        .expect(0)
+        .says("3 spp");
+    place
+        .run("render room.pbrt --time 0.000001 --spp 3")
+        .expect(0)
+        .says("1 spp");
+    let start = std::time::Instant::now();
+    place.run("render room.pbrt --time 0.3").expect(0);
+    assert!((0.2..5.0).contains(&start.elapsed().as_secs_f64()));
+}
+
+#[test]
+fn statistics_tell_settings_times_and_rays() {
+    let place = Workplace::new();
+    let arguments = "--stats s.json --shadow-rays ray-roulette:0.2 --crop 1,2,9,10 --threads 1";
+    place
+        .run(&format!("render room.pbrt {arguments}"))
+        .expect(0);
+    let stats: serde_json::Value = serde_json::from_str(&place.read("s.json")).unwrap();
+    let number = |path: &str| stats.pointer(path).unwrap().as_f64().unwrap();
+    assert_eq!(stats["settings"]["shadow_rays"], "ray-roulette:0.2");
+    assert_eq!(stats["settings"]["integrator"], "bdpt");
+    assert_eq!(stats["crop"], serde_json::json!([1, 2, 9, 10]));
+    assert_eq!(stats["resolution"], serde_json::json!([24, 16]));
+    assert_eq!((number("/spp") as u64, number("/threads") as u64), (2, 1));
+    assert_eq!(number("/samples") as u64, 2 * 64);
+    let kinds = ["camera", "light", "connection", "light_image"];
+    let sum: f64 = kinds
+        .iter()
+        .map(|kind| number(&format!("/rays/{kind}")))
+        .sum();
+    assert_eq!(sum as u64, number("/rays/total") as u64);
+    assert!(number("/rays/training") > 0.0 && number("/candidates") > 0.0);
+    assert!(number("/seconds") > 0.0 && number("/load_seconds") > 0.0);
+    let per_sample = number("/rays/connection") / number("/samples");
+    assert!((number("/connection_rays_per_sample") - per_sample).abs() < 1e-9);
+    assert!(stats["dropped_list"].is_array() && stats["connection_blocked"].is_u64());
+}
+
+#[test]
+fn the_image_says_how_it_was_made() {
+    let place = Workplace::new();
+    place.run("render room.pbrt --seed 1234567").expect(0);
+    let bytes = std::fs::read(place.path("room.exr")).unwrap();
+    for part in [
+        "samplesPerPixel",
+        "renderTimeSeconds",
+        "bidir/version",
+        "bidir/rays",
+        "1234567",
+    ] {
+        assert!(
+            bytes
+                .windows(part.len())
+                .any(|window| window == part.as_bytes()),
+            "{part}"
+        );
+    }
+}
+
+#[test]
+fn a_scene_may_come_from_standard_input() {
+    let place = Workplace::new();
+    let mut command = place.command("render - -o stdin.exr");
+    command.stdin(std::fs::File::open(place.path("room.pbrt")).unwrap());
+    Ran::of(&mut command).expect(0);
+    assert!(place.path("stdin.exr").exists());
+}

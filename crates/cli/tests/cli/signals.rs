@@ -1,0 +1,73 @@
+use crate::common::{Ran, Workplace};
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+fn send(signal: &str, child: &Child) {
+    let id = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-s", signal, &id])
+            .status()
+            .unwrap()
+            .success()
+    );
+}
+
+/// Renders, and sends each signal when a line with its words was told.
+fn interrupted(place: &Workplace, arguments: &str, signals: &[(&str, &str)]) -> Ran {
+    let mut command = place.command(&format!("render room.pbrt {arguments}"));
+    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+    let mut told = String::new();
+    let mut signals = signals.iter();
+    let mut next = signals.next();
+    for line in BufReader::new(child.stderr.take().unwrap()).lines() {
+        let line = line.unwrap() + "\n";
+        told += &line;
+        if let Some((_, signal)) = next.filter(|(words, _)| line.contains(words)) {
+            send(signal, &child);
+            next = signals.next();
+        }
+    }
+    let code = child.wait().unwrap().code();
+    Ran {
+        code,
+        stdout: String::new(),
+        stderr: told,
+    }
+}
+
+#[test]
+fn the_first_signal_ends_after_the_running_pass_with_an_image() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let place = Workplace::new();
+        // A tenth of the time is told of after a second.
+        let arguments = "--spp 1000000000 --time 10";
+        let ran = interrupted(&place, arguments, &[("Progress:", signal)]).expect(code);
+        ran.says("wrote room.exr");
+        place.run("compare room.exr room.exr --exact").expect(0);
+    }
+}
+
+#[test]
+fn the_second_signal_ends_at_once() {
+    let place = Workplace::new();
+    let start = Instant::now();
+    let arguments = "--size 1000x1000 --spp 1 --time 10 --threads 1";
+    let signals = [
+        ("Progress:", "INT"),
+        ("a second signal stops at once", "INT"),
+    ];
+    interrupted(&place, arguments, &signals).expect(130);
+    assert!(start.elapsed() < Duration::from_secs(8));
+    assert!(!place.path("room.exr").exists());
+}
+
+#[test]
+fn a_signal_that_comes_too_late_stops_nothing() {
+    let place = Workplace::new();
+    // The only pass is running when the signal comes.
+    let arguments = "--size 400x400 --spp 1 --time 10";
+    let ran = interrupted(&place, arguments, &[("Progress:", "INT")]);
+    ran.expect(0).says("1 spp");
+}

@@ -1,0 +1,163 @@
+use crate::source::Excerpt;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The crate's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why a file could not be read, understood or written: what, where, and what to do about it.
+///
+/// Its text is `file:line:column: message; hint`. As a [`miette::Diagnostic`] it also shows the
+/// lines of the file with a mark under the exact place.
+#[derive(Debug)]
+pub struct Error(Box<Details>);
+
+/// Boxed, so that the happy path does not carry the size of the unhappy one.
+#[derive(Debug)]
+struct Details {
+    kind: ErrorKind,
+    message: String,
+    hint: Option<String>,
+    file: Option<PathBuf>,
+    place: Option<Place>,
+}
+
+/// Where in a text an error is.
+#[derive(Debug)]
+pub(crate) struct Place {
+    /// Counted from 1.
+    pub(crate) line: usize,
+    /// Counted from 1, in characters.
+    pub(crate) column: usize,
+    /// The lines around it, where they are worth showing.
+    pub(crate) excerpt: Option<Excerpt>,
+}
+
+/// Whose fault an [`Error`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The scene's text does not follow the format's grammar: mend the text.
+    Syntax,
+    /// The scene is well-formed but means nothing valid: mend the scene.
+    Scene,
+    /// The format has this, the renderer does not yet: do without, or accept a stand-in.
+    Unsupported,
+    /// A mesh or an image is broken: write it anew.
+    Data,
+    /// A named file does not exist: check the path.
+    MissingFile,
+    /// The system refused to read or write.
+    Io,
+    /// Larger or deeper than what is allowed.
+    Limit,
+}
+
+impl Error {
+    pub(crate) fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self(Box::new(Details {
+            kind,
+            message,
+            hint: None,
+            file: None,
+            place: None,
+        }))
+    }
+
+    /// An error of the system with `file`; a missing file is told apart from the rest.
+    pub(crate) fn io(file: &Path, action: &str, error: &std::io::Error) -> Self {
+        let (kind, message) = match error.kind() {
+            std::io::ErrorKind::NotFound => (
+                ErrorKind::MissingFile,
+                format!("cannot {action}: no such file"),
+            ),
+            _ => (ErrorKind::Io, format!("cannot {action}: {error}")),
+        };
+        Self::new(kind, message).in_file(file)
+    }
+
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
+        self.0.file = Some(file.to_owned());
+        self
+    }
+
+    pub(crate) fn at(mut self, place: Place) -> Self {
+        self.0.place = Some(place);
+        self
+    }
+
+    pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.0.hint = Some(hint.into());
+        self
+    }
+
+    /// Whose fault it is.
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// What is wrong, without the place and the hint.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// What to do about it. None: where the message says all there is to say.
+    pub fn hint(&self) -> Option<&str> {
+        self.0.hint.as_deref()
+    }
+
+    /// The file that is at fault.
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file.as_deref()
+    }
+
+    /// The line, counted from 1. None: for binary files and where the whole file is at fault.
+    pub fn line(&self) -> Option<usize> {
+        self.0.place.as_ref().map(|place| place.line)
+    }
+
+    /// The column in characters, counted from 1. None: as for [`line`](Self::line).
+    pub fn column(&self) -> Option<usize> {
+        self.0.place.as_ref().map(|place| place.column)
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Details {
+            message,
+            hint,
+            file,
+            place,
+            ..
+        } = &*self.0;
+        if let Some(file) = file {
+            write!(f, "{}:", file.display())?;
+            if let Some(place) = place {
+                write!(f, "{}:{}:", place.line, place.column)?;
+            }
+            f.write_str(" ")?;
+        }
+        f.write_str(message)?;
+        match hint {
+            Some(hint) => write!(f, "; {hint}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl miette::Diagnostic for Error {
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        let excerpt = self.0.place.as_ref()?.excerpt.as_ref()?;
+        Some(excerpt)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        let excerpt = self.0.place.as_ref()?.excerpt.as_ref()?;
+        // No words at the mark and no `help`: the message already carries both.
+        let label = miette::LabeledSpan::new_with_span(None, excerpt.marked());
+        Some(Box::new(std::iter::once(label)))
+    }
+}

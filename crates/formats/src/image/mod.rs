@@ -1,0 +1,132 @@
+//! Images: PNG, JPEG, TGA, HDR, PFM and EXR to linear numbers; linear numbers to EXR and PNG.
+//!
+//! Rows go from top to bottom, whatever the file's order. Eight-bit files hold sRGB and become
+//! linear; only for PNG can the caller say otherwise, as scene files do. EXR, HDR and PFM are
+//! linear as they are.
+//!
+//! Decoders written by others may still meet bytes that they panic on; such a panic becomes an
+//! [`Error`] like any other.
+
+mod exr;
+mod pfm;
+mod png;
+mod raster;
+mod transfer;
+
+pub use exr::{ExrImage, ExrLayer, MetadataValue, write_exr};
+pub use png::write_png;
+pub use transfer::Encoding;
+
+use crate::bytes;
+use crate::error::{Error, ErrorKind, Result};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+/// Bytes of a file.
+const LARGEST_FILE: u64 = 1 << 33;
+/// Numbers of an image: 2 GiB.
+const MOST_NUMBERS: u64 = 1 << 29;
+
+/// An image of linear numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ImageData {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// 1: grey; 3: red, green, blue; 4: these and alpha.
+    pub channels: usize,
+    /// Row by row from the top left. Shape: `width · height · channels`.
+    pub data: Vec<f32>,
+}
+
+impl ImageData {
+    /// The colours: grey is repeated, alpha is left out. Shape: `width · height`.
+    pub fn rgb(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
+        self.data
+            .chunks_exact(self.channels.max(1))
+            .map(|pixel| match *pixel {
+                [r, g, b, ..] => [r, g, b],
+                [grey, ..] => [grey; 3],
+                [] => [0.0; 3],
+            })
+    }
+}
+
+/// A format that is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics, 8 or 16 bits.
+    Png,
+    /// JPEG.
+    Jpeg,
+    /// Targa.
+    Tga,
+    /// Radiance RGBE.
+    Hdr,
+    /// Portable float map.
+    Pfm,
+    /// OpenEXR.
+    Exr,
+}
+
+impl Format {
+    /// The format that a file's name says. None: it says none of them.
+    pub fn of(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+        Some(match extension.as_str() {
+            "png" => Self::Png,
+            "jpg" | "jpeg" => Self::Jpeg,
+            "tga" => Self::Tga,
+            "hdr" | "pic" => Self::Hdr,
+            "pfm" => Self::Pfm,
+            "exr" => Self::Exr,
+            _ => return None,
+        })
+    }
+}
+
+/// Reads an image; `encoding` is what a PNG file holds, sRGB where there is none.
+pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
+    let Some(format) = Format::of(path) else {
+        let error = Error::new(ErrorKind::Unsupported, "an image format that is not read");
+        return Err(error
+            .with_hint("write it as exr, hdr, pfm, png, jpg or tga")
+            .in_file(path));
+    };
+    let bytes = bytes::read(path, LARGEST_FILE)?;
+    decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
+}
+
+/// Decodes an image in memory; see [`read`].
+pub fn decode(format: Format, bytes: &[u8], encoding: Option<Encoding>) -> Result<ImageData> {
+    let decode = || match format {
+        Format::Exr => exr::decode(bytes),
+        Format::Pfm => pfm::decode(bytes),
+        _ => raster::decode(format, bytes, encoding.unwrap_or(Encoding::Srgb)),
+    };
+    let panicked = |_| Err(broken("the decoder gave up"));
+    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(panicked)
+}
+
+fn broken(message: impl std::fmt::Display) -> Error {
+    Error::new(ErrorKind::Data, format!("broken image: {message}"))
+}
+
+/// Refuses sizes that are zero or too large, before memory is taken for them.
+fn check_size(width: u64, height: u64, channels: u64) -> Result<()> {
+    let numbers = width
+        .checked_mul(height)
+        .and_then(|pixels| pixels.checked_mul(channels.max(1)));
+    match numbers {
+        Some(0) => Err(broken("it has no pixels")),
+        Some(1..=MOST_NUMBERS) => Ok(()),
+        _ => {
+            let message = format!("an image of {width} × {height} pixels is too large");
+            Err(Error::new(ErrorKind::Limit, message))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,30 @@
+//! Images for the screen.
+
+use super::transfer::srgb_byte;
+use crate::bytes;
+use crate::error::{Error, ErrorKind, Result};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use std::path::Path;
+
+/// Writes linear colours as an eight-bit sRGB PNG; values outside `[0, 1]` are clamped.
+///
+/// Shape: `size[0] · size[1]` pixels, row by row from the top left.
+pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()> {
+    let failed = |message: String| Error::new(ErrorKind::Data, message).in_file(path);
+    if pixels.len() as u64 != u64::from(size[0]) * u64::from(size[1]) {
+        return Err(failed(
+            "cannot write: the number of pixels is not that of the size".into(),
+        ));
+    }
+    let stored: Vec<u8> = pixels
+        .iter()
+        .flatten()
+        .map(|&linear| srgb_byte(linear))
+        .collect();
+    let mut encoded = Vec::new();
+    PngEncoder::new(&mut encoded)
+        .write_image(&stored, size[0], size[1], ExtendedColorType::Rgb8)
+        .map_err(|error| failed(format!("cannot write: {error}")))?;
+    bytes::write(path, &encoded)
+}

@@ -1,0 +1,298 @@
+use super::*;
+use proptest::prelude::*;
+use std::sync::LazyLock;
+
+fn gradient(width: usize, height: usize) -> Vec<f32> {
+    (0..width * height * 3)
+        .map(|i| i as f32 * 0.125 - 1.0)
+        .collect()
+}
+
+fn written(image: &ExrImage<'_>) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.exr");
+    write_exr(&path, image).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+fn example(data: &[f32]) -> Vec<u8> {
+    let metadata = [
+        (
+            "bidir/version".to_owned(),
+            MetadataValue::Text("1.0".into()),
+        ),
+        ("bidir/seed".to_owned(), MetadataValue::Integer(7)),
+        ("samplesPerPixel".to_owned(), MetadataValue::Integer(64)),
+        ("renderTimeSeconds".to_owned(), MetadataValue::Float(1.5)),
+        ("comments".to_owned(), MetadataValue::Text("µ".into())),
+    ];
+    let variance: Vec<f32> = data.iter().map(|value| value.abs()).collect();
+    let layers = [
+        ExrLayer {
+            name: "",
+            channels: &["R", "G", "B"],
+            data,
+        },
+        ExrLayer {
+            name: "Variance",
+            channels: &["R", "G", "B"],
+            data: &variance,
+        },
+    ];
+    written(&ExrImage {
+        resolution: [20, 10],
+        crop: [3, 2, 10, 7],
+        layers: &layers,
+        metadata: &metadata[..4],
+    })
+}
+
+#[test]
+fn exr_comes_back_exactly_and_always_has_the_same_bytes() {
+    let data = gradient(7, 5);
+    let bytes = example(&data);
+    assert!((0..8).all(|_| example(&data) == bytes));
+    let image = decode(Format::Exr, &bytes, None).unwrap();
+    assert_eq!(
+        image,
+        ImageData {
+            width: 7,
+            height: 5,
+            channels: 3,
+            data
+        }
+    );
+}
+
+#[test]
+fn exr_keeps_windows_attributes_and_primaries() {
+    let bytes = example(&gradient(7, 5));
+    let meta = ::exr::meta::MetaData::read_from_buffered(bytes.as_slice(), true).unwrap();
+    let header = &meta.headers[0];
+    let window = header.shared_attributes.display_window;
+    assert_eq!((window.size.0, window.size.1), (20, 10));
+    let position = header.own_attributes.layer_position;
+    assert_eq!((position.0, position.1), (3, 2));
+    let red = header.shared_attributes.chromaticities.unwrap().red;
+    assert!((red.0 - 0.64).abs() < 1e-6);
+    let mut names: Vec<String> = header
+        .own_attributes
+        .other
+        .keys()
+        .map(ToString::to_string)
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "bidir/seed",
+            "bidir/version",
+            "renderTimeSeconds",
+            "samplesPerPixel"
+        ]
+    );
+    let channels: Vec<String> = header
+        .channels
+        .list
+        .iter()
+        .map(|channel| channel.name.to_string())
+        .collect();
+    assert_eq!(
+        channels,
+        ["B", "G", "R", "Variance.B", "Variance.G", "Variance.R"]
+    );
+}
+
+#[test]
+fn a_layer_of_the_wrong_size_is_refused() {
+    let layers = [ExrLayer {
+        name: "N",
+        channels: &["X"],
+        data: &[1.0],
+    }];
+    let image = ExrImage {
+        resolution: [2, 2],
+        crop: [0, 0, 2, 2],
+        layers: &layers,
+        metadata: &[],
+    };
+    let error = write_exr(Path::new("never.exr"), &image).unwrap_err();
+    let expected = "never.exr: cannot write: the layer `N` has not the size of the image";
+    assert_eq!(error.to_string(), expected);
+}
+
+fn png(color: ::image::ExtendedColorType, stored: &[u8], size: [u32; 2]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let encoder = ::image::codecs::png::PngEncoder::new(&mut bytes);
+    ::image::ImageEncoder::write_image(encoder, stored, size[0], size[1], color).unwrap();
+    bytes
+}
+
+#[track_caller]
+fn check_close(values: &[f32], expected: &[f32]) {
+    assert_eq!(values.len(), expected.len());
+    for (value, expected) in values.iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-6, "{value} is not {expected}");
+    }
+}
+
+#[test]
+fn png_is_decoded_by_its_encoding() {
+    let bytes = png(::image::ExtendedColorType::Rgb8, &[0, 128, 255], [1, 1]);
+    for (encoding, middle) in [
+        (None, 0.215_860_5),
+        (Some(Encoding::Srgb), 0.215_860_5),
+        (Some(Encoding::Linear), 128.0 / 255.0),
+        (
+            Some(Encoding::Gamma(2.0)),
+            (128.0 / 255.0) * (128.0 / 255.0),
+        ),
+    ] {
+        let image = decode(Format::Png, &bytes, encoding).unwrap();
+        assert_eq!(image.channels, 3);
+        check_close(&image.data, &[0.0, middle, 1.0]);
+    }
+}
+
+#[test]
+fn sixteen_bits_grey_and_alpha_are_read() {
+    use ::image::ExtendedColorType as Color;
+    let linear = Some(Encoding::Linear);
+    let [low, high] = 32768u16.to_ne_bytes();
+    let image = decode(Format::Png, &png(Color::L16, &[low, high], [1, 1]), linear).unwrap();
+    assert_eq!(image.channels, 1);
+    check_close(&image.data, &[32768.0 / 65535.0]);
+    let image = decode(Format::Png, &png(Color::La8, &[51, 7], [1, 1]), linear).unwrap();
+    assert_eq!(image.channels, 1);
+    check_close(&image.data, &[0.2]);
+    assert_eq!(image.rgb().collect::<Vec<_>>(), [[0.2; 3]]);
+    let image = decode(
+        Format::Png,
+        &png(Color::Rgba8, &[51, 0, 255, 102], [1, 1]),
+        linear,
+    );
+    let image = image.unwrap();
+    assert_eq!(image.channels, 4);
+    check_close(&image.data, &[0.2, 0.0, 1.0, 0.4]);
+}
+
+#[test]
+fn png_is_written_clamped_in_srgb() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.png");
+    let pixels = [
+        [0.0, 0.5, 1.0],
+        [-1.0, f32::NAN, f32::INFINITY],
+        [0.0031, 0.2158605, 2.0],
+    ];
+    write_png(&path, [3, 1], &pixels).unwrap();
+    let image = ::image::open(&path).unwrap().into_rgb8();
+    assert_eq!(image.into_raw(), [0, 188, 255, 0, 0, 255, 10, 128, 255]);
+    assert!(write_png(&path, [2, 2], &pixels).is_err());
+}
+
+fn pfm(scale: &str, numbers: &[f32]) -> Vec<u8> {
+    let mut bytes = format!("PF\n1 2\n{scale}\n").into_bytes();
+    let big = !scale.starts_with('-');
+    for number in numbers {
+        bytes.extend(if big {
+            number.to_be_bytes()
+        } else {
+            number.to_le_bytes()
+        });
+    }
+    bytes
+}
+
+#[test]
+fn pfm_has_its_rows_from_the_bottom_in_either_byte_order() {
+    let numbers = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+    for scale in ["1.0", "-1.0"] {
+        let image = decode(Format::Pfm, &pfm(scale, &numbers), None).unwrap();
+        assert_eq!((image.width, image.height, image.channels), (1, 2, 3));
+        assert_eq!(image.data, [4.0, 5.0, 6.0, 1.0, 2.0, 3.0]);
+    }
+}
+
+#[track_caller]
+fn check_broken(format: Format, bytes: &[u8], expected: &str) {
+    assert_eq!(
+        decode(format, bytes, None).unwrap_err().to_string(),
+        expected
+    );
+}
+
+#[test]
+fn broken_images_are_told() {
+    check_broken(
+        Format::Pfm,
+        b"P6\n",
+        "broken image: it does not begin with PF or Pf",
+    );
+    check_broken(Format::Pfm, b"PF\n2 x\n", "broken image: no height");
+    check_broken(Format::Pfm, b"PF\n2 2\n0\n", "broken image: no scale");
+    check_broken(
+        Format::Pfm,
+        b"PF\n2 2\n-1\n1234",
+        "broken image: it is too short for its size",
+    );
+    check_broken(
+        Format::Pfm,
+        b"PF\n0 2\n-1\n",
+        "broken image: it has no pixels",
+    );
+    let huge = b"PF\n4000000000 4000000000\n-1\n";
+    check_broken(
+        Format::Pfm,
+        huge,
+        "an image of 4000000000 × 4000000000 pixels is too large",
+    );
+    assert!(decode(Format::Exr, b"not exr", None).is_err());
+    let path = Path::new("a.bmp");
+    let expected =
+        "a.bmp: an image format that is not read; write it as exr, hdr, pfm, png, jpg or tga";
+    assert_eq!(read(path, None).unwrap_err().to_string(), expected);
+}
+
+const FORMATS: [Format; 6] = [
+    Format::Png,
+    Format::Jpeg,
+    Format::Tga,
+    Format::Hdr,
+    Format::Pfm,
+    Format::Exr,
+];
+
+static VALID: LazyLock<[(Format, Vec<u8>); 3]> = LazyLock::new(|| {
+    [
+        (Format::Exr, example(&gradient(7, 5))),
+        (
+            Format::Png,
+            png(::image::ExtendedColorType::Rgb8, &[7; 12], [2, 2]),
+        ),
+        (Format::Pfm, pfm("-1", &[1.0; 6])),
+    ]
+});
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300)) {
+        for format in FORMATS {
+            let _ = decode(format, &bytes, None);
+        }
+        let _ = decode(Format::Hdr, &[b"#?RADIANCE\n".as_slice(), &bytes].concat(), None);
+    }
+
+    #[test]
+    fn mutated_files_never_panic(at in any::<proptest::sample::Index>(), byte in any::<u8>()) {
+        for (format, mut bytes) in VALID.clone() {
+            let index = at.index(bytes.len());
+            bytes[index] = byte;
+            if let Ok(image) = decode(format, &bytes, None) {
+                prop_assert_eq!(image.data.len(), image.width * image.height * image.channels);
+            }
+        }
+    }
+}

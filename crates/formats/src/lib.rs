@@ -1,0 +1,15 @@
+//! Bytes to data and back: pbrt-v4 scenes, PLY meshes, images.
+//!
+//! Nothing here panics, whatever the bytes: a broken file is an [`Error`] that says where the fault
+//! is, whose it is and what to do about it. Counts are checked before memory is taken for them.
+
+mod bytes;
+mod error;
+mod source;
+
+pub mod image;
+pub mod pbrt;
+pub mod ply;
+
+pub use error::{Error, ErrorKind, Result};
+pub use source::{FileId, SourceMap, Span};

@@ -1,0 +1,100 @@
+//! What shapes emit.
+
+use super::color::{self, Purpose};
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::Entity;
+use crate::source::{Fault, Span};
+use bidir::light::EmissionSides;
+use bidir::math::PI;
+use bidir::scene::Emission;
+use bidir::shape::{Mesh, Shape};
+
+/// What an area light says about emission.
+#[derive(Clone, Copy)]
+pub(super) struct AreaEmission {
+    radiance: [f32; 3],
+    sides: EmissionSides,
+    /// What each primitive emits in all. None: the radiance is as given.
+    power: Option<f32>,
+    span: Span,
+}
+
+impl AreaEmission {
+    pub(super) fn read(context: &mut Context<'_>, entity: &Entity) -> Result<Self, Fault> {
+        let mut reader = Reader::new(entity);
+        let radiance = color::read(context, &mut reader, "L", Purpose::Illuminant)?;
+        let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
+        let power = reader.optional_float("power")?.filter(|&power| power > 0.0);
+        let sides = if reader.bool("twosided", false)? {
+            EmissionSides::Both
+        } else {
+            EmissionSides::Front
+        };
+        let image = (ParameterType::String, "filename");
+        reader.unsupported(context, image, "the light is even")?;
+        reader.finish()?;
+        let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
+        Ok(Self {
+            radiance,
+            sides,
+            power,
+            span: entity.span,
+        })
+    }
+
+    /// The emission of a shape. Where power is given, every primitive has to be a shape of its own:
+    /// see [`parts`](Self::parts).
+    pub(super) fn of(&self, shape: &Shape) -> Result<Emission, Fault> {
+        let factor = match self.power {
+            Some(power) => {
+                let sides = if self.sides == EmissionSides::Both {
+                    2.0
+                } else {
+                    1.0
+                };
+                let area: f32 = (0..shape.primitive_count())
+                    .map(|i| shape.primitive_area(i))
+                    .sum();
+                let factor = power / (area * PI * sides);
+                // A triangle without area emits nothing, whatever its radiance.
+                if factor.is_finite() { factor } else { 0.0 }
+            }
+            None => 1.0,
+        };
+        let radiance = self.radiance.map(|channel| channel * factor);
+        let radiance = color::check_emission(self.span, radiance)?;
+        Ok(Emission {
+            radiance,
+            sides: self.sides,
+        })
+    }
+
+    /// The parts of a shape that emit each for itself.
+    pub(super) fn parts(&self, shape: Shape) -> Vec<Shape> {
+        match (self.power, shape) {
+            (Some(_), Shape::Mesh(mesh)) => split(&mesh),
+            (_, shape) => vec![shape],
+        }
+    }
+}
+
+/// A mesh for every triangle.
+fn split(mesh: &Mesh) -> Vec<Shape> {
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| corner as usize);
+    let triangles = mesh.triangles.iter().map(corners).map(|corners| Mesh {
+        positions: corners.map(|corner| mesh.positions[corner]).into(),
+        normals: corners
+            .iter()
+            .filter_map(|&corner| mesh.normals.get(corner).copied())
+            .collect(),
+        uvs: corners
+            .iter()
+            .filter_map(|&corner| mesh.uvs.get(corner).copied())
+            .collect(),
+        triangles: vec![[0, 1, 2]],
+        orientation: mesh.orientation,
+    });
+    triangles.map(Shape::Mesh).collect()
+}

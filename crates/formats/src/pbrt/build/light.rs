@@ -1,0 +1,217 @@
+//! Lights that are no shapes.
+
+use super::color::{self, Purpose};
+use super::context::Context;
+use super::reader::Reader;
+use super::shape;
+use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::LightDescription;
+use crate::source::{Fault, Span};
+use bidir::light::{DistantLight, InfiniteLight, Light, PointLight, SpotLight};
+use bidir::math::{Mat3, PI, Vec2, Vec3, square_to_direction};
+use bidir::spectrum::{Rgb, luminance};
+use bidir::texture::Image;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Builds a light. None: something else stands in for it, namely nothing.
+pub(super) fn build(
+    context: &mut Context<'_>,
+    light: &LightDescription,
+) -> Result<Option<Light>, Fault> {
+    let span = light.entity.span;
+    if light.transforms.is_animated() {
+        context.warn(
+            span,
+            "lights do not move: the first place of the light counts",
+        );
+    }
+    if let Some(medium) = &light.medium.outside {
+        context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
+    }
+    let world_from_light = &light.transforms.start;
+    let mut reader = Reader::new(&light.entity);
+    let built = match light.entity.kind.as_str() {
+        "point" => Light::Point(point(context, &mut reader, world_from_light)?),
+        "spot" => Light::Spot(spot(context, &mut reader, world_from_light)?),
+        "distant" => Light::Distant(distant(context, &mut reader, world_from_light)?),
+        "infinite" => Light::Infinite(infinite(context, &mut reader, world_from_light)?),
+        kind => {
+            context.unsupported(
+                span,
+                &format!("the light source `{kind}`"),
+                "it is left out",
+            )?;
+            return Ok(None);
+        }
+    };
+    reader.finish()?;
+    Ok(Some(built))
+}
+
+/// The colour `name` times `scale`, and times `power` / `per_unit` where there is power.
+fn emission(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    name: &'static str,
+    (power, per_unit): (&'static str, f32),
+) -> Result<Rgb, Fault> {
+    let color = color::read(context, reader, name, Purpose::Illuminant)?.unwrap_or([1.0; 3]);
+    let factor = factor(reader, (power, per_unit))?;
+    color::check_emission(reader.span(), color.map(|channel| channel * factor))
+}
+
+fn factor(reader: &mut Reader<'_>, (power, per_unit): (&'static str, f32)) -> Result<f32, Fault> {
+    let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
+    let power = reader.optional_float(power)?.filter(|&power| power > 0.0);
+    Ok(power.map_or(scale, |power| scale * power / per_unit))
+}
+
+fn vector(p: [f32; 3]) -> DVec3 {
+    DVec3::from(p.map(f64::from))
+}
+
+fn point(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    world_from_light: &DAffine3,
+) -> Result<PointLight, Fault> {
+    let intensity = emission(context, reader, "I", ("power", 4.0 * PI))?;
+    let from = vector(reader.point3("from", [0.0; 3])?);
+    let position = shape::check_place(reader.span(), world_from_light.transform_point3(from))?;
+    Ok(PointLight {
+        position,
+        intensity,
+    })
+}
+
+/// Where the light stands and the world direction from there to where it points.
+fn aim(reader: &mut Reader<'_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
+    let from = vector(reader.point3("from", [0.0; 3])?);
+    let to = vector(reader.point3("to", [0.0, 0.0, 1.0])?);
+    let direction = world_from_light
+        .transform_vector3(to - from)
+        .try_normalize();
+    let same = || {
+        Fault::scene(
+            reader.span(),
+            "`from` and `to` of the light are the same point",
+        )
+    };
+    let direction = direction.ok_or_else(same)?.as_vec3();
+    Ok((world_from_light.transform_point3(from), direction))
+}
+
+fn spot(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    world_from_light: &DAffine3,
+) -> Result<SpotLight, Fault> {
+    let end = reader.float_within("coneangle", 30.0, [0.0, 180.0])?;
+    let full = (end - reader.float_within("conedeltaangle", 5.0, [0.0, 180.0])?).max(0.0);
+    let [full, end] = [full, end].map(f32::to_radians);
+    let (cos_full, cos_end) = (libm::cosf(full), libm::cosf(end));
+    let solid_angle = 2.0 * PI * ((1.0 - cos_full) + (cos_full - cos_end) / 2.0);
+    let intensity = emission(context, reader, "I", ("power", solid_angle))?;
+    let (position, axis) = aim(reader, world_from_light)?;
+    let position = shape::check_place(reader.span(), position)?;
+    Ok(SpotLight::new(position, axis, intensity, [full, end]))
+}
+
+fn distant(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    world_from_light: &DAffine3,
+) -> Result<DistantLight, Fault> {
+    let irradiance = emission(context, reader, "L", ("illuminance", 1.0))?;
+    let (_, direction) = aim(reader, world_from_light)?;
+    Ok(DistantLight {
+        to_light: -direction,
+        irradiance,
+    })
+}
+
+fn infinite(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    world_from_light: &DAffine3,
+) -> Result<InfiniteLight, Fault> {
+    let portal = (ParameterType::Point3, "portal");
+    reader.unsupported(context, portal, "light comes from everywhere")?;
+    let Some((name, span)) = reader.string("filename")? else {
+        return Ok(InfiniteLight::constant(emission(
+            context,
+            reader,
+            "L",
+            ("illuminance", PI),
+        )?));
+    };
+    if color::read(context, reader, "L", Purpose::Illuminant)?.is_some() {
+        let message = "an infinite light has `L` or `filename`, not both";
+        return Err(Fault::scene(reader.span(), message));
+    }
+    let image = environment(context, name, span)?;
+    let scale = factor(reader, ("illuminance", illuminance(&image)))?;
+    let brightest = image.texels().iter().flatten().copied().fold(0.0, f32::max);
+    color::check_emission(reader.span(), [brightest * scale; 3])?;
+    let rotation = rotation(context, reader.span(), &world_from_light.matrix3)?;
+    Ok(InfiniteLight::image(image, scale, rotation))
+}
+
+/// Reads an equal-area image of the sphere.
+fn environment(context: &mut Context<'_>, name: &str, span: Span) -> Result<Image<3>, Fault> {
+    let path = context.description.resolve(name);
+    let data = crate::image::read(&path, None).map_err(|error| Fault::from_error(span, &error))?;
+    if data.width != data.height {
+        let (width, height) = (data.width, data.height);
+        let message =
+            format!("an environment is a square image, this one has {width} × {height} pixels");
+        let hint = "convert longitude and latitude with `imgtool makeequiarea`";
+        return Err(Fault::scene(span, message).with_hint(hint));
+    }
+    let is_radiance = |&channel: &f32| channel.is_finite() && channel >= 0.0;
+    let mut texels: Vec<Rgb> = data.rgb().collect();
+    let replaced = texels
+        .iter_mut()
+        .flatten()
+        .filter(|channel| !is_radiance(channel));
+    let count = replaced.map(|channel| *channel = 0.0).count();
+    if count > 0 {
+        let message = format!("{count} numbers of the image are no radiance and taken as 0");
+        context.warn(span, message);
+    }
+    Image::new(data.width, texels).ok_or_else(|| Fault::scene(span, "the image has no pixels"))
+}
+
+/// The format's measure of an environment: (2π/N) Σ luminance · cosθ over the upper half.
+fn illuminance(image: &Image<3>) -> f32 {
+    let (width, height) = (image.width(), image.height());
+    let mut sum = 0.0;
+    for (y, row) in image.texels().chunks_exact(width).enumerate() {
+        for (x, &texel) in row.iter().enumerate() {
+            let p = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+            let direction = square_to_direction(p / Vec2::new(width as f32, height as f32));
+            sum += f64::from(luminance(texel) * direction.z.max(0.0));
+        }
+    }
+    2.0 * PI * (sum / (width * height) as f64) as f32
+}
+
+/// The rotation (or mirroring) in a map; an even scale does not matter to directions.
+fn rotation(context: &mut Context<'_>, span: Span, matrix: &DMat3) -> Result<Mat3, Fault> {
+    let scale = matrix.x_axis.length();
+    let scaled = *matrix * (1.0 / scale);
+    let difference = scaled.transpose() * scaled - DMat3::IDENTITY;
+    if difference
+        .to_cols_array()
+        .iter()
+        .any(|entry| entry.abs() > 1e-3)
+    {
+        context.unsupported(
+            span,
+            "an environment that is sheared",
+            "it is not turned at all",
+        )?;
+        return Ok(Mat3::IDENTITY);
+    }
+    Ok(scaled.as_mat3())
+}

@@ -1,0 +1,253 @@
+//! Reading an entity's parameters, and noticing those that nobody reads.
+
+use super::context::Context;
+use crate::pbrt::lexer::shorten;
+use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::pbrt::scene::Entity;
+use crate::source::{Fault, Span};
+
+/// Reads the parameters of one entity. What is asked for is what is known: anything else that the
+/// file gives is an error when the reader [finishes](Self::finish).
+pub(super) struct Reader<'a> {
+    entity: &'a Entity,
+    asked: Vec<(ParameterType, &'static str)>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(entity: &'a Entity) -> Self {
+        Self {
+            entity,
+            asked: Vec::new(),
+        }
+    }
+
+    /// The entity's type word, for errors that concern all of it.
+    pub(super) fn span(&self) -> Span {
+        self.entity.span
+    }
+
+    /// The parameter of this type and name. None: where the file gives none.
+    pub(super) fn find(
+        &mut self,
+        kind: ParameterType,
+        name: &'static str,
+    ) -> Option<&'a Parameter> {
+        self.asked.push((kind, name));
+        self.entity.parameters.get(kind, name)
+    }
+
+    pub(super) fn floats(&mut self, kind: ParameterType, name: &'static str) -> Option<&'a [f32]> {
+        match &self.find(kind, name)?.values {
+            Values::Floats(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// A number. None: where the file gives none.
+    pub(super) fn optional_float(&mut self, name: &'static str) -> Result<Option<f32>, Fault> {
+        let Some(parameter) = self.find(ParameterType::Float, name) else {
+            return Ok(None);
+        };
+        match &parameter.values {
+            Values::Floats(values) => Ok(Some(*single(parameter, values)?)),
+            _ => Ok(None),
+        }
+    }
+
+    pub(super) fn float(&mut self, name: &'static str, default: f32) -> Result<f32, Fault> {
+        Ok(self.optional_float(name)?.unwrap_or(default))
+    }
+
+    /// A number within `[min, max]`.
+    pub(super) fn float_within(
+        &mut self,
+        name: &'static str,
+        default: f32,
+        [min, max]: [f32; 2],
+    ) -> Result<f32, Fault> {
+        let value = self.float(name, default)?;
+        if (min..=max).contains(&value) {
+            return Ok(value);
+        }
+        Err(self.out_of_range(ParameterType::Float, name, &format!("{value}"), [min, max]))
+    }
+
+    fn out_of_range(
+        &self,
+        kind: ParameterType,
+        name: &str,
+        value: &str,
+        [min, max]: [f32; 2],
+    ) -> Fault {
+        let parameter = self.entity.parameters.get(kind, name);
+        let span = parameter.map_or(self.entity.span, |parameter| parameter.value_span);
+        let range = if max >= f32::MAX {
+            format!("at least {min}")
+        } else {
+            format!("between {min} and {max}")
+        };
+        Fault::scene(span, format!("`{name}` is {value}, but has to be {range}"))
+    }
+
+    pub(super) fn optional_integer(&mut self, name: &'static str) -> Result<Option<i32>, Fault> {
+        let Some(parameter) = self.find(ParameterType::Integer, name) else {
+            return Ok(None);
+        };
+        match &parameter.values {
+            Values::Integers(values) => Ok(Some(*single(parameter, values)?)),
+            _ => Ok(None),
+        }
+    }
+
+    /// An integer of at least `min`.
+    pub(super) fn integer(
+        &mut self,
+        name: &'static str,
+        default: u32,
+        min: u32,
+    ) -> Result<u32, Fault> {
+        match self.optional_integer(name)? {
+            None => Ok(default),
+            Some(value) => u32::try_from(value)
+                .ok()
+                .filter(|&value| value >= min)
+                .ok_or_else(|| {
+                    let range = [min as f32, f32::MAX];
+                    self.out_of_range(ParameterType::Integer, name, &value.to_string(), range)
+                }),
+        }
+    }
+
+    pub(super) fn bool(&mut self, name: &'static str, default: bool) -> Result<bool, Fault> {
+        let Some(parameter) = self.find(ParameterType::Bool, name) else {
+            return Ok(default);
+        };
+        match &parameter.values {
+            Values::Bools(values) => Ok(*single(parameter, values)?),
+            _ => Ok(default),
+        }
+    }
+
+    /// A string and its place.
+    pub(super) fn string(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
+        self.one_string(ParameterType::String, name)
+    }
+
+    /// The name of a texture and its place.
+    pub(super) fn texture(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
+        self.one_string(ParameterType::Texture, name)
+    }
+
+    fn one_string(
+        &mut self,
+        kind: ParameterType,
+        name: &'static str,
+    ) -> Result<Option<(&'a str, Span)>, Fault> {
+        let Some(parameter) = self.find(kind, name) else {
+            return Ok(None);
+        };
+        match &parameter.values {
+            Values::Strings(values) => Ok(Some((
+                single(parameter, values)?.as_str(),
+                parameter.value_span,
+            ))),
+            _ => Ok(None),
+        }
+    }
+
+    pub(super) fn point3(
+        &mut self,
+        name: &'static str,
+        default: [f32; 3],
+    ) -> Result<[f32; 3], Fault> {
+        let Some(parameter) = self.find(ParameterType::Point3, name) else {
+            return Ok(default);
+        };
+        three(parameter)
+    }
+
+    /// A parameter that the format has and that changes nothing here: a warning.
+    pub(super) fn ignore(
+        &mut self,
+        context: &mut Context<'_>,
+        kind: ParameterType,
+        name: &'static str,
+    ) {
+        if let Some(parameter) = self.find(kind, name) {
+            let message = format!("the parameter `{} {name}` has no effect here", kind.word());
+            context.warn(parameter.span, message);
+        }
+    }
+
+    /// A parameter that the format has and the renderer has not.
+    pub(super) fn unsupported(
+        &mut self,
+        context: &mut Context<'_>,
+        (kind, name): (ParameterType, &'static str),
+        stand_in: &str,
+    ) -> Result<(), Fault> {
+        match self.find(kind, name) {
+            None => Ok(()),
+            Some(parameter) => {
+                let what = format!("the parameter `{} {name}`", kind.word());
+                context.unsupported(parameter.span, &what, stand_in)
+            }
+        }
+    }
+
+    /// Refuses parameters that nobody asked for.
+    pub(super) fn finish(self) -> Result<(), Fault> {
+        let is_asked = |p: &&Parameter| self.asked.iter().any(|&(k, n)| k == p.kind && n == p.name);
+        let Some(unknown) = self
+            .entity
+            .parameters
+            .explicit
+            .iter()
+            .find(|p| !is_asked(p))
+        else {
+            return Ok(());
+        };
+        let (name, word) = (shorten(&unknown.name), unknown.kind.word());
+        let types: Vec<&str> = self
+            .asked
+            .iter()
+            .filter(|(_, asked)| *asked == unknown.name)
+            .map(|(kind, _)| kind.word())
+            .collect();
+        if !types.is_empty() {
+            let message = format!("`{name}` is not of type `{word}`");
+            let hint = format!("write `{} {name}`", types.join(&format!(" {name}` or `")));
+            return Err(Fault::scene(unknown.span, message).with_hint(hint));
+        }
+        let message = format!(
+            "unknown parameter `{name}` of `{}`",
+            shorten(&self.entity.kind)
+        );
+        let known = self.asked.iter().map(|(_, name)| *name);
+        Err(Fault::scene(unknown.span, message).with_nearest(&unknown.name, known))
+    }
+}
+
+/// The only one of `values`.
+pub(super) fn single<'v, T>(parameter: &Parameter, values: &'v [T]) -> Result<&'v T, Fault> {
+    match values {
+        [value] => Ok(value),
+        _ => Err(wrong_count(parameter, values.len())),
+    }
+}
+
+/// The three numbers of a parameter with one value.
+pub(super) fn three(parameter: &Parameter) -> Result<[f32; 3], Fault> {
+    match &parameter.values {
+        Values::Floats(values) => values
+            .as_slice()
+            .try_into()
+            .map_err(|_| wrong_count(parameter, values.len() / 3)),
+        values => Err(wrong_count(parameter, values.len())),
+    }
+}
+
+fn wrong_count(parameter: &Parameter, count: usize) -> Fault {
+    let message = format!("`{}` has one value, found {count}", parameter.name);
+    Fault::scene(parameter.value_span, message)
+}

@@ -1,0 +1,134 @@
+//! Sampler, integrator and options.
+
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::parameters::ParameterType;
+use crate::source::Fault;
+use bidir::integrator::IntegratorKind;
+use bidir::sampler::SamplerKind;
+
+/// What a scene file says about how it is rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSettings {
+    /// The estimator.
+    pub integrator: IntegratorKind,
+    /// The largest number of scattering events: 0 shows lights only, 1 adds direct light.
+    pub max_depth: u32,
+    /// The random numbers.
+    pub sampler: SamplerKind,
+    /// Samples per pixel.
+    pub samples_per_pixel: u32,
+    /// The seed. None: where the file gives none.
+    pub seed: Option<u64>,
+    /// The name of the image, as the file has it. None: where it gives none.
+    pub output: Option<String>,
+}
+
+/// Everything that is neither scene nor film.
+pub(super) fn build(
+    context: &mut Context<'_>,
+    output: Option<String>,
+) -> Result<SceneSettings, Fault> {
+    let (integrator, max_depth) = integrator(context)?;
+    let mut settings = SceneSettings {
+        integrator,
+        max_depth,
+        sampler: SamplerKind::Sobol,
+        samples_per_pixel: 16,
+        seed: None,
+        output,
+    };
+    options(context, &mut settings)?;
+    sampler(context, &mut settings)?;
+    Ok(settings)
+}
+
+fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
+    for option in &context.description.options {
+        match (option.name.as_str(), option.value.as_str()) {
+            ("seed", value) => {
+                let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
+                settings.seed = Some(value.parse().map_err(wrong)?);
+            }
+            // Choices of precision or of what is recorded, and defaults spelled out.
+            ("rendercoordsys" | "pixelstats" | "wavefront", _) | (_, "false") => {}
+            (name, _) => {
+                context.warn(
+                    option.span,
+                    format!("the option `{name}` has no effect here"),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
+    let Some(entity) = &context.description.sampler else {
+        return Ok(());
+    };
+    let mut reader = Reader::new(entity);
+    settings.samples_per_pixel = match entity.kind.as_str() {
+        "stratified" => {
+            reader.ignore(context, ParameterType::Bool, "jitter");
+            let (x, y) = (
+                reader.integer("xsamples", 4, 1)?,
+                reader.integer("ysamples", 4, 1)?,
+            );
+            x.saturating_mul(y)
+        }
+        "independent" => {
+            settings.sampler = SamplerKind::Independent;
+            reader.integer("pixelsamples", 4, 1)?
+        }
+        _ => {
+            reader.ignore(context, ParameterType::String, "randomization");
+            reader.integer("pixelsamples", 16, 1)?
+        }
+    };
+    if !matches!(entity.kind.as_str(), "independent" | "sobol") {
+        context.warn(
+            entity.span,
+            format!("the sampler `{}` is taken as `sobol`", entity.kind),
+        );
+    }
+    if let Some(seed) = reader.optional_integer("seed")? {
+        settings.seed = Some(u64::from(seed.unsigned_abs()));
+    }
+    reader.finish()
+}
+
+fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault> {
+    let Some(entity) = &context.description.integrator else {
+        return Ok((IntegratorKind::Path, 5));
+    };
+    let mut reader = Reader::new(entity);
+    let max_depth = reader.integer("maxdepth", 5, 0)?;
+    let kind = match entity.kind.as_str() {
+        "path" | "volpath" => IntegratorKind::Path,
+        "bdpt" => IntegratorKind::Bdpt,
+        "lightpath" => IntegratorKind::Light,
+        name => {
+            // The parameters of another method say nothing about the one that stands in.
+            let stand_in = match name {
+                "mlt" | "sppm" => ("`bdpt` stands in", IntegratorKind::Bdpt),
+                _ => ("`path` stands in", IntegratorKind::Path),
+            };
+            context.unsupported(entity.span, &format!("the integrator `{name}`"), stand_in.0)?;
+            return Ok((stand_in.1, max_depth));
+        }
+    };
+    if entity.kind != "lightpath" {
+        reader.ignore(context, ParameterType::String, "lightsampler");
+        if reader.bool("regularize", false)? {
+            let what = "the parameter `bool regularize`";
+            context.unsupported(entity.span, what, "nothing is regularised")?;
+        }
+    }
+    if entity.kind == "bdpt" {
+        reader.ignore(context, ParameterType::Bool, "visualizestrategies");
+        reader.ignore(context, ParameterType::Bool, "visualizeweights");
+    }
+    reader.finish()?;
+    Ok((kind, max_depth))
+}

@@ -1,0 +1,262 @@
+//! Shapes.
+
+use super::context::Context;
+use super::reader::Reader;
+use crate::error::ErrorKind;
+use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::pbrt::scene::ShapeDescription;
+use crate::ply::{self, PlyMesh};
+use crate::source::{Fault, Span};
+use bidir::math::{Vec2, Vec3};
+use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use glam::{DAffine3, DVec3};
+
+/// A shape in its own space, ready to be placed any number of times.
+pub(super) enum Geometry {
+    Mesh(PlyMesh),
+    /// Radius, then lowest and highest z and largest azimuth (radians).
+    Sphere(f32, Vec3),
+    /// Height, inner and outer radius, largest azimuth (radians).
+    Disk(f32, [f32; 2], f32),
+}
+
+impl Geometry {
+    /// Reads a shape. None: something else stands in for it, namely nothing.
+    pub(super) fn read(
+        context: &mut Context<'_>,
+        shape: &ShapeDescription,
+    ) -> Result<Option<Self>, Fault> {
+        let entity = &shape.entity;
+        let mut reader = Reader::new(entity);
+        let geometry = match entity.kind.as_str() {
+            "trianglemesh" => Self::Mesh(triangle_mesh(context, &mut reader)?),
+            "plymesh" => Self::Mesh(ply_mesh(context, &mut reader)?),
+            "sphere" => {
+                let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
+                let z = [
+                    reader.float("zmin", -radius)?,
+                    reader.float("zmax", radius)?,
+                ];
+                Self::Sphere(radius, Vec3::new(z[0], z[1], phi_max(&mut reader)?))
+            }
+            "disk" => {
+                let height = reader.float("height", 0.0)?;
+                let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
+                let inner = reader.float_within("innerradius", 0.0, [0.0, radius])?;
+                Self::Disk(height, [inner, radius], phi_max(&mut reader)?)
+            }
+            kind => {
+                context.unsupported(
+                    entity.span,
+                    &format!("the shape `{kind}`"),
+                    "it is left out",
+                )?;
+                return Ok(None);
+            }
+        };
+        alpha(context, &mut reader)?;
+        reader.finish()?;
+        Ok(Some(geometry))
+    }
+
+    /// The number of primitives.
+    pub(super) fn primitives(&self) -> u64 {
+        match self {
+            Self::Mesh(mesh) => mesh.triangles.len() as u64,
+            Self::Sphere(..) | Self::Disk(..) => 1,
+        }
+    }
+
+    /// The shape at a place.
+    pub(super) fn place(&self, world_from_local: &DAffine3, is_reversed: bool) -> Shape {
+        let orientation = |reversed| {
+            if reversed {
+                Orientation::Reversed
+            } else {
+                Orientation::Natural
+            }
+        };
+        let affine = world_from_local.as_affine3a();
+        match self {
+            // Quadrics keep their outside in front whether or not they are mirrored.
+            Self::Sphere(radius, limits) => Shape::Sphere(Sphere::partial(
+                affine,
+                *radius,
+                *limits,
+                orientation(is_reversed),
+            )),
+            Self::Disk(height, radii, phi_max) => {
+                let orientation = orientation(is_reversed);
+                Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
+            }
+            Self::Mesh(mesh) => {
+                let is_mirrored = world_from_local.matrix3.determinant() < 0.0;
+                let orientation = orientation(is_reversed != is_mirrored);
+                Shape::Mesh(place_mesh(mesh, world_from_local, is_reversed, orientation))
+            }
+        }
+    }
+}
+
+/// The farthest that anything is from the origin: squares of distances stay finite below it.
+const FARTHEST: f32 = 1e12;
+
+fn too_far(span: Span) -> Fault {
+    Fault::new(
+        ErrorKind::Limit,
+        span,
+        format!("a coordinate is beyond {FARTHEST:e}"),
+    )
+}
+
+/// A point of the world as the renderer computes with it.
+pub(super) fn check_place(span: Span, point: DVec3) -> Result<Vec3, Fault> {
+    let place = point.as_vec3();
+    if place.abs().max_element() <= FARTHEST {
+        Ok(place)
+    } else {
+        Err(too_far(span))
+    }
+}
+
+/// Refuses shapes that reach too far to compute with.
+pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
+    let is_near = |p: Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
+    let fits = match shape {
+        Shape::Mesh(mesh) => mesh.positions.iter().all(|&p| is_near(p)),
+        Shape::Sphere(_) | Shape::Disk(_) => {
+            let bounds = shape.primitive(0).bounds();
+            is_near(bounds.min) && is_near(bounds.max)
+        }
+    };
+    if fits { Ok(()) } else { Err(too_far(span)) }
+}
+
+fn place_mesh(
+    mesh: &PlyMesh,
+    world_from_local: &DAffine3,
+    is_reversed: bool,
+    orientation: Orientation,
+) -> Mesh {
+    let normal_matrix = world_from_local.matrix3.inverse().transpose();
+    let sign = if is_reversed { -1.0 } else { 1.0 };
+    let vector = |v: &[f32; 3]| DVec3::from(v.map(f64::from));
+    let point = |p| world_from_local.transform_point3(vector(p)).as_vec3();
+    // Normalised, so that interpolation weighs the corners as the file means it.
+    let normal = |n| ((normal_matrix * vector(n)).normalize_or_zero() * sign).as_vec3();
+    Mesh {
+        positions: mesh.positions.iter().map(point).collect(),
+        normals: mesh.normals.iter().map(normal).collect(),
+        uvs: mesh.uvs.iter().map(|&uv| Vec2::from(uv)).collect(),
+        triangles: mesh.triangles.clone(),
+        orientation,
+    }
+}
+
+fn phi_max(reader: &mut Reader<'_>) -> Result<f32, Fault> {
+    Ok(reader
+        .float_within("phimax", 360.0, [0.0, 360.0])?
+        .to_radians())
+}
+
+fn alpha(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
+    let opaque = "the shape is opaque";
+    reader.unsupported(context, (ParameterType::Texture, "alpha"), opaque)?;
+    match reader.optional_float("alpha")? {
+        Some(alpha) if alpha < 1.0 => {
+            context.unsupported(reader.span(), "the parameter `float alpha`", opaque)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn ply_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {
+    let Some((name, span)) = reader.string("filename")? else {
+        return Err(Fault::scene(
+            reader.span(),
+            "the parameter `string filename` is missing",
+        ));
+    };
+    let flat = "the mesh stays as it is";
+    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
+    reader.ignore(context, ParameterType::Float, "edgelength");
+    let path = context.description.resolve(name);
+    let mesh = ply::read(&path).map_err(|error| Fault::from_error(span, &error))?;
+    if mesh.skipped_faces > 0 {
+        let count = mesh.skipped_faces;
+        let message =
+            format!("{count} faces are neither triangles nor quadrilaterals and are left out");
+        context.warn(span, message);
+    }
+    Ok(mesh)
+}
+
+fn triangle_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {
+    let positions = triples(reader.floats(ParameterType::Point3, "P"));
+    if positions.is_empty() {
+        return Err(Fault::scene(
+            reader.span(),
+            "the parameter `point3 P` is missing or empty",
+        ));
+    }
+    let vertices = positions.len();
+    let indices = reader.find(ParameterType::Integer, "indices");
+    let triangles = match indices {
+        Some(parameter) => triangles(context, parameter, vertices)?,
+        None if vertices == 3 => vec![[0, 1, 2]],
+        None => {
+            return Err(Fault::scene(
+                reader.span(),
+                "the parameter `integer indices` is missing",
+            ));
+        }
+    };
+    let normals = triples(reader.floats(ParameterType::Normal, "N"));
+    let uvs = reader
+        .floats(ParameterType::Point2, "uv")
+        .unwrap_or_default();
+    let uvs = uvs.as_chunks::<2>().0.to_vec();
+    for (name, count) in [("N", normals.len()), ("uv", uvs.len())] {
+        if count != 0 && count != vertices {
+            let message = format!("the mesh has {vertices} points, but {count} values of `{name}`");
+            return Err(Fault::scene(reader.span(), message));
+        }
+    }
+    reader.ignore(context, ParameterType::Vector3, "S");
+    reader.ignore(context, ParameterType::Integer, "faceIndices");
+    Ok(PlyMesh {
+        positions,
+        normals,
+        uvs,
+        triangles,
+        skipped_faces: 0,
+    })
+}
+
+fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
+    values.unwrap_or_default().as_chunks::<3>().0.to_vec()
+}
+
+fn triangles(
+    context: &mut Context<'_>,
+    parameter: &Parameter,
+    vertices: usize,
+) -> Result<Vec<[u32; 3]>, Fault> {
+    let Values::Integers(indices) = &parameter.values else {
+        return Ok(Vec::new());
+    };
+    let is_vertex = |&index: &i32| usize::try_from(index).is_ok_and(|index| index < vertices);
+    if let Some(index) = indices.iter().find(|index| !is_vertex(index)) {
+        let message = format!("index {index} is not that of a point: there are {vertices}");
+        return Err(Fault::scene(parameter.value_span, message));
+    }
+    let (triangles, rest) = indices.as_chunks::<3>();
+    if !rest.is_empty() {
+        let message = "the indices are no whole number of triangles: the last ones are left out";
+        context.warn(parameter.value_span, message);
+    }
+    Ok(triangles
+        .iter()
+        .map(|corners| corners.map(|corner| corner as u32))
+        .collect())
+}

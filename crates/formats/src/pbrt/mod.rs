@@ -1,0 +1,36 @@
+//! Scene files of pbrt-v4.
+//!
+//! Reading is two steps. [`parse_file`] turns text into a [`SceneDescription`]: plain data that
+//! says what the text says, where every name is known and every number is one. [`build()`] makes a
+//! scene of it and reads the meshes and images; [`load`] does both.
+//!
+//! Departures from the reference program, all towards telling the user more: an unknown name is an
+//! error with the nearest known one; a file of version 3 is recognised by the first mark of it; a
+//! matrix with perspective, a degenerate transformation and a name that is used and never defined are
+//! errors where they stand.
+
+mod build;
+mod definitions;
+mod directives;
+mod known;
+mod lexer;
+mod parameters;
+mod parser;
+mod scene;
+mod state;
+mod transform;
+mod v3;
+
+#[cfg(test)]
+mod tests;
+
+pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load};
+pub use parameters::{Parameter, ParameterList, ParameterType, Values};
+pub use parser::{parse_file, parse_text};
+pub use scene::{
+    CameraDescription, ColorSpace, Entity, FilmDescription, InstanceDescription, LightDescription,
+    MaterialDescription, MediumDescription, MediumInterface, MediumReference, ObjectDescription,
+    OptionDescription, SceneDescription, ShapeDescription, TextureDescription, TextureKind,
+    Warning,
+};
+pub use transform::Transforms;

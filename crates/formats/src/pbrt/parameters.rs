@@ -1,0 +1,302 @@
+//! The `"type name" value` lists that follow most directives.
+
+use super::known;
+use super::lexer::{TokenKind, Tokens, parse_float, parse_integer, shorten};
+use super::scene::ColorSpace;
+use super::v3;
+use crate::source::{Fault, Span};
+use std::sync::Arc;
+
+/// The type word of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParameterType {
+    /// `true` or `false`.
+    Bool,
+    /// 32 bits.
+    Integer,
+    /// One number.
+    Float,
+    /// Two numbers.
+    Point2,
+    /// Two numbers.
+    Vector2,
+    /// Three numbers.
+    Point3,
+    /// Three numbers.
+    Vector3,
+    /// Three numbers.
+    Normal,
+    /// Text or a file name.
+    String,
+    /// The name of a texture.
+    Texture,
+    /// A colour in the colour space of its place.
+    Rgb,
+    /// Pairs of wavelength and value, or the name of a spectrum or of a file with one.
+    Spectrum,
+    /// A temperature in kelvin.
+    Blackbody,
+}
+
+impl ParameterType {
+    const ALL: [Self; 13] = [
+        Self::Bool,
+        Self::Integer,
+        Self::Float,
+        Self::Point2,
+        Self::Vector2,
+        Self::Point3,
+        Self::Vector3,
+        Self::Normal,
+        Self::String,
+        Self::Texture,
+        Self::Rgb,
+        Self::Spectrum,
+        Self::Blackbody,
+    ];
+
+    /// The word as files spell it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Bool => "bool",
+            Self::Integer => "integer",
+            Self::Float => "float",
+            Self::Point2 => "point2",
+            Self::Vector2 => "vector2",
+            Self::Point3 => "point3",
+            Self::Vector3 => "vector3",
+            Self::Normal => "normal",
+            Self::String => "string",
+            Self::Texture => "texture",
+            Self::Rgb => "rgb",
+            Self::Spectrum => "spectrum",
+            Self::Blackbody => "blackbody",
+        }
+    }
+
+    /// The numbers that make one value.
+    const fn arity(self) -> usize {
+        match self {
+            Self::Point2 | Self::Vector2 => 2,
+            Self::Point3 | Self::Vector3 | Self::Normal | Self::Rgb => 3,
+            _ => 1,
+        }
+    }
+
+    fn empty(self) -> Values {
+        match self {
+            Self::Bool => Values::Bools(Vec::new()),
+            Self::Integer => Values::Integers(Vec::new()),
+            Self::String | Self::Texture => Values::Strings(Vec::new()),
+            _ => Values::Floats(Vec::new()),
+        }
+    }
+}
+
+/// The values of a parameter, in the order of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Of `bool`.
+    Bools(Vec<bool>),
+    /// Of `integer`.
+    Integers(Vec<i32>),
+    /// Of all that is made of numbers.
+    Floats(Vec<f32>),
+    /// Of `string`, `texture` and a `spectrum` that is named.
+    Strings(Vec<String>),
+}
+
+impl Values {
+    /// The number of words they were written with.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Bools(values) => values.len(),
+            Self::Integers(values) => values.len(),
+            Self::Floats(values) => values.len(),
+            Self::Strings(values) => values.len(),
+        }
+    }
+
+    /// True for `[ ]`.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One `"type name" value`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// The type word.
+    pub kind: ParameterType,
+    /// The name.
+    pub name: String,
+    /// The values.
+    pub values: Values,
+    /// The colour space that was current: what `rgb` values mean.
+    pub color_space: ColorSpace,
+    /// The quoted `type name`.
+    pub span: Span,
+    /// The value, with its brackets.
+    pub value_span: Span,
+}
+
+/// The parameters of one directive.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParameterList {
+    /// Those of the directive itself. Of two with the same type and name the last counts.
+    pub explicit: Vec<Parameter>,
+    /// Those of `Attribute` directives: they count where the directive has no such parameter.
+    pub defaults: Arc<Vec<Parameter>>,
+}
+
+impl ParameterList {
+    /// The parameter of this type and name. None: where the file gives none.
+    pub fn get(&self, kind: ParameterType, name: &str) -> Option<&Parameter> {
+        let wanted = |parameter: &&Parameter| parameter.kind == kind && parameter.name == name;
+        let explicit = self.explicit.iter().rev().find(wanted);
+        explicit.or_else(|| self.defaults.iter().rev().find(wanted))
+    }
+}
+
+/// Reads parameters up to the first token that is not a quoted string.
+pub(super) fn parse_list(
+    tokens: &mut Tokens<'_>,
+    color_space: ColorSpace,
+) -> Result<Vec<Parameter>, Fault> {
+    let mut list = Vec::new();
+    while let Some((declaration, span)) = tokens.next_if_quoted()? {
+        let (kind, name) = parse_declaration(&declaration, span)?;
+        let (values, value_span) = parse_values(tokens, kind, &name)?;
+        if !values.len().is_multiple_of(kind.arity()) {
+            let (word, arity, count) = (kind.word(), kind.arity(), values.len());
+            let message =
+                format!("`{word} {name}` takes {arity} numbers a value, found {count} in all");
+            return Err(Fault::scene(value_span, message));
+        }
+        list.push(Parameter {
+            kind,
+            name,
+            values,
+            color_space,
+            span,
+            value_span,
+        });
+    }
+    Ok(list)
+}
+
+fn parse_declaration(declaration: &str, span: Span) -> Result<(ParameterType, String), Fault> {
+    let mut words = declaration
+        .split([' ', '\t', '\r', '\n'])
+        .filter(|word| !word.is_empty());
+    let (Some(word), Some(name), None) = (words.next(), words.next(), words.next()) else {
+        let shown = shorten(declaration);
+        let message = format!("expected a parameter `\"type name\"`, found \"{shown}\"");
+        return Err(Fault::syntax(span, message));
+    };
+    if let Some(hint) = v3::type_word(word) {
+        return Err(v3::fault(
+            span,
+            &format!("the parameter type `{word}`"),
+            hint,
+        ));
+    }
+    let Some(kind) = ParameterType::ALL
+        .into_iter()
+        .find(|kind| kind.word() == word)
+    else {
+        let words = ParameterType::ALL.map(ParameterType::word);
+        let message = format!("unknown parameter type `{}`", shorten(word));
+        return Err(Fault::syntax(span, message).with_nearest(word, words));
+    };
+    if let Some(hint) = v3::parameter(name) {
+        return Err(v3::fault(span, &format!("the parameter `{name}`"), hint));
+    }
+    Ok((kind, known::normalized(name)))
+}
+
+fn parse_values(
+    tokens: &mut Tokens<'_>,
+    kind: ParameterType,
+    name: &str,
+) -> Result<(Values, Span), Fault> {
+    let what = format!("a value of `{} {name}`", kind.word());
+    let mut values = kind.empty();
+    let first = tokens.expect(&what)?;
+    if first.kind != TokenKind::Open {
+        push(&mut values, kind, first.kind, first.span)?;
+        return Ok((values, first.span));
+    }
+    loop {
+        let token = tokens.expect(&format!("{what} or `]`"))?;
+        if token.kind == TokenKind::Close {
+            return Ok((values, first.span.to(token.span)));
+        }
+        push(&mut values, kind, token.kind, token.span)?;
+    }
+}
+
+fn push(
+    values: &mut Values,
+    kind: ParameterType,
+    token: TokenKind<'_>,
+    span: Span,
+) -> Result<(), Fault> {
+    // A spectrum is numbers or names; its first value decides.
+    if kind == ParameterType::Spectrum && values.is_empty() && matches!(token, TokenKind::Quoted(_))
+    {
+        *values = Values::Strings(Vec::new());
+    }
+    match (values, token) {
+        (Values::Floats(values), TokenKind::Word(word)) => values.push(float(word, span)?),
+        (Values::Integers(values), TokenKind::Word(word)) => values.push(integer(word, span)?),
+        (Values::Bools(values), TokenKind::Word(word)) => {
+            let expected = || format!("expected `true` or `false`, found `{}`", shorten(word));
+            let value = word.parse().map_err(|_| Fault::syntax(span, expected()))?;
+            values.push(value);
+        }
+        (Values::Bools(_), TokenKind::Quoted(_)) => {
+            return Err(v3::fault(
+                span,
+                "a quoted truth value",
+                "write true or false without quotes",
+            ));
+        }
+        (Values::Strings(values), TokenKind::Quoted(text)) => values.push(text.into_owned()),
+        (_, TokenKind::Open) => return Err(Fault::syntax(span, "brackets do not nest")),
+        (values, token) => {
+            let found = super::lexer::Token { kind: token, span }.describe();
+            let expected = match values {
+                Values::Strings(_) => "a string in quotes",
+                _ => "a number",
+            };
+            let message = format!("expected {expected}, found {found}");
+            return Err(Fault::syntax(span, message));
+        }
+    }
+    Ok(())
+}
+
+fn float(word: &str, span: Span) -> Result<f32, Fault> {
+    let value = parse_float(word).ok_or_else(|| {
+        Fault::syntax(
+            span,
+            format!("expected a number, found `{}`", shorten(word)),
+        )
+    })? as f32;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Fault::scene(
+            span,
+            format!("the number `{}` is too large", shorten(word)),
+        ))
+    }
+}
+
+fn integer(word: &str, span: Span) -> Result<i32, Fault> {
+    parse_integer(word).ok_or_else(|| {
+        let message = format!("expected an integer of 32 bits, found `{}`", shorten(word));
+        Fault::syntax(span, message)
+    })
+}

@@ -1,0 +1,252 @@
+//! What a scene's text says, as plain data: nothing is built, no mesh or image is read.
+
+use super::parameters::{Parameter, ParameterList};
+use super::transform::Transforms;
+use crate::source::{SourceMap, Span};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A parsed scene.
+///
+/// References are indices into the vectors here; all of them are valid. Every item keeps the place
+/// it came from, so that what building finds wrong can be told with file, line and column.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDescription {
+    /// The texts that spans point into.
+    pub sources: SourceMap,
+    /// The folder that relative file names are taken from: that of the top-level file.
+    pub folder: PathBuf,
+    /// The camera. None: where the file has no such directive; so below.
+    pub camera: Option<CameraDescription>,
+    /// The film.
+    pub film: Option<FilmDescription>,
+    /// The sampler.
+    pub sampler: Option<Entity>,
+    /// The integrator.
+    pub integrator: Option<Entity>,
+    /// The pixel filter.
+    pub filter: Option<Entity>,
+    /// The acceleration structure.
+    pub accelerator: Option<Entity>,
+    /// The `Option` directives.
+    pub options: Vec<OptionDescription>,
+    /// The materials. The first is the one that shapes have before any is named.
+    pub materials: Vec<MaterialDescription>,
+    /// The textures.
+    pub textures: Vec<TextureDescription>,
+    /// The participating media.
+    pub media: Vec<MediumDescription>,
+    /// The light sources that are not shapes.
+    pub lights: Vec<LightDescription>,
+    /// The shapes outside of objects.
+    pub shapes: Vec<ShapeDescription>,
+    /// The objects.
+    pub objects: Vec<ObjectDescription>,
+    /// The places of objects.
+    pub instances: Vec<InstanceDescription>,
+    /// What is odd but no error.
+    pub warnings: Vec<Warning>,
+}
+
+/// A type word in quotes and its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entity {
+    /// The type word.
+    pub kind: String,
+    /// Its parameters.
+    pub parameters: ParameterList,
+    /// The type word with its quotes.
+    pub span: Span,
+}
+
+/// A colour space of the format. Values are linear in all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorSpace {
+    /// Rec. 709 primaries.
+    #[default]
+    Srgb,
+    /// DCI-P3 primaries with D65.
+    DciP3,
+    /// Rec. 2020 primaries.
+    Rec2020,
+    /// ACES 2065-1 (AP0).
+    Aces2065,
+}
+
+/// The camera and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CameraDescription {
+    /// Type and parameters.
+    pub entity: Entity,
+    /// Camera from world.
+    pub transforms: Transforms,
+    /// The medium around it: the outer one of this.
+    pub medium: MediumInterface,
+}
+
+/// The film.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmDescription {
+    /// Type and parameters.
+    pub entity: Entity,
+    /// The colour space of the image.
+    pub color_space: ColorSpace,
+}
+
+/// An `Option`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptionDescription {
+    /// The name in lower case, without `-` and `_`.
+    pub name: String,
+    /// The value as it is written; strings without their quotes.
+    pub value: String,
+    /// The name with its quotes.
+    pub span: Span,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialDescription {
+    /// Its name. None: for one of a `Material` directive.
+    pub name: Option<String>,
+    /// Type and parameters. None: only for the one that shapes have before any is named.
+    pub entity: Option<Entity>,
+}
+
+/// What a texture gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum TextureKind {
+    /// Numbers.
+    Float,
+    /// Colours.
+    Spectrum,
+}
+
+/// A texture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextureDescription {
+    /// Its name: numbers and colours have separate names.
+    pub name: String,
+    /// What it gives.
+    pub kind: TextureKind,
+    /// Class and parameters.
+    pub entity: Entity,
+    /// World from texture space.
+    pub transforms: Transforms,
+}
+
+/// A participating medium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediumDescription {
+    /// Its name; the span of [`entity`](Self::entity) is that of the name.
+    pub name: String,
+    /// Type and parameters.
+    pub entity: Entity,
+    /// World from medium space.
+    pub transforms: Transforms,
+}
+
+/// A light source that is not a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightDescription {
+    /// Type and parameters.
+    pub entity: Entity,
+    /// World from light space.
+    pub transforms: Transforms,
+    /// The medium around it: the outer one of this.
+    pub medium: MediumInterface,
+}
+
+/// A shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeDescription {
+    /// Type and parameters.
+    pub entity: Entity,
+    /// World (or instance) from object space.
+    pub transforms: Transforms,
+    /// True where `ReverseOrientation` turned the normals.
+    pub reverse_orientation: bool,
+    /// An index into [`SceneDescription::materials`].
+    pub material: usize,
+    /// What it emits. None: where it does not.
+    pub area_light: Option<Arc<Entity>>,
+    /// The media on its sides.
+    pub medium: MediumInterface,
+}
+
+/// A named collection of shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectDescription {
+    /// Its name.
+    pub name: String,
+    /// The shapes.
+    pub shapes: Vec<ShapeDescription>,
+    /// The name with its quotes.
+    pub span: Span,
+}
+
+/// The place of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InstanceDescription {
+    /// An index into [`SceneDescription::objects`].
+    pub object: usize,
+    /// World from instance.
+    pub transforms: Transforms,
+    /// The name with its quotes.
+    pub span: Span,
+}
+
+/// The media on the two sides of a surface. None: vacuum.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MediumInterface {
+    /// On the side away from the normal.
+    pub inside: Option<MediumReference>,
+    /// On the side of the normal.
+    pub outside: Option<MediumReference>,
+}
+
+/// The name of a medium; it may be defined later.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MediumReference {
+    /// The name.
+    pub name: Arc<str>,
+    /// The name with its quotes.
+    pub span: Span,
+}
+
+/// Something odd that is no error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// What is odd.
+    pub message: String,
+    /// Where it is; of several, the first.
+    pub span: Span,
+    /// How often it occurred.
+    pub count: usize,
+}
+
+/// Counts a warning: the same words occur once in the list.
+pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
+    let message = message.into();
+    match warnings
+        .iter_mut()
+        .find(|warning| warning.message == message)
+    {
+        Some(warning) => warning.count += 1,
+        None => warnings.push(Warning {
+            message,
+            span,
+            count: 1,
+        }),
+    }
+}
+
+/// What `Attribute` directives say, by target.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AttributeDefaults {
+    pub(super) shape: Arc<Vec<Parameter>>,
+    pub(super) light: Arc<Vec<Parameter>>,
+    pub(super) material: Arc<Vec<Parameter>>,
+    pub(super) medium: Arc<Vec<Parameter>>,
+    pub(super) texture: Arc<Vec<Parameter>>,
+}

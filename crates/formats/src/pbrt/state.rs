@@ -1,0 +1,56 @@
+//! What directives change and later ones take over.
+
+use super::scene::{AttributeDefaults, ColorSpace, Entity, MediumInterface};
+use super::transform::{Active, Transforms};
+use crate::source::Span;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The graphics state: saved and restored as a whole by blocks.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GraphicsState {
+    pub(super) transforms: Transforms,
+    pub(super) active: Active,
+    pub(super) color_space: ColorSpace,
+    pub(super) reverse_orientation: bool,
+    /// An index into the materials; 0 is the material before any is named.
+    pub(super) material: usize,
+    pub(super) area_light: Option<Arc<Entity>>,
+    pub(super) medium: MediumInterface,
+    pub(super) defaults: AttributeDefaults,
+}
+
+/// What opened a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Opener {
+    Attribute,
+    Transform,
+    Object,
+}
+
+impl Opener {
+    /// The directives that open and close such a block.
+    pub(super) fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Attribute => ("AttributeBegin", "AttributeEnd"),
+            Self::Transform => ("TransformBegin", "TransformEnd"),
+            Self::Object => ("ObjectBegin", "ObjectEnd"),
+        }
+    }
+}
+
+/// An open block: what to restore at its end.
+#[derive(Clone, Debug)]
+pub(super) struct OpenBlock {
+    pub(super) opener: Opener,
+    pub(super) span: Span,
+    pub(super) saved: GraphicsState,
+}
+
+/// The state of one file and those it includes. An imported file has one of its own.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scope {
+    pub(super) state: GraphicsState,
+    pub(super) blocks: Vec<OpenBlock>,
+    pub(super) coordinate_systems: BTreeMap<String, Transforms>,
+}

@@ -1,0 +1,193 @@
+//! The current transformation and the directives that change it.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Transformations at the two ends of the shutter's interval: the same where nothing moves.
+///
+/// In f64: chains of rotations and translations stay exact enough to become f32 once, at the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transforms {
+    /// At the first time.
+    pub start: DAffine3,
+    /// At the second time.
+    pub end: DAffine3,
+    /// The two times.
+    pub times: [f32; 2],
+}
+
+impl Default for Transforms {
+    fn default() -> Self {
+        Self {
+            start: DAffine3::IDENTITY,
+            end: DAffine3::IDENTITY,
+            times: [0.0, 1.0],
+        }
+    }
+}
+
+impl Transforms {
+    /// True where the two ends differ.
+    pub fn is_animated(&self) -> bool {
+        self.start != self.end
+    }
+
+    pub(super) fn identity(times: [f32; 2]) -> Self {
+        Self {
+            times,
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn inverse(self) -> Self {
+        Self {
+            start: self.start.inverse(),
+            end: self.end.inverse(),
+            ..self
+        }
+    }
+
+    /// Changes the ends that `active` names.
+    pub(super) fn change(&mut self, active: Active, f: impl Fn(DAffine3) -> DAffine3) {
+        if active != Active::EndTime {
+            self.start = f(self.start);
+        }
+        if active != Active::StartTime {
+            self.end = f(self.end);
+        }
+    }
+}
+
+/// Which ends of the interval transform directives change.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Active {
+    #[default]
+    All,
+    StartTime,
+    EndTime,
+}
+
+/// Why a transformation cannot be made.
+pub(super) type Reason = &'static str;
+
+/// Rotation by `degrees` about an axis, by Rodrigues' formula: v′ = c v + (1 − c)(a·v) a + s a × v.
+pub(super) fn rotate(degrees: f64, axis: DVec3) -> Result<DAffine3, Reason> {
+    let axis = axis
+        .try_normalize()
+        .ok_or("the axis of a rotation is not zero")?;
+    let radians = degrees.to_radians();
+    let (sin, cos) = (libm::sin(radians), libm::cos(radians));
+    let column = |v: DVec3| cos * v + (1.0 - cos) * axis.dot(v) * axis + sin * axis.cross(v);
+    let matrix = DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z));
+    Ok(DAffine3::from_mat3(matrix))
+}
+
+/// Camera from world: the camera stands at `eye`, +z towards `target`, +y up, +x to the right.
+///
+/// This camera space is left-handed.
+pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, Reason> {
+    let forward = (target - eye)
+        .try_normalize()
+        .ok_or("the eye is not at the target")?;
+    let parallel = "the up vector is not zero and not along the view";
+    let up = up.try_normalize().ok_or(parallel)?;
+    let right = up.cross(forward);
+    // Of two unit vectors: 1e-9 is far below what anyone means by an angle.
+    let right = if right.length() > 1e-9 {
+        right.normalize()
+    } else {
+        return Err(parallel);
+    };
+    let frame = DMat3::from_cols(right, forward.cross(right), forward);
+    Ok(DAffine3::from_mat3_translation(frame, eye).inverse())
+}
+
+/// Sixteen numbers, column by column.
+pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, Reason> {
+    let [
+        ax,
+        ay,
+        az,
+        aw,
+        bx,
+        by,
+        bz,
+        bw,
+        cx,
+        cy,
+        cz,
+        cw,
+        tx,
+        ty,
+        tz,
+        tw,
+    ] = *numbers;
+    let is_affine = [aw, bw, cw].iter().all(|entry| *entry == 0.0) && tw != 0.0;
+    if !is_affine {
+        return Err("the numbers 4, 8, 12 of a matrix are 0 and its last is not: no perspective");
+    }
+    let column = |x, y, z| DVec3::new(x, y, z) / tw;
+    let linear = DMat3::from_cols(column(ax, ay, az), column(bx, by, bz), column(cx, cy, cz));
+    Ok(DAffine3::from_mat3_translation(linear, column(tx, ty, tz)))
+}
+
+/// True where a transformation can be undone without loss of all digits.
+pub(super) fn is_invertible(transform: &DAffine3) -> bool {
+    let determinant = transform.matrix3.determinant();
+    transform.is_finite() && determinant.is_normal() && transform.inverse().is_finite()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_maps(transform: DAffine3, from: [f64; 3], to: [f64; 3]) {
+        let mapped = transform.transform_point3(from.into());
+        assert!(
+            mapped.abs_diff_eq(to.into(), 1e-12),
+            "{from:?} → {mapped}, not {to:?}"
+        );
+    }
+
+    #[test]
+    fn rotations_turn_by_the_right_hand() {
+        check_maps(rotate(90.0, DVec3::Z).unwrap(), [1., 0., 0.], [0., 1., 0.]);
+        check_maps(
+            rotate(-90.0, DVec3::X * 7.0).unwrap(),
+            [0., 1., 0.],
+            [0., 0., -1.],
+        );
+        check_maps(
+            rotate(120.0, DVec3::ONE).unwrap(),
+            [1., 2., 3.],
+            [3., 1., 2.],
+        );
+        assert!(rotate(1.0, DVec3::ZERO).is_err());
+    }
+
+    #[test]
+    fn the_camera_looks_along_z_with_x_to_the_right() {
+        let camera = look_at(
+            DVec3::new(278., 273., -800.),
+            DVec3::new(278., 273., 0.),
+            DVec3::Y,
+        );
+        let camera = camera.unwrap();
+        check_maps(camera, [278., 273., -800.], [0., 0., 0.]);
+        check_maps(camera, [278., 273., -700.], [0., 0., 100.]);
+        check_maps(camera, [279., 274., -800.], [1., 1., 0.]);
+        assert!(look_at(DVec3::ZERO, DVec3::Y, DVec3::Y * -3.0).is_err());
+        assert!(look_at(DVec3::Y, DVec3::Y, DVec3::X).is_err());
+    }
+
+    #[test]
+    fn matrices_are_read_by_columns() {
+        let mut numbers = [
+            1., 2., 3., 0., 4., 5., 6., 0., 7., 8., 10., 0., 11., 12., 13., 1.,
+        ];
+        check_maps(matrix(&numbers).unwrap(), [0., 0., 0.], [11., 12., 13.]);
+        check_maps(matrix(&numbers).unwrap(), [1., 0., 0.], [12., 14., 16.]);
+        numbers[3] = 0.5;
+        assert!(matrix(&numbers).is_err());
+    }
+}

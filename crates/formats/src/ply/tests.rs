@@ -1,0 +1,182 @@
+use super::*;
+use proptest::prelude::*;
+
+const QUAD: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\n\
+    property float y\nproperty float z\nproperty float s\nproperty float t\nproperty uchar red\n\
+    element face 3\nproperty list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n\
+    0 0 0 0 0 1\n1 0 0 1 0 2\n1 1 0 1 1 3\n0 1 0 0 1 4\n\
+    4 0 1 2 3\n2 0 1\n3 2 1 0\n7\n";
+
+/// The same mesh as [`QUAD`], with normals, in binary.
+fn binary_quad(format: &str, big: bool) -> Vec<u8> {
+    let mut bytes = format!(
+        "ply\r\nformat {format} 1.0\r\nelement face 2\r\nproperty int id\r\n\
+         property list ushort uint vertex_indices\r\nelement vertex 4\r\nproperty double x\r\n\
+         property double y\r\nproperty double z\r\nproperty float nx\r\nproperty float ny\r\n\
+         property float nz\r\nend_header\r\n"
+    )
+    .into_bytes();
+    let mut put = |little: &[u8]| {
+        let mut little = little.to_vec();
+        if big {
+            little.reverse();
+        }
+        bytes.extend(little);
+    };
+    for corners in [&[0u32, 1, 2, 3][..], &[2, 1, 0]] {
+        put(&5i32.to_le_bytes());
+        put(&(corners.len() as u16).to_le_bytes());
+        for corner in corners {
+            put(&corner.to_le_bytes());
+        }
+    }
+    for [x, y] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0f64]] {
+        for value in [x, y, 0.0] {
+            put(&value.to_le_bytes());
+        }
+        for value in [0.0, 0.0, 1.0f32] {
+            put(&value.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+#[test]
+fn ascii_is_read_with_uv_and_skipped_faces() {
+    let mesh = parse(QUAD.as_bytes()).unwrap();
+    assert_eq!(
+        mesh.positions,
+        [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]]
+    );
+    assert_eq!(mesh.uvs, [[0., 0.], [1., 0.], [1., 1.], [0., 1.]]);
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
+    assert_eq!((mesh.normals.len(), mesh.skipped_faces), (0, 1));
+}
+
+#[test]
+fn both_byte_orders_give_the_same_mesh_whatever_the_order_of_elements() {
+    let little = parse(&binary_quad("binary_little_endian", false)).unwrap();
+    let big = parse(&binary_quad("binary_big_endian", true)).unwrap();
+    assert_eq!(little, big);
+    assert_eq!(little.positions, parse(QUAD.as_bytes()).unwrap().positions);
+    assert_eq!(little.normals, [[0., 0., 1.]; 4]);
+    assert_eq!(little.triangles, [[0, 1, 2], [0, 2, 3], [2, 1, 0]]);
+}
+
+#[track_caller]
+fn check_broken(from: &str, to: &str, expected: &str) {
+    assert!(QUAD.contains(from));
+    let error = parse(QUAD.replacen(from, to, 1).as_bytes()).unwrap_err();
+    let error = error.in_file(Path::new("m.ply"));
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn broken_files_are_told_with_element_and_line() {
+    check_broken(
+        "ply\n",
+        "plx\n",
+        "m.ply: not a PLY file: it does not begin with a line `ply`",
+    );
+    check_broken(
+        "end_header",
+        "end",
+        "m.ply:15:1: the header has a line that says nothing known",
+    );
+    check_broken(
+        "ascii 1.0",
+        "ascii 2.0",
+        "m.ply:2:1: the header has a line that says nothing known",
+    );
+    check_broken("ascii", "text", "m.ply:2:1: unknown format `text`");
+    check_broken("float x", "real x", "m.ply:5:1: unknown type `real`");
+    check_broken(
+        "float x",
+        "float w",
+        "m.ply: the vertices have no `x`, `y` and `z`",
+    );
+    check_broken("element vertex 4", "element vertex 0", "m.ply: no vertices");
+    check_broken("element face 3", "element faces 3", "m.ply: no faces");
+    check_broken(
+        "vertex_indices",
+        "vertex_index",
+        "m.ply: the faces have no list `vertex_indices`",
+    );
+    check_broken(
+        "1 1 0 1 1 3",
+        "1 nan 0 1 1 3",
+        "m.ply:18:3: vertex 2: `y` is not a finite number",
+    );
+    check_broken(
+        "1 1 0 1 1 3",
+        "1 1e99 0 1 1 3",
+        "m.ply:18:3: vertex 2: `y` is not a finite number",
+    );
+    check_broken(
+        "1 1 0 1 1 3",
+        "1 one 0 1 1 3",
+        "m.ply:18:3: vertex 2: `one` is not a number",
+    );
+    check_broken(
+        "4 0 1 2 3",
+        "4 0 1 2 4",
+        "m.ply:20:9: face 0: index 4 is not that of a vertex: there are 4",
+    );
+    check_broken(
+        "4 0 1 2 3",
+        "4 0 1 -2 3",
+        "m.ply:20:7: face 0: index -2 is not that of a vertex: there are 4",
+    );
+    check_broken(
+        "2 0 1",
+        "-2 0 1",
+        "m.ply:21:1: face 1: -2 is not the length of a list",
+    );
+    check_broken(
+        "3 2 1 0\n7\n",
+        "3 2",
+        "m.ply:22:4: face 2: the file ends too early",
+    );
+    check_broken(
+        "element face 3",
+        "element face 99999999999",
+        "m.ply: the file is too short for 99999999999 of the element `face`",
+    );
+    check_broken(
+        "property int a\n",
+        "",
+        "m.ply: the element `edge` has no properties",
+    );
+}
+
+#[test]
+fn a_binary_file_with_a_nan_names_the_vertex() {
+    let mut bytes = binary_quad("binary_little_endian", false);
+    let last_normal = bytes.len() - 4;
+    bytes[last_normal..].copy_from_slice(&f32::NAN.to_le_bytes());
+    let error = parse(&bytes).unwrap_err();
+    assert_eq!(error.to_string(), "vertex 3: `nz` is not a finite number");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let _ = parse(&bytes);
+        let _ = parse(&[b"ply\nformat binary_little_endian 1.0\n".as_slice(), &bytes].concat());
+    }
+
+    #[test]
+    fn mutated_files_never_panic(at in 0usize..400, byte in any::<u8>(), length in 0usize..600) {
+        for mut bytes in [QUAD.as_bytes().to_vec(), binary_quad("binary_big_endian", true)] {
+            let index = at % bytes.len();
+            bytes[index] = byte;
+            bytes.truncate(length.max(100));
+            if let Ok(mesh) = parse(&bytes) {
+                let count = mesh.positions.len() as u32;
+                prop_assert!(mesh.triangles.iter().flatten().all(|&corner| corner < count));
+            }
+        }
+    }
+}

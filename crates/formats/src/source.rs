@@ -1,0 +1,326 @@
+//! Texts, places in them, and excerpts for people to look at.
+
+use crate::error::{Error, ErrorKind, Place};
+use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// One of the texts of a [`SourceMap`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileId(u32);
+
+/// A stretch of bytes of one text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// The text.
+    pub file: FileId,
+    /// The first byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    pub(crate) fn new(file: FileId, range: Range<usize>) -> Self {
+        // Texts are below 4 GiB: `SourceMap::add` refuses longer ones.
+        Self {
+            file,
+            start: range.start as u32,
+            end: range.end as u32,
+        }
+    }
+
+    /// From the beginning of this span to the end of `last`, which lies in the same text.
+    pub(crate) fn to(self, last: Self) -> Self {
+        debug_assert_eq!(self.file, last.file);
+        Self {
+            end: last.end.max(self.end),
+            ..self
+        }
+    }
+}
+
+/// Something wrong at a place: becomes an [`Error`] where the texts are at hand.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub(crate) kind: ErrorKind,
+    pub(crate) span: Span,
+    pub(crate) message: String,
+    pub(crate) hint: Option<String>,
+}
+
+impl Fault {
+    pub(crate) fn new(kind: ErrorKind, span: Span, message: impl Into<String>) -> Self {
+        Self {
+            kind,
+            span,
+            message: message.into(),
+            hint: None,
+        }
+    }
+
+    pub(crate) fn syntax(span: Span, message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Syntax, span, message)
+    }
+
+    pub(crate) fn scene(span: Span, message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Scene, span, message)
+    }
+
+    /// What went wrong with another file, told at the place that names the file.
+    pub(crate) fn from_error(span: Span, error: &Error) -> Self {
+        Self::new(error.kind(), span, error.to_string())
+    }
+
+    pub(crate) fn with_hint(self, hint: impl Into<String>) -> Self {
+        Self {
+            hint: Some(hint.into()),
+            ..self
+        }
+    }
+
+    /// Adds the nearest of `known` to `name` as a hint, where one is near.
+    pub(crate) fn with_nearest<'a>(
+        mut self,
+        name: &str,
+        known: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        if self.hint.is_none() {
+            self.hint = nearest(name, known).map(|known| format!("did you mean `{known}`?"));
+        }
+        self
+    }
+}
+
+/// The name that `name` was probably meant to be. None: where nothing is near.
+pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // A third of the letters may be wrong; two words of three letters are not each other.
+    let allowed = name.chars().count().div_ceil(3).min(4);
+    known
+        .into_iter()
+        .map(|known| (distance(name, known), known))
+        .filter(|&(distance, _)| distance <= allowed)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, known)| known)
+}
+
+fn distance(a: &str, b: &str) -> usize {
+    strsim::osa_distance(&a.to_ascii_lowercase(), &b.to_ascii_lowercase())
+}
+
+/// The texts that a scene was read from.
+#[derive(Clone, Debug, Default)]
+pub struct SourceMap {
+    files: Vec<(PathBuf, Arc<str>)>,
+}
+
+impl SourceMap {
+    /// The beginning of the first text: where what concerns all of a scene is told.
+    pub(crate) const BEGINNING: Span = Span {
+        file: FileId(0),
+        start: 0,
+        end: 0,
+    };
+
+    /// Adds a text under the name that messages give it.
+    pub(crate) fn add(&mut self, name: &Path, text: String) -> Result<FileId, Error> {
+        if u32::try_from(text.len()).is_err() {
+            let message = "longer than 4 GiB";
+            return Err(Error::new(ErrorKind::Limit, message).in_file(name));
+        }
+        self.files.push((name.to_owned(), text.into()));
+        Ok(FileId(self.files.len() as u32 - 1))
+    }
+
+    /// The name of a text.
+    pub fn name(&self, file: FileId) -> &Path {
+        &self.files[file.0 as usize].0
+    }
+
+    /// A text.
+    pub(crate) fn text(&self, file: FileId) -> Arc<str> {
+        Arc::clone(&self.files[file.0 as usize].1)
+    }
+
+    /// Line and column of the beginning of `span`, both counted from 1.
+    pub fn line_and_column(&self, span: Span) -> (usize, usize) {
+        line_and_column(&self.files[span.file.0 as usize].1, span.start as usize)
+    }
+
+    pub(crate) fn error(&self, fault: Fault) -> Error {
+        let (name, text) = &self.files[fault.span.file.0 as usize];
+        let (line, column) = self.line_and_column(fault.span);
+        let marked = fault.span.start as usize..fault.span.end as usize;
+        let excerpt = Some(Excerpt::new(name, text, line, marked));
+        let error = Error::new(fault.kind, fault.message)
+            .in_file(name)
+            .at(Place {
+                line,
+                column,
+                excerpt,
+            });
+        match fault.hint {
+            Some(hint) => error.with_hint(hint),
+            None => error,
+        }
+    }
+}
+
+/// Line and column of a byte, both counted from 1.
+pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let line = 1 + before.bytes().filter(|&byte| byte == b'\n').count();
+    (line, 1 + before[line_start..].chars().count())
+}
+
+/// The lines around a place. Long lines are cut, so that a mesh on one line does not fill the screen.
+#[derive(Clone, Debug)]
+pub(crate) struct Excerpt {
+    name: String,
+    text: String,
+    marked: Range<usize>,
+    /// Of the first line of `text`, counted from 0.
+    first_line: usize,
+    /// Characters that were cut off in front of `text`.
+    cut: usize,
+}
+
+impl Excerpt {
+    /// Bytes shown on either side of the marked ones in a line that is too long to show.
+    const MARGIN: usize = 60;
+    /// The most bytes that are shown uncut, or marked.
+    const WHOLE: usize = 400;
+
+    fn new(name: &Path, text: &str, line: usize, marked: Range<usize>) -> Self {
+        let name = name.display().to_string();
+        let line_start = text[..marked.start].rfind('\n').map_or(0, |i| i + 1);
+        let line_end = text[marked.start..]
+            .find('\n')
+            .map_or(text.len(), |i| marked.start + i);
+        // One line before and one after for orientation.
+        let start = text[..line_start.saturating_sub(1)]
+            .rfind('\n')
+            .map_or(0, |i| i + 1);
+        let end = text.get(line_end + 1..).and_then(|rest| rest.find('\n'));
+        let end = end.map_or(text.len(), |i| line_end + 1 + i);
+        let marked_end = marked.end.min(line_end.max(marked.start));
+        if end - start <= Self::WHOLE {
+            let first_line = line - 1 - usize::from(line_start > 0);
+            let text = text[start..end].to_owned();
+            return Self {
+                name,
+                text,
+                marked: marked.start - start..marked_end - start,
+                first_line,
+                cut: 0,
+            };
+        }
+        let start = line_start.max(boundary_before(
+            text,
+            marked.start.saturating_sub(Self::MARGIN),
+        ));
+        let marked_end = boundary_before(text, marked_end.min(marked.start + Self::WHOLE));
+        let end = line_end.min(boundary_before(text, marked_end + Self::MARGIN));
+        Self {
+            name,
+            text: text[start..end].to_owned(),
+            marked: marked.start - start..marked_end - start,
+            first_line: line - 1,
+            cut: text[line_start..start].chars().count(),
+        }
+    }
+
+    pub(crate) fn marked(&self) -> SourceSpan {
+        self.marked.clone().into()
+    }
+}
+
+/// The last place at or before `offset` where a character begins.
+fn boundary_before(text: &str, offset: usize) -> usize {
+    let offset = offset.min(text.len());
+    (0..=offset)
+        .rev()
+        .find(|&i| text.is_char_boundary(i))
+        .unwrap_or(0)
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        lines_before: usize,
+        lines_after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let inner = self
+            .text
+            .as_str()
+            .read_span(span, lines_before, lines_after)?;
+        let cut = if inner.line() == 0 { self.cut } else { 0 };
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            inner.data(),
+            *inner.span(),
+            inner.line() + self.first_line,
+            inner.column() + cut,
+            inner.line_count(),
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_nearest(name: &str, expected: Option<&str>) {
+        let known = ["diffuse", "dielectric", "conductor", "fov", "L"];
+        assert_eq!(nearest(name, known), expected);
+    }
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        check_nearest("difuse", Some("diffuse"));
+        check_nearest("dieletcric", Some("dielectric"));
+        check_nearest("FOV", Some("fov"));
+        check_nearest("l", Some("L"));
+        check_nearest("velvet", None);
+        check_nearest("", None);
+    }
+
+    #[track_caller]
+    fn check_place(text: &str, offset: usize, expected: (usize, usize)) {
+        assert_eq!(line_and_column(text, offset), expected);
+    }
+
+    #[test]
+    fn lines_and_columns_count_from_one_in_characters() {
+        check_place("abc", 0, (1, 1));
+        check_place("abc", 3, (1, 4));
+        check_place("a\nbc", 2, (2, 1));
+        check_place("a\nµm x", 6, (2, 4));
+        check_place("", 0, (1, 1));
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_mark() {
+        let text = format!("first\n{} here {}\n", "1 ".repeat(1000), "2 ".repeat(1000));
+        let start = text.find("here").unwrap();
+        let excerpt = Excerpt::new(Path::new("a"), &text, 2, start..start + 4);
+        assert!(excerpt.text.len() < 150);
+        assert_eq!(&excerpt.text[excerpt.marked.clone()], "here");
+        let contents = excerpt.read_span(&excerpt.marked(), 0, 0).unwrap();
+        assert_eq!(
+            (contents.line(), contents.column()),
+            (1, start - "first\n".len())
+        );
+    }
+
+    #[test]
+    fn marks_that_span_lines_end_with_their_first_line() {
+        let text = "a [1\n2\n3]\nb";
+        let excerpt = Excerpt::new(Path::new("a"), text, 1, 2..9);
+        assert_eq!(&excerpt.text[excerpt.marked], "[1");
+    }
+}

@@ -1,0 +1,212 @@
+//! All estimators agree with the path tracer on the torture scenes, each of which is after one way
+//! to be wrong. The scenes are the project's own, in `scenes/torture`.
+
+#[path = "../../bidir/tests/common/statistics.rs"]
+mod statistics;
+
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
+use bidir::scene::Scene;
+use bidir_formats::pbrt::{LoadOptions, Loaded, load};
+use statistics::{Replicates, check_agree, replicates};
+use std::path::Path;
+
+/// A scene, the limit of depth that its file asks for, and the passes of one replicate.
+#[derive(Clone, Copy)]
+struct Case<'a> {
+    scene: &'a Scene,
+    max_depth: u32,
+    passes: u64,
+}
+
+fn open(name: &str) -> Loaded {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenes/torture")
+        .join(name);
+    let loaded = load(&file, &LoadOptions::default()).expect("the project's scenes are valid");
+    Case {
+        scene: loaded.scene,
+        max_depth: loaded.settings.max_depth,
+        passes,
+    }
+}
+
+impl Case {
+    /// The case with `factor` times as many passes, for an estimator of more variance.
+    fn with_effort(&self, factor: u64) -> Case<'_> {
+        Case {
+            passes: self.passes * factor,
+            ..*self
+        }
+    }
+
+    /// Renders with settings changed by `change`. The path tracer is cheap and gets more passes.
+    fn render(&self, integrator: IntegratorKind, change: impl Fn(&mut Settings)) -> Replicates {
+        let path = PathSettings {
+            max_depth: Some(self.max_depth),
+            ..PathSettings::default()
+        };
+        let mut settings = Settings {
+            integrator,
+            path,
+            ..Settings::default()
+        };
+        change(&mut settings);
+        let passes = match integrator {
+            IntegratorKind::Path => 4 * self.passes,
+            IntegratorKind::Light => 2 * self.passes,
+            IntegratorKind::Bdpt => self.passes,
+        };
+        replicates(self.scene, &settings, passes, 8)
+    }
+
+    fn bdpt(&self, change: impl Fn(&mut Settings)) -> Replicates {
+        self.render(IntegratorKind::Bdpt, change)
+    }
+
+    /// Compares the bidirectional path tracer with the path tracer, and returns the latter.
+    #[track_caller]
+    fn check_bdpt(&self) -> Replicates {
+        let reference = self.render(IntegratorKind::Path, |_| ());
+        check_agree("bdpt", &self.bdpt(|_| ()), &reference);
+        reference
+    }
+
+    /// Compares all three estimators.
+    #[track_caller]
+    fn check_all(&self) -> Replicates {
+        let reference = self.check_bdpt();
+        check_agree(
+            "light",
+            &self.render(IntegratorKind::Light, |_| ()),
+            &reference,
+        );
+        reference
+    }
+}
+
+#[test]
+fn glass_smooth_and_rough() {
+    // The light tracer cannot see through smooth glass, and so is not asked.
+    Case::new(&open("glass.pbrt"), 96).check_bdpt();
+}
+
+#[test]
+fn metal_smooth_rough_and_anisotropic() {
+    Case::new(&open("conductor.pbrt"), 64).check_bdpt();
+}
+
+#[test]
+fn half_covered_lens() {
+    Case::new(&open("lens.pbrt"), 128).check_all();
+}
+
+#[test]
+fn shading_normals_that_disagree_with_the_geometry() {
+    Case::new(&open("shading-normal.pbrt"), 64).check_all();
+}
+
+#[test]
+fn mirrored_transforms_and_two_sided_lights() {
+    Case::new(&open("mirror.pbrt"), 64).check_all();
+}
+
+#[test]
+fn point_spot_distant_and_infinite_lights() {
+    Case::new(&open("lights.pbrt"), 96).check_all();
+}
+
+#[test]
+fn a_crop_is_the_same_part_of_the_whole() {
+    Case::new(&open("crop.pbrt"), 64).check_all();
+}
+
+#[test]
+fn filters_with_and_without_negative_lobes() {
+    for name in ["gaussian", "mitchell", "sinc", "triangle"] {
+        Case::new(&open(&format!("filter-{name}.pbrt")), 64).check_all();
+    }
+}
+
+#[test]
+fn any_scale_of_the_world() {
+    let unit = Case::new(&open("scale-unit.pbrt"), 32).check_all();
+    for name in ["scale-tiny.pbrt", "scale-huge.pbrt"] {
+        let scaled = Case::new(&open(name), 32).check_all();
+        check_agree(name, &scaled, &unit);
+    }
+}
+
+#[test]
+fn surfaces_that_almost_touch() {
+    Case::new(&open("touching.pbrt"), 64).check_all();
+}
+
+#[test]
+fn every_choice_of_shadow_rays_under_every_heuristic() {
+    // Red light on bluish surfaces: a biased colour would show.
+    let loaded = open("red-light-blue-surfaces.pbrt");
+    let case = Case::new(&loaded, 48);
+    let reference = case.check_all();
+    for (mis_name, mis) in MisHeuristic::NAMES {
+        for rule in [
+            "per-light-vertex",
+            "per-camera-vertex",
+            "per-pair",
+            "ray-roulette",
+            "budget:2",
+        ] {
+            let result = case.bdpt(|settings| {
+                settings.path.mis = mis;
+                settings.shadow_rays = rule.parse().expect("a rule");
+            });
+            check_agree(&format!("{rule}, {mis_name}"), &result, &reference);
+        }
+    }
+}
+
+#[test]
+fn shared_light_points_and_missing_strategies() {
+    let loaded = open("red-light-blue-surfaces.pbrt");
+    let case = Case::new(&loaded, 48);
+    let reference = case.render(IntegratorKind::Path, |_| ());
+    let shared = case.bdpt(|settings| settings.path.light_point = LightPointChoice::Shared);
+    check_agree("shared", &shared, &reference);
+    // Each of these lists can still make every path of the scene.
+    for strategies in [
+        "all,-s0",
+        "all,-t1",
+        "all,-s1",
+        "all,-s2",
+        "all,-s1,-t1",
+        "s0,s1",
+    ] {
+        let result = case.bdpt(|settings| {
+            settings.path.strategies = strategies.parse().expect("a list of strategies");
+        });
+        check_agree(strategies, &result, &reference);
+    }
+}
+
+#[test]
+fn single_strategies_at_fixed_length() {
+    let loaded = open("separated.pbrt");
+    let case = Case::new(&loaded, 128);
+    for length in [3, 4] {
+        let single = |s: usize| {
+            let only = format!("s{s}t{}", length - s);
+            // Few light subpaths reach the lens's view, or the camera's few surfaces.
+            let case = case.with_effort(if s == 1 { 1 } else { 8 });
+            case.bdpt(|settings| settings.path.strategies = only.parse().expect("a strategy"))
+        };
+        let next_event = single(1);
+        for s in 2..length {
+            check_agree(
+                &format!("s{s}t{} against s1", length - s),
+                &single(s),
+                &next_event,
+            );
+        }
+    }
+}
