@@ -24,20 +24,23 @@ fn open(name: &str) -> Loaded {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes/torture")
         .join(name);
-    let loaded = load(&file, &LoadOptions::default()).expect("the project's scenes are valid");
-    Case {
-        scene: loaded.scene,
-        max_depth: loaded.settings.max_depth,
-        passes,
-    }
+    load(&file, &LoadOptions::default()).expect("the project's scenes are valid")
 }
 
-impl Case {
+impl<'a> Case<'a> {
+    fn new(loaded: &'a Loaded, passes: u64) -> Self {
+        Self {
+            scene: &loaded.scene,
+            max_depth: loaded.settings.max_depth,
+            passes,
+        }
+    }
+
     /// The case with `factor` times as many passes, for an estimator of more variance.
-    fn with_effort(&self, factor: u64) -> Case<'_> {
-        Case {
+    fn with_effort(self, factor: u64) -> Self {
+        Self {
             passes: self.passes * factor,
-            ..*self
+            ..self
         }
     }
 
@@ -77,11 +80,8 @@ impl Case {
     #[track_caller]
     fn check_all(&self) -> Replicates {
         let reference = self.check_bdpt();
-        check_agree(
-            "light",
-            &self.render(IntegratorKind::Light, |_| ()),
-            &reference,
-        );
+        let light = self.render(IntegratorKind::Light, |_| ());
+        check_agree("light", &light, &reference);
         reference
     }
 }

@@ -1,0 +1,71 @@
+# Recipes for people; `.ci/run` is what a change must pass.
+
+set shell := ["bash", "-euo", "pipefail", "-c"]
+
+# Shows this list.
+default:
+    @just --list
+
+# Everything that must pass, or some stages of it.
+check *STAGES:
+    .ci/run {{STAGES}}
+
+# All tests, or those whose names contain FILTER.
+test FILTER="":
+    cargo test --release --workspace -- {{FILTER}}
+
+# The statistical tests, with other random numbers where SEED is given.
+stat SEED="1":
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --lib tests::
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test analytic
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators
+
+# The libraries' documentation.
+doc:
+    cargo doc --workspace --no-deps --document-private-items
+
+# Formats all sources.
+fmt:
+    cargo fmt --all
+
+# What no compiler checks.
+tidy:
+    tools/tidy
+
+# Renders SCENE into out/, with any flags of `bidir render`.
+render SCENE *FLAGS:
+    mkdir -p out
+    cargo run --release -- render {{SCENE}} -o out/{{file_stem(SCENE)}}.exr {{FLAGS}}
+
+# A quick look at SCENE: a few seconds, a small image.
+look SCENE *FLAGS:
+    mkdir -p out
+    cargo run --release -- render {{SCENE}} -o out/{{file_stem(SCENE)}}-look.png --time 5s {{FLAGS}}
+
+# Writes the project's own scenes.
+scenes:
+    python3 tools/make_scenes
+
+# Puts faults into a copy of the sources: each must turn some test red.
+mutants *FLAGS:
+    python3 tools/mutants {{FLAGS}}
+
+# Fresh random numbers, long property tests and mutants, with a summary.
+nightly SEED=`date +%s`:
+    #!/usr/bin/env bash
+    set -uo pipefail
+    summary=()
+    run() {
+      local name=$1 start=$SECONDS verdict=passed
+      shift
+      "$@" || verdict=FAILED
+      summary+=("$(printf '%-8s %-24s %6d s' "$verdict" "$name" $((SECONDS - start)))")
+    }
+    export BIDIR_TEST_SEED={{SEED}}
+    run "statistics" {{just_executable()}} stat {{SEED}}
+    run "properties" env PROPTEST_CASES=20000 cargo test --release --workspace
+    unset BIDIR_TEST_SEED
+    run "mutants" python3 tools/mutants
+    echo "seed {{SEED}}"
+    printf '%s\n' "${summary[@]}"
+    ! printf '%s\n' "${summary[@]}" | grep -q FAILED
