@@ -22,7 +22,7 @@ pub struct Disk {
     pub radius: f32,
     /// Of the hole, in local units; 0 for none.
     pub inner_radius: f32,
-    /// In radians; at or above 2π nothing is cut.
+    /// In radians; at 2π (up to rounding) or above nothing is cut.
     pub phi_max: f32,
 }
 

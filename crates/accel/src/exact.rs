@@ -2,7 +2,7 @@
 //!
 //! With `a` and `b` the ends of an edge as seen from the ray's origin and `d` the ray's direction,
 //! the sign of `(a × b)·d` says on which side of the edge the ray's line passes: it is the
-//! permuted inner product of the two lines' Plücker coordinates [Woop13, §2].
+//! permuted inner product of the two lines' Plücker coordinates.
 //! The line passes the closed triangle if its three edge functions do not differ in sign.
 //!
 //! A mesh is watertight if triangles that share an edge agree on the side, *and* if all edges around
@@ -13,6 +13,8 @@
 //! moves the vertices a little, and the moved mesh is as closed as the given one.
 //! A line in the plane of a triangle misses it: the triangle is seen as a segment there, which its
 //! neighbours cover.
+//!
+//! [Shewchuk97]: https://doi.org/10.1007/PL00009321
 
 use glam::{DVec3, Vec3};
 

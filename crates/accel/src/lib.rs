@@ -40,8 +40,6 @@
 //!
 //! Not here: motion, curves, and anything about surfaces (normals, materials).
 
-#![warn(missing_docs)]
-
 mod aabb;
 mod builder;
 mod bvh;

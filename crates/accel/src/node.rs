@@ -7,6 +7,8 @@
 //! Where the direction's component is zero, its reciprocal is infinite: the slab is then either
 //! missed, or entered at `-∞` and left at `∞`, or the ray lies in one of its planes, and the NaN of
 //! `0·∞` stands for "no limit" because of how [`F32x4::min`] and [`F32x4::max`] treat it.
+//!
+//! [Ize13]: https://jcgt.org/published/0002/02/02/
 
 use std::ops::Range;
 

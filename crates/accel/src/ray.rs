@@ -7,7 +7,7 @@ use glam::Vec3;
 pub struct Ray {
     /// Where `t = 0` is.
     pub origin: Vec3,
-    /// Any non-zero length, which is the unit of `t`.
+    /// Any length between 1e-37 and 1e37, which is the unit of `t`.
     /// Components smaller than the smallest normal `f32` count as zero.
     pub direction: Vec3,
     /// The smallest `t` that counts as a hit, itself included. A negative value counts as zero.

@@ -22,7 +22,7 @@ pub struct Sphere {
     pub z_min: f32,
     /// Upper cut, in local units; at or above `radius` nothing is cut.
     pub z_max: f32,
-    /// In radians; at or above 2π nothing is cut.
+    /// In radians; at 2π (up to rounding) or above nothing is cut.
     pub phi_max: f32,
 }
 

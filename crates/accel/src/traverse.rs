@@ -161,7 +161,8 @@ fn visit_block<V: F32x4, Q: Query>(
 fn visit_quadric<Q: Query>(quadric: &Quadric, ray: &mut Ray, query: &mut Q) -> ControlFlow<()> {
     let mut flow = ControlFlow::Continue(());
     let primitive = quadric.primitive;
-    quadric.intersect(&ray.clone(), |t, [u, v]| {
+    let whole = *ray;
+    quadric.intersect(&whole, |t, [u, v]| {
         if flow.is_continue() && t <= ray.t_max {
             let hit = Hit {
                 t,

@@ -10,6 +10,8 @@
 //! `R = X + 4εM`. The edge function inherits at most `4R|δx| + 2|δx|²` and adds `4εX²` of its own,
 //! together less than `13ε·R·(X + M)`. The code uses `16ε`, and a constant that exceeds what underflow
 //! adds. If anything overflows then so does the bound, and the triangle is kept.
+//!
+//! [Woop13]: https://jcgt.org/published/0002/01/05/
 
 use glam::Vec3;
 

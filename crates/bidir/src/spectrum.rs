@@ -26,12 +26,14 @@ impl Spectrum {
 
     /// Applies `f` lane by lane.
     #[inline]
+    #[must_use]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self(self.0.map(f))
     }
 
     /// Combines two spectra lane by lane.
     #[inline]
+    #[must_use]
     pub fn zip(self, other: Self, f: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
@@ -45,7 +47,7 @@ impl Spectrum {
     /// True where every lane is exactly zero.
     #[inline]
     pub fn is_black(self) -> bool {
-        self.0 == [0.0; 4]
+        self.0.iter().all(|&lane| lane == 0.0)
     }
 
     /// True where no lane is NaN or infinite.

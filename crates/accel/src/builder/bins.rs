@@ -2,6 +2,8 @@
 //!
 //! The cost of a split is `A_l·B_l + A_r·B_r`, with `A` the surface area of a side and `B` the number
 //! of blocks it fills. Divided by the area of the whole, that is the expected number of tests.
+//!
+//! [Wald07]: https://doi.org/10.1109/RT.2007.4342588
 
 use super::group::{Reference, area_in};
 use crate::aabb::Aabb;

@@ -4,7 +4,7 @@ use bidir_accel::{Aabb, Primitive, Ray, accept_all};
 use glam::Vec3;
 
 use crate::oracle::{Single, hit_bits, plane_passage};
-use crate::scenes::{Random, build, mixed, triangle_soup};
+use crate::scenes::{Mesh, Random, build, displace, mixed, triangle_soup};
 
 #[track_caller]
 fn check_equals_brute_force(primitives: &[Primitive], random: &mut Random, rays: usize) {
@@ -210,6 +210,61 @@ fn equal_distances_go_to_the_lowest_primitive() {
                 .unwrap();
             assert_eq!(hit.primitive as usize, first);
         }
+    }
+}
+
+#[test]
+fn ties_at_shared_vertices_equal_brute_force() {
+    // The triangles around a vertex are in different leaves, whose boxes begin at the vertex: one of
+    // them must not be skipped because rounding puts its box behind the hit.
+    let mesh = Mesh::sphere(3).map(displace);
+    let primitives = mesh.primitives();
+    let (bvh, single) = (build(&primitives), Single::new(&primitives));
+    let mut random = Random(6);
+    for _ in 0..8000 {
+        let origin = 0.5 * random.ball();
+        let ray = Ray::new(
+            origin,
+            mesh.vertices[random.below(mesh.vertices.len())] - origin,
+        );
+        let expected = single.closest(&ray, accept_all);
+        assert_eq!(
+            hit_bits(bvh.closest(&ray, accept_all)),
+            hit_bits(expected),
+            "{ray:?}"
+        );
+        // With the hit as the limit, boxes and triangles meet it again.
+        let limited = Ray {
+            t_max: expected.map_or(0.0, |hit| hit.t),
+            ..ray
+        };
+        assert_eq!(
+            hit_bits(bvh.closest(&limited, accept_all)),
+            hit_bits(expected),
+            "{ray:?}"
+        );
+        assert!(bvh.occluded(&limited, accept_all));
+    }
+}
+
+#[test]
+fn ties_survive_the_rounding_of_boxes() {
+    let mut random = Random(10);
+    for _ in 0..100 {
+        // Integers, so that all triangles are hit in their common corner at exactly `t`, whereas
+        // `t·d·(1/d)`, where their boxes are entered, is often above.
+        let mut integer = || (3 + random.below(500)) as f32;
+        let (direction, t) = (Vec3::from_array([(); 3].map(|()| integer())), integer());
+        let corner = t * direction;
+        let mut beyond = || corner + Vec3::from_array([(); 3].map(|()| 1000.0 * integer()));
+        let primitives: Vec<_> = (0..400)
+            .map(|_| Primitive::Triangle([corner, beyond(), beyond()]))
+            .collect();
+        let hit = build(&primitives).closest(&Ray::new(Vec3::ZERO, direction), accept_all);
+        assert_eq!(
+            hit.map(|hit| (hit.t.to_bits(), hit.primitive)),
+            Some((t.to_bits(), 0))
+        );
     }
 }
 

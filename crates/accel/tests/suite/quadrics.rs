@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use bidir_accel::{BuildError, BuildOptions, Bvh, Disk, Hit, Primitive, Ray, Sphere, accept_all};
-use glam::{Affine3A, DMat3, DVec3, Mat3, Vec3};
+use glam::{Affine3A, DVec3, Mat3, Vec3};
 
 use crate::scenes::{Random, build, disk, sphere};
 
@@ -361,7 +361,6 @@ fn maps_must_be_invertible_and_finite() {
             assert_eq!(error, BuildError::NotFinite { primitive: 1 });
         }
     }
-    assert!(DMat3::ZERO.inverse().x_axis.x.is_nan());
 }
 
 #[test]

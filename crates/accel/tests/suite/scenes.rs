@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use bidir_accel::{BuildOptions, Bvh, Disk, Isa, Primitive, Ray, Sphere};
 use glam::{Affine3A, Quat, Vec3};
 
-/// SplitMix64.
+/// The generator `SplitMix64`.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -220,7 +220,7 @@ pub(crate) fn build(primitives: &[Primitive]) -> Bvh {
 
 #[track_caller]
 pub(crate) fn build_for(isa: Isa, primitives: &[Primitive]) -> Bvh {
-    let bvh = Bvh::build(primitives, &BuildOptions { isa }).unwrap();
+    let bvh = Bvh::build(primitives, &BuildOptions { isa }).expect("a valid scene");
     assert_eq!(bvh.validate(), Ok(()));
     bvh
 }

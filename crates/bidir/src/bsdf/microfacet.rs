@@ -38,19 +38,19 @@ impl Ggx {
 
     /// True where the surface has no facets: a Dirac distribution of normals.
     #[inline]
-    pub fn is_smooth(&self) -> bool {
+    pub fn is_smooth(self) -> bool {
         self.alpha_x <= 0.0
     }
 
     /// D(m), the density of facet area. Unit: 1/sr.
     #[inline]
-    pub fn d(&self, m: Vec3) -> f32 {
+    pub fn d(self, m: Vec3) -> f32 {
         let slope = sqr(m.x / self.alpha_x) + sqr(m.y / self.alpha_y) + sqr(m.z);
         INV_PI / (self.alpha_x * self.alpha_y * sqr(slope))
     }
 
     #[inline]
-    fn lambda(&self, v: Vec3) -> f32 {
+    fn lambda(self, v: Vec3) -> f32 {
         let tan2 = (sqr(self.alpha_x * v.x) + sqr(self.alpha_y * v.y)) / sqr(v.z);
         // Finite even where z² vanishes, so that quotients of two such terms stay numbers.
         ((1.0 + tan2.min(f32::MAX)).sqrt() - 1.0) / 2.0
@@ -58,26 +58,26 @@ impl Ggx {
 
     /// The part of facets seen from `v` that nothing shadows.
     #[inline]
-    pub fn g1(&self, v: Vec3) -> f32 {
+    pub fn g1(self, v: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(v))
     }
 
     /// The part of facets seen from both `wo` and `wi` that nothing shadows.
     #[inline]
-    pub fn g2(&self, wo: Vec3, wi: Vec3) -> f32 {
+    pub fn g2(self, wo: Vec3, wi: Vec3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
     /// The density of [`sample_visible`](Self::sample_visible). Measure: solid angle of m, 1/sr.
     #[inline]
-    pub fn visible_pdf(&self, v: Vec3, m: Vec3) -> f32 {
+    pub fn visible_pdf(self, v: Vec3, m: Vec3) -> f32 {
         self.g1(v) * v.dot(m).abs() * self.d(m) / v.z.abs()
     }
 
     /// A normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
     /// surface, of the facets seen from beneath [Heitz18].
     #[inline]
-    pub fn sample_visible(&self, v: Vec3, u: Vec2) -> Vec3 {
+    pub fn sample_visible(self, v: Vec3, u: Vec2) -> Vec3 {
         // Stretch to the hemisphere configuration, α = 1.
         let v = if v.z < 0.0 { -v } else { v };
         let stretched = Vec3::new(self.alpha_x * v.x, self.alpha_y * v.y, v.z).normalize();

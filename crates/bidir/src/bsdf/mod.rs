@@ -50,6 +50,7 @@ pub enum TransportMode {
 impl TransportMode {
     /// The other mode: that of a walk through the same vertex in the opposite direction.
     #[inline]
+    #[must_use]
     pub fn reversed(self) -> Self {
         match self {
             Self::Radiance => Self::Importance,

@@ -21,6 +21,10 @@ pub struct Training {
 /// Enough for the mean luminance to within a few percent in most scenes.
 const SAMPLES: u64 = 1 << 14;
 
+/// The distance between the pixels of successive samples: a prime above any number of pixels, so
+/// that they spread evenly.
+const STRIDE: u64 = 2_654_435_761;
+
 impl Training {
     /// Renders a few samples spread over the film, tracing every connection.
     pub(super) fn run(context: &PathContext<'_>, settings: &Settings) -> Self {
@@ -47,8 +51,6 @@ fn sample(
 ) -> f64 {
     let (scene, crop) = (context.scene, context.scene.film().crop);
     let sampler = Sampler::new(settings.sampler, settings.seed);
-    // A stride coprime to any number of pixels below its own size spreads the samples evenly.
-    const STRIDE: u64 = 2_654_435_761;
     let pixel = crop.pixel((i.wrapping_mul(STRIDE) % crop.area()) as usize);
     let sample = Sample {
         pass: 0,

@@ -195,9 +195,10 @@ mod tests {
             film.add_pass(&buffer);
         }
         let picture = film.develop();
-        assert_eq!(picture.pixels[3], [2.0, 0.5, 2.0]);
-        assert_eq!(picture.variance[3], [0.0, 0.25, 0.0]);
-        assert_eq!(picture.pixels[0], [0.0; 3]);
+        let bits = |rgb: Rgb| rgb.map(f32::to_bits);
+        assert_eq!(bits(picture.pixels[3]), bits([2.0, 0.5, 2.0]));
+        assert_eq!(bits(picture.variance[3]), bits([0.0, 0.25, 0.0]));
+        assert_eq!(bits(picture.pixels[0]), bits([0.0; 3]));
     }
 
     #[test]

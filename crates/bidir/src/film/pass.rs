@@ -34,10 +34,12 @@ impl PassBuffer {
     /// Empties the buffer for the next pass.
     pub fn clear(&self) {
         for (camera, light) in self.camera.iter().zip(&self.light) {
-            camera
-                .iter()
-                .for_each(|bits| bits.store(0, Ordering::Relaxed));
-            light.iter().for_each(FixedSum::clear);
+            for bits in camera {
+                bits.store(0, Ordering::Relaxed);
+            }
+            for sum in light {
+                sum.clear();
+            }
         }
     }
 

@@ -69,8 +69,11 @@ fn environment() -> InfiniteLight {
         _ => [0.5, f32::from(i % 7), 1.0],
     };
     let image = Image::new(8, (0..64).map(texel).collect()).unwrap();
-    let turn = Mat3::from_rotation_y(0.9) * Mat3::from_rotation_x(-0.4);
-    InfiniteLight::image(image, 1.5, turn)
+    InfiniteLight::image(image, 1.5, turn())
+}
+
+fn turn() -> Mat3 {
+    Mat3::from_rotation_y(0.9) * Mat3::from_rotation_x(-0.4)
 }
 
 fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {

@@ -68,6 +68,7 @@ pub fn triangle(u: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::sqr;
 
     /// Checks that the mean of `f` over an n×n midpoint grid is `expected`.
     #[track_caller]
@@ -92,7 +93,7 @@ mod tests {
         check_mean(|u| concentric_disk(u).x, 0.0);
         check_mean(|u| cosine_hemisphere(u).z, 2.0 / 3.0);
         check_mean(|u| uniform_sphere(u).z, 0.0);
-        check_mean(|u| uniform_sphere(u).z.powi(2), 1.0 / 3.0);
+        check_mean(|u| sqr(uniform_sphere(u).z), 1.0 / 3.0);
         check_mean(|u| uniform_cone(u, 0.25).z, 0.875);
         check_mean(|u| triangle(u).x, 1.0 / 3.0);
         check_mean(|u| triangle(u).x * triangle(u).y, 1.0 / 12.0);

@@ -15,7 +15,7 @@ pub struct Budget {
 impl Budget {
     /// δ with Σ min(1, g_c / δ) = `rays`. None: there are no more candidates than rays, so that all
     /// are traced.
-    fn threshold(&self, candidates: &[Candidate]) -> Option<f64> {
+    fn threshold(self, candidates: &[Candidate]) -> Option<f64> {
         if candidates.len() <= self.rays as usize {
             return None;
         }

@@ -23,7 +23,7 @@ pub struct OnePerGroup {
 impl OnePerGroup {
     /// The number of a candidate's group; groups are numbered from 0.
     #[inline]
-    fn number(&self, candidate: &Candidate) -> u16 {
+    fn number(self, candidate: &Candidate) -> u16 {
         match self.group {
             Group::LightVertex => candidate.strategy.s - 1,
             Group::CameraVertex => candidate.strategy.t - 2,

@@ -66,9 +66,10 @@ pub trait Selector: Sync + Send {
 }
 
 /// The rules by name, with their settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ShadowRays {
     /// Every candidate.
+    #[default]
     All,
     /// One for each light vertex: optimisation 1 of [Lafortune95].
     PerLightVertex,
@@ -81,12 +82,6 @@ pub enum ShadowRays {
     RayRoulette(f32),
     /// This many rays for each pair of subpaths.
     Budget(u32),
-}
-
-impl Default for ShadowRays {
-    fn default() -> Self {
-        Self::All
-    }
 }
 
 impl ShadowRays {

@@ -77,7 +77,7 @@ fn no_rule_traces_more_rays_than_it_says() {
     };
     for rule in RULES {
         frequencies(rule, 2000, |chosen| {
-            assert!(chosen.len() <= limit(rule), "{rule}")
+            assert!(chosen.len() <= limit(rule), "{rule}");
         });
     }
 }

@@ -64,7 +64,8 @@ fn place(map: &Affine3A, p: [f64; 3]) -> [f64; 3] {
 /// The azimuth of a local point as part of `phi_max`.
 fn azimuth(local: Vec3, phi_max: f32) -> f32 {
     let phi = libm::atan2f(local.y, local.x);
-    (if phi < 0.0 { phi + 2.0 * PI } else { phi }) / phi_max
+    // Rounding around zero is not a turn.
+    (if phi < -1e-5 { phi + 2.0 * PI } else { phi }) / phi_max
 }
 
 /// `limits` are `z_min`, `z_max` and `phi_max`.

@@ -108,6 +108,11 @@ pub(crate) fn add_walls(builder: &mut SceneBuilder, material: MaterialId) {
     }
 }
 
+/// One-sided emission, as shapes take it.
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "this is the type of the argument it stands for"
+)]
 pub(crate) fn emission(radiance: Rgb) -> Option<Emission> {
     Some(Emission {
         radiance,

@@ -1,9 +1,10 @@
-use super::{Surroundings, environment, examples, numbers, pole, receivers};
+use super::{Surroundings, environment, examples, numbers, pole, receivers, turn};
 use crate::light::{EmissionSides, InfiniteLight, Light, LightContext, LightPoint};
-use crate::math::{Frame, Vec2, Vec3};
+use crate::math::{Frame, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction, warp};
 use crate::sampler::{Dimension, Purpose};
 use crate::shape::{Mesh, Shape};
-use crate::testing::{Battery, Domain, Grid, samples};
+use crate::spectrum::luminance;
+use crate::testing::{Battery, Domain, Grid, check_close, samples};
 
 const N: u64 = 1 << 20;
 
@@ -96,47 +97,63 @@ fn rays_from_infinity_cross_the_disk_by_the_density() {
     battery.check();
 }
 
-/// Environments are drawn by their density, for rays and for receivers alike.
+/// Environments are drawn by their density, for rays and for receivers alike. The directions are
+/// counted on the octahedral square, which has even measure and the texels' borders for lines.
 #[test]
 fn environments_are_drawn_by_the_density() {
     let surroundings = Surroundings::new();
     let context = surroundings.context();
     let grid = Grid {
-        domain: Domain::sphere(),
-        columns: 20,
-        rows: 40,
+        domain: Domain::Square,
+        columns: 24,
+        rows: 24,
     };
     let mut battery = Battery::new("environments");
+    let to_square =
+        |at: &LightPoint| direction_to_square(turn().transpose() * at.point).extend(0.0);
+    let direction = |p: Vec3| LightPoint::at_infinity(turn() * square_to_direction(p.truncate()));
     let lights = [
         ("image", environment()),
         ("constant", InfiniteLight::constant([1.0; 3])),
     ];
     for (name, light) in lights.map(|(name, light)| (name, Light::Infinite(light))) {
-        let emission = samples(name, N).map(|sample| {
+        let rays = samples(name, N).map(|sample| {
             let (u_position, u_direction) = numbers(&sample);
-            Some(
-                light
-                    .sample_emission(&context, u_position, u_direction)?
-                    .from
-                    .at
-                    .point,
-            )
+            let drawn = light.sample_emission(&context, u_position, u_direction)?;
+            Some(to_square(&drawn.from.at))
         });
-        let position = |w| light.pdf_position(&context, &LightPoint::at_infinity(w));
-        battery.chi2(&format!("{name}, rays"), &grid, position, emission);
-        let next_event = samples(name, N).map(|sample| {
+        let pdf = |p| light.pdf_position(&context, &direction(p)) * 4.0 * PI;
+        battery.chi2(&format!("{name}, rays"), &grid, pdf, rays);
+        let points = samples(name, N).map(|sample| {
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
-            Some(
-                light
-                    .sample_next_event(&context, receivers()[0], u)?
-                    .at
-                    .point,
-            )
+            Some(to_square(
+                &light.sample_next_event(&context, receivers()[0], u)?.at,
+            ))
         });
-        let pdf = |w| light.pdf_next_event(&context, receivers()[0], &LightPoint::at_infinity(w));
-        battery.chi2(&format!("{name}, receivers"), &grid, pdf, next_event);
+        let pdf = |p| light.pdf_next_event(&context, receivers()[0], &direction(p)) * 4.0 * PI;
+        battery.chi2(&format!("{name}, receivers"), &grid, pdf, points);
     }
     battery.check();
+}
+
+/// The density of an environment is its luminance, in all directions.
+#[test]
+fn environments_are_drawn_by_luminance() {
+    let surroundings = Surroundings::new();
+    let context = surroundings.context();
+    let light = Light::Infinite(environment());
+    let cross_section = PI * sqr(context.radius);
+    for sample in samples("luminance", 2000) {
+        let at = LightPoint::at_infinity(warp::uniform_sphere(numbers(&sample).0));
+        let expected = luminance(light.emitted(&at, -at.point)) * cross_section;
+        let power = light.power(&context);
+        check_close(
+            light.pdf_position(&context, &at),
+            expected / power,
+            1e-4,
+            "luminance",
+        );
+    }
 }
 
 /// The point of the mesh for one of the square, whose x also says which triangle: of even area
