@@ -63,6 +63,9 @@ fn place(map: &Affine3A, p: [f64; 3]) -> [f64; 3] {
 
 /// The azimuth of a local point as part of `phi_max`.
 fn azimuth(local: Vec3, phi_max: f32) -> f32 {
+    if local.truncate().length() < 1e-3 {
+        return 0.0; // At the pole it has none.
+    }
     let phi = libm::atan2f(local.y, local.x);
     // Rounding around zero is not a turn.
     (if phi < -1e-5 { phi + 2.0 * PI } else { phi }) / phi_max
