@@ -18,7 +18,7 @@ test FILTER="":
 stat SEED="1":
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --lib tests::
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test analytic
-    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators --test real_scenes
 
 # The libraries' documentation.
 doc:
@@ -61,10 +61,10 @@ nightly SEED=`date +%s`:
       "$@" || verdict=FAILED
       summary+=("$(printf '%-8s %-24s %6d s' "$verdict" "$name" $((SECONDS - start)))")
     }
-    export BIDIR_TEST_SEED={{SEED}}
+    export BIDIR_TEST_SEED={{SEED}} BIDIR_TEST_EFFORT=4
     run "statistics" {{just_executable()}} stat {{SEED}}
-    run "properties" env PROPTEST_CASES=20000 cargo test --release --workspace
-    unset BIDIR_TEST_SEED
+    run "properties" env PROPTEST_CASES=20000 BIDIR_TEST_EFFORT=1 cargo test --release --workspace
+    unset BIDIR_TEST_SEED BIDIR_TEST_EFFORT
     run "mutants" python3 tools/mutants
     echo "seed {{SEED}}"
     printf '%s\n' "${summary[@]}"

@@ -324,14 +324,14 @@ fn packed_and_wrongly_encoded_files() {
     );
 }
 
-/// Scenes made by others, where `BIDIR_SCENES` names a folder of them.
+/// Scenes made by others, in `pbrt-v4/` of the folder that `BIDIR_SCENES` names.
 #[test]
 fn real_scenes_are_parsed() {
     let Some(scenes) = std::env::var_os("BIDIR_SCENES") else {
         println!("skipped: BIDIR_SCENES is not set");
         return;
     };
-    let scenes = Path::new(&scenes);
+    let scenes = Path::new(&scenes).join("pbrt-v4");
     for (name, shapes) in [
         ("veach-bidir/veach-bidir.pbrt", 14),
         ("veach-ajar/veach-ajar.pbrt", 22),
