@@ -117,7 +117,6 @@ fn for_each_pair(
         scene: &scene,
         settings,
         wavelengths: Wavelengths::default(),
-        light_paths: 64.0,
     };
     for index in 0..400 {
         let (light, camera) = subpaths(&context, index);
@@ -201,6 +200,20 @@ fn whole_path(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) ->
     path
 }
 
+/// The density with which strategy s = 1 draws x_0.
+fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
+    let index = path[0].light.expect("x_0 is on a light");
+    let (light, lights) = (context.scene.light(index), context.scene.light_context());
+    let at = path[0].light_point();
+    let shared = context.settings.light_point == LightPointChoice::Shared || path.len() == 2;
+    let pdf = if shared {
+        light.pdf_position(&lights, &at)
+    } else {
+        light.pdf_next_event(&lights, path[1].point, &at)
+    };
+    context.scene.light_choice().prob(index as usize) * pdf
+}
+
 /// For every strategy that can make the path: its index, its weight, and f / (p n) with the
 /// density p as the product over the vertices.
 fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Spectrum)> {
@@ -233,10 +246,12 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
             Junction::Connection,
         );
         if s == 1 {
-            light[0].beta = Spectrum::splat(1.0 / densities.next_event);
+            let density = next_event_density(context, path);
+            light[0].beta = Spectrum::splat(1.0 / density);
         }
-        let count = context.count(s, n - s) as f32;
-        result.push((s, w, connect(context, &light, &camera) * (1.0 / count)));
+        // The film of the room has 64 pixels, and as many light subpaths a pass.
+        let count = if n - s == 1 { 64.0 } else { 1.0 };
+        result.push((s, w, connect(context, &light, &camera) / count));
     }
     result
 }

@@ -96,8 +96,7 @@ fn a_replayed_sample_is_the_sample() {
     let resources = with_threads(1);
     let session = Session::new(&scene, settings.clone(), &resources).expect("the film is small");
     let film = scene.film();
-    let light_paths = film.crop.area();
-    let mut again = Film::new(film.clone(), light_paths, u64::MAX).expect("the film is small");
+    let mut again = Film::new(film.clone(), u64::MAX).expect("the film is small");
     for pass in 0..2 {
         let buffer = PassBuffer::new(film);
         for i in 0..film.crop.area() as usize {

@@ -10,7 +10,7 @@ use crate::scene_io::{self, LoadedScene};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Report, Times};
-use bidir::driver::{Resources, Session, Settings};
+use bidir::driver::{Resources, Session, SessionError, Settings};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -60,6 +60,9 @@ fn new_session<'a>(
         ..Resources::default()
     };
     Session::new(&loaded.scene, settings.clone(), &resources).map_err(|error| {
+        if matches!(error, SessionError::Threads(_)) {
+            return Failure::new(Exit::RenderFailed, error.to_string());
+        }
         let [width, height] = loaded.scene.film().resolution;
         let scene = args.scene.scene.display();
         let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");

@@ -75,7 +75,7 @@ impl Ggx {
     }
 
     /// A normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
-    /// surface, of the facets seen from beneath [Heitz18].
+    /// surface, of the facets seen from beneath \[Heitz18\].
     #[inline]
     pub fn sample_visible(self, v: Vec3, u: Vec2) -> Vec3 {
         // Stretch to the hemisphere configuration, α = 1.

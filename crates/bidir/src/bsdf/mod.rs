@@ -59,7 +59,7 @@ impl TransportMode {
     }
 }
 
-/// A direction drawn by [`Bsdf::sample`].
+/// A direction drawn by `Bsdf::sample`.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
     /// The sampled direction. Space: local.
@@ -118,7 +118,7 @@ impl Bsdf {
         }
     }
 
-    /// The density of [`sample`](Self::sample) at `wi`. Measure: solid angle, 1/sr.
+    /// The density of `sample` at `wi`. Measure: solid angle, 1/sr.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         match self {

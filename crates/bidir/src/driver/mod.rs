@@ -19,6 +19,7 @@ use crate::path::PathSettings;
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use crate::select::ShadowRays;
+use thiserror::Error;
 
 /// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
 /// passes.
@@ -75,15 +76,26 @@ impl Progress for () {
     fn advance(&self, _samples: u64) {}
 }
 
+/// Why a session cannot begin.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum SessionError {
+    /// The film cannot be made.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The system starts no thread.
+    #[error("no thread can be started: {0}")]
+    Threads(String),
+}
+
 /// Renders `passes` passes.
 ///
-/// Errors: the film needs more memory than `resources` allow.
+/// Errors: as [`Session::new`].
 pub fn render(
     scene: &Scene,
     settings: &Settings,
     passes: u64,
     resources: &Resources,
-) -> Result<Film, FilmError> {
+) -> Result<Film, SessionError> {
     let mut session = Session::new(scene, settings.clone(), resources)?;
     for _ in 0..passes {
         session.step(&());

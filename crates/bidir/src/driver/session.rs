@@ -1,8 +1,8 @@
-use super::{Progress, Resources, Settings, Training};
-use crate::film::{Film, FilmError, PassBuffer};
+use super::{Progress, Resources, SessionError, Settings, Training};
+use crate::film::{Film, PassBuffer};
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::PathContext;
-use crate::sampler::{Domain, Sampler};
+use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::stats::Stats;
@@ -37,22 +37,20 @@ pub struct Replay {
 impl<'a> Session<'a> {
     /// A session that has rendered nothing but its training.
     ///
-    /// Errors: the film needs more memory than `resources` allow.
+    /// Errors: the film needs more memory than `resources` allow, or no thread can be started.
     pub fn new(
         scene: &'a Scene,
         settings: Settings,
         resources: &Resources,
-    ) -> Result<Self, FilmError> {
-        let light_paths = scene.film().crop.area();
-        let film = Film::new(scene.film().clone(), light_paths, resources.film_memory)?;
+    ) -> Result<Self, SessionError> {
+        let film = Film::new(scene.film().clone(), resources.film_memory)?;
         let buffer = PassBuffer::new(scene.film());
-        let pool = thread_pool(resources.threads);
+        let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
-        let context = path_context(scene, &settings);
         let training = settings
             .shadow_rays
             .needs_mean()
-            .then(|| Training::run(&context, &settings));
+            .then(|| Training::run(scene, &settings));
         let mean = training.map_or(0.0, |training| training.mean_luminance);
         let integrator = settings
             .integrator
@@ -105,7 +103,6 @@ impl<'a> Session<'a> {
 
     /// Renders runs of pixels until none is left.
     fn render_runs(&self, next: &AtomicU64, workspace: &mut Workspace, progress: &dyn Progress) {
-        let context = path_context(self.scene, &self.settings);
         let pixels = self.scene.film().crop.area();
         loop {
             let begin = next.fetch_add(RUN, Ordering::Relaxed);
@@ -115,8 +112,9 @@ impl<'a> Session<'a> {
             let end = (begin + RUN).min(pixels);
             for pixel in begin..end {
                 let sample = self.sample(pixel, self.film.passes());
+                let context = path_context(self.scene, &self.settings, &sample);
                 self.integrator.sample(&context, &sample, workspace);
-                self.deposit(pixel as usize, workspace);
+                self.deposit(pixel as usize, workspace, &context.wavelengths);
             }
             progress.advance(end - begin);
         }
@@ -137,12 +135,12 @@ impl<'a> Session<'a> {
     }
 
     /// Moves the contributions of the last sample to the film.
-    fn deposit(&self, pixel: usize, workspace: &Workspace) {
-        let (color, wavelengths) = (self.scene.color(), Wavelengths::default());
+    fn deposit(&self, pixel: usize, workspace: &Workspace, wavelengths: &Wavelengths) {
+        let color = self.scene.color();
         self.buffer
-            .set_camera_sample(pixel, color.to_rgb(workspace.value, &wavelengths));
+            .set_camera_sample(pixel, color.to_rgb(workspace.value, wavelengths));
         for splat in &workspace.splats {
-            let rgb = color.to_rgb(splat.value, &wavelengths);
+            let rgb = color.to_rgb(splat.value, wavelengths);
             self.buffer
                 .splat(self.scene.film(), splat.raster, rgb, splat.u);
         }
@@ -156,8 +154,8 @@ impl<'a> Session<'a> {
             .crop
             .index(i64::from(pixel[0]), i64::from(pixel[1]))?;
         let mut workspace = Workspace::default();
-        let context = path_context(self.scene, &self.settings);
         let sample = self.sample(index as u64, pass);
+        let context = path_context(self.scene, &self.settings, &sample);
         self.integrator.sample(&context, &sample, &mut workspace);
         Some(Replay {
             workspace,
@@ -191,19 +189,24 @@ impl<'a> Session<'a> {
     }
 }
 
-fn path_context<'a>(scene: &'a Scene, settings: &'a Settings) -> PathContext<'a> {
+/// The context of a sample, with the wavelengths that it draws.
+pub(super) fn path_context<'a>(
+    scene: &'a Scene,
+    settings: &'a Settings,
+    sample: &Sample,
+) -> PathContext<'a> {
+    let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
     PathContext {
         scene,
         settings: &settings.path,
-        wavelengths: scene.color().sample_wavelengths(0.0),
-        light_paths: scene.film().crop.area() as f32,
+        wavelengths: scene.color().sample_wavelengths(u),
     }
 }
 
 /// A pool of `threads` threads, or of as many as can be had.
-fn thread_pool(threads: usize) -> rayon::ThreadPool {
+fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, SessionError> {
     let build = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     build(threads)
         .or_else(|_| build(1))
-        .unwrap_or_else(|error| panic!("no thread can be started: {error}"))
+        .map_err(|error| SessionError::Threads(error.to_string()))
 }

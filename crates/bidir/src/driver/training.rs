@@ -1,9 +1,10 @@
 use super::Settings;
+use super::session::path_context;
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace};
-use crate::path::PathContext;
 use crate::sampler::{Domain, Sampler};
+use crate::scene::Scene;
 use crate::select::ShadowRays;
-use crate::spectrum::{Wavelengths, luminance};
+use crate::spectrum::luminance;
 use crate::stats::RayCounts;
 
 /// What a short render before the first pass found: a pure function of scene and settings. Its
@@ -27,11 +28,11 @@ const STRIDE: u64 = 2_654_435_761;
 
 impl Training {
     /// Renders a few samples spread over the film, tracing every connection.
-    pub(super) fn run(context: &PathContext<'_>, settings: &Settings) -> Self {
+    pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
         let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0));
         let mut workspace = Workspace::default();
         let sum: f64 = (0..SAMPLES)
-            .map(|i| sample(context, settings, &*integrator, i, &mut workspace))
+            .map(|i| sample(scene, settings, &*integrator, i, &mut workspace))
             .sum();
         Self {
             mean_luminance: (sum / SAMPLES as f64) as f32,
@@ -43,13 +44,13 @@ impl Training {
 
 /// The luminance that sample `i` adds to the mean pixel.
 fn sample(
-    context: &PathContext<'_>,
+    scene: &Scene,
     settings: &Settings,
     integrator: &dyn Integrator,
     i: u64,
     workspace: &mut Workspace,
 ) -> f64 {
-    let (scene, crop) = (context.scene, context.scene.film().crop);
+    let crop = scene.film().crop;
     let sampler = Sampler::new(settings.sampler, settings.seed);
     let pixel = crop.pixel((i.wrapping_mul(STRIDE) % crop.area()) as usize);
     let sample = Sample {
@@ -58,12 +59,9 @@ fn sample(
         camera: sampler.stream(Domain::TrainingCamera, i, 0),
         light: sampler.stream(Domain::TrainingLight, 0, i),
     };
-    integrator.sample(context, &sample, workspace);
-    let y = |light| {
-        f64::from(luminance(
-            scene.color().to_rgb(light, &Wavelengths::default()),
-        ))
-    };
+    let context = path_context(scene, settings, &sample);
+    integrator.sample(&context, &sample, workspace);
+    let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
     let splats: f64 = workspace.splats.iter().map(|splat| y(splat.value)).sum();
     y(workspace.value) + splats / crop.area() as f64
 }

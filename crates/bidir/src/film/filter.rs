@@ -12,7 +12,7 @@ pub enum FilterKind {
         /// Standard deviation. Unit: pixels.
         sigma: f32,
     },
-    /// The cubic of Mitchell and Netravali [Mitchell88], stretched to the radius.
+    /// The cubic of Mitchell and Netravali \[Mitchell88\], stretched to the radius.
     Mitchell {
         /// Blur.
         b: f32,

@@ -44,7 +44,6 @@ struct PixelSums {
 #[derive(Clone, Debug)]
 pub struct Film {
     settings: FilmSettings,
-    light_paths_per_pass: u64,
     passes: u64,
     pixels: Vec<PixelSums>,
 }
@@ -65,14 +64,10 @@ pub struct Picture {
 }
 
 impl Film {
-    /// An empty film. `light_paths_per_pass` is what the light image is normalised by.
+    /// An empty film.
     ///
     /// Errors: the film would need more memory than `memory_limit` bytes.
-    pub fn new(
-        settings: FilmSettings,
-        light_paths_per_pass: u64,
-        memory_limit: u64,
-    ) -> Result<Self, FilmError> {
+    pub fn new(settings: FilmSettings, memory_limit: u64) -> Result<Self, FilmError> {
         let needed = u128::from(settings.crop.area()) * u128::from(Self::BYTES_PER_PIXEL);
         if needed > u128::from(memory_limit) {
             return Err(FilmError::TooLarge {
@@ -83,7 +78,6 @@ impl Film {
         let pixels = vec![PixelSums::default(); settings.crop.area() as usize];
         Ok(Self {
             settings,
-            light_paths_per_pass,
             passes: 0,
             pixels,
         })
@@ -102,14 +96,9 @@ impl Film {
         self.passes
     }
 
-    /// Light paths traced in each pass.
-    pub fn light_paths_per_pass(&self) -> u64 {
-        self.light_paths_per_pass
-    }
-
     /// Adds a finished pass.
     pub fn add_pass(&mut self, pass: &PassBuffer) {
-        let per_light_path = 1.0 / self.light_paths_per_pass.max(1) as f64;
+        let per_light_path = 1.0 / self.settings.light_paths().max(1) as f64;
         self.pixels
             .par_iter_mut()
             .enumerate()
@@ -145,7 +134,7 @@ impl Film {
 
     fn develop_pixel(&self, sums: &PixelSums) -> (Rgb, Rgb) {
         let passes = self.passes.max(1) as f64;
-        let light_paths = passes * self.light_paths_per_pass.max(1) as f64;
+        let light_paths = passes * self.settings.light_paths().max(1) as f64;
         let exposure = f64::from(self.settings.exposure);
         let (mut value, mut variance) = ([0.0; 3], [0.0; 3]);
         for channel in 0..3 {
@@ -164,7 +153,6 @@ impl Film {
 impl PartialEq for Film {
     fn eq(&self, other: &Self) -> bool {
         self.passes == other.passes
-            && self.light_paths_per_pass == other.light_paths_per_pass
             && self.settings.crop == other.settings.crop
             && self.pixels == other.pixels
     }
@@ -177,7 +165,7 @@ mod tests {
 
     fn film(width: u32, height: u32, filter: Filter) -> Film {
         let settings = FilmSettings::new([width, height], filter);
-        Film::new(settings, 4, u64::MAX).unwrap()
+        Film::new(settings, u64::MAX).unwrap()
     }
 
     #[test]
@@ -204,7 +192,7 @@ mod tests {
     #[test]
     fn a_film_beyond_the_limit_is_refused() {
         let settings = FilmSettings::new([1_000_000, 1_000_000], Filter::default());
-        let error = Film::new(settings, 1, 1 << 33).unwrap_err();
+        let error = Film::new(settings, 1 << 33).unwrap_err();
         assert!(matches!(error, FilmError::TooLarge { .. }));
     }
 

@@ -74,9 +74,10 @@ impl FilmSettings {
         }
     }
 
-    /// The number of pixels of the whole film.
-    pub fn area(&self) -> u64 {
-        u64::from(self.resolution[0]) * u64::from(self.resolution[1])
+    /// Light subpaths of a pass: one for each pixel that is rendered. Weights and the light image
+    /// are normalised by this number alone.
+    pub fn light_paths(&self) -> u64 {
+        self.crop.area()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen [Lafortune95].
+//! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen \[Lafortune95\].
 
 use super::light::light_image;
 use super::{Integrator, Sample, Workspace};

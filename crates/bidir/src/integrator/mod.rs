@@ -19,7 +19,8 @@ pub use workspace::{Sample, Splat, Workspace};
 use crate::path::PathContext;
 use crate::select::Selector;
 
-/// An estimator of the image, unbiased but for the limit of path length.
+/// An estimator of the image. Its expectation is the sum over all paths within the limit of length
+/// that its strategies can make.
 pub trait Integrator: Sync + Send {
     /// Adds the contributions of one sample to the workspace, which is cleared first.
     fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);

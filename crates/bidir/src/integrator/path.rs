@@ -5,7 +5,7 @@ use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 
 /// Path tracing: at every vertex of a camera subpath the light that is hit and the light that
-/// next-event estimation finds, combined by multiple importance sampling [Veach95].
+/// next-event estimation finds, combined by multiple importance sampling \[Veach95\].
 ///
 /// It shares walks and scattering with the bidirectional estimator, but not its weights: a path's
 /// last vertex x_0 has density p by scattering at x_1 and q by next-event estimation, and nothing

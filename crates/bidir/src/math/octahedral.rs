@@ -1,7 +1,7 @@
 use super::{PI, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
 
-/// The direction of a point of the unit square under the equal-area octahedral map [Clarberg08].
+/// The direction of a point of the unit square under the equal-area octahedral map \[Clarberg08\].
 ///
 /// The centre is +z, the corners are -z; equal areas go to equal solid angles (4π per unit area).
 #[inline]

@@ -6,7 +6,7 @@
 use super::{INV_PI, PI, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
 
-/// A uniform point of the unit disk [Shirley97]. Measure: area, density 1/π.
+/// A uniform point of the unit disk \[Shirley97\]. Measure: area, density 1/π.
 #[inline]
 pub fn concentric_disk(u: Vec2) -> Vec2 {
     let offset = u * 2.0 - Vec2::ONE;
@@ -52,7 +52,7 @@ pub fn uniform_cone(u: Vec2, height: f32) -> Vec3 {
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, 1.0 - drop)
 }
 
-/// Barycentric coordinates `(b1, b2)` of a uniform point of a triangle [Heitz19].
+/// Barycentric coordinates `(b1, b2)` of a uniform point of a triangle \[Heitz19\].
 /// Measure: area, density 1/area.
 #[inline]
 pub fn triangle(u: Vec2) -> Vec2 {

@@ -79,7 +79,7 @@ impl PathContext<'_> {
     pub fn count(&self, s: usize, t: usize) -> f64 {
         match t {
             _ if !self.settings.strategies.contains(s, t) => 0.0,
-            1 => f64::from(self.light_paths),
+            1 => self.scene.film().light_paths() as f64,
             _ => 1.0,
         }
     }

@@ -5,13 +5,13 @@ use super::densities::{PathDensities, VertexDensities};
 /// How strategies that can make the same path share it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MisHeuristic {
-    /// w_s ∝ n_s p_s [Veach95].
+    /// w_s ∝ n_s p_s \[Veach95\].
     #[default]
     Balance,
-    /// w_s ∝ (n_s p_s)² [Veach95].
+    /// w_s ∝ (n_s p_s)² \[Veach95\].
     Power,
     /// w_s = 1 / (number of strategies that can make the path): the weights under which the claim
-    /// of [Lafortune95] holds.
+    /// of \[Lafortune95\] holds.
     Uniform,
 }
 

@@ -87,6 +87,4 @@ pub struct PathContext<'a> {
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
-    /// Light subpaths per pass: how often the light image samples each path.
-    pub light_paths: f32,
 }

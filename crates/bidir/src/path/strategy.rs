@@ -33,7 +33,7 @@ pub enum LightPointChoice {
     /// Each camera vertex draws its own.
     #[default]
     Fresh,
-    /// All use the start of the light subpath, as in [Lafortune93].
+    /// All use the start of the light subpath, as in \[Lafortune93\].
     Shared,
 }
 

@@ -25,9 +25,6 @@ pub struct Subpath {
     pub vertices: Vec<Vertex>,
     /// Where the walk left the scene, if it did.
     pub escape: Option<Escape>,
-    /// For a light subpath: the density p₁(x₀|x₁) with which next-event estimation from the second
-    /// vertex would draw the first. Measure: that of the light point.
-    pub next_event_pdf: f32,
 }
 
 /// The state of a walk between two vertices.
@@ -113,18 +110,12 @@ pub fn light_subpath(
         max_vertices: context.settings.max_vertices() - 1,
     };
     walker.walk(subpath, origin, step, &mut stats.rays.light);
-    if let [first, second, ..] = subpath.vertices[..] {
-        let at = first.light_point();
-        let pdf = scene.lights()[light].pdf_next_event(&lights, second.point, &at);
-        subpath.next_event_pdf = prob * pdf;
-    }
 }
 
 impl Subpath {
     fn clear(&mut self) {
         self.vertices.clear();
         self.escape = None;
-        self.next_event_pdf = 0.0;
     }
 }
 

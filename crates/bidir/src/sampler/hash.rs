@@ -1,5 +1,5 @@
 /// A bijection of 64 bits whose output bits each depend on every input bit: the finaliser of
-/// SplitMix64 [Steele14].
+/// SplitMix64 \[Steele14\].
 #[inline]
 pub(super) fn mix(x: u64) -> u64 {
     let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);

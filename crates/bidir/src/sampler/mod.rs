@@ -25,7 +25,7 @@ pub enum SamplerKind {
     /// Uncorrelated numbers: the choice for statistics.
     Independent,
     /// Owen-scrambled Sobol' points, two dimensions at a time, each pair shuffled on its own
-    /// [Burley20]: the choice for pictures.
+    /// \[Burley20\]: the choice for pictures.
     #[default]
     Sobol,
 }

@@ -1,4 +1,4 @@
-//! The first two dimensions of Sobol's sequence with hashed Owen scrambling [Burley20].
+//! The first two dimensions of Sobol's sequence with hashed Owen scrambling \[Burley20\].
 //!
 //! Both dimensions need no table: the first is the bits of the index reversed, the second the same
 //! after multiplication with Pascal's triangle modulo 2. Indices have 64 bits, so that one sequence
@@ -41,7 +41,7 @@ fn pascal(mut x: u64) -> u64 {
 }
 
 /// A permutation in which bit i of the result depends on bits 0..=i only: on reversed bits, a
-/// nested uniform scramble [Laine11]. The multipliers are even, so no bit reaches itself.
+/// nested uniform scramble \[Laine11\]. The multipliers are even, so no bit reaches itself.
 #[inline]
 fn scramble_32(x: u32, seed: u32) -> u32 {
     let mut x = x.wrapping_add(seed);

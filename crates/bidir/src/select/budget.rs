@@ -5,7 +5,7 @@ use super::{Candidate, Chosen, Draws, Selector};
 ///
 /// With one ray this is one per pair. With more it has less variance than as many single choices:
 /// large candidates are certain, and one uniform number places evenly spaced pointers over the
-/// rest, so that neighbours are not chosen together. This is the threshold sampling of [Cohen09].
+/// rest, so that neighbours are not chosen together. This is the threshold sampling of \[Cohen09\].
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// The expected number of rays.

@@ -4,7 +4,7 @@
 //! [`Selector`] gives each an inclusion probability π and draws; the chosen ones are traced and
 //! count value·v/π. With π > 0 wherever the value is not zero, and with π a function of the
 //! candidates alone, the sum keeps its expectation Σ value·v, whatever the rule
-//! [`docs/derivations`]: the weights, and so the densities, of the strategies do not change.
+//! (docs/derivations/shadow-ray-selection.md): the weights, and so the densities, of the strategies do not change.
 //!
 //! The value of a chosen candidate is divided by its own π; the sum of the group is never used in
 //! its place, which would be biased for coloured light. s = 0 needs no ray and t = 1 belongs to other
@@ -71,11 +71,11 @@ pub enum ShadowRays {
     /// Every candidate.
     #[default]
     All,
-    /// One for each light vertex: optimisation 1 of [Lafortune95].
+    /// One for each light vertex: optimisation 1 of \[Lafortune95\].
     PerLightVertex,
-    /// One for each camera vertex: optimisation 2 of [Lafortune95].
+    /// One for each camera vertex: optimisation 2 of \[Lafortune95\].
     PerCameraVertex,
-    /// One for each pair of subpaths: optimisation 3 of [Lafortune95].
+    /// One for each pair of subpaths: optimisation 3 of \[Lafortune95\].
     PerPair,
     /// Independent coins, against a threshold that is this part of the image's mean luminance,
     /// which a training render finds [Veach97, §10.4.1].

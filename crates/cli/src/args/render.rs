@@ -150,6 +150,9 @@ pub(crate) struct BudgetArgs {
 #[command(next_help_heading = "Film")]
 pub(crate) struct FilmArgs {
     /// Width and height of the whole film in pixels.
+    ///
+    /// The view stays that of the scene: a size of another shape has pixels that are not square, and a
+    /// warning says so.
     #[arg(long, value_name = "WxH")]
     pub(crate) size: Option<Size>,
     /// Render only these pixels, from x0,y0 up to but not including x1,y1.
