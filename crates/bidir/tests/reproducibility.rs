@@ -75,7 +75,7 @@ impl Progress for StopAfter {
 
 #[test]
 fn a_pass_that_is_given_up_leaves_no_trace() {
-    let scene = common::room(0.0);
+    let scene = common::room_of(32, 0.0);
     let settings = settings(IntegratorKind::Bdpt, "all");
     let resources = with_threads(2);
     let mut session =
@@ -87,6 +87,26 @@ fn a_pass_that_is_given_up_leaves_no_trace() {
     assert!(session.step(&()));
     let whole = render(&scene, &settings, 2, &resources).expect("the film is small");
     assert!(*session.film() == whole);
+}
+
+/// Asks to stop once, and never again.
+struct StopOnce(AtomicU64);
+
+impl Progress for StopOnce {
+    fn advance(&self, _samples: u64) {}
+
+    fn should_stop(&self) -> bool {
+        self.0.fetch_add(1, Ordering::Relaxed) == 0
+    }
+}
+
+#[test]
+fn a_pass_with_a_hole_is_never_added() {
+    let scene = common::room(0.0);
+    let settings = settings(IntegratorKind::Path, "all");
+    let mut session = Session::new(&scene, settings, &with_threads(2)).expect("the film is small");
+    assert!(!session.step(&StopOnce(AtomicU64::new(0))));
+    assert_eq!(session.film().passes(), 0);
 }
 
 #[test]

@@ -103,8 +103,8 @@ impl Info {
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
         let settings = &self.settings;
         let depth = match settings.max_depth {
-            0 => "no limit".to_owned(),
-            depth => format!("at most {depth} bounces"),
+            None => "no limit".to_owned(),
+            Some(depth) => format!("at most {depth} bounces"),
         };
         let lines = [
             ("scene", self.scene.clone()),

@@ -60,7 +60,7 @@ struct CandidateReport {
     score: f32,
     is_chosen: bool,
     /// The probability of being chosen, where it was.
-    prob: Option<f32>,
+    prob: Option<f64>,
     is_visible: bool,
     contribution: Rgb,
 }
@@ -165,18 +165,14 @@ impl VertexReport {
 impl CandidateReport {
     fn new(scene: &Scene, workspace: &Workspace, i: usize, candidate: &Candidate) -> Self {
         let (s, t) = (candidate.strategy.s, candidate.strategy.t);
-        let y = &workspace.camera.vertices[usize::from(t) - 1];
-        let z = match &workspace.next_events[usize::from(t) - 1] {
-            Some(x0) if s == 1 => x0,
-            _ => &workspace.light.vertices[usize::from(s) - 1],
-        };
+        let (z, y) = workspace.ends(candidate.strategy);
         let is_visible = !scene.occluded(&z.segment_end(), &y.segment_end());
         let chosen = workspace
             .chosen
             .iter()
             .find(|chosen| chosen.candidate as usize == i);
         let contribution = match chosen {
-            Some(chosen) if is_visible => candidate.value / chosen.prob,
+            Some(chosen) if is_visible => candidate.contribution(chosen.prob),
             _ => Spectrum::ZERO,
         };
         Self {

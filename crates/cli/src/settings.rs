@@ -110,7 +110,8 @@ pub(crate) struct SettingsText {
     pub(crate) strategies: String,
     pub(crate) light_point: &'static str,
     pub(crate) path_roulette: String,
-    pub(crate) max_depth: u32,
+    /// None: no limit.
+    pub(crate) max_depth: Option<u32>,
     pub(crate) sampler: &'static str,
     pub(crate) seed: u64,
 }
@@ -125,7 +126,7 @@ impl From<&Settings> for SettingsText {
             strategies: path.strategies.to_string(),
             light_point: name_of(&LightPointChoice::NAMES, path.light_point),
             path_roulette: path.roulette.to_string(),
-            max_depth: path.max_depth.unwrap_or(0),
+            max_depth: path.max_depth,
             sampler: name_of(&SamplerKind::NAMES, settings.sampler),
             seed: settings.seed,
         }

@@ -149,7 +149,12 @@ impl Report {
             ("strategies", settings.strategies.clone()),
             ("light-point", settings.light_point.to_owned()),
             ("path-roulette", settings.path_roulette.clone()),
-            ("max-depth", settings.max_depth.to_string()),
+            ("max-depth", {
+                let none = || "none".to_owned();
+                settings
+                    .max_depth
+                    .map_or_else(none, |depth| depth.to_string())
+            }),
             ("sampler", settings.sampler.to_owned()),
             ("seed", settings.seed.to_string()),
             ("passes", self.spp.to_string()),

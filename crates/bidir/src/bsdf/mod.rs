@@ -111,11 +111,13 @@ impl Bsdf {
         u_lobe: f32,
         u: Vec2,
     ) -> Option<BsdfSample> {
-        match self {
+        let sample = match self {
             Self::Diffuse(bsdf) => bsdf.sample(wo, u),
             Self::Conductor(bsdf) => bsdf.sample(wo, u),
             Self::Dielectric(bsdf) => bsdf.sample(wo, mode, u_lobe, u),
-        }
+        };
+        // Where the density underflows there is no sample.
+        sample.filter(|sample| sample.pdf > 0.0)
     }
 
     /// The density of `sample` at `wi`. Measure: solid angle, 1/sr.

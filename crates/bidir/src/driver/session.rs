@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
 use crate::stats::Stats;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Pixels are handed to threads in runs of this length.
 const RUN: u64 = 256;
@@ -47,10 +47,8 @@ impl<'a> Session<'a> {
         let buffer = PassBuffer::new(scene.film());
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
-        let training = settings
-            .shadow_rays
-            .needs_mean()
-            .then(|| Training::run(scene, &settings));
+        let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
+        let training = needs_mean.then(|| Training::run(scene, &settings));
         let mean = training.map_or(0.0, |training| training.mean_luminance);
         let integrator = settings
             .integrator
@@ -73,6 +71,7 @@ impl<'a> Session<'a> {
     /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
     pub fn step(&mut self, progress: &dyn Progress) -> bool {
         let next = AtomicU64::new(0);
+        let given_up = AtomicBool::new(false);
         let this = &*self;
         this.pool.broadcast(|thread| {
             let Some(workspace) = this.workspaces.get(thread.index()) else {
@@ -82,7 +81,9 @@ impl<'a> Session<'a> {
             let mut workspace = workspace
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            this.render_runs(&next, &mut workspace, progress);
+            if !this.render_runs(&next, &mut workspace, progress) {
+                given_up.store(true, Ordering::Relaxed);
+            }
         });
         let mut stats = Stats::default();
         for workspace in &mut self.workspaces {
@@ -91,7 +92,7 @@ impl<'a> Session<'a> {
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
             stats += &std::mem::take(&mut workspace.stats);
         }
-        let finished = !progress.should_stop();
+        let finished = !given_up.into_inner();
         if finished {
             self.stats += &stats;
             let (film, buffer) = (&mut self.film, &self.buffer);
@@ -101,13 +102,21 @@ impl<'a> Session<'a> {
         finished
     }
 
-    /// Renders runs of pixels until none is left.
-    fn render_runs(&self, next: &AtomicU64, workspace: &mut Workspace, progress: &dyn Progress) {
+    /// Renders runs of pixels until none is left. False: a run was given up.
+    fn render_runs(
+        &self,
+        next: &AtomicU64,
+        workspace: &mut Workspace,
+        progress: &dyn Progress,
+    ) -> bool {
         let pixels = self.scene.film().crop.area();
         loop {
             let begin = next.fetch_add(RUN, Ordering::Relaxed);
-            if begin >= pixels || progress.should_stop() {
-                return;
+            if begin >= pixels {
+                return true;
+            }
+            if progress.should_stop() {
+                return false;
             }
             let end = (begin + RUN).min(pixels);
             for pixel in begin..end {
@@ -130,7 +139,12 @@ impl<'a> Session<'a> {
             pass,
             pixel: [x, y],
             camera: sampler.stream(Domain::Camera, stream, pass),
-            light: sampler.stream(Domain::Light, 0, pass * film.crop.area() + pixel),
+            // Beyond 2⁶⁴ light paths the sequence begins again.
+            light: sampler.stream(
+                Domain::Light,
+                0,
+                pass.wrapping_mul(film.light_paths()).wrapping_add(pixel),
+            ),
         }
     }
 

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Values are kept at 2⁻⁶⁰.
 pub const VALUE_SCALE: i32 = 60;
-/// Squares are kept at 2⁻⁴⁰, which leaves room for 2⁸⁰ and 128 passes of it.
+/// Squares are kept at 2⁻⁴⁰; their sum stops at 2⁸⁷, where only the variance is of no use.
 pub const MOMENT_SCALE: i32 = 40;
 /// A contribution above this is dropped and counted.
 pub const LARGEST_CONTRIBUTION: f32 = 1_099_511_627_776.0; // 2⁴⁰

@@ -24,10 +24,7 @@ pub use settings::{FilmError, FilmSettings, PixelRect};
 
 use crate::spectrum::Rgb;
 use fixed::{MOMENT_SCALE, VALUE_SCALE};
-use rayon::prelude::ParallelIterator;
-use rayon::prelude::{
-    IndexedParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator,
-};
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 
 /// The exact sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,7 +107,9 @@ impl Film {
                     sums.light[channel] += light[channel];
                     let total = fixed::to_f64(camera[channel], VALUE_SCALE)
                         + fixed::to_f64(light[channel], VALUE_SCALE) * per_light_path;
-                    sums.moment[channel] += fixed::from_f64(total * total, MOMENT_SCALE);
+                    let square = fixed::from_f64(total * total, MOMENT_SCALE);
+                    // Squares are positive, so that stopping at the top depends on no order.
+                    sums.moment[channel] = sums.moment[channel].saturating_add(square);
                 }
             });
         self.passes += 1;
@@ -118,12 +117,8 @@ impl Film {
 
     /// The mean of all passes with the variance of that mean, exposed.
     pub fn develop(&self) -> Picture {
-        let developed: Vec<(Rgb, Rgb)> = self
-            .pixels
-            .par_iter()
-            .map(|sums| self.develop_pixel(sums))
-            .collect();
-        let (pixels, variance) = developed.into_iter().unzip();
+        let developed = self.pixels.iter().map(|sums| self.develop_pixel(sums));
+        let (pixels, variance) = developed.unzip();
         Picture {
             width: self.settings.crop.width() as usize,
             height: self.settings.crop.height() as usize,

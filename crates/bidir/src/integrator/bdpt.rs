@@ -194,17 +194,11 @@ fn candidate(
 fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
-        let Candidate {
-            value, strategy, ..
-        } = workspace.candidates[chosen.candidate as usize];
-        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-        let y = workspace.camera.vertices[t - 1];
-        let z = match workspace.next_events[t - 1] {
-            Some(x0) if s == 1 => x0,
-            _ => workspace.light.vertices[s - 1],
-        };
+        let candidate = workspace.candidates[chosen.candidate as usize];
+        let (z, y) = workspace.ends(candidate.strategy);
         if workspace.trace_connection(context.scene, &z, &y) {
-            workspace.add(sample, strategy, value / chosen.prob);
+            let value = candidate.contribution(chosen.prob);
+            workspace.add(sample, candidate.strategy, value);
         }
     }
 }

@@ -46,6 +46,14 @@ impl IntegratorKind {
         ("bdpt", Self::Bdpt),
     ];
 
+    /// True where the estimator has connections to choose from.
+    pub fn has_candidates(self) -> bool {
+        match self {
+            Self::Bdpt => true,
+            Self::Path | Self::Light => false,
+        }
+    }
+
     /// The estimator; `selector` chooses the shadow rays of those that have candidates.
     pub fn integrator(self, selector: Box<dyn Selector>) -> Box<dyn Integrator> {
         match self {

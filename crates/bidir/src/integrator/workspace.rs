@@ -86,6 +86,16 @@ impl Workspace {
         light_subpath(context, &sample.light, &mut self.light, &mut self.stats);
     }
 
+    /// The light vertex and the camera vertex that a candidate connects.
+    pub fn ends(&self, strategy: Strategy) -> (Vertex, Vertex) {
+        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+        let z = match self.next_events[t - 1] {
+            Some(x0) if s == 1 => x0,
+            _ => self.light.vertices[s - 1],
+        };
+        (z, self.camera.vertices[t - 1])
+    }
+
     /// True where a contribution can be summed; else it is counted as dropped.
     pub(super) fn accepts(&mut self, sample: &Sample, strategy: Strategy, value: Spectrum) -> bool {
         let fine = value

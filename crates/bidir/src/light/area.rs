@@ -22,17 +22,23 @@ pub struct AreaLight {
     sides: EmissionSides,
     /// The choice of a primitive, by area.
     primitives: Distribution1d,
+    /// One over the area; 0 where there is none. Unit: 1/m².
+    inverse_area: f32,
 }
 
 impl AreaLight {
     /// The light of `shape`, which is number `index` of the scene.
     pub fn new(index: usize, shape: &Shape, radiance: Rgb, sides: EmissionSides) -> Self {
         let areas = (0..shape.primitive_count()).map(|i| shape.primitive_area(i));
+        let primitives = Distribution1d::new(areas);
+        let area = primitives.total();
+        let inverse_area = if area > 0.0 { (1.0 / area) as f32 } else { 0.0 };
         Self {
+            inverse_area,
             shape: index,
             radiance,
             sides,
-            primitives: Distribution1d::new(areas),
+            primitives,
         }
     }
 
@@ -94,8 +100,11 @@ impl AreaLight {
 
     #[inline]
     pub(super) fn pdf_position(&self, context: &LightContext<'_>, at: &LightPoint) -> f32 {
-        let i = at.primitive as usize;
-        self.primitives.prob(i) * context.shapes[self.shape].pdf(i, at.point)
+        match &context.shapes[self.shape] {
+            // A primitive by area and a point evenly on it: evenly over all.
+            Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
+            Shape::Sphere(sphere) => sphere.pdf(at.point),
+        }
     }
 
     #[inline]
@@ -126,8 +135,9 @@ impl AreaLight {
         reference: Vec3,
         at: &LightPoint,
     ) -> f32 {
-        let i = at.primitive as usize;
-        let shape = &context.shapes[self.shape];
-        self.primitives.prob(i) * shape.pdf_from(i, reference, at.point, at.n_g)
+        match &context.shapes[self.shape] {
+            Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
+            Shape::Sphere(sphere) => sphere.pdf_from(reference, at.point, at.n_g),
+        }
     }
 }

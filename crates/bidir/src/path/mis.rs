@@ -60,7 +60,7 @@ pub fn mis_weight(
         _ => x[j].ratio(),
     };
     let share = |j: usize, ratio: f64| {
-        if is_possible(x, j, path.light_is_delta) {
+        if is_possible(path, j) {
             heuristic.share(counts(j) * ratio)
         } else {
             0.0
@@ -82,11 +82,14 @@ pub fn mis_weight(
 }
 
 /// True where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at
-/// either of them, or a light that cannot be hit (j = 0), forbids that. t = 0 is no strategy.
+/// either of them forbids that, as does a light that cannot be hit (j = 0), or that next-event
+/// estimation does not find (j = 1). t = 0 is no strategy.
 #[inline]
-fn is_possible(x: &[VertexDensities], j: usize, light_is_delta: bool) -> bool {
+fn is_possible(path: &PathDensities, j: usize) -> bool {
+    let x = &path.vertices;
     match j {
-        0 => !light_is_delta,
+        0 => !path.light_is_delta,
+        1 if path.next_event <= 0.0 => false,
         j if j == x.len() => false,
         j => !x[j - 1].is_delta && !x[j].is_delta,
     }
@@ -117,7 +120,7 @@ mod tests {
     fn path() -> impl Strategy<Value = PathDensities> {
         (
             prop::collection::vec(vertex(), 2..9),
-            1e-6f32..1e6,
+            prop_oneof![9 => 1e-6f32..1e6, 1 => Just(0.0f32)],
             any::<bool>(),
         )
             .prop_map(|(mut vertices, next_event, light_is_delta)| {
@@ -145,7 +148,7 @@ mod tests {
                 (false, ..) => f64::from(x.from_camera),
             })
             .product();
-        let possible = is_possible(&path.vertices, j, path.light_is_delta);
+        let possible = is_possible(path, j);
         if possible { product } else { 0.0 }
     }
 

@@ -50,20 +50,24 @@ struct Rule {
     t: Option<u16>,
 }
 
+impl Rule {
+    const ALL: Self = Self {
+        enable: true,
+        s: None,
+        t: None,
+    };
+}
+
 /// A set of strategies: a list of rules, of which the last that matches decides.
 ///
 /// Written as a comma-separated list: `all`, `-s0` (without s = 0), `-t1`, `s2t3` or `+s2t3` (with
-/// this one). A list that does not begin with `all` begins with none.
+/// this one). A list that begins with a removal begins with all, any other with none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies(Vec<Rule>);
 
 impl Default for Strategies {
     fn default() -> Self {
-        Self(vec![Rule {
-            enable: true,
-            s: None,
-            t: None,
-        }])
+        Self(vec![Rule::ALL])
     }
 }
 
@@ -95,17 +99,17 @@ impl FromStr for Strategies {
         let rules = text.split(',').map(|item| {
             parse_rule(item.trim()).ok_or_else(|| StrategiesError(item.trim().to_owned()))
         });
-        Ok(Self(rules.collect::<Result<_, _>>()?))
+        let mut rules = rules.collect::<Result<Vec<_>, _>>()?;
+        if rules.first().is_some_and(|rule| !rule.enable) {
+            rules.insert(0, Rule::ALL);
+        }
+        Ok(Self(rules))
     }
 }
 
 fn parse_rule(item: &str) -> Option<Rule> {
     if item == "all" {
-        return Some(Rule {
-            enable: true,
-            s: None,
-            t: None,
-        });
+        return Some(Rule::ALL);
     }
     let (enable, rest) = match item.strip_prefix('-') {
         Some(rest) => (false, rest),
@@ -163,6 +167,7 @@ mod tests {
         check("all,-s0,-t1", &[(1, 2), (3, 3)], &[(0, 2), (2, 1)]);
         check("s2t3", &[(2, 3)], &[(2, 2), (0, 5)]);
         check("all,-s1,+s1t4", &[(1, 4), (2, 2)], &[(1, 3)]);
+        check("-s0", &[(1, 2), (2, 1)], &[(0, 2)]);
         check("t1", &[(1, 1), (5, 1)], &[(1, 2)]);
     }
 

@@ -123,7 +123,7 @@ impl Walker<'_> {
     /// Extends the subpath vertex by vertex until it escapes, ends by roulette, or is full.
     fn walk(&self, subpath: &mut Subpath, origin: Vec3, step: Step, rays: &mut u64) {
         let (mut origin, mut step) = (origin, step);
-        let start = step.beta.max_lane();
+        let start = magnitude(step.beta);
         while subpath.vertices.len() < self.max_vertices {
             *rays += 1;
             let Some(hit) = self.context.scene.intersect(origin, step.direction) else {
@@ -137,6 +137,10 @@ impl Walker<'_> {
             let mut vertex = Vertex::surface(self.context, &hit, -step.direction, step.beta);
             let last = subpath.vertices.len() - 1;
             vertex.pdf_fwd = subpath.vertices[last].density_at(step.pdf_w, &vertex);
+            // Rounding put the vertex on the one before it, in a corner: no density, no path.
+            if vertex.pdf_fwd == 0.0 {
+                return;
+            }
             subpath.vertices.push(vertex);
             if subpath.vertices.len() == self.max_vertices {
                 return;
@@ -166,7 +170,7 @@ impl Walker<'_> {
         let survival = self.context.settings.roulette.survival_prob(
             index - 1,
             vertex.albedo_fwd,
-            beta.max_lane() / start,
+            magnitude(beta) / start,
         );
         // Only a probability below 1 costs a number; zero ends the walk for sure.
         if survival < 1.0 && self.stream.get_1d(at(Purpose::Roulette)) >= survival {
@@ -178,4 +182,11 @@ impl Walker<'_> {
             pdf_w: scattered.pdf,
         })
     }
+}
+
+/// The largest lane, whatever its sign: a filter may be negative. Never zero, so that throughput
+/// relative to it is defined.
+#[inline]
+fn magnitude(beta: Spectrum) -> f32 {
+    beta.map(f32::abs).max_lane().max(f32::MIN_POSITIVE)
 }

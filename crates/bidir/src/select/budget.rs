@@ -32,8 +32,12 @@ impl Budget {
                     rest += score;
                 }
             }
-            let next = rest / f64::from(self.rays - certain.min(self.rays - 1));
-            if next >= threshold || rest <= 0.0 {
+            // As many certain ones as rays: what is left is lost in rounding.
+            if certain >= self.rays || rest <= 0.0 {
+                return Some(threshold);
+            }
+            let next = rest / f64::from(self.rays - certain);
+            if next >= threshold {
                 return Some(threshold);
             }
             threshold = next;
@@ -44,7 +48,7 @@ impl Budget {
 impl Selector for Budget {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         let threshold = self.threshold(candidates);
-        let mut pointer = f64::from(draws.get(0));
+        let mut pointer = draws.get(0);
         for (i, candidate) in candidates.iter().enumerate() {
             let prob = threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0));
             pointer += prob;
@@ -52,7 +56,7 @@ impl Selector for Budget {
                 pointer -= 1.0;
                 chosen.push(Chosen {
                     candidate: i as u32,
-                    prob: prob as f32,
+                    prob,
                 });
             }
         }

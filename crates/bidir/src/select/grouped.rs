@@ -48,13 +48,13 @@ impl Selector for OnePerGroup {
             };
             // In f64: scores of one group span ten orders of magnitude.
             let sum: f64 = members().map(|(_, c)| f64::from(c.score)).sum();
-            let mut rest = f64::from(draws.get(usize::from(group))) * sum;
+            let mut rest = draws.get(usize::from(group)) * sum;
             let mut picked = None;
             for (i, candidate) in members() {
                 let score = f64::from(candidate.score);
                 picked = Some(Chosen {
                     candidate: i as u32,
-                    prob: (score / sum) as f32,
+                    prob: score / sum,
                 });
                 rest -= score;
                 if rest < 0.0 {

@@ -37,13 +37,22 @@ pub struct Candidate {
     pub strategy: Strategy,
 }
 
+impl Candidate {
+    /// What the candidate adds if it was chosen with probability `prob` and nothing blocks it:
+    /// value / π.
+    #[inline]
+    pub fn contribution(&self, prob: f64) -> Spectrum {
+        self.value.map(|lane| (f64::from(lane) / prob) as f32)
+    }
+}
+
 /// A candidate that is traced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
     /// Its number among the candidates.
     pub candidate: u32,
     /// The probability π with which it was included.
-    pub prob: f32,
+    pub prob: f64,
 }
 
 /// The random numbers of a selection.
@@ -51,10 +60,12 @@ pub struct Chosen {
 pub struct Draws<'a>(pub &'a SampleStream);
 
 impl Draws<'_> {
-    /// Draw number `i`. Range: `[0, 1)`.
+    /// Draw number `i`, of 48 bits: probabilities span more orders than 24 bits can tell apart.
+    /// Range: `[0, 1)`.
     #[inline]
-    pub fn get(&self, i: usize) -> f32 {
-        self.0.get_1d(Dimension::at(i, Purpose::Select))
+    pub fn get(&self, i: usize) -> f64 {
+        let u = self.0.get_2d(Dimension::at(i, Purpose::Select));
+        f64::from(u.x) + f64::from(u.y) / 16_777_216.0
     }
 }
 

@@ -25,7 +25,7 @@ impl Selector for RayRoulette {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         for (i, candidate) in candidates.iter().enumerate() {
             // A black training image has threshold 0: then everything is traced.
-            let prob = (candidate.score / self.threshold).min(1.0);
+            let prob = (f64::from(candidate.score) / f64::from(self.threshold)).min(1.0);
             if prob >= 1.0 || draws.get(i) < prob {
                 chosen.push(Chosen {
                     candidate: i as u32,

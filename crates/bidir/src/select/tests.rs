@@ -45,7 +45,7 @@ fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Ve
         check(&chosen);
         for c in &chosen {
             let entry = &mut result[c.candidate as usize];
-            *entry = (entry.0 + 1.0 / n as f64, f64::from(c.prob));
+            *entry = (entry.0 + 1.0 / n as f64, c.prob);
         }
     }
     result
@@ -95,6 +95,22 @@ fn one_ray_of_budget_is_one_per_pair() {
         .filter(|(a, b)| a.1 > 0.0 && b.1 > 0.0)
     {
         assert!((a.1 - b.1).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn a_budget_holds_for_scores_that_vanish_beside_others() {
+    let sampler = Sampler::new(SamplerKind::Independent, 1);
+    for scores in [[1.0, 1e-17, 1e-30], [1e30, 1.0, 1.0], [1e-38, 1e-38, 1.0]] {
+        let candidates: Vec<_> = (0..3).map(|i| candidate(1, 2 + i, scores[i])).collect();
+        for index in 0..1000 {
+            let stream = sampler.stream(Domain::Camera, 0, index);
+            for rays in [1, 2] {
+                let mut chosen = Vec::new();
+                Budget { rays }.select(&candidates, Draws(&stream), &mut chosen);
+                assert!(chosen.len() <= rays as usize, "{scores:?}");
+            }
+        }
     }
 }
 

@@ -130,7 +130,7 @@ impl Sphere {
     }
 
     #[inline]
-    pub(super) fn pdf(&self, point: Vec3) -> f32 {
+    pub(crate) fn pdf(&self, point: Vec3) -> f32 {
         let local = self.placement.local_from_world.transform_point3(point);
         let n = local.normalize_or(Vec3::Z);
         1.0 / (self.local_area() * self.placement.area_scale(n))
@@ -175,7 +175,7 @@ impl Sphere {
     }
 
     #[inline]
-    pub(super) fn pdf_from(&self, reference: Vec3, point: Vec3, n_g: Vec3) -> f32 {
+    pub(crate) fn pdf_from(&self, reference: Vec3, point: Vec3, n_g: Vec3) -> f32 {
         let Some((height, ..)) = self.cone(reference) else {
             return self.pdf(point);
         };

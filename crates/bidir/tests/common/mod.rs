@@ -134,7 +134,12 @@ pub(crate) fn tilt(mut mesh: Mesh, towards: Vec3) -> Mesh {
 /// rough glass: every density differs from every other, and nothing is a Dirac distribution but
 /// the lens.
 pub(crate) fn room(lens_radius: f32) -> Scene {
-    let mut builder = builder(8, lens_radius);
+    room_of(8, lens_radius)
+}
+
+/// The same with a film of `size` × `size` pixels.
+pub(crate) fn room_of(size: u32, lens_radius: f32) -> Scene {
+    let mut builder = builder(size, lens_radius);
     let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
     let rough_metal = builder.material(metal(0.4));
     let rough_glass = builder.material(glass(0.5));

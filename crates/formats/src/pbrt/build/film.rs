@@ -219,7 +219,8 @@ fn filter(context: &mut Context<'_>) -> Result<Filter, Fault> {
         return Ok(Filter::new(gaussian, Vec2::splat(1.5)));
     };
     let mut reader = Reader::new(entity);
-    let positive = [f32::MIN_POSITIVE, f32::MAX];
+    // Beyond these a filter is a point, or flat, and its integral not to be computed.
+    let positive = [0.05, 100.0];
     let (kind, radius) = match entity.kind.as_str() {
         "box" => (FilterKind::Box, 0.5),
         "triangle" => (FilterKind::Triangle, 2.0),

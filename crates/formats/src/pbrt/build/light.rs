@@ -106,7 +106,7 @@ fn spot(
     reader: &mut Reader<'_>,
     world_from_light: &DAffine3,
 ) -> Result<SpotLight, Fault> {
-    let end = reader.float_within("coneangle", 30.0, [0.0, 180.0])?;
+    let end = reader.float_within("coneangle", 30.0, [1e-3, 180.0])?;
     let full = (end - reader.float_within("conedeltaangle", 5.0, [0.0, 180.0])?).max(0.0);
     let [full, end] = [full, end].map(f32::to_radians);
     let (cos_full, cos_end) = (libm::cosf(full), libm::cosf(end));
