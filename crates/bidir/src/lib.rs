@@ -19,6 +19,50 @@
 //! Reading order: [`path`], [`select`], [`integrator`], [`driver`]; the things of a scene
 //! ([`bsdf`], [`light`], [`camera`], [`shape`], [`texture`], [`material`]) each have their contract
 //! on the page of their module.
+//!
+//! # Example
+//!
+//! A grey sphere under a white sky:
+//!
+//! ```
+//! use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+//! use bidir::driver::{self, Resources, Settings};
+//! use bidir::film::{FilmSettings, Filter};
+//! use bidir::light::{InfiniteLight, Light};
+//! use bidir::material::Material;
+//! use bidir::math::{Affine3A, Vec2, Vec3};
+//! use bidir::scene::SceneBuilder;
+//! use bidir::shape::{Orientation, Shape, Sphere};
+//! use bidir::texture::ColorTexture;
+//!
+//! let mut builder = SceneBuilder::new(FilmSettings::new([16, 16], Filter::default()));
+//! // At the origin, looking along +z; 90 degrees wide.
+//! let camera = PerspectiveSettings {
+//!     world_from_camera: Affine3A::IDENTITY,
+//!     resolution: Vec2::splat(16.0),
+//!     screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+//!     lens_radius: 0.0,
+//!     focal_distance: 1.0,
+//! };
+//! let camera = Perspective::new(&camera).ok_or("no rigid camera")?;
+//! builder.camera(Camera::Perspective(camera));
+//! let grey = builder.material(Material::Diffuse {
+//!     reflectance: ColorTexture::Constant([0.5; 3]),
+//! });
+//! let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, 3.0));
+//! let sphere = Sphere::new(place, 1.0, Orientation::Natural);
+//! builder.shape(Shape::Sphere(sphere), grey, None);
+//! builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+//! let scene = builder.build()?;
+//!
+//! let film = driver::render(&scene, &Settings::default(), 64, &Resources::default())?;
+//! let picture = film.develop();
+//! assert!(picture.pixels.iter().flatten().all(|channel| channel.is_finite()));
+//! // The sphere is convex: it shows its reflectance times the sky.
+//! let [_, centre, _] = picture.pixels[8 * picture.width + 8];
+//! assert!((centre - 0.5).abs() < 0.25, "{centre}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod bsdf;
 pub mod camera;

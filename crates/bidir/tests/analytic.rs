@@ -89,6 +89,26 @@ fn roulette_does_not_change_the_mean() {
     }
 }
 
+#[test]
+fn roulette_changes_the_mean_by_less_than_a_thousandth() {
+    // The closed sphere has little variance: here a bias of 0.1 % would show.
+    let scene = closed_sphere();
+    let exact = vec![vec![1.0 - halved(3); 4]; 16];
+    for roulette in ["albedo:0", "throughput:0", "off"] {
+        for (integrator, passes) in [(IntegratorKind::Path, 4096), (IntegratorKind::Bdpt, 4096)] {
+            let mut settings = settings(integrator, Some(2));
+            settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
+            let result = replicates(&scene, &settings, passes, 8);
+            check_agree(
+                &format!("{integrator:?}, {roulette}"),
+                &result,
+                &exact,
+                0.001,
+            );
+        }
+    }
+}
+
 /// An object in an environment of radiance 1 that absorbs nothing: it cannot be seen.
 fn furnace(add: impl Fn(&mut SceneBuilder)) -> Scene {
     let mut builder = builder(8, 0.0);

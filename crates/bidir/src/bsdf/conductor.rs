@@ -1,3 +1,9 @@
+//! f = F(wo·m) D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) [Walter07, eq. 20]: metal, 1/sr.
+//!
+//! Facets are drawn as `wo` sees them, and the density of `wi` is that of the facet over 4 |wo·m|
+//! (solid angle, 1/sr). Light that a facet sends below the surface is lost: there is no multiple
+//! scattering.
+
 use super::microfacet::Ggx;
 use super::{BsdfSample, fresnel, same_hemisphere};
 use crate::math::{Vec2, Vec3};

@@ -1,3 +1,10 @@
+//! Glass, water: reflection F D G₂ / (4 |cosθ_o cosθ_i|) and refraction (1 - F) D G₂ |wo·m| |wi·m|
+//! / (|cosθ_o cosθ_i| (wi·m + wo·m/η)²), η the index of the side of `wi` relative to that of `wo`
+//! [Walter07, eq. 20 and 21]. Unit: 1/sr.
+//!
+//! Radiance is divided by η² where it crosses; importance is not [Veach97, §5.2]. There is no
+//! absorption within, no dispersion, and no multiple scattering between facets.
+
 use super::microfacet::Ggx;
 use super::{BsdfSample, TransportMode, fresnel, same_hemisphere};
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};

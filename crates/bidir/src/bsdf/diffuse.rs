@@ -1,3 +1,6 @@
+//! f = ρ/π (1/sr), drawn with density |cosθ|/π (solid angle, 1/sr). Both sides reflect, none
+//! transmits.
+
 use super::{BsdfSample, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, warp};
 use crate::spectrum::Spectrum;

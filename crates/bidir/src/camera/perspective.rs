@@ -1,3 +1,9 @@
+//! dx/dω = 1 / (A_pixel cos³θ), W_e = dx/dω / (A_lens cosθ): a pinhole or a thin lens, A_pixel
+//! being a pixel's area on the plane one unit in front. Densities are raster area per solid angle,
+//! 1/sr.
+//!
+//! The lens is round and ideal: no distortion and no aberration.
+
 use super::{CameraRay, LensSample};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
 

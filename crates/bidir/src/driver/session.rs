@@ -1,3 +1,7 @@
+//! One pass after another: threads take runs of pixels, each sample is a pure function of its pixel
+//! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
+//! trace. Nothing here looks at a clock.
+
 use super::{Progress, Resources, SessionError, Settings, Training};
 use crate::film::{Film, PassBuffer};
 use crate::integrator::{Integrator, Sample, Workspace};
@@ -13,6 +17,43 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 const RUN: u64 = 256;
 
 /// A render that goes pass by pass.
+///
+/// ```
+/// use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+/// use bidir::driver::{Resources, Session, Settings};
+/// use bidir::film::{FilmSettings, Filter};
+/// use bidir::integrator::IntegratorKind;
+/// use bidir::light::{InfiniteLight, Light};
+/// use bidir::math::{Affine3A, Vec2};
+/// use bidir::scene::SceneBuilder;
+///
+/// // Nothing but a sky.
+/// let mut builder = SceneBuilder::new(FilmSettings::new([4, 4], Filter::default()));
+/// let camera = Perspective::new(&PerspectiveSettings {
+///     world_from_camera: Affine3A::IDENTITY,
+///     resolution: Vec2::splat(4.0),
+///     screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+///     lens_radius: 0.0,
+///     focal_distance: 1.0,
+/// });
+/// builder.camera(Camera::Perspective(camera.ok_or("no rigid camera")?));
+/// builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
+/// let scene = builder.build()?;
+///
+/// // Path tracing sees a plain sky without noise.
+/// let settings = Settings {
+///     integrator: IntegratorKind::Path,
+///     ..Settings::default()
+/// };
+/// let mut session = Session::new(&scene, settings, &Resources::default())?;
+/// while session.film().passes() < 2 {
+///     // `()` reports to nobody and never stops.
+///     session.step(&());
+/// }
+/// let picture = session.film().develop();
+/// assert!(picture.pixels.iter().flatten().all(|channel| (channel - 2.0).abs() < 1e-3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Session<'a> {
     scene: &'a Scene,
     settings: Settings,

@@ -1,3 +1,7 @@
+//! The render before the first pass: the mean luminance of the image, by which shadow-ray roulette
+//! sets its threshold. Sample i, at pixel i·STRIDE modulo the number of pixels, is one of the full
+//! estimator that traces every connection.
+
 use super::Settings;
 use super::session::path_context;
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace};

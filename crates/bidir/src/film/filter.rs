@@ -1,3 +1,9 @@
+//! h(x, y) = h_x(x) h_y(y) with ∫∫ h = 1: the pixel filter, 1/pixel².
+//!
+//! Offsets and pixels are drawn by |h|, and where h is negative their weight is too. The box and
+//! the triangle are inverted in closed form, all others through a table of |h|. The cubic is that
+//! of \[Mitchell88\].
+
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, PI, Vec2, safe_sqrt, sqr};
 
 /// The shape of a filter along one axis.

@@ -1,3 +1,9 @@
+//! The running pass: written by all threads at once, without locks, and added to the film when it
+//! is whole.
+//!
+//! Each pixel's camera sample is stored by the one thread that renders it; splats are summed in
+//! fixed point, whose order cannot matter. Nothing is normalised here.
+
 use super::FilmSettings;
 use super::fixed::{self, FixedSum, VALUE_SCALE};
 use crate::math::Vec2;

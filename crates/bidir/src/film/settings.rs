@@ -1,3 +1,6 @@
+//! What a film is before anything is rendered: its pixels, crop, filter and exposure. Lengths are
+//! in pixels, (0, 0) the top left one of the whole film, whatever the crop.
+
 use super::Filter;
 use thiserror::Error;
 

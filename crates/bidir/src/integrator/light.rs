@@ -1,3 +1,7 @@
+//! Light tracing, and the light image (t = 1) that the bidirectional estimator shares: every light
+//! vertex is connected to a lens point of its own, and lands wherever on the film that is. A splat
+//! is divided by the number of light paths by the film, not here.
+
 use super::{Integrator, Sample, Splat, Workspace};
 use crate::math::Vec2;
 use crate::path::{PathContext, Strategy, Vertex, VertexKind, connect};

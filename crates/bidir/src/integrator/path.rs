@@ -1,3 +1,7 @@
+//! w = p/(p + q) by the balance heuristic, p²/(p² + q²) by the power heuristic \[Veach95\]: path
+//! tracing with next-event estimation. p and q are densities in the same measure, area or solid
+//! angle. It walks no light subpaths and chooses no shadow rays: all are traced.
+
 use super::{Integrator, Sample, Workspace};
 use crate::light::LightPoint;
 use crate::path::{MisHeuristic, PathContext, Strategy, Vertex, connect, next_event_vertex};

@@ -1,3 +1,6 @@
+//! What a sample leaves behind: subpaths, candidates, chosen rays and contributions, in buffers
+//! that the next sample uses again. A value that no film can sum is dropped and counted here.
+
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{

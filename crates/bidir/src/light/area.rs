@@ -1,3 +1,8 @@
+//! Surfaces that emit: radiance L wherever the side emits, power π A L for each such side.
+//!
+//! A point is drawn by area, or as the receiver sees its shape (1/m²); a direction by |cosθ|/π
+//! (1/sr), half of that where both sides emit.
+
 use super::{EmissionSample, LightContext, LightPoint, LightSample};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::shape::{Shape, ShapeSample};

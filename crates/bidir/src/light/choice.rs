@@ -1,3 +1,6 @@
+//! P(light) = power / Σ power, by luminance. It does not know the receiver: a dim light nearby is
+//! chosen no more often than one far away.
+
 use super::{Light, LightContext};
 use crate::math::Distribution1d;
 

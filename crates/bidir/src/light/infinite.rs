@@ -1,3 +1,9 @@
+//! Lights at infinity: an environment of radiance by direction, and parallel rays.
+//!
+//! Directions have the density p(square) / 4π (solid angle, 1/sr), in proportion to the texels'
+//! luminance; a ray then crosses the disk of radius r around the scene evenly, 1/(πr²) (1/m²).
+//! Texels are not interpolated.
+
 use super::{EmissionSample, LightContext, LightPoint, LightSample};
 use crate::math::{
     Distribution2d, Frame, Mat3, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction,

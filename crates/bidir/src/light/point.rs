@@ -1,3 +1,7 @@
+//! Lights without size: radiant intensity (W/sr) by direction from one point. Their position is a
+//! Dirac distribution, its density counted 1; directions are drawn evenly over the sphere, 1/(4π),
+//! or the cone, 1/(2π(1 - cosθ_end)), both 1/sr.
+
 use super::{EmissionSample, LightPoint, LightSample};
 use crate::math::{Frame, PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::{Rgb, luminance};

@@ -1,3 +1,8 @@
+//! Choices in proportion to weights: p_i = w_i / Σ w, by inversion of the sums.
+//!
+//! Densities are over the unit interval and the unit square; whoever stretches those to another
+//! domain divides by its measure.
+
 use super::ONE_MINUS_EPSILON;
 use glam::Vec2;
 

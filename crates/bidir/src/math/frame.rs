@@ -1,3 +1,5 @@
+//! Orthonormal frames: world to local and back, by dot products [Duff17, listing 3].
+
 use glam::Vec3;
 
 /// A right-handed orthonormal frame; local z is the normal.

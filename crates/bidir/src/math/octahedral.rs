@@ -1,3 +1,6 @@
+//! The equal-area octahedral map between the unit square and the sphere \[Clarberg08\]: a density
+//! over the square's area, divided by 4π, is one over solid angle, 1/sr.
+
 use super::{PI, safe_sqrt, sin_cos};
 use glam::{Vec2, Vec3};
 

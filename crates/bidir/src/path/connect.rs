@@ -1,3 +1,8 @@
+//! C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C: what a connection of two subpaths is worth
+//! [Veach97, §10.2]; its weight; and n_j, how often each strategy has the chance.
+//!
+//! No ray is traced here: visibility is the caller's to ask for.
+
 use super::{Junction, PathContext, PathDensities, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
 use crate::math::Vec2;

@@ -1,3 +1,9 @@
+//! a_i and b_i: the density of each vertex x_i drawn from the light and from the camera, area
+//! measure, 1/m² (solid angle, 1/sr, for x_0 at infinity), roulette included where it is local.
+//!
+//! They describe the path, not the strategy that made it, so that every strategy finds the same
+//! weight (docs/derivations/mis-weights.md).
+
 use super::{LightPointChoice, PathContext, Vertex};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.

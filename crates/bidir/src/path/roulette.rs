@@ -1,3 +1,7 @@
+//! Roulette of walks: value / q with probability q, else nothing. Unbiased for every q > 0; the
+//! choice is only one of variance and cost. Shadow rays have a roulette of their own
+//! ([`crate::select`]).
+
 use std::fmt;
 use std::str::FromStr;
 

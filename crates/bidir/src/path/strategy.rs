@@ -1,3 +1,5 @@
+//! Strategies (s, t) by name: which way a path is made, and which ways take part.
+
 use std::fmt;
 use std::str::FromStr;
 

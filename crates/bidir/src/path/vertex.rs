@@ -1,3 +1,9 @@
+//! Vertices: f = Π scatter · Π G over geometric cosines, one function of the path, whichever end a
+//! walk began at [Veach97, §5.3].
+//!
+//! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
+//! at infinity). Visibility and roulette are no part of a vertex.
+
 use super::PathContext;
 use crate::bsdf::{Bsdf, Diffuse, TransportMode};
 use crate::camera::LensSample;

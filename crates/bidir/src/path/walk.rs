@@ -1,3 +1,10 @@
+//! β_{i+1} = β_i · scatter · |cosθ| / (p q), p the density of the direction (solid angle, 1/sr) and
+//! q the roulette's: walks from the lens and from a light, which note the densities of both
+//! directions.
+//!
+//! A walk ends by escape, by roulette, where nothing scatters, or at the limit of path length. It
+//! adds nothing to any image.
+
 use super::{PathContext, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;

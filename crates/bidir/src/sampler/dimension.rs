@@ -1,3 +1,6 @@
+//! What random numbers are for: a vertex and a purpose. Numbers have names instead of an order, so
+//! that code may ask for them in any order, or leave some out, and change no other.
+
 /// What a random number decides at one vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {

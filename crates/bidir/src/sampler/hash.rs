@@ -1,3 +1,5 @@
+//! The hash that all keys of random numbers go through \[Steele14\].
+
 /// A bijection of 64 bits whose output bits each depend on every input bit: the finaliser of
 /// SplitMix64 \[Steele14\].
 #[inline]

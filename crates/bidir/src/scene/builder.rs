@@ -1,3 +1,6 @@
+//! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
+//! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
+
 use super::{PrimitiveRef, Scene, Surface};
 use crate::camera::Camera;
 use crate::film::FilmSettings;

@@ -1,3 +1,8 @@
+//! v(a, b): whether a shadow ray gets from one end to the other. All surfaces are opaque to it,
+//! glass too: light through a smooth interface is found by walks.
+//!
+//! Both ends are pushed off their surface by the error of their point, so that none shadows itself.
+
 use super::Scene;
 use crate::math::Vec3;
 

@@ -1,3 +1,6 @@
+//! π_c = min(1, g_c / δ) with Σ π = the budget: threshold sampling \[Cohen09\], drawn
+//! systematically \[Madow49\].
+
 use super::{Candidate, Chosen, Draws, Selector};
 
 /// Traces at most `rays` candidates: π = min(1, g_c / δ) with Σ π = `rays`, and one systematic

@@ -1,3 +1,6 @@
+//! π_c = g_c / Σ g over the candidates of its group: one ray for each light vertex, camera vertex
+//! or pair of subpaths [Lafortune95, §3].
+
 use super::{Candidate, Chosen, Draws, Selector};
 
 /// What candidates have in common within a group.

@@ -1,3 +1,6 @@
+//! Rules that look at one candidate at a time: π = 1, and π = min(1, score / threshold) [Veach97,
+//! §10.4.1]. The number of rays is not bounded but by the number of candidates.
+
 use super::{Candidate, Chosen, Draws, Selector};
 
 /// Traces every candidate.

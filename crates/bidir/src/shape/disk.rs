@@ -1,3 +1,6 @@
+//! A flat ring or a part of one. An affine map scales all of its area alike, so that points are
+//! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
+
 use super::{Orientation, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos, sqr};
 

@@ -1,3 +1,9 @@
+//! Triangles: points are drawn evenly on each, with density 1/area (1/m²), from wherever they are
+//! looked at. Which triangle is drawn is the light's choice, not the mesh's.
+//!
+//! Normals and parameters are interpolated linearly. Shading normals change the frame, never the
+//! point.
+
 use super::{Orientation, ShapeSample, SurfacePoint, position_error};
 use crate::math::{Frame, Vec2, Vec3, warp};
 

@@ -1,3 +1,9 @@
+//! Spheres and parts of spheres, under any affine map. Densities are area measure, 1/m²:
+//!
+//! - evenly over local area: 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map;
+//! - for a receiver outside a whole, undistorted sphere, evenly in the cone that it is seen in:
+//!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
+
 use super::{Orientation, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 

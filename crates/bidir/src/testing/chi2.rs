@@ -1,3 +1,6 @@
+//! χ² = Σ (observed - expected)² / expected, over cells of even measure: whether samples follow the
+//! density that is claimed for them.
+
 use super::gamma;
 use crate::math::{Frame, Vec2, Vec3, sqr};
 use std::f64::consts::PI;

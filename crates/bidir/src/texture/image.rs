@@ -1,3 +1,6 @@
+//! Images laid over a surface: the texel at the point, or four around it interpolated, in linear
+//! values. There are no smaller copies of an image for distant views: a pixel's samples average it.
+
 use crate::math::Vec2;
 use std::sync::Arc;
 
