@@ -109,14 +109,14 @@ MUTATIONS = [
     (
         "Dirac lights counted as if they could be hit",
         "crates/bidir/src/path/mis.rs",
-        "0 => !light_is_delta,",
+        "0 => !path.light_is_delta,",
         "0 => true,",
         estimators("point_spot_distant"),
     ),
     (
         "n_j of the light image is one",
         "crates/bidir/src/path/connect.rs",
-        "1 => f64::from(self.light_paths),",
+        "1 => self.scene.film().light_paths() as f64,",
         "1 => 1.0,",
         PATH,
     ),
@@ -138,21 +138,21 @@ MUTATIONS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "            workspace.add(sample, strategy, value / chosen.prob);",
+        "            workspace.add(sample, candidate.strategy, value);",
         "            // Right in every grey image, wrong in colour.\n"
         "            let candidates = &workspace.candidates;\n"
         "            let score = |i: usize| candidates[i].score;\n"
         "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
         "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
-        "            let part = score(chosen.candidate as usize) / chosen.prob / all;\n"
-        "            workspace.add(sample, strategy, sum * part);",
+        "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
+        "            workspace.add(sample, candidate.strategy, sum * part);",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/bdpt.rs",
-        "value / chosen.prob",
-        "value",
+        "candidate.contribution(chosen.prob)",
+        "candidate.value",
         analytic("selection_keeps"),
     ),
     (
@@ -180,8 +180,8 @@ MUTATIONS = [
     (
         "budget's probability off by 2 %",
         "crates/bidir/src/select/budget.rs",
-        "prob: prob as f32,",
-        "prob: 0.98 * prob as f32,",
+        "                    prob,",
+        "                    prob: 0.98 * prob,",
         unit("select::"),
     ),
     (
@@ -194,8 +194,8 @@ MUTATIONS = [
     (
         "one per group with an even probability",
         "crates/bidir/src/select/grouped.rs",
-        "prob: (score / sum) as f32,",
-        "prob: 1.0 / members().count() as f32,",
+        "prob: score / sum,",
+        "prob: 1.0 / members().count() as f64,",
         unit("select::"),
     ),
     (
