@@ -61,7 +61,9 @@ nightly SEED=`date +%s`:
       "$@" || verdict=FAILED
       summary+=("$(printf '%-8s %-24s %6d s' "$verdict" "$name" $((SECONDS - start)))")
     }
-    export BIDIR_TEST_SEED={{SEED}} BIDIR_TEST_EFFORT=4
+    export BIDIR_TEST_SEED={{SEED}}
+    run "large scenes" cargo test --release -p bidir-formats --test real_scenes -- --ignored
+    export BIDIR_TEST_EFFORT=4
     run "statistics" {{just_executable()}} stat {{SEED}}
     run "properties" env PROPTEST_CASES=20000 BIDIR_TEST_EFFORT=1 cargo test --release --workspace
     unset BIDIR_TEST_SEED BIDIR_TEST_EFFORT

@@ -3,15 +3,17 @@
 mod common;
 
 use bidir::driver::Settings;
+use bidir::film::{Filter, FilterKind};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
-use bidir::math::{Affine3A, PI, Vec3};
+use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{PathRoulette, PathSettings};
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::select::ShadowRays;
 use bidir::shape::{Disk, Orientation, Shape, Sphere};
-use common::statistics::{FINE, Replicates, check_agree, replicates};
-use common::{builder, diffuse, emission, glass, metal, narrow_camera, quad, sphere};
+use bidir::spectrum::Rgb;
+use common::statistics::{Replicates, WHOLE, check_agree, check_agree_to, replicates};
+use common::{builder, builder_with, diffuse, emission, glass, metal, narrow_camera, quad, sphere};
 
 fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
     Settings {
@@ -24,21 +26,25 @@ fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
     }
 }
 
-/// The inside of a sphere that emits ½ and reflects ½ of what it receives: radiance 1 everywhere.
-fn closed_sphere() -> Scene {
-    let mut builder = builder(8, 0.0);
-    let half = builder.material(diffuse([0.5; 3]));
+/// The inside of a sphere that reflects ρ of what it receives and emits 1 - ρ: radiance 1
+/// everywhere.
+fn closed_sphere_of(mut builder: SceneBuilder, reflectance: Rgb) -> Scene {
+    let wall = builder.material(diffuse(reflectance));
     let inside = Sphere::new(Affine3A::IDENTITY, 2.0, Orientation::Reversed);
-    builder.shape(Shape::Sphere(inside), half, emission([0.5; 3]));
+    let emitted = emission(reflectance.map(|rho| 1.0 - rho));
+    builder.shape(Shape::Sphere(inside), wall, emitted);
     builder.build().expect("the scene is valid")
+}
+
+fn closed_sphere() -> Scene {
+    closed_sphere_of(builder(8, 0.0), [0.5; 3])
 }
 
 /// Checks that an estimator has a known expectation everywhere, and that the same test would see
 /// a bias of 2 %.
 #[track_caller]
 fn check_expectation(name: &str, a: &Replicates, expected: f64) {
-    let exact = vec![vec![expected; a[0].len()]; a.len()];
-    check_agree(name, a, &exact, FINE);
+    check_agree(name, a, &a.exactly([expected; 3]), &[WHOLE, 4]);
 }
 
 /// ½ⁿ.
@@ -50,7 +56,7 @@ fn halved(n: u32) -> f64 {
 fn a_closed_sphere_has_radiance_one() {
     let scene = closed_sphere();
     for (name, integrator) in IntegratorKind::NAMES {
-        let result = replicates(&scene, &settings(integrator, None), 256, 4);
+        let result = replicates(&scene, &settings(integrator, None), 4096);
         check_expectation(name, &result, 1.0);
     }
 }
@@ -63,7 +69,7 @@ fn every_limit_of_depth_cuts_the_same_paths() {
         let expected = 1.0 - halved(depth + 1);
         for (name, integrator) in IntegratorKind::NAMES {
             let settings = settings(integrator, Some(depth));
-            let result = replicates(&scene, &settings, 128, 8);
+            let result = replicates(&scene, &settings, 2048);
             check_expectation(&format!("{name}, depth {depth}"), &result, expected);
         }
     }
@@ -82,31 +88,46 @@ fn roulette_does_not_change_the_mean() {
         for (name, integrator) in IntegratorKind::NAMES {
             let mut settings = settings(integrator, Some(8));
             settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
-            let result = replicates(&scene, &settings, 128, 8);
+            let result = replicates(&scene, &settings, 2048);
             let expected = 1.0 - halved(9);
             check_expectation(&format!("{name}, {roulette}"), &result, expected);
         }
     }
 }
 
-#[test]
-fn roulette_changes_the_mean_by_less_than_a_thousandth() {
-    // The closed sphere has little variance: here a bias of 0.1 % would show.
-    let scene = closed_sphere();
-    let exact = vec![vec![1.0 - halved(3); 4]; 16];
+/// Checks that the mean of a closed sphere with roulette on and off is the known one, 1 - ρ^(d+1)
+/// after d scatterings, where a bias of `bias` would show.
+#[track_caller]
+fn check_roulette(scene: &Scene, reflectance: Rgb, passes: u64, bias: f64) {
+    let depth = 2;
     for roulette in ["albedo:0", "throughput:0", "off"] {
-        for (integrator, passes) in [(IntegratorKind::Path, 4096), (IntegratorKind::Bdpt, 4096)] {
-            let mut settings = settings(integrator, Some(2));
+        for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+            let mut settings = settings(integrator, Some(depth));
             settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
-            let result = replicates(&scene, &settings, passes, 8);
-            check_agree(
-                &format!("{integrator:?}, {roulette}"),
-                &result,
-                &exact,
-                0.001,
-            );
+            let result = replicates(scene, &settings, passes);
+            let radiance = |rho: f32| 1.0 - libm::pow(f64::from(rho), f64::from(depth + 1));
+            let exact = result.exactly(reflectance.map(radiance));
+            let name = format!("{integrator:?}, {roulette}");
+            check_agree_to(&name, &result, &exact, &[WHOLE], bias);
         }
     }
+}
+
+#[test]
+fn roulette_changes_the_mean_by_less_than_a_thousandth() {
+    check_roulette(&closed_sphere(), [0.5; 3], 65536, 0.001);
+}
+
+#[test]
+fn roulette_keeps_colours_under_a_filter_with_negative_lobes() {
+    let mitchell = FilterKind::Mitchell {
+        b: 1.0 / 3.0,
+        c: 1.0 / 3.0,
+    };
+    let filter = Filter::new(mitchell, Vec2::splat(2.0));
+    let colours = [0.3, 0.5, 0.6];
+    let scene = closed_sphere_of(builder_with(8, 0.0, filter), colours);
+    check_roulette(&scene, colours, 65536, 0.002);
 }
 
 /// An object in an environment of radiance 1 that absorbs nothing: it cannot be seen.
@@ -126,7 +147,7 @@ fn white_objects_vanish_in_a_white_environment() {
             builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
         });
         for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
-            let result = replicates(&scene, &settings(integrator, None), 512, 4);
+            let result = replicates(&scene, &settings(integrator, None), 8192);
             check_expectation(&format!("{name}, {integrator:?}"), &result, 1.0);
         }
     }
@@ -136,11 +157,11 @@ fn white_objects_vanish_in_a_white_environment() {
 fn an_empty_scene_shows_the_environment() {
     let scene = furnace(|_| ());
     for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
-        let result = replicates(&scene, &settings(integrator, None), 64, 8);
+        let result = replicates(&scene, &settings(integrator, None), 1024);
         check_expectation(&format!("{integrator:?}"), &result, 1.0);
     }
     // Few rays from infinity meet the lens's view: only the mean of the film is sharp.
-    let result = replicates(&scene, &settings(IntegratorKind::Light, None), 8192, 8);
+    let result = replicates(&scene, &settings(IntegratorKind::Light, None), 131072);
     check_expectation("light", &result, 1.0);
 }
 
@@ -167,7 +188,7 @@ fn a_ring_light_over_a_floor_gives_its_form_factor() {
     let disk = |r: f32| f64::from(r * r / (r * r + height * height));
     let expected = f64::from(rho) * 2.0 * (disk(radius) - disk(inner));
     for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
-        let result = replicates(&scene, &settings(integrator, Some(1)), 512, 2);
+        let result = replicates(&scene, &settings(integrator, Some(1)), 8192);
         check_expectation(&format!("{integrator:?}"), &result, expected);
     }
 }
@@ -180,8 +201,8 @@ fn rough_surfaces_lose_but_never_gain() {
             builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
         });
         for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
-            let result = replicates(&scene, &settings(integrator, None), 64, 8);
-            let mean = result.iter().map(|r| r[r.len() - 1]).sum::<f64>() / result.len() as f64;
+            let result = replicates(&scene, &settings(integrator, None), 1024);
+            let mean = result.mean();
             assert!(mean < 1.0 && mean > 0.75, "{name}: {mean}");
         }
     }
@@ -199,7 +220,7 @@ fn selection_keeps_the_closed_sphere() {
     ] {
         let mut settings = settings(IntegratorKind::Bdpt, Some(8));
         settings.shadow_rays = rule.parse::<ShadowRays>().expect("a rule");
-        let result = replicates(&scene, &settings, 128, 8);
+        let result = replicates(&scene, &settings, 2048);
         check_expectation(rule, &result, 1.0 - halved(9));
     }
 }

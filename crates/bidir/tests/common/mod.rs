@@ -39,7 +39,12 @@ fn camera_with(eye: Vec3, size: u32, half_width: f32, lens_radius: f32) -> Camer
 
 /// A builder with a square film and a box filter, and the camera of [`camera`] at z = -1.8.
 pub(crate) fn builder(size: u32, lens_radius: f32) -> SceneBuilder {
-    let mut builder = SceneBuilder::new(FilmSettings::new([size; 2], Filter::default()));
+    builder_with(size, lens_radius, Filter::default())
+}
+
+/// The same with another filter.
+pub(crate) fn builder_with(size: u32, lens_radius: f32, filter: Filter) -> SceneBuilder {
+    let mut builder = SceneBuilder::new(FilmSettings::new([size; 2], filter));
     builder.camera(camera(Vec3::new(0.0, 0.0, -1.8), size, lens_radius));
     builder
 }
