@@ -42,21 +42,21 @@ MUTATIONS = [
     ),
     (
         "area density without the cosine",
-        "crates/bidir/src/path/vertex.rs",
+        "crates/bidir/src/path/scatter.rs",
         "pdf_w * cos / distance2",
         "pdf_w / distance2",
         PATH,
     ),
     (
         "no correction of shading normals",
-        "crates/bidir/src/path/vertex.rs",
+        "crates/bidir/src/path/scatter.rs",
         "(self.shading.z.dot(w) / self.n_g.dot(w)).abs()",
         "1.0",
         PATH,
     ),
     (
         "correction of shading normals for one mode only",
-        "crates/bidir/src/path/vertex.rs",
+        "crates/bidir/src/path/scatter.rs",
         "TransportMode::Importance => self.normal_ratio(wo),",
         "TransportMode::Importance => self.normal_ratio(wi),",
         PATH,
@@ -165,8 +165,8 @@ MUTATIONS = [
     (
         "path tracer's two densities swapped",
         "crates/bidir/src/integrator/path.rs",
-        "share(context.settings.mis, q, p)",
-        "share(context.settings.mis, p, q)",
+        "context.settings.mis.weight_of_two(q, p)",
+        "context.settings.mis.weight_of_two(p, q)",
         analytic("a_ring_light"),
     ),
     (
@@ -194,8 +194,8 @@ MUTATIONS = [
     (
         "one per group with an even probability",
         "crates/bidir/src/select/grouped.rs",
-        "prob: score / sum,",
-        "prob: 1.0 / members().count() as f64,",
+        "prob: prob(candidate, sum),",
+        "prob: 1.0 / self.members(candidates, group).count() as f64,",
         unit("select::"),
     ),
     (

@@ -1,5 +1,9 @@
-//! What a render counts: rays where they are traced, candidates, and contributions that were
-//! dropped.
+//! What a render counts: rays where they are traced, candidates, the fate of each strategy's
+//! contributions, and those that were dropped.
+
+mod strategies;
+
+pub use strategies::{StrategyCounts, StrategyTable};
 
 use crate::path::Strategy;
 use std::collections::BTreeSet;
@@ -61,6 +65,8 @@ pub struct Stats {
     pub light_image_blocked: u64,
     /// Candidate connections evaluated.
     pub candidates: u64,
+    /// What became of the contributions of each strategy.
+    pub strategies: StrategyTable,
     /// Contributions dropped.
     pub dropped: u64,
     /// The first of them.
@@ -68,6 +74,33 @@ pub struct Stats {
 }
 
 impl Stats {
+    /// Counts a contribution of `strategy` that is not zero, before selection and visibility.
+    #[inline]
+    pub fn count_candidate(&mut self, strategy: Strategy) {
+        self.strategies.of(strategy).candidates += 1;
+        self.candidates += u64::from(strategy.s >= 1 && strategy.t >= 2);
+    }
+
+    /// Counts a shadow ray of `strategy`.
+    #[inline]
+    pub fn count_shadow_ray(&mut self, strategy: Strategy) {
+        self.strategies.of(strategy).traced += 1;
+        match strategy.t {
+            1 => self.rays.light_image += 1,
+            _ => self.rays.connection += 1,
+        }
+    }
+
+    /// Counts a shadow ray of `strategy` that something blocked, besides.
+    #[inline]
+    pub fn count_blocked(&mut self, strategy: Strategy) {
+        self.strategies.of(strategy).blocked += 1;
+        match strategy.t {
+            1 => self.light_image_blocked += 1,
+            _ => self.connections_blocked += 1,
+        }
+    }
+
     /// Counts a contribution that was dropped.
     pub fn drop_contribution(&mut self, dropped: Dropped) {
         self.dropped += 1;
@@ -89,6 +122,7 @@ impl AddAssign<&Self> for Stats {
         self.connections_blocked += other.connections_blocked;
         self.light_image_blocked += other.light_image_blocked;
         self.candidates += other.candidates;
+        self.strategies += &other.strategies;
         self.dropped += other.dropped;
         other
             .dropped_list
@@ -121,5 +155,32 @@ mod tests {
         let mut sum = Stats::default();
         sum += &backwards;
         assert_eq!(sum, forwards);
+    }
+
+    #[test]
+    fn rays_are_counted_by_kind_and_by_strategy() {
+        let mut stats = Stats::default();
+        for (s, t) in [(0, 3), (1, 2), (2, 1), (2, 1)] {
+            stats.count_candidate(Strategy::new(s, t));
+        }
+        for (s, t) in [(1, 2), (2, 1), (2, 1)] {
+            stats.count_shadow_ray(Strategy::new(s, t));
+        }
+        stats.count_blocked(Strategy::new(2, 1));
+        assert_eq!((stats.candidates, stats.connections_blocked), (1, 0));
+        assert_eq!((stats.rays.connection, stats.rays.light_image), (1, 2));
+        assert_eq!(stats.light_image_blocked, 1);
+        let counts = |candidates, traced, blocked| StrategyCounts {
+            candidates,
+            traced,
+            blocked,
+        };
+        let rows: Vec<_> = stats.strategies.rows().collect();
+        let expected = [
+            (Strategy::new(0, 3), counts(1, 0, 0)),
+            (Strategy::new(1, 2), counts(1, 1, 0)),
+            (Strategy::new(2, 1), counts(2, 2, 1)),
+        ];
+        assert_eq!(rows, expected);
     }
 }

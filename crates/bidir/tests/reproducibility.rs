@@ -3,8 +3,10 @@
 mod common;
 
 use bidir::driver::{Progress, Resources, Session, Settings, render};
-use bidir::film::{Film, PassBuffer};
+use bidir::film::{Film, MergeError, PassBuffer, PassSet};
 use bidir::integrator::IntegratorKind;
+use bidir::light::{InfiniteLight, Light};
+use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -83,7 +85,7 @@ fn a_pass_that_is_given_up_leaves_no_trace() {
     assert!(session.step(&()));
     let before = session.stats().clone();
     assert!(!session.step(&StopAfter(AtomicU64::new(1))));
-    assert_eq!((session.film().passes(), session.stats()), (1, &before));
+    assert_eq!((session.next_pass(), session.stats()), (1, &before));
     assert!(session.step(&()));
     let whole = render(&scene, &settings, 2, &resources).expect("the film is small");
     assert!(*session.film() == whole);
@@ -106,7 +108,51 @@ fn a_pass_with_a_hole_is_never_added() {
     let settings = settings(IntegratorKind::Path, "all");
     let mut session = Session::new(&scene, settings, &with_threads(2)).expect("the film is small");
     assert!(!session.step(&StopOnce(AtomicU64::new(0))));
-    assert_eq!(session.film().passes(), 0);
+    assert!(session.film().passes().is_empty());
+}
+
+/// The film of some passes.
+fn part(scene: &Scene, settings: &Settings, passes: std::ops::Range<u64>) -> Film {
+    let mut session =
+        Session::new(scene, settings.clone(), &with_threads(2)).expect("the film is small");
+    session.start_at(passes.start);
+    while session.next_pass() < passes.end {
+        session.step(&());
+    }
+    session.into_film()
+}
+
+#[test]
+fn parts_in_any_order_are_the_whole() {
+    let scene = common::room(0.1);
+    for (integrator, rule) in [
+        (IntegratorKind::Path, "all"),
+        (IntegratorKind::Light, "all"),
+        (IntegratorKind::Bdpt, "all"),
+        (IntegratorKind::Bdpt, "per-light-vertex"),
+        (IntegratorKind::Bdpt, "per-camera-vertex"),
+        (IntegratorKind::Bdpt, "per-pair"),
+        (IntegratorKind::Bdpt, "ray-roulette"),
+        (IntegratorKind::Bdpt, "budget:2"),
+    ] {
+        let settings = settings(integrator, rule);
+        let whole = part(&scene, &settings, 0..7);
+        let parts = [4..7, 0..1, 1..4].map(|range| part(&scene, &settings, range));
+        let mut merged = parts[0].clone();
+        merged.merge(&parts[2]).expect("other passes");
+        // A session that goes on renders what is missing.
+        let mut session =
+            Session::new(&scene, settings.clone(), &with_threads(1)).expect("the film is small");
+        session.add_film(&merged).expect("nothing was rendered");
+        assert_eq!(session.next_pass(), 0);
+        session.step(&());
+        assert_eq!(session.next_pass(), 7);
+        assert!(*session.film() == whole, "{integrator:?} {rule}");
+        merged.merge(&parts[1]).expect("other passes");
+        assert!(merged == whole, "{integrator:?} {rule}");
+        let overlap = merged.merge(&parts[0]).expect_err("the same passes");
+        assert_eq!(overlap, MergeError::Overlap(PassSet::from(4..7)));
+    }
 }
 
 #[test]
@@ -129,7 +175,7 @@ fn a_replayed_sample_is_the_sample() {
                 buffer.splat(film, splat.raster, rgb(splat.value), splat.u);
             }
         }
-        again.add_pass(&buffer);
+        again.add_pass(pass, &buffer);
     }
     assert!(again == render(&scene, &settings, 2, &resources).expect("the film is small"));
     assert!(session.replay([8, 0], 0).is_none());
@@ -147,4 +193,34 @@ fn other_seeds_and_samplers_are_other_images() {
         render(&scene, settings, 1, &with_threads(1)).expect("the film is small")
     };
     assert!(film(&first) != film(&other));
+}
+
+/// Memory of this process. Unit: pages. None: the system does not tell.
+fn resident_pages() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    text.split_whitespace().nth(1)?.parse().ok()
+}
+
+#[test]
+#[ignore = "takes long: just nightly"]
+fn a_million_passes_take_no_memory_and_lose_nothing() {
+    let radiance = [0.1, 0.7, 1.3e4];
+    let mut builder = common::builder(16, 0.0);
+    builder.light(Light::Infinite(InfiniteLight::constant(radiance)));
+    let scene = builder.build().expect("the scene is valid");
+    let settings = settings(IntegratorKind::Path, "all");
+    let mut session = Session::new(&scene, settings, &with_threads(1)).expect("the film is small");
+    let mut before = None;
+    while session.next_pass() < 1_000_000 {
+        session.step(&());
+        if session.next_pass() == 1000 {
+            before = resident_pages();
+        }
+    }
+    if let (Some(before), Some(after)) = (before, resident_pages()) {
+        assert!(after <= before + 64, "{before} pages, then {after}");
+    }
+    for pixel in session.film().develop().pixels {
+        assert_eq!(pixel.map(f32::to_bits), radiance.map(f32::to_bits));
+    }
 }

@@ -9,7 +9,7 @@ use crate::scene_io::read_image;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What is found.
+/// What is found. As JSON has no other numbers, those that are not finite become null in it.
 #[derive(Debug, Serialize)]
 struct Comparison {
     /// None: the sizes differ; so below.
@@ -99,5 +99,28 @@ impl Comparison {
             let _ = writeln!(text, "resampled   {which} to {width}x{height}");
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::json;
+
+    #[test]
+    fn numbers_that_json_does_not_have_are_null() {
+        let comparison = Comparison {
+            rmse: Some(f64::NAN),
+            relmse: Some(f64::INFINITY),
+            mean_ratio: None,
+            identical: false,
+            size: Some([1, 1]),
+            resampled: None,
+        };
+        let json: serde_json::Value = serde_json::from_str(&json(&comparison).unwrap()).unwrap();
+        for key in ["rmse", "relmse", "mean_ratio"] {
+            assert!(json[key].is_null(), "{key}");
+        }
+        assert_eq!(json["size"], serde_json::json!([1, 1]));
     }
 }

@@ -1,6 +1,6 @@
 //! Talk on stderr and data on stdout.
 
-use crate::args::ColorArgs;
+use crate::args::{ColorArgs, OutputArgs};
 use crate::exit::{Exit, Failure};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt;
@@ -19,9 +19,30 @@ pub(crate) enum Display {
     /// A bar that is drawn over.
     Bar,
     /// A line now and then.
-    Lines,
+    Lines(LineFormat),
     /// Not at all.
     Silent,
+}
+
+/// What a line of progress looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LineFormat {
+    /// Words.
+    Plain,
+    /// An object of JSON.
+    Ndjson,
+    /// Messages of Open Job Description, on stdout.
+    OpenJd,
+}
+
+impl Display {
+    /// Names on the command line.
+    pub(crate) const NAMES: [(&'static str, Self); 4] = [
+        ("bar", Self::Bar),
+        ("plain", Self::Lines(LineFormat::Plain)),
+        ("ndjson", Self::Lines(LineFormat::Ndjson)),
+        ("openjd", Self::Lines(LineFormat::OpenJd)),
+    ];
 }
 
 /// What stderr is, and what the user wants of it.
@@ -50,12 +71,16 @@ impl Console {
         Self { color, is_terminal }
     }
 
-    /// How progress is shown where it may be.
-    pub(crate) fn display(self) -> Display {
-        if self.is_terminal {
-            Display::Bar
+    /// How progress is shown: as it is asked for, but a bar on terminals only.
+    pub(crate) fn display(self, args: &OutputArgs) -> Display {
+        let default = if args.quiet {
+            Display::Silent
         } else {
-            Display::Lines
+            Display::Bar
+        };
+        match args.progress.unwrap_or(default) {
+            Display::Bar if !self.is_terminal => Display::Lines(LineFormat::Plain),
+            display => display,
         }
     }
 

@@ -16,11 +16,11 @@ pub(crate) enum Exit {
     Scene,
     /// A file cannot be read or written.
     InputOutput,
-    /// A film file belongs to another render. Reserved.
+    /// A film file belongs to another render.
     FilmMismatch,
     /// A check did not hold.
     Validation,
-    /// Stopped early, with a checkpoint to go on from. Reserved.
+    /// Stopped early, with a checkpoint to go on from.
     Checkpoint,
     /// Stopped by Ctrl-C; the image has the passes that were finished.
     Interrupted,
@@ -41,7 +41,7 @@ impl Exit {
         ),
         (
             Self::FilmMismatch,
-            "a film file belongs to another render (reserved)",
+            "a film file belongs to another render, or has the same passes",
         ),
         (
             Self::Validation,
@@ -49,7 +49,7 @@ impl Exit {
         ),
         (
             Self::Checkpoint,
-            "stopped early, with a checkpoint to go on from (reserved)",
+            "stopped early by a signal, with a checkpoint to go on from",
         ),
         (
             Self::Interrupted,
@@ -137,10 +137,8 @@ impl Failure {
 
     /// A file cannot be read or written.
     pub(crate) fn io(path: &Path, action: &str, error: &std::io::Error) -> Self {
-        Self::new(
-            Exit::InputOutput,
-            format!("{}: cannot {action}: {error}", path.display()),
-        )
+        let message = format!("{}: cannot {action}: {error}", path.display());
+        Self::new(Exit::InputOutput, message)
     }
 
     /// Adds what to do about it.

@@ -5,7 +5,6 @@ use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
 use crate::settings::SettingsText;
-use bidir::camera::Camera;
 use bidir::film::Film;
 use bidir::light::Light;
 use bidir::material::Material;
@@ -72,23 +71,20 @@ impl Info {
         let corners = [bounds.min.to_array(), bounds.max.to_array()];
         let triangles = scene.shapes().iter().map(|shape| match shape {
             Shape::Mesh(mesh) => mesh.triangle_count(),
-            Shape::Sphere(_) | Shape::Disk(_) => 0,
+            _ => 0,
         });
-        let camera = match scene.camera() {
-            Camera::Perspective(_) => "perspective",
-        };
         Self {
             scene: name,
             film: FilmInfo::new(scene, loaded.output.as_deref()),
-            camera,
+            camera: scene.camera().kind(),
             settings: SettingsText::from(&loaded.settings),
             spp: loaded.spp,
-            shapes: count(scene.shapes(), shape_kind),
+            shapes: count(scene.shapes(), Shape::kind),
             triangles: triangles.sum(),
             primitives: scene.bvh().primitive_count(),
             instances: loaded.summary.instances,
-            materials: count(scene.materials(), material_kind),
-            lights: count(scene.lights(), light_kind),
+            materials: count(scene.materials(), Material::kind),
+            lights: count(scene.lights(), Light::kind),
             textures: loaded.summary.textures,
             bounds: (scene.bvh().primitive_count() > 0).then_some(corners),
             bvh_bytes: scene.bvh().memory_bytes(),
@@ -179,32 +175,6 @@ fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
         *counts.entry(kind(item)).or_default() += 1;
     }
     counts
-}
-
-fn shape_kind(shape: &Shape) -> &'static str {
-    match shape {
-        Shape::Mesh(_) => "mesh",
-        Shape::Sphere(_) => "sphere",
-        Shape::Disk(_) => "disk",
-    }
-}
-
-fn material_kind(material: &Material) -> &'static str {
-    match material {
-        Material::Diffuse { .. } => "diffuse",
-        Material::Conductor { .. } => "conductor",
-        Material::Dielectric { .. } => "dielectric",
-    }
-}
-
-fn light_kind(light: &Light) -> &'static str {
-    match light {
-        Light::Area(_) => "area",
-        Light::Point(_) => "point",
-        Light::Spot(_) => "spot",
-        Light::Distant(_) => "distant",
-        Light::Infinite(_) => "infinite",
-    }
 }
 
 /// `3: 2 disk, 1 mesh`.

@@ -4,9 +4,13 @@
 //! light is computed in the `bidir` library. The documentation of the command is its help text.
 
 mod args;
+mod checkpoint;
 mod compare;
 mod console;
 mod exit;
+mod farm;
+mod film;
+mod film_header;
 mod info;
 mod metrics;
 mod output;
@@ -19,15 +23,15 @@ mod settings;
 mod shell;
 mod signals;
 mod stats;
+mod tonemap;
 
 use args::{Cli, Command};
-use clap::Parser;
 use console::Console;
 use exit::{Exit, Failure};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::read() {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are such errors too. Where they cannot be printed, nothing can.
@@ -48,9 +52,15 @@ fn main() -> ExitCode {
 
 fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
-        Command::Render(args) => render::run(args, console),
+        Command::Render(args) => render::run(args, console)
+            .inspect_err(|failure| progress::tell_failure(&args.output, failure)),
         Command::Info(args) => info::run(args, console),
         Command::Compare(args) => compare::run(args),
+        Command::Film(command) => film::run(command, console),
+        Command::Merge(args) => film::merge(args),
+        Command::Missing(args) => film::missing(args),
+        Command::Tonemap(args) => tonemap::run(args),
+        Command::Farm(command) => farm::run(command),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),
     }

@@ -1,6 +1,6 @@
 //! Which files a render writes, and whether they can be written.
 
-use crate::args::OutputArgs;
+use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, MetadataValue};
 use bidir::film::{FilmSettings, Picture};
@@ -10,42 +10,30 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outputs {
     exr: Option<PathBuf>,
-    png: PathBuf,
+    png: Option<PathBuf>,
     /// The counts, as JSON.
     pub(crate) stats: Option<PathBuf>,
 }
 
 impl Outputs {
-    /// The files of a render; `scene` is the scene file, `film` the name it gives its image.
-    pub(crate) fn new(
-        args: &OutputArgs,
-        scene: &Path,
-        film: Option<&Path>,
-    ) -> Result<Self, Failure> {
-        let image = match &args.output {
-            Some(path) => path.clone(),
-            None => default_image(scene, film),
+    /// The files of a render; `film` is the name that the scene file gives its image. A share of a
+    /// render has no image but one that is asked for, as all shares would write the same.
+    pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
+        let is_share = args.long.passes.is_some() || args.long.part.is_some();
+        let image = match &args.output.output {
+            None if is_share => None,
+            None => Some(default_image(&args.scene.scene, film)),
+            asked => asked.clone(),
         };
-        let extension = image.extension().and_then(|extension| extension.to_str());
-        let (exr, png) = match extension.map(str::to_ascii_lowercase).as_deref() {
-            Some("exr") => (Some(image.clone()), image.with_extension("png")),
-            Some("png") => (None, image),
-            _ => {
-                let message = format!("{}: not the name of an image", image.display());
-                return Err(Failure::usage(message).with_hint("end it with .exr or .png"));
-            }
-        };
-        Ok(Self {
-            exr,
-            png,
-            stats: args.stats.clone(),
-        })
+        let [exr, png] = image.map_or(Ok([None, None]), images)?;
+        let stats = args.output.stats.clone();
+        Ok(Self { exr, png, stats })
     }
 
     fn files(&self) -> impl Iterator<Item = &Path> {
         self.exr
             .iter()
-            .chain([&self.png])
+            .chain(&self.png)
             .chain(&self.stats)
             .map(PathBuf::as_path)
     }
@@ -57,10 +45,8 @@ impl Outputs {
                 let message = format!("{}: cannot write: it is a folder", file.display());
                 return Err(Failure::new(Exit::InputOutput, message));
             }
-            let folder = folder_of(file);
-            // The file vanishes as it is closed.
-            tempfile::tempfile_in(folder)
-                .map_err(|error| Failure::io(file, "write", &error).with_hint(hint(folder)))?;
+            scene_io::check_writable(file)
+                .map_err(|failure| failure.with_hint(hint(scene_io::folder_of(file))))?;
         }
         Ok(())
     }
@@ -75,16 +61,29 @@ impl Outputs {
         if let Some(exr) = &self.exr {
             scene_io::write_exr(exr, film, picture, metadata)?;
         }
-        scene_io::write_png(&self.png, picture)
+        let png = self.png.as_ref();
+        png.map_or(Ok(()), |png| scene_io::write_png(png, picture))
     }
 
     /// The names of the files.
-    pub(crate) fn names(&self) -> String {
-        let names: Vec<_> = self
-            .files()
-            .map(|file| file.display().to_string())
-            .collect();
-        names.join(", ")
+    pub(crate) fn names(&self) -> impl Iterator<Item = String> {
+        self.files().map(|file| file.display().to_string())
+    }
+}
+
+/// The EXR, if any, and the PNG that go by the name of an image.
+fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
+    let extension = image.extension().and_then(|extension| extension.to_str());
+    match extension.map(str::to_ascii_lowercase).as_deref() {
+        Some("exr") => {
+            let png = image.with_extension("png");
+            Ok([Some(image), Some(png)])
+        }
+        Some("png") => Ok([None, Some(image)]),
+        _ => {
+            let message = format!("{}: not the name of an image", image.display());
+            Err(Failure::usage(message).with_hint("end it with .exr or .png"))
+        }
     }
 }
 
@@ -96,13 +95,6 @@ fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
     name.unwrap_or(Path::new("bidir")).with_extension("exr")
 }
 
-fn folder_of(file: &Path) -> &Path {
-    match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
 fn hint(folder: &Path) -> String {
     let folder_name = folder.display();
     if folder.is_dir() {
@@ -112,65 +104,46 @@ fn hint(folder: &Path) -> String {
     }
 }
 
-/// Writes a text file so that its name stands for the whole of it, or for what was there before.
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    let write = || {
-        let mut file = tempfile::Builder::new()
-            .prefix(".bidir-")
-            .tempfile_in(folder_of(path))?;
-        make_public(file.as_file())?;
-        std::io::Write::write_all(&mut file, text.as_bytes())?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|error: std::io::Error| Failure::io(path, "write", &error))
-}
-
-/// A temporary file is private unless told otherwise.
-#[cfg(unix)]
-fn make_public(file: &std::fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn make_public(_file: &std::fs::File) -> std::io::Result<()> {
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
 
-    fn outputs(output: Option<&str>, film: Option<&str>) -> Result<Outputs, Failure> {
-        let args = OutputArgs {
-            output: output.map(Into::into),
-            stats: None,
-            quiet: false,
+    /// The outputs of `bidir render scenes/room.pbrt` with more flags.
+    fn outputs(flags: &str, film: Option<&str>) -> Result<Outputs, Failure> {
+        let words = "bidir render scenes/room.pbrt".split(' ');
+        let cli = Cli::try_parse_from(words.chain(flags.split_whitespace())).unwrap();
+        let Command::Render(args) = cli.command else {
+            panic!("another command")
         };
-        Outputs::new(&args, Path::new("scenes/room.pbrt"), film.map(Path::new))
+        Outputs::new(&args, film.map(Path::new))
     }
 
     #[track_caller]
-    fn check(output: Option<&str>, film: Option<&str>, names: &str) {
-        assert_eq!(outputs(output, film).unwrap().names(), names);
+    fn check(flags: &str, film: Option<&str>, expected: &str) {
+        let names: Vec<_> = outputs(flags, film).unwrap().names().collect();
+        assert_eq!(names.join(", "), expected);
     }
 
     #[test]
     fn names_come_from_the_flag_then_the_film_then_the_scene() {
-        check(Some("a/b.exr"), Some("film.exr"), "a/b.exr, a/b.png");
-        check(Some("b.PNG"), None, "b.PNG");
-        check(None, Some("film.png"), "film.exr, film.png");
-        check(None, Some(""), "room.exr, room.png");
-        check(None, None, "room.exr, room.png");
+        check("-o a/b.exr", Some("film.exr"), "a/b.exr, a/b.png");
+        check("-o b.PNG", None, "b.PNG");
+        check("", Some("film.png"), "film.exr, film.png");
+        check("", Some(""), "room.exr, room.png");
+        check("", None, "room.exr, room.png");
     }
 
     #[test]
     fn other_endings_are_a_fault_of_the_command_line() {
-        assert_eq!(
-            outputs(Some("a.jpg"), None).unwrap_err().exit(),
-            Exit::Usage
-        );
-        assert_eq!(outputs(Some("a"), None).unwrap_err().exit(), Exit::Usage);
+        assert_eq!(outputs("-o a.jpg", None).unwrap_err().exit(), Exit::Usage);
+        assert_eq!(outputs("-o a", None).unwrap_err().exit(), Exit::Usage);
+    }
+
+    #[test]
+    fn a_share_has_no_image_but_one_that_is_asked_for() {
+        check("--passes 0..4", Some("film.exr"), "");
+        check("--part 0/4 -o a.png", Some("film.exr"), "a.png");
     }
 }

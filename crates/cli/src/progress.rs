@@ -1,11 +1,17 @@
-//! Progress on stderr: a bar on a terminal, lines elsewhere. The library has no clock; this has.
+//! Progress: a bar on a terminal, lines elsewhere. The library has no clock; this has.
+//!
+//! Lines are for people, as JSON, or as Open Job Description has them
+//! [OpenJD23, Stdout/Stderr Messages]; the latter go to stdout, all others to stderr. One is written
+//! now and then, and one at the end where all is done.
 
-use crate::args;
-use crate::console::{Display, say};
+use crate::args::{self, OutputArgs};
+use crate::console::{Display, LineFormat, print, say};
+use crate::exit::Failure;
 use crate::settings::Budget;
 use crate::signals::Signals;
 use bidir::driver::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -34,6 +40,8 @@ pub(crate) struct Clock {
 pub(crate) struct Reporter<'a> {
     signals: &'a Signals,
     clock: Clock,
+    /// What was there before the render began.
+    before: u64,
     samples: AtomicU64,
     /// True when it was said that the running pass is the last.
     is_stop_told: AtomicBool,
@@ -43,7 +51,7 @@ pub(crate) struct Reporter<'a> {
 enum Channel {
     Silent,
     Bar(ProgressBar),
-    Lines(Mutex<LastLine>),
+    Lines(LineFormat, Mutex<LastLine>),
 }
 
 /// When the last line was written, and what it said.
@@ -58,18 +66,43 @@ impl<'a> Reporter<'a> {
         let channel = match display {
             Display::Silent => Channel::Silent,
             Display::Bar => Channel::Bar(bar()),
-            Display::Lines => Channel::Lines(Mutex::new(LastLine {
-                at: clock.start,
-                percent: 0,
-            })),
+            Display::Lines(format) => {
+                let last = LastLine {
+                    at: clock.start,
+                    percent: 0,
+                };
+                Channel::Lines(format, Mutex::new(last))
+            }
         };
-        let (samples, is_stop_told) = (AtomicU64::new(0), AtomicBool::new(false));
         Self {
             signals,
             clock,
-            samples,
-            is_stop_told,
+            before: 0,
+            samples: AtomicU64::new(0),
+            is_stop_told: AtomicBool::new(false),
             channel,
+        }
+    }
+
+    /// Reports on a render that goes on after so many samples.
+    pub(crate) fn after(self, samples: u64) -> Self {
+        Self {
+            before: samples,
+            samples: AtomicU64::new(samples),
+            ..self
+        }
+    }
+
+    /// Tells that all is done.
+    pub(crate) fn complete(&self) {
+        if let Channel::Lines(format, _) = &self.channel {
+            let pass = self.passes(self.samples.load(Ordering::Relaxed)) as u64;
+            format.write(&State {
+                progress: 1.0,
+                pass,
+                left: Duration::ZERO,
+                ..self.state()
+            });
         }
     }
 
@@ -80,20 +113,24 @@ impl<'a> Reporter<'a> {
         }
     }
 
-    /// How far it is: passes, time, and the part of the budget that is used.
-    fn state(&self) -> (f64, Duration, f64) {
-        let samples = self.samples.load(Ordering::Relaxed);
-        let passes = samples as f64 / self.clock.samples_per_pass.max(1) as f64;
-        let elapsed = self.clock.start.elapsed();
-        (passes, elapsed, self.clock.budget.used(passes, elapsed))
+    fn passes(&self, samples: u64) -> f64 {
+        samples as f64 / self.clock.samples_per_pass.max(1) as f64
     }
 
-    /// `pass 5 of 64`, the running one.
-    fn pass(&self, passes: f64) -> String {
-        let running = passes as u64 + 1;
-        match self.clock.budget.passes {
-            Some(most) => format!("pass {} of {most}", running.min(most)),
-            None => format!("pass {running}"),
+    fn state(&self) -> State {
+        let Clock { budget, start, .. } = self.clock;
+        let now = self.passes(self.samples.load(Ordering::Relaxed));
+        let elapsed = start.elapsed();
+        let progress = budget.used(now, elapsed);
+        let gained = progress - budget.used(self.passes(self.before), Duration::ZERO);
+        let left = elapsed.mul_f64((1.0 - progress) / gained.max(1e-9));
+        let running = now as u64 + 1;
+        State {
+            progress,
+            pass: budget.passes.map_or(running, |most| running.min(most)),
+            passes: budget.passes,
+            elapsed,
+            left: left.min(Duration::from_secs(1 << 30)),
         }
     }
 
@@ -106,15 +143,15 @@ impl<'a> Reporter<'a> {
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => bar.println(text),
-            Channel::Lines(_) => say(text),
+            Channel::Lines(LineFormat::OpenJd, _) => tell_openjd("status", text),
+            Channel::Lines(..) => say(text),
         }
     }
 
     /// Writes a line where one is due.
-    fn tell(&self, last: &mut LastLine) {
-        let (passes, elapsed, used) = self.state();
-        let percent = (used * 100.0) as u32;
-        let gap = last.at.elapsed();
+    fn tell(&self, format: LineFormat, last: &mut LastLine) {
+        let state = self.state();
+        let (percent, gap) = (state.percent(), last.at.elapsed());
         if gap < SHORTEST_GAP || (gap < LONGEST_GAP && percent < last.percent + STEP) {
             return;
         }
@@ -122,14 +159,7 @@ impl<'a> Reporter<'a> {
             at: Instant::now(),
             percent,
         };
-        let left = elapsed
-            .mul_f64((1.0 - used) / used.max(1e-9))
-            .min(Duration::from_secs(1 << 30));
-        let [elapsed, left] = [elapsed, left].map(args::Duration);
-        let pass = self.pass(passes);
-        say(format_args!(
-            "Progress: {percent}% {pass}, {elapsed}, {left} left"
-        ));
+        format.write(&state);
     }
 }
 
@@ -140,17 +170,17 @@ impl Progress for Reporter<'_> {
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
-                let (passes, _, used) = self.state();
-                let position = (used * BAR_LENGTH as f64) as u64;
+                let state = self.state();
+                let position = (state.progress * BAR_LENGTH as f64) as u64;
                 if position != bar.position() {
-                    bar.set_message(self.pass(passes));
+                    bar.set_message(state.pass());
                     bar.set_position(position);
                 }
             }
-            Channel::Lines(last) => {
+            Channel::Lines(format, last) => {
                 // Where another thread is writing, there is nothing to add.
                 if let Ok(mut last) = last.try_lock() {
-                    self.tell(&mut last);
+                    self.tell(*format, &mut last);
                 }
             }
         }
@@ -166,4 +196,148 @@ fn bar() -> ProgressBar {
     }
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
+}
+
+/// How far a render is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct State {
+    /// The part of the budget that is used. Range: `[0, 1]`.
+    progress: f64,
+    /// The running pass, counted from 1.
+    pass: u64,
+    /// None: there is no limit.
+    passes: Option<u64>,
+    elapsed: Duration,
+    left: Duration,
+}
+
+/// The same as JSON.
+#[derive(Serialize)]
+struct Line {
+    progress: f64,
+    pass: u64,
+    passes: Option<u64>,
+    seconds: f64,
+    left: f64,
+}
+
+impl State {
+    /// `pass 5 of 64`, the running one.
+    fn pass(&self) -> String {
+        match self.passes {
+            Some(most) => format!("pass {} of {most}", self.pass),
+            None => format!("pass {}", self.pass),
+        }
+    }
+
+    fn percent(&self) -> u32 {
+        (self.progress * 100.0) as u32
+    }
+
+    fn plain(&self) -> String {
+        let [elapsed, left] = [self.elapsed, self.left].map(args::Duration);
+        let (percent, pass) = (self.percent(), self.pass());
+        format!("Progress: {percent}% {pass}, {elapsed}, {left} left")
+    }
+
+    fn json(&self) -> serde_json::Result<String> {
+        let round = |number: f64| (number * 1e3).round() / 1e3;
+        serde_json::to_string(&Line {
+            progress: round(self.progress),
+            pass: self.pass,
+            passes: self.passes,
+            seconds: round(self.elapsed.as_secs_f64()),
+            left: round(self.left.as_secs_f64()),
+        })
+    }
+}
+
+impl LineFormat {
+    fn write(self, state: &State) {
+        match self {
+            Self::Plain => say(state.plain()),
+            Self::Ndjson => {
+                if let Ok(line) = state.json() {
+                    say(line);
+                }
+            }
+            Self::OpenJd => {
+                tell_openjd("progress", &format!("{:.1}", state.progress * 100.0));
+                tell_openjd("status", &state.pass());
+            }
+        }
+    }
+}
+
+/// Tells a scheduler why the command fails, where it reads Open Job Description.
+pub(crate) fn tell_failure(args: &OutputArgs, failure: &Failure) {
+    if args.progress != Some(Display::Lines(LineFormat::OpenJd)) {
+        return;
+    }
+    let message = failure.as_diagnostic().map(ToString::to_string);
+    let message = message.or_else(|| Some(failure.message()?.0.to_owned()));
+    tell_openjd("fail", &message.unwrap_or_default());
+}
+
+/// Writes a line of Open Job Description. Where nobody listens there is nobody to tell.
+fn tell_openjd(kind: &str, message: &str) {
+    let _ = print(&format!(
+        "openjd_{kind}: {}\n",
+        message.replace(char::is_control, " ")
+    ));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STATE: State = State {
+        progress: 0.45312,
+        pass: 29,
+        passes: Some(64),
+        elapsed: Duration::from_millis(12_345),
+        left: Duration::from_millis(14_899),
+    };
+
+    #[test]
+    fn a_line_is_for_people_or_json() {
+        assert_eq!(
+            STATE.plain(),
+            "Progress: 45% pass 29 of 64, 12.3s, 14.9s left"
+        );
+        let expected = r#"{"progress":0.453,"pass":29,"passes":64,"seconds":12.345,"left":14.899}"#;
+        assert_eq!(STATE.json().unwrap(), expected);
+        let open = State {
+            passes: None,
+            ..STATE
+        };
+        assert_eq!(open.pass(), "pass 29");
+        assert!(open.json().unwrap().contains(r#""passes":null"#));
+    }
+
+    #[test]
+    fn what_was_there_before_took_no_time() {
+        let signals = Signals::watch().unwrap();
+        let budget = Budget {
+            first: 0,
+            passes: Some(10),
+            time: None,
+            noise: None,
+        };
+        let start = Instant::now().checked_sub(Duration::from_secs(10)).unwrap();
+        let clock = Clock {
+            budget,
+            samples_per_pass: 100,
+            start,
+        };
+        let reporter = Reporter::new(Display::Silent, &signals, clock).after(600);
+        reporter.advance(250);
+        let state = reporter.state();
+        assert!(
+            (state.progress - 0.85).abs() < 1e-9 && state.pass == 9,
+            "{state:?}"
+        );
+        // A quarter of all took ten seconds.
+        assert!((state.left.as_secs_f64() - 6.0).abs() < 0.5, "{state:?}");
+    }
 }

@@ -1,17 +1,20 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::RenderArgs;
+use crate::checkpoint::Keeper;
 use crate::console::{Console, Display, json, say};
 use crate::exit::{Exit, Failure};
-use crate::output::{Outputs, write_text};
+use crate::film_header;
+use crate::output::Outputs;
 use crate::progress::{Clock, Reporter};
 use crate::replay;
-use crate::scene_io::{self, LoadedScene};
+use crate::scene_io::{self, LoadedScene, MetadataValue, Stopping};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
-use crate::stats::{Report, Times};
+use crate::stats::{Course, Report};
 use bidir::driver::{Resources, Session, SessionError, Settings};
-use std::path::Path;
+use bidir::film::Film;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Renders a scene, or repeats one sample.
@@ -27,7 +30,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         let session = new_session(args, &loaded, &settings)?;
         return replay::run(args, &loaded.scene, &session, target);
     }
-    let outputs = Outputs::new(&args.output, &args.scene.scene, loaded.output.as_deref())?;
+    let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check()?;
     Job {
         args,
@@ -82,80 +85,215 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn run(&self, load: Duration) -> Result<Exit, Failure> {
-        let budget = Budget::new(&self.args.budget, self.loaded.spp);
+        let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
         let signals = Signals::watch()?;
         let start = Instant::now();
         let mut session = new_session(self.args, self.loaded, self.settings)?;
-        self.render(&mut session, budget, start, &signals);
-        let times = Times {
+        session.start_at(budget.first);
+        let name = self.args.scene.scene.display().to_string();
+        let header = film_header::header(name.clone(), self.loaded, &session);
+        let mut keeper = Keeper::open(&self.args.long, header, &mut session)?;
+        let clock = Clock {
+            budget,
+            samples_per_pass: self.loaded.scene.film().crop.area(),
+            start,
+        };
+        let end = self.render(&mut session, clock, &signals, &mut keeper);
+        let course = Course {
             load,
             render: start.elapsed(),
+            stopping: end.stopping(),
         };
-        let passes = session.film().passes();
-        // A signal that came too late stopped nothing.
-        let stopped = signals.exit().filter(|_| budget.passes != Some(passes));
-        if passes == 0 {
+        if session.film().passes().is_empty() {
             self.console
                 .warning("stopped before the first pass: nothing is written");
-            return Ok(stopped.unwrap_or(Exit::RenderFailed));
+            return Ok(end.exit(&keeper).unwrap_or(Exit::RenderFailed));
         }
-        let scene = self.args.scene.scene.display().to_string();
-        let bvh = self.loaded.scene.bvh();
-        let report = Report::new(scene, &session, self.settings, budget, times, bvh);
+        let kept = keeper.keep(&session, course.stopping);
+        let report = Report::new(name, &session, budget, course);
         self.write(&session, &report)?;
-        self.tell(&report);
-        Ok(stopped.unwrap_or(Exit::Done))
+        kept?;
+        self.tell(&report, &keeper);
+        Ok(end.exit(&keeper).unwrap_or(Exit::Done))
     }
 
     /// Renders pass by pass until the budget is used up or a signal comes.
-    fn render(&self, session: &mut Session<'_>, budget: Budget, start: Instant, signals: &Signals) {
-        let quiet = self.args.output.quiet;
-        let display = if quiet {
-            Display::Silent
-        } else {
-            self.console.display()
-        };
-        let samples_per_pass = self.loaded.scene.film().crop.area();
-        let reporter = Reporter::new(
-            display,
-            signals,
-            Clock {
-                budget,
-                samples_per_pass,
-                start,
-            },
-        );
+    fn render(
+        &self,
+        session: &mut Session<'_>,
+        clock: Clock,
+        signals: &Signals,
+        keeper: &mut Keeper,
+    ) -> End {
+        let budget = clock.budget;
         let first = Instant::now();
-        loop {
-            let passes = session.film().passes();
+        let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
+        let reporter = Reporter::new(self.display(), signals, clock).after(before);
+        let mut rendered = 0;
+        let end = loop {
+            let passes = session.next_pass() - budget.first;
             // A pass is expected to take as long as those before took on average.
-            let expected = first.elapsed().div_f64(passes.max(1) as f64);
-            if signals.exit().is_some() || !budget.allows(passes, start.elapsed(), expected) {
-                break;
+            let expected = first.elapsed().div_f64(f64::from(rendered.max(1u32)));
+            let times = [clock.start.elapsed(), expected];
+            if let ControlFlow::Break(end) = next_pass(budget, passes, times, signals.exit()) {
+                break end;
+            }
+            if budget.looks_at_noise(passes) && is_below(budget.noise, session.film()) {
+                break End::Noise;
             }
             session.step(&reporter);
+            rendered = rendered.saturating_add(1);
+            self.keep_now_and_then(session, signals, keeper);
+        };
+        if !matches!(end, End::Signal(_)) {
+            reporter.complete();
         }
         reporter.finish();
+        end
+    }
+
+    fn display(&self) -> Display {
+        self.console.display(&self.args.output)
+    }
+
+    /// Writes the film file where it is time, and the image too where a signal asks for it. What
+    /// cannot be written now may be later: the render goes on.
+    fn keep_now_and_then(&self, session: &Session<'_>, signals: &Signals, keeper: &mut Keeper) {
+        let is_asked = signals.take_write_request();
+        let kept = if is_asked || keeper.is_due() {
+            keeper.keep(session, Stopping::Time)
+        } else {
+            Ok(())
+        };
+        let written = if is_asked {
+            self.write_image(session, &[])
+        } else {
+            Ok(())
+        };
+        for failure in [kept, written].into_iter().filter_map(Result::err) {
+            self.console.failure(&failure);
+        }
+    }
+
+    fn write_image(
+        &self,
+        session: &Session<'_>,
+        metadata: &[(String, MetadataValue)],
+    ) -> Result<(), Failure> {
+        let film = session.film();
+        self.outputs
+            .write_image(film.settings(), &film.develop(), metadata)
     }
 
     fn write(&self, session: &Session<'_>, report: &Report) -> Result<(), Failure> {
-        let film = session.film();
-        self.outputs
-            .write_image(film.settings(), &film.develop(), &report.metadata())?;
+        self.write_image(session, &report.metadata())?;
         let Some(path) = &self.outputs.stats else {
             return Ok(());
         };
-        write_text(Path::new(path), &(json(report)? + "\n"))
+        scene_io::write_text(path, &(json(report)? + "\n"))
     }
 
     /// Tells what was done.
-    fn tell(&self, report: &Report) {
+    fn tell(&self, report: &Report, keeper: &Keeper) {
         if let Some(warning) = report.warning() {
             self.console.warning(warning);
         }
         if !self.args.output.quiet {
-            let files = self.outputs.names();
+            let film = keeper.path().map(|path| path.display().to_string());
+            let names: Vec<_> = self.outputs.names().chain(film).collect();
+            let files = if names.is_empty() {
+                "nothing".to_owned()
+            } else {
+                names.join(", ")
+            };
             say(format_args!("{}; wrote {files}", report.summary()));
         }
+    }
+}
+
+/// Why a render ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    /// All passes are done.
+    Passes,
+    /// The time is used up.
+    Time,
+    /// The picture is as good as it has to be.
+    Noise,
+    /// A signal asked for it, with this exit.
+    Signal(Exit),
+}
+
+impl End {
+    fn stopping(self) -> Stopping {
+        match self {
+            Self::Passes => Stopping::Fixed,
+            Self::Noise => Stopping::Noise,
+            Self::Time | Self::Signal(_) => Stopping::Time,
+        }
+    }
+
+    /// How the command ends. None: as it should.
+    fn exit(self, keeper: &Keeper) -> Option<Exit> {
+        match self {
+            Self::Signal(_) if keeper.path().is_some() => Some(Exit::Checkpoint),
+            Self::Signal(exit) => Some(exit),
+            _ => None,
+        }
+    }
+}
+
+/// Whether another pass is begun, after so many of them, the time so far, the time that a pass is
+/// expected to take, and what a signal asks for. A signal that comes too late stops nothing.
+fn next_pass(
+    budget: Budget,
+    passes: u64,
+    [elapsed, expected]: [Duration; 2],
+    signal: Option<Exit>,
+) -> ControlFlow<End> {
+    if budget.passes.is_some_and(|most| passes >= most) {
+        return ControlFlow::Break(End::Passes);
+    }
+    if !budget.allows(passes, elapsed, expected) {
+        return ControlFlow::Break(End::Time);
+    }
+    match signal {
+        Some(exit) => ControlFlow::Break(End::Signal(exit)),
+        None => ControlFlow::Continue(()),
+    }
+}
+
+/// Whether the image's relative error is at most `noise`.
+fn is_below(noise: Option<f64>, film: &Film) -> bool {
+    noise.is_some_and(|most| film.develop().relative_error() <= most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(passes: u64, seconds: [u64; 2], end: End) {
+        let budget = Budget {
+            first: 0,
+            passes: Some(9),
+            time: Some(Duration::from_secs(10)),
+            noise: None,
+        };
+        let times = seconds.map(Duration::from_secs);
+        let signal = Some(Exit::Interrupted);
+        assert_eq!(
+            next_pass(budget, passes, times, signal),
+            ControlFlow::Break(end)
+        );
+    }
+
+    #[test]
+    fn a_signal_stops_what_is_not_complete() {
+        check(0, [0, 0], End::Signal(Exit::Interrupted));
+        check(1, [4, 4], End::Signal(Exit::Interrupted));
+        // Another pass would not have fitted, or is not wanted.
+        check(2, [8, 4], End::Time);
+        check(9, [1, 1], End::Passes);
     }
 }

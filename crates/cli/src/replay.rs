@@ -1,32 +1,44 @@
 //! `bidir render --replay`: one sample again, told step by step.
 
+mod text;
+
 use crate::args::{RenderArgs, ReplayTarget};
 use crate::console::{print, print_json};
 use crate::exit::{Exit, Failure};
-use bidir::driver::{Replay, Session};
-use bidir::integrator::Workspace;
+use crate::settings::SettingsText;
+use crate::stats::TrainingReport;
+use bidir::driver::{Replay, ReplayedTerm, Session};
+use bidir::integrator::Fate;
 use bidir::path::{Subpath, Vertex, VertexKind};
 use bidir::scene::Scene;
-use bidir::select::Candidate;
-use bidir::spectrum::{Rgb, Spectrum, Wavelengths};
+use bidir::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
 use serde::Serialize;
-use std::fmt;
 
-/// A sample, told.
+/// A sample, told. Numbers that are not finite are null in JSON.
 #[derive(Debug, Serialize)]
 struct SampleReport {
     pixel: [u32; 2],
     pass: u64,
+    settings: SettingsText,
+    training: Option<TrainingReport>,
     camera: SubpathReport,
     light: SubpathReport,
+    /// s = 0: lights that the camera subpath came to.
+    hits: Vec<TermReport>,
+    /// s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
     candidates: Vec<CandidateReport>,
-    /// What was added to the light image.
-    splats: Vec<SplatReport>,
+    /// The connections that are.
+    zeros: Vec<String>,
+    /// t = 1: splats.
+    light_image: Vec<SplatReport>,
+    /// What splats are divided by.
+    light_paths: u64,
     /// What was added to the pixel.
     value: Rgb,
-    /// The part of it that came from candidates; the rest are hits of lights, and for integrators
-    /// without candidates everything.
+    value_of_hits: Rgb,
     value_of_candidates: Rgb,
+    /// What candidates would have added, had all been traced: what a selection is to expect.
+    value_of_all_candidates: Rgb,
     rays: u64,
     dropped: u64,
 }
@@ -52,23 +64,44 @@ struct VertexReport {
     pdf_rev: f32,
 }
 
+/// What all strategies have in common.
 #[derive(Debug, Serialize)]
-struct CandidateReport {
+struct TermReport {
     s: u16,
     t: u16,
-    value: Rgb,
-    score: f32,
-    is_chosen: bool,
-    /// The probability of being chosen, where it was.
-    prob: Option<f64>,
-    is_visible: bool,
+    /// C, unweighted, as if nothing were in the way.
     contribution: Rgb,
+    /// w.
+    weight: f32,
+    /// w C.
+    value: Rgb,
+    is_dropped: bool,
+    /// What it added to a pixel of an image of one pass.
+    added: Rgb,
+}
+
+#[derive(Debug, Serialize)]
+struct CandidateReport {
+    #[serde(flatten)]
+    term: TermReport,
+    /// What candidates are compared by; null where none are chosen.
+    score: Option<f32>,
+    /// The probability of being chosen.
+    prob: f64,
+    is_chosen: bool,
+    /// Traced or not.
+    is_visible: bool,
 }
 
 #[derive(Debug, Serialize)]
 struct SplatReport {
+    #[serde(flatten)]
+    term: TermReport,
+    is_visible: bool,
+    /// Where it lands, or would.
     raster: [f32; 2],
-    value: Rgb,
+    /// The pixel that the filter drew; null where it is not rendered.
+    landed: Option<[u32; 2]>,
 }
 
 /// Repeats a sample and prints what it did.
@@ -86,7 +119,7 @@ pub(crate) fn run(
             format!("the render has the pixels from {x0},{y0} up to, not including, {x1},{y1}");
         Failure::usage(format!("the pixel {x},{y} is not rendered")).with_hint(hint)
     })?;
-    let report = SampleReport::new(scene, target, &replay);
+    let report = SampleReport::new(session, target, &replay);
     if args.json {
         print_json(&report)
     } else {
@@ -94,46 +127,75 @@ pub(crate) fn run(
     }
 }
 
+/// How light is told: as linear Rec. 709.
+struct Color {
+    model: ColorModel,
+    wavelengths: Wavelengths,
+}
+
+impl Color {
+    fn rgb(&self, value: Spectrum) -> Rgb {
+        self.model.to_rgb(value, &self.wavelengths)
+    }
+}
+
 impl SampleReport {
-    fn new(scene: &Scene, target: ReplayTarget, replay: &Replay) -> Self {
-        let workspace = &replay.workspace;
-        let rgb = |value| to_rgb(scene, value);
-        let candidates = workspace.candidates.iter().enumerate();
-        let candidates: Vec<_> = candidates
-            .map(|(i, c)| CandidateReport::new(scene, workspace, i, c))
-            .collect();
-        let sum = |channel: usize| candidates.iter().map(|c| c.contribution[channel]).sum();
-        let splats = workspace.splats.iter();
+    fn new(session: &Session<'_>, target: ReplayTarget, replay: &Replay) -> Self {
+        let (scene, workspace) = (session.scene(), &replay.workspace);
+        let color = Color {
+            model: scene.color(),
+            wavelengths: replay.wavelengths,
+        };
+        let (mut hits, mut candidates, mut light_image) = (Vec::new(), Vec::new(), Vec::new());
+        for term in &replay.terms {
+            match (term.landing, term.term.strategy.s) {
+                (Some(landing), _) => light_image.push(SplatReport {
+                    term: TermReport::new(&color, term),
+                    is_visible: term.is_visible,
+                    raster: landing.raster,
+                    landed: landing.pixel,
+                }),
+                (None, 0) => hits.push(TermReport::new(&color, term)),
+                (None, _) => candidates.push(CandidateReport::new(&color, term)),
+            }
+        }
+        let all = candidates
+            .iter()
+            .filter(|c| c.is_visible && !c.term.is_dropped);
         Self {
             pixel: target.pixel,
             pass: target.pass,
-            camera: SubpathReport::new(scene, &workspace.camera),
-            light: SubpathReport::new(scene, &workspace.light),
-            value_of_candidates: std::array::from_fn(sum),
+            settings: SettingsText::from(session.settings()),
+            training: TrainingReport::new(session),
+            camera: SubpathReport::new(&color, &workspace.camera),
+            light: SubpathReport::new(&color, &workspace.light),
+            value: color.rgb(workspace.value),
+            value_of_hits: sum(hits.iter().map(|hit| hit.added)),
+            value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
+            value_of_all_candidates: sum(all.map(|candidate| candidate.term.value)),
+            hits,
             candidates,
-            splats: splats
-                .map(|splat| SplatReport {
-                    raster: splat.raster.to_array(),
-                    value: rgb(splat.value),
-                })
-                .collect(),
-            value: rgb(workspace.value),
+            zeros: replay.zeros.iter().map(ToString::to_string).collect(),
+            light_image,
+            light_paths: scene.film().light_paths(),
             rays: workspace.stats.rays.total(),
             dropped: workspace.stats.dropped,
         }
     }
 }
 
-fn to_rgb(scene: &Scene, value: Spectrum) -> Rgb {
-    scene.color().to_rgb(value, &Wavelengths::default())
+fn sum(values: impl Iterator<Item = Rgb>) -> Rgb {
+    values.fold([0.0; 3], |sum, value| {
+        std::array::from_fn(|channel| sum[channel] + value[channel])
+    })
 }
 
 impl SubpathReport {
-    fn new(scene: &Scene, subpath: &Subpath) -> Self {
+    fn new(color: &Color, subpath: &Subpath) -> Self {
         let vertices = subpath
             .vertices
             .iter()
-            .map(|vertex| VertexReport::new(scene, vertex));
+            .map(|vertex| VertexReport::new(color, vertex));
         Self {
             vertices: vertices.collect(),
             escape: subpath.escape.map(|escape| escape.direction.to_array()),
@@ -142,7 +204,7 @@ impl SubpathReport {
 }
 
 impl VertexReport {
-    fn new(scene: &Scene, vertex: &Vertex) -> Self {
+    fn new(color: &Color, vertex: &Vertex) -> Self {
         let kind = match vertex.kind {
             VertexKind::Camera => "camera",
             VertexKind::Light => "light",
@@ -155,143 +217,37 @@ impl VertexReport {
             normal: vertex.n_g.to_array(),
             is_delta: vertex.is_delta(),
             light: vertex.light,
-            beta: to_rgb(scene, vertex.beta),
+            beta: color.rgb(vertex.beta),
             pdf_fwd: vertex.pdf_fwd,
             pdf_rev: vertex.pdf_rev,
         }
     }
 }
 
-impl CandidateReport {
-    fn new(scene: &Scene, workspace: &Workspace, i: usize, candidate: &Candidate) -> Self {
-        let (s, t) = (candidate.strategy.s, candidate.strategy.t);
-        let (z, y) = workspace.ends(candidate.strategy);
-        let is_visible = !scene.occluded(&z.segment_end(), &y.segment_end());
-        let chosen = workspace
-            .chosen
-            .iter()
-            .find(|chosen| chosen.candidate as usize == i);
-        let contribution = match chosen {
-            Some(chosen) if is_visible => candidate.contribution(chosen.prob),
-            _ => Spectrum::ZERO,
-        };
+impl TermReport {
+    fn new(color: &Color, replayed: &ReplayedTerm) -> Self {
+        let term = &replayed.term;
         Self {
-            s,
-            t,
-            value: to_rgb(scene, candidate.value),
-            score: candidate.score,
-            is_chosen: chosen.is_some(),
-            prob: chosen.map(|chosen| chosen.prob),
-            is_visible,
-            contribution: to_rgb(scene, contribution),
+            s: term.strategy.s,
+            t: term.strategy.t,
+            contribution: color.rgb(term.contribution),
+            weight: term.weight,
+            value: color.rgb(term.value()),
+            is_dropped: replayed.fate == Fate::Dropped,
+            added: color.rgb(replayed.added),
         }
     }
 }
 
-/// A point or direction, in columns.
-struct Point([f32; 3]);
-
-impl fmt::Display for Point {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.0;
-        write!(f, "({x:>9.4} {y:>9.4} {z:>9.4})")
-    }
-}
-
-/// Numbers of any size, in columns.
-struct Triple([f32; 3]);
-
-impl fmt::Display for Triple {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [a, b, c] = self.0;
-        write!(f, "({a:>10.4e} {b:>10.4e} {c:>10.4e})")
-    }
-}
-
-impl fmt::Display for SampleReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y] = self.pixel;
-        writeln!(f, "pixel {x},{y} pass {}: {} rays", self.pass, self.rays)?;
-        write!(f, "\ncamera subpath, {}", self.camera)?;
-        write!(f, "\nlight subpath, {}", self.light)?;
-        writeln!(f, "\n{} candidates", self.candidates.len())?;
-        for (i, candidate) in self.candidates.iter().enumerate() {
-            writeln!(f, "  {i:>3}  {candidate}")?;
+impl CandidateReport {
+    fn new(color: &Color, replayed: &ReplayedTerm) -> Self {
+        Self {
+            term: TermReport::new(color, replayed),
+            score: replayed.selection.map(|selection| selection.score),
+            // Where nothing is chosen, everything is traced.
+            prob: replayed.selection.map_or(1.0, |selection| selection.prob),
+            is_chosen: replayed.is_chosen(),
+            is_visible: replayed.is_visible,
         }
-        writeln!(f, "\n{} splats to the light image", self.splats.len())?;
-        for splat in &self.splats {
-            let [x, y] = splat.raster;
-            writeln!(f, "  at {x:.3},{y:.3}  value {}", Triple(splat.value))?;
-        }
-        writeln!(f, "\nadded to the pixel  {}", Triple(self.value))?;
-        writeln!(
-            f,
-            "  by candidates     {}",
-            Triple(self.value_of_candidates)
-        )?;
-        if self.dropped > 0 {
-            writeln!(f, "dropped             {} contributions", self.dropped)?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for SubpathReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} vertices", self.vertices.len())?;
-        for (i, vertex) in self.vertices.iter().enumerate() {
-            writeln!(f, "  {i:>3}  {vertex}")?;
-        }
-        match self.escape {
-            Some(direction) => writeln!(f, "       escapes along {}", Point(direction)),
-            None => Ok(()),
-        }
-    }
-}
-
-impl fmt::Display for VertexReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let place = if self.is_infinite { "towards" } else { "at" };
-        write!(f, "{:<7} {place} {}", self.kind, Point(self.position))?;
-        write!(f, "  beta {}", Triple(self.beta))?;
-        write!(
-            f,
-            "  pdf_fwd {:.4e}  pdf_rev {:.4e}",
-            self.pdf_fwd, self.pdf_rev
-        )?;
-        if let Some(light) = self.light {
-            write!(f, "  light {light}")?;
-        }
-        if self.is_delta {
-            write!(f, "  delta")
-        } else {
-            Ok(())
-        }
-    }
-}
-
-impl fmt::Display for CandidateReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "s={} t={}", self.s, self.t)?;
-        write!(
-            f,
-            "  value {}  score {:.4e}",
-            Triple(self.value),
-            self.score
-        )?;
-        match self.prob {
-            Some(prob) => write!(f, "  chosen with probability {prob:.4}")?,
-            None => write!(f, "  not chosen")?,
-        }
-        write!(
-            f,
-            "  {}",
-            if self.is_visible {
-                "visible"
-            } else {
-                "blocked"
-            }
-        )?;
-        write!(f, "  contribution {}", Triple(self.contribution))
     }
 }

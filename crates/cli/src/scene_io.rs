@@ -5,13 +5,15 @@ use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::metrics::Pixels;
 use bidir::driver::Settings;
-use bidir::film::{FilmSettings, Picture};
+use bidir::film::{Film, FilmSettings, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
-use formats::image::{ExrImage, ExrLayer};
+use formats::image::{ExrImage, ExrLayer, Format};
 use formats::pbrt::{Crop, LoadOptions, Summary};
 use std::path::{Path, PathBuf};
 
+pub(crate) use formats::file::folder_of;
+pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping};
 pub(crate) use formats::image::MetadataValue;
 
 /// A scene that was read, with what else its file says.
@@ -28,6 +30,8 @@ pub(crate) struct LoadedScene {
     pub(crate) warnings: Vec<String>,
     /// What the scene is made of.
     pub(crate) summary: Summary,
+    /// A hash of all that was read.
+    pub(crate) digest: String,
 }
 
 /// Reads a scene, with the film that `film` asks for instead of the file's.
@@ -56,6 +60,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         output: loaded.settings.output.map(PathBuf::from),
         warnings,
         summary: loaded.summary,
+        digest: loaded.digest.to_string(),
     })
 }
 
@@ -101,9 +106,11 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
     (film.crop != asked).then_some(message)
 }
 
-/// A scene file that cannot be opened is no fault of the scene; what it names and is not there is.
+/// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no
+/// fault of the scene, but what it names and is not there is.
 fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
+        ErrorKind::Options => Exit::Usage,
         ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,
         _ => Exit::Scene,
     }
@@ -152,4 +159,51 @@ pub(crate) fn write_png(path: &Path, picture: &Picture) -> Result<(), Failure> {
     let size = [picture.width as u32, picture.height as u32];
     formats::image::write_png(path, size, &picture.pixels)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Writes what the screen shows as PNG. Range: `[0, 1]`, linear.
+pub(crate) fn write_screen(path: &Path, pixels: &Pixels) -> Result<(), Failure> {
+    let size = pixels.size.map(|side| side as u32);
+    formats::image::write_png(path, size, &pixels.data)
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Writes a picture to an image of the kind that its name says.
+pub(crate) fn write_picture(
+    path: &Path,
+    film: &FilmSettings,
+    picture: &Picture,
+    metadata: &[(String, MetadataValue)],
+) -> Result<(), Failure> {
+    match Format::of(path) {
+        Some(Format::Exr) => write_exr(path, film, picture, metadata),
+        Some(Format::Png) => write_png(path, picture),
+        _ => {
+            let message = format!("{}: not the name of an image", path.display());
+            Err(Failure::usage(message).with_hint("end it with .exr or .png"))
+        }
+    }
+}
+
+/// Reads a film file.
+pub(crate) fn read_film(path: &Path) -> Result<FilmFile, Failure> {
+    formats::film::read(path).map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+}
+
+/// Writes a film file.
+pub(crate) fn write_film(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
+    formats::film::write(path, header, film)
+        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+}
+
+/// Replaces a file by a text.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
+    formats::file::replace(path, text.as_bytes())
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Fails where a file could not be written.
+pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
+    formats::file::check_replaceable(path)
+        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
 }

@@ -1,13 +1,15 @@
 //! From flags, environment and scene to what is rendered. `clap` puts flags before the environment;
 //! here both come before the scene.
 
-use crate::args::{BudgetArgs, EstimatorArgs};
+use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part};
 use crate::console::Console;
+use crate::exit::Failure;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
+use std::ops::Range;
 use std::time::Duration;
 
 /// The settings of a render; `scene` holds what the scene file says, over the defaults.
@@ -30,7 +32,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     settings
 }
 
-/// Tells which flags have no influence on this integrator. Returns how many there are.
+/// Tells which flags and variables have no influence on this integrator. Returns how many there are.
 pub(crate) fn warn_unused(args: &EstimatorArgs, settings: &Settings, console: Console) -> usize {
     if settings.integrator == IntegratorKind::Bdpt {
         return 0;
@@ -48,8 +50,9 @@ pub(crate) fn warn_unused(args: &EstimatorArgs, settings: &Settings, console: Co
     let unused = given.iter().filter(|(_, is_given)| *is_given);
     unused
         .map(|(flag, _)| {
+            let name = args.sources.name(flag);
             console.warning(format_args!(
-                "{flag} has no influence on the integrator `{integrator}`"
+                "{name} has no influence on the integrator `{integrator}`"
             ));
         })
         .count()
@@ -58,22 +61,35 @@ pub(crate) fn warn_unused(args: &EstimatorArgs, settings: &Settings, console: Co
 /// When a render is enough: what is reached first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Budget {
-    /// The most passes.
+    /// The first pass.
+    pub(crate) first: u64,
+    /// The most passes from there on.
     pub(crate) passes: Option<u64>,
     /// The most time.
     pub(crate) time: Option<Duration>,
+    /// The relative error that is enough.
+    pub(crate) noise: Option<f64>,
 }
 
 impl Budget {
     /// The budget of a render; `scene` is the number of samples that the scene file says.
-    pub(crate) fn new(args: &BudgetArgs, scene: u64) -> Self {
-        let time = args.time.map(|time| time.0);
-        let passes = match (args.spp, time) {
-            (Some(spp), _) => Some(spp),
-            (None, Some(_)) => None,
-            (None, None) => Some(scene),
+    ///
+    /// Errors: a share that has no passes.
+    pub(crate) fn new(args: &BudgetArgs, long: &LongArgs, scene: u64) -> Result<Self, Failure> {
+        let (time, noise) = (args.time.map(|time| time.0), args.noise);
+        let is_open = time.is_some() || noise.is_some();
+        let all = args.spp.or((!is_open).then_some(scene));
+        let share = match (&long.passes, long.part) {
+            (Some(range), _) => Some(range.0.clone()),
+            (None, Some(part)) => Some(share(part, all.unwrap_or(scene))?),
+            (None, None) => None,
         };
-        Self { passes, time }
+        Ok(Self {
+            first: share.as_ref().map_or(0, |range| range.start),
+            passes: share.map_or(all, |range| Some(range.end - range.start)),
+            time,
+            noise,
+        })
     }
 
     /// True where another pass of about the time `pass` still fits.
@@ -82,12 +98,29 @@ impl Budget {
         in_time && self.passes.is_none_or(|most| passes < most)
     }
 
+    /// True after those numbers of passes at which noise is looked at: a function of the number
+    /// alone, so that a render that was interrupted ends where it would have ended.
+    pub(crate) fn looks_at_noise(&self, passes: u64) -> bool {
+        self.noise.is_some() && passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
+    }
+
     /// How much of the budget is used up, given passes as a fraction. Range: `[0, 1]`.
     pub(crate) fn used(&self, passes: f64, elapsed: Duration) -> f64 {
         let of_passes = self.passes.map_or(0.0, |most| passes / most as f64);
         let of_time = self.time.map_or(0.0, |most| elapsed.div_duration_f64(most));
         of_passes.max(of_time).clamp(0.0, 1.0)
     }
+}
+
+/// The passes of a share.
+fn share(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
+    let range = part.range(passes);
+    if !range.is_empty() {
+        return Ok(range);
+    }
+    let Part { index, of } = part;
+    let message = format!("share {index} of {of} has no passes: there are {passes} in all");
+    Err(Failure::usage(message).with_hint("make fewer shares, or more passes with --spp"))
 }
 
 /// The name of a value in a table of the library.
@@ -139,12 +172,26 @@ mod tests {
 
     const SECOND: Duration = Duration::from_secs(1);
 
+    fn budget(passes: u64) -> Budget {
+        Budget {
+            first: 0,
+            passes: Some(passes),
+            time: Some(SECOND * 10),
+            noise: Some(0.01),
+        }
+    }
+
+    #[test]
+    fn noise_is_looked_at_after_every_eighth_more() {
+        let looked: Vec<_> = (0..40)
+            .filter(|passes| budget(99).looks_at_noise(*passes))
+            .collect();
+        assert_eq!(looked, [16, 18, 20, 22, 24, 26, 28, 30, 32, 36]);
+    }
+
     #[test]
     fn a_pass_that_would_overrun_is_not_begun() {
-        let budget = Budget {
-            passes: Some(9),
-            time: Some(SECOND * 10),
-        };
+        let budget = budget(9);
         assert!(budget.allows(5, SECOND * 7, SECOND * 3));
         assert!(!budget.allows(5, SECOND * 8, SECOND * 3));
         assert!(!budget.allows(9, SECOND, SECOND));
@@ -156,10 +203,7 @@ mod tests {
 
     #[test]
     fn what_is_reached_first_counts() {
-        let budget = Budget {
-            passes: Some(10),
-            time: Some(SECOND * 10),
-        };
+        let budget = budget(10);
         assert!((budget.used(5.0, SECOND) - 0.5).abs() < 1e-9);
         assert!((budget.used(1.0, SECOND * 8) - 0.8).abs() < 1e-9);
         assert!((budget.used(1.0, SECOND * 80) - 1.0).abs() < 1e-9);

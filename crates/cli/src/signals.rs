@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: the first asks to stop, the second stops.
+//! Ctrl-C and SIGTERM: the first asks to stop, the second stops. SIGUSR1 asks to write.
 
 use crate::exit::{Exit, Failure};
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -13,6 +13,7 @@ const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::
 #[derive(Debug)]
 pub(crate) struct Signals {
     received: Arc<AtomicUsize>,
+    write: Arc<AtomicBool>,
 }
 
 impl Signals {
@@ -25,12 +26,17 @@ impl Signals {
             flag::register_conditional_shutdown(signal, exit.code().into(), Arc::clone(&again))
                 .and_then(|_| flag::register(signal, Arc::clone(&again)))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&received), signal as usize))
-                .map_err(|error| {
-                    let message = format!("signals cannot be watched: {error}");
-                    Failure::new(Exit::RenderFailed, message)
-                })?;
+                .map_err(unwatched)?;
         }
-        Ok(Self { received })
+        let write = Arc::new(AtomicBool::new(false));
+        #[cfg(unix)]
+        flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&write)).map_err(unwatched)?;
+        Ok(Self { received, write })
+    }
+
+    /// True where a signal asked to write since this was last asked.
+    pub(crate) fn take_write_request(&self) -> bool {
+        self.write.swap(false, Ordering::Relaxed)
     }
 
     /// How the command ends because of a signal. None: there was none.
@@ -39,4 +45,10 @@ impl Signals {
         let of = |&&(signal, _): &&(i32, Exit)| signal as usize == received;
         SIGNALS.iter().find(of).map(|&(_, exit)| exit)
     }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "`map_err` gives the value")]
+fn unwatched(error: std::io::Error) -> Failure {
+    let message = format!("signals cannot be watched: {error}");
+    Failure::new(Exit::RenderFailed, message)
 }

@@ -1,25 +1,32 @@
 //! What a render counted and measured: as JSON, as attributes of the image, and as a line to read.
 
+mod parts;
+
+pub(crate) use parts::TrainingReport;
+
 use crate::args;
-use crate::scene_io::MetadataValue;
+use crate::scene_io::{MetadataValue, Stopping};
 use crate::settings::{Budget, SettingsText};
-use bidir::driver::{Session, Settings};
+use bidir::driver::Session;
 use bidir::film::Film;
-use bidir::stats::{Dropped, RayCounts, Stats};
+use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StrategyReport};
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::time::Duration;
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Clock readings of a render.
+/// How a render went.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Times {
+pub(crate) struct Course {
     /// Reading and building the scene.
     pub(crate) load: Duration,
     /// Training and rendering.
     pub(crate) render: Duration,
+    /// How the number of passes was decided.
+    pub(crate) stopping: Stopping,
 }
 
 /// Everything that is told about a render.
@@ -35,6 +42,9 @@ pub(crate) struct Report {
     threads: usize,
     isa: String,
     spp: u64,
+    /// The passes of the film, those of earlier runs included.
+    passes: String,
+    stopping: &'static str,
     seconds: f64,
     load_seconds: f64,
     samples: u64,
@@ -44,6 +54,9 @@ pub(crate) struct Report {
     connection_blocked: u64,
     light_image_blocked: u64,
     candidates: u64,
+    strategies: Vec<StrategyReport>,
+    /// Of paths that are too long to be told apart.
+    longer_paths: CountsReport,
     training: Option<TrainingReport>,
     dropped: u64,
     dropped_list: Vec<DroppedReport>,
@@ -51,35 +64,17 @@ pub(crate) struct Report {
     bvh_bytes: usize,
 }
 
-#[derive(Clone, Copy, Debug, Serialize)]
-struct BudgetReport {
-    spp: Option<u64>,
-    seconds: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Serialize)]
-struct RayReport {
-    camera: u64,
-    light: u64,
-    connection: u64,
-    light_image: u64,
-    /// The sum of those above.
-    total: u64,
-    /// Not in the sum.
-    training: u64,
-}
-
-#[derive(Clone, Copy, Debug, Serialize)]
-struct TrainingReport {
-    samples: u64,
-    mean_luminance: f32,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct DroppedReport {
-    pass: u64,
-    pixel: [u32; 2],
-    strategy: String,
+/// What film files keep of what was counted: numbers that add up when films are merged.
+pub(crate) fn counts(session: &Session<'_>) -> Value {
+    let stats = session.stats();
+    json!({
+        "samples": stats.samples,
+        "rays": RayReport::new(stats, session.training()),
+        "connections_blocked": stats.connections_blocked,
+        "light_image_blocked": stats.light_image_blocked,
+        "candidates": stats.candidates,
+        "dropped": stats.dropped,
+    })
 }
 
 impl Report {
@@ -87,48 +82,37 @@ impl Report {
     pub(crate) fn new(
         scene: String,
         session: &Session<'_>,
-        settings: &Settings,
         budget: Budget,
-        times: Times,
-        bvh: &accel::Bvh,
+        course: Course,
     ) -> Self {
         let (stats, film) = (session.stats(), session.film().settings());
-        let seconds = times.render.as_secs_f64();
-        let training = session.training();
+        let (bvh, training) = (session.scene().bvh(), session.training());
+        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+        let seconds = course.render.as_secs_f64();
         Self {
             version: VERSION,
             scene,
             resolution: film.resolution,
-            crop: [
-                film.crop.min[0],
-                film.crop.min[1],
-                film.crop.max[0],
-                film.crop.max[1],
-            ],
-            settings: SettingsText::from(settings),
-            budget: BudgetReport {
-                spp: budget.passes,
-                seconds: budget.time.map(|time| time.as_secs_f64()),
-            },
+            crop: [left, top, right, bottom],
+            settings: SettingsText::from(session.settings()),
+            budget: BudgetReport::from(budget),
             threads: session.threads(),
             isa: bvh.isa().to_string(),
-            spp: session.film().passes(),
+            spp: session.film().passes().len(),
+            passes: session.film().passes().to_string(),
+            stopping: course.stopping.name(),
             seconds,
-            load_seconds: times.load.as_secs_f64(),
+            load_seconds: course.load.as_secs_f64(),
             samples: stats.samples,
             samples_per_second: stats.samples as f64 / seconds,
-            rays: RayReport::new(
-                stats.rays,
-                training.map_or(0, |training| training.rays.total()),
-            ),
-            connection_rays_per_sample: per_sample(stats.rays.connection, stats),
+            rays: RayReport::new(stats, training),
+            connection_rays_per_sample: per_sample(stats.rays.connection, stats.samples),
             connection_blocked: stats.connections_blocked,
             light_image_blocked: stats.light_image_blocked,
             candidates: stats.candidates,
-            training: training.map(|training| TrainingReport {
-                samples: training.samples,
-                mean_luminance: training.mean_luminance,
-            }),
+            strategies: stats.strategies.rows().map(StrategyReport::from).collect(),
+            longer_paths: CountsReport::from(stats.strategies.longer()),
+            training: TrainingReport::new(session),
             dropped: stats.dropped,
             dropped_list: stats.dropped_list.iter().map(DroppedReport::from).collect(),
             film_bytes: film.crop.area() * Film::BYTES_PER_PIXEL,
@@ -157,9 +141,10 @@ impl Report {
             }),
             ("sampler", settings.sampler.to_owned()),
             ("seed", settings.seed.to_string()),
-            ("passes", self.spp.to_string()),
-            ("rays", self.rays.total.to_string()),
-            ("rays.connection", self.rays.connection.to_string()),
+            ("passes", self.passes.clone()),
+            ("stopping", self.stopping.to_owned()),
+            ("rays", self.rays.of_image.total.to_string()),
+            ("rays.connection", self.rays.of_image.connection.to_string()),
             ("dropped", self.dropped.to_string()),
         ];
         let pbrt = [
@@ -178,24 +163,22 @@ impl Report {
 
     /// A line to read at the end.
     pub(crate) fn summary(&self) -> String {
-        let ray = |count: u64| count as f64 / self.samples.max(1) as f64;
-        let RayReport {
-            camera,
-            light,
-            connection,
-            light_image,
-            ..
-        } = self.rays;
+        let ray = |count| per_sample(count, self.samples);
+        let rays = &self.rays.of_image;
+        let training = match self.rays.training {
+            0 => String::new(),
+            rays => format!("; {} rays for training", short(rays as f64)),
+        };
         format!(
             "{} spp in {}, {} samples/s; rays per sample: {:.2} camera, {:.2} light, \
-             {:.2} connection, {:.2} light image",
+             {:.2} connection, {:.2} light image{training}",
             self.spp,
             args::Duration(Duration::from_secs_f64(self.seconds)),
             short(self.samples_per_second),
-            ray(camera),
-            ray(light),
-            ray(connection),
-            ray(light_image),
+            ray(rays.camera),
+            ray(rays.light),
+            ray(rays.connection),
+            ray(rays.light_image),
         )
     }
 
@@ -220,8 +203,8 @@ fn file_name(path: &str) -> String {
     )
 }
 
-fn per_sample(count: u64, stats: &Stats) -> f64 {
-    count as f64 / stats.samples.max(1) as f64
+fn per_sample(count: u64, samples: u64) -> f64 {
+    count as f64 / samples.max(1) as f64
 }
 
 /// Three digits with a letter for thousands, millions or billions.
@@ -240,32 +223,10 @@ fn short(number: f64) -> String {
     format!("{scaled:.digits$}{letter}")
 }
 
-impl RayReport {
-    fn new(rays: RayCounts, training: u64) -> Self {
-        Self {
-            camera: rays.camera,
-            light: rays.light,
-            connection: rays.connection,
-            light_image: rays.light_image,
-            total: rays.total(),
-            training,
-        }
-    }
-}
-
-impl From<&Dropped> for DroppedReport {
-    fn from(dropped: &Dropped) -> Self {
-        Self {
-            pass: dropped.pass,
-            pixel: dropped.pixel,
-            strategy: dropped.strategy.to_string(),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bidir::stats::RayCounts;
 
     #[test]
     fn numbers_are_written_shortly() {
@@ -273,5 +234,17 @@ mod tests {
         assert_eq!(short(1234.0), "1.23 k");
         assert_eq!(short(123_456_789.0), "123 M");
         assert_eq!(short(0.0), "0.00");
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_null() {
+        let report = TrainingReport {
+            samples: 1,
+            mean_luminance: f32::NAN,
+            threshold: Some(f32::INFINITY),
+            rays: RayCounts::default().into(),
+        };
+        let json = serde_json::to_value(report).unwrap();
+        assert!(json["mean_luminance"].is_null() && json["threshold"].is_null());
     }
 }

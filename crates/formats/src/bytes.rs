@@ -1,9 +1,9 @@
-//! Files as bytes: unpacked on the way in, replaced as a whole on the way out.
+//! Files as bytes, unpacked.
 
 use crate::error::{Error, ErrorKind, Result};
 use flate2::bufread::MultiGzDecoder;
 use std::fs::File;
-use std::io::{BufReader, Read, Write};
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 /// The name that stands for standard input.
@@ -33,34 +33,11 @@ fn read_to_limit(reader: impl Read, path: &Path, limit: u64) -> Result<Vec<u8>> 
     Ok(bytes)
 }
 
-/// Writes a file so that at any moment its name stands for the old bytes or the new, never a part.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-    replace(path, bytes).map_err(|error| Error::io(path, "write", &error))
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".bidir-");
-    // A temporary file is private unless told otherwise; an image is as public as any new file.
-    #[cfg(unix)]
-    let public = std::os::unix::fs::PermissionsExt::from_mode(0o666);
-    #[cfg(unix)]
-    builder.permissions(public);
-    let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path)?;
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use flate2::{Compression, write::GzEncoder};
+    use std::io::Write;
 
     #[test]
     fn packed_files_are_unpacked_and_limits_hold_for_what_comes_out() {
@@ -68,7 +45,7 @@ mod tests {
         let path = folder.path().join("zeros.gz");
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(&vec![0; 100_000]).unwrap();
-        write(&path, &encoder.finish().unwrap()).unwrap();
+        std::fs::write(&path, encoder.finish().unwrap()).unwrap();
         assert_eq!(read(&path, 100_000).unwrap(), vec![0; 100_000]);
         assert_eq!(read(&path, 99_999).unwrap_err().kind(), ErrorKind::Limit);
     }
@@ -78,15 +55,5 @@ mod tests {
         let error = read(Path::new("no/such/file"), 10).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::MissingFile);
         assert_eq!(error.to_string(), "no/such/file: cannot open: no such file");
-    }
-
-    #[test]
-    fn writing_replaces_and_leaves_nothing_else_behind() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("out");
-        write(&path, b"old").unwrap();
-        write(&path, b"new").unwrap();
-        assert_eq!(std::fs::read(&path).unwrap(), b"new");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

@@ -44,6 +44,8 @@ pub enum ErrorKind {
     Unsupported,
     /// A mesh or an image is broken: write it anew.
     Data,
+    /// The caller asks for something that does not fit the scene: ask for something else.
+    Options,
     /// A named file does not exist: check the path.
     MissingFile,
     /// The system refused to read or write.

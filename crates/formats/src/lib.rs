@@ -1,4 +1,4 @@
-//! Bytes to data and back: pbrt-v4 scenes, PLY meshes, images.
+//! Bytes to data and back: pbrt-v4 scenes, PLY meshes, images, film files.
 //!
 //! Nothing here panics, whatever the bytes: a broken file is an [`Error`] that says where the fault
 //! is, whose it is and what to do about it. Counts are checked before memory is taken for them.
@@ -7,6 +7,8 @@ mod bytes;
 mod error;
 mod source;
 
+pub mod file;
+pub mod film;
 pub mod image;
 pub mod pbrt;
 pub mod ply;

@@ -143,6 +143,11 @@ impl SourceMap {
         Arc::clone(&self.files[file.0 as usize].1)
     }
 
+    /// All texts, in the order read.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|(_, text)| &**text)
+    }
+
     /// Line and column of the beginning of `span`, both counted from 1.
     pub fn line_and_column(&self, span: Span) -> (usize, usize) {
         line_and_column(&self.files[span.file.0 as usize].1, span.start as usize)

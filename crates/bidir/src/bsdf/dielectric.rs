@@ -134,8 +134,7 @@ impl Dielectric {
         if wo.z == 0.0 {
             return None;
         }
-        let smooth = self.is_smooth();
-        let m = if smooth {
+        let m = if self.is_smooth() {
             Vec3::Z
         } else {
             self.ggx.sample_visible(wo, u)
@@ -157,24 +156,35 @@ impl Dielectric {
         if wi.z == 0.0 || same_hemisphere(wo, wi) != (lobe == Lobe::Reflection) {
             return None;
         }
-        if smooth {
-            return Some(BsdfSample {
-                wi,
-                weight: Spectrum::splat(scale),
-                pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),
-                pdf_reverse: prob * sqr(self.eta_at(wo)) * wo.z.abs(),
-                is_delta: true,
-            });
-        }
-        let weight = Spectrum::splat(scale * self.ggx.g2(wo, wi) / self.ggx.g1(wo));
-        let (pdf, pdf_reverse) = (self.pdf(wo, wi), self.pdf(wi, wo));
-        Some(BsdfSample {
-            wi,
-            weight,
-            pdf,
-            pdf_reverse,
-            is_delta: false,
+        Some(if self.is_smooth() {
+            self.smooth_sample(wo, wi, scale, prob)
+        } else {
+            self.rough_sample(wo, wi, scale)
         })
+    }
+
+    /// `wi` drawn by a flat interface, which takes its lobe with probability `prob`.
+    #[inline]
+    fn smooth_sample(&self, wo: Vec3, wi: Vec3, scale: f32, prob: f32) -> BsdfSample {
+        BsdfSample {
+            wi,
+            weight: Spectrum::splat(scale),
+            pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),
+            pdf_reverse: prob * sqr(self.eta_at(wo)) * wo.z.abs(),
+            is_delta: true,
+        }
+    }
+
+    /// `wi` drawn by a facet that `wo` sees.
+    #[inline]
+    fn rough_sample(&self, wo: Vec3, wi: Vec3, scale: f32) -> BsdfSample {
+        BsdfSample {
+            wi,
+            weight: Spectrum::splat(scale * self.ggx.g2(wo, wi) / self.ggx.g1(wo)),
+            pdf: self.pdf(wo, wi),
+            pdf_reverse: self.pdf(wi, wo),
+            is_delta: false,
+        }
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {

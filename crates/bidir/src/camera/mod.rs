@@ -50,6 +50,13 @@ pub enum Camera {
 }
 
 impl Camera {
+    /// The name of its kind, in one word.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Perspective(_) => "perspective",
+        }
+    }
+
     /// A point of the lens.
     #[inline]
     pub fn sample_lens(&self, u: Vec2) -> LensSample {

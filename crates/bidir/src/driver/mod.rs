@@ -7,10 +7,12 @@
 //!
 //! A host that wants a time budget looks at its own clock between passes: there is none here.
 
+mod replay;
 mod session;
 mod training;
 
-pub use session::{Replay, Session};
+pub use replay::{Landing, Replay, ReplayedTerm, Selection};
+pub use session::Session;
 pub use training::Training;
 
 use crate::film::{Film, FilmError};

@@ -2,12 +2,13 @@
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
 //! trace. Nothing here looks at a clock.
 
-use super::{Progress, Resources, SessionError, Settings, Training};
-use crate::film::{Film, PassBuffer};
+use super::{Progress, Replay, Resources, SessionError, Settings, Training};
+use crate::film::{Film, MergeError, PassBuffer};
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
+use crate::select::Selector;
 use crate::spectrum::Wavelengths;
 use crate::stats::Stats;
 use std::sync::Mutex;
@@ -46,7 +47,7 @@ const RUN: u64 = 256;
 ///     ..Settings::default()
 /// };
 /// let mut session = Session::new(&scene, settings, &Resources::default())?;
-/// while session.film().passes() < 2 {
+/// while session.next_pass() < 2 {
 ///     // `()` reports to nobody and never stops.
 ///     session.step(&());
 /// }
@@ -60,19 +61,13 @@ pub struct Session<'a> {
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
     film: Film,
+    /// No pass before this one is rendered.
+    first_pass: u64,
     buffer: PassBuffer,
     stats: Stats,
     pool: rayon::ThreadPool,
     /// One per thread, kept so that no sample allocates.
     workspaces: Vec<Mutex<Workspace>>,
-}
-
-/// One sample again, with all that it made.
-pub struct Replay {
-    /// The buffers as the sample left them: subpaths, candidates, chosen rays, contributions.
-    pub workspace: Workspace,
-    /// The training that the choice of rays went by.
-    pub training: Option<Training>,
 }
 
 impl<'a> Session<'a> {
@@ -90,16 +85,16 @@ impl<'a> Session<'a> {
         let threads = pool.current_num_threads();
         let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
         let training = needs_mean.then(|| Training::run(scene, &settings));
-        let mean = training.map_or(0.0, |training| training.mean_luminance);
         let integrator = settings
             .integrator
-            .integrator(settings.shadow_rays.selector(mean));
+            .integrator(selector(&settings, training.as_ref()));
         Ok(Self {
             scene,
             settings,
             integrator,
             training,
             film,
+            first_pass: 0,
             buffer,
             stats: Stats::default(),
             pool,
@@ -109,8 +104,27 @@ impl<'a> Session<'a> {
         })
     }
 
+    /// Goes on from what was rendered before, with the same scene and settings: its passes will not
+    /// be rendered again, and the film is the one that a session without a break would have.
+    ///
+    /// Errors: the film is of another size, or holds passes that are here already.
+    pub fn add_film(&mut self, film: &Film) -> Result<(), MergeError> {
+        self.film.merge(film)
+    }
+
+    /// Leaves the passes before `first` to others.
+    pub fn start_at(&mut self, first: u64) {
+        self.first_pass = first;
+    }
+
+    /// The pass that [`Self::step`] renders.
+    pub fn next_pass(&self) -> u64 {
+        self.film.passes().first_missing(self.first_pass)
+    }
+
     /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
     pub fn step(&mut self, progress: &dyn Progress) -> bool {
+        let pass = self.next_pass();
         let next = AtomicU64::new(0);
         let given_up = AtomicBool::new(false);
         let this = &*self;
@@ -122,7 +136,7 @@ impl<'a> Session<'a> {
             let mut workspace = workspace
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !this.render_runs(&next, &mut workspace, progress) {
+            if !this.render_runs(pass, &next, &mut workspace, progress) {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
@@ -137,7 +151,7 @@ impl<'a> Session<'a> {
         if finished {
             self.stats += &stats;
             let (film, buffer) = (&mut self.film, &self.buffer);
-            self.pool.install(|| film.add_pass(buffer));
+            self.pool.install(|| film.add_pass(pass, buffer));
         }
         self.buffer.clear();
         finished
@@ -146,6 +160,7 @@ impl<'a> Session<'a> {
     /// Renders runs of pixels until none is left. False: a run was given up.
     fn render_runs(
         &self,
+        pass: u64,
         next: &AtomicU64,
         workspace: &mut Workspace,
         progress: &dyn Progress,
@@ -161,7 +176,7 @@ impl<'a> Session<'a> {
             }
             let end = (begin + RUN).min(pixels);
             for pixel in begin..end {
-                let sample = self.sample(pixel, self.film.passes());
+                let sample = self.sample(pixel, pass);
                 let context = path_context(self.scene, &self.settings, &sample);
                 self.integrator.sample(&context, &sample, workspace);
                 self.deposit(pixel as usize, workspace, &context.wavelengths);
@@ -203,19 +218,24 @@ impl<'a> Session<'a> {
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
-        let index = self
-            .scene
-            .film()
-            .crop
-            .index(i64::from(pixel[0]), i64::from(pixel[1]))?;
-        let mut workspace = Workspace::default();
+        let [x, y] = pixel.map(i64::from);
+        let index = self.scene.film().crop.index(x, y)?;
+        let mut workspace = Workspace::with_journal();
         let sample = self.sample(index as u64, pass);
         let context = path_context(self.scene, &self.settings, &sample);
         self.integrator.sample(&context, &sample, &mut workspace);
-        Some(Replay {
-            workspace,
-            training: self.training,
-        })
+        let selector = selector(&self.settings, self.training.as_ref());
+        Some(Replay::new(&context, workspace, &*selector))
+    }
+
+    /// What is rendered.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    /// How it is rendered.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// What was rendered so far.
@@ -256,6 +276,12 @@ pub(super) fn path_context<'a>(
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(u),
     }
+}
+
+/// The rule that chooses shadow rays, with what training found for it.
+fn selector(settings: &Settings, training: Option<&Training>) -> Box<dyn Selector> {
+    let mean = training.map_or(0.0, |training| training.mean_luminance);
+    settings.shadow_rays.selector(mean)
 }
 
 /// A pool of `threads` threads, or of as many as can be had.

@@ -10,38 +10,87 @@
 //! a splat goes to one pixel drawn by |h|, so that neighbouring pixels stay uncorrelated and
 //! filters may be negative.
 //!
-//! A [`Film`] collects whole passes; the running one is in a [`PassBuffer`], shared by all threads
-//! without locks. Squares of each pass's pixel totals, both layers together, give the variance.
+//! A [`Film`] collects whole passes and knows which ([`PassSet`]), so that films of different passes
+//! can be merged; the running one is in a [`PassBuffer`], shared by all threads without locks.
+//! Squares of each pass's pixel totals, both layers together, give the variance.
 
 mod filter;
 pub mod fixed;
 mod pass;
+mod passes;
 mod settings;
 
 pub use filter::{Filter, FilterKind};
 pub use pass::PassBuffer;
+pub use passes::{ParsePassSetError, PassSet};
 pub use settings::{FilmError, FilmSettings, PixelRect};
 
-use crate::spectrum::Rgb;
+use crate::spectrum::{Rgb, luminance};
 use fixed::{MOMENT_SCALE, VALUE_SCALE};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+use thiserror::Error;
 
 /// The exact sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct PixelSums {
+pub struct PixelSums {
     /// Camera samples, in [`fixed::VALUE_SCALE`].
-    camera: [i128; 3],
+    pub camera: [i128; 3],
     /// Splats, in [`fixed::VALUE_SCALE`].
-    light: [i128; 3],
+    pub light: [i128; 3],
     /// Squares of pass totals, in [`fixed::MOMENT_SCALE`].
-    moment: [i128; 3],
+    pub moment: [i128; 3],
+}
+
+impl PixelSums {
+    /// How many sums a pixel has.
+    pub const NUMBERS: usize = 9;
+
+    /// All sums: camera, light, moment; red, green, blue.
+    pub fn to_array(self) -> [i128; Self::NUMBERS] {
+        let [a, b, c] = self.camera;
+        let [d, e, f] = self.light;
+        let [g, h, i] = self.moment;
+        [a, b, c, d, e, f, g, h, i]
+    }
+
+    /// The inverse of [`Self::to_array`].
+    pub fn from_array([a, b, c, d, e, f, g, h, i]: [i128; Self::NUMBERS]) -> Self {
+        Self {
+            camera: [a, b, c],
+            light: [d, e, f],
+            moment: [g, h, i],
+        }
+    }
+}
+
+/// Adds what other passes summed. Squares are positive, so that stopping at the top depends on no
+/// order.
+impl std::ops::AddAssign for PixelSums {
+    fn add_assign(&mut self, other: Self) {
+        for channel in 0..3 {
+            self.camera[channel] += other.camera[channel];
+            self.light[channel] += other.light[channel];
+            self.moment[channel] = self.moment[channel].saturating_add(other.moment[channel]);
+        }
+    }
+}
+
+/// Why two films cannot become one.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum MergeError {
+    /// Both hold the same passes.
+    #[error("both have the passes {0}")]
+    Overlap(PassSet),
+    /// They show different pixels.
+    #[error("their resolutions or crops differ")]
+    Geometry,
 }
 
 /// The sums of all passes so far.
 #[derive(Clone, Debug)]
 pub struct Film {
     settings: FilmSettings,
-    passes: u64,
+    passes: PassSet,
     pixels: Vec<PixelSums>,
 }
 
@@ -60,6 +109,29 @@ pub struct Picture {
     pub variance: Vec<Rgb>,
 }
 
+impl Picture {
+    /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
+    /// mean of the picture, both of luminance. Infinite for a black picture.
+    ///
+    /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
+    /// independent, so it is rather too large than too small.
+    pub fn relative_error(&self) -> f64 {
+        let n = self.pixels.len().max(1) as f64;
+        let mean = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
+        let mean = mean.sum::<f64>() / n;
+        let squares = self.variance.iter().map(|variance| {
+            let error = f64::from(luminance(variance.map(f32::sqrt)));
+            error * error
+        });
+        let error = libm::sqrt(squares.sum::<f64>() / n);
+        if mean > 0.0 {
+            error / mean
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
 impl Film {
     /// An empty film.
     ///
@@ -75,7 +147,25 @@ impl Film {
         let pixels = vec![PixelSums::default(); settings.crop.area() as usize];
         Ok(Self {
             settings,
-            passes: 0,
+            passes: PassSet::default(),
+            pixels,
+        })
+    }
+
+    /// A film as it was stored.
+    ///
+    /// Errors: there are not as many `pixels` as the crop has.
+    pub fn restore(
+        settings: FilmSettings,
+        passes: PassSet,
+        pixels: Vec<PixelSums>,
+    ) -> Result<Self, MergeError> {
+        if pixels.len() as u64 != settings.crop.area() {
+            return Err(MergeError::Geometry);
+        }
+        Ok(Self {
+            settings,
+            passes,
             pixels,
         })
     }
@@ -88,13 +178,41 @@ impl Film {
         &self.settings
     }
 
-    /// The number of passes added.
-    pub fn passes(&self) -> u64 {
-        self.passes
+    /// The passes that were added.
+    pub fn passes(&self) -> &PassSet {
+        &self.passes
     }
 
-    /// Adds a finished pass.
-    pub fn add_pass(&mut self, pass: &PassBuffer) {
+    /// The exact sums, row by row from the top left of the crop.
+    pub fn pixels(&self) -> &[PixelSums] {
+        &self.pixels
+    }
+
+    /// Adds the passes of another film of the same render.
+    ///
+    /// Errors: some passes are in both, or the geometries differ.
+    pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
+        let (a, b) = (&self.settings, &other.settings);
+        if a.resolution != b.resolution || a.crop != b.crop {
+            return Err(MergeError::Geometry);
+        }
+        let both = self.passes.intersection(&other.passes);
+        if !both.is_empty() {
+            return Err(MergeError::Overlap(both));
+        }
+        self.passes = self.passes.union(&other.passes);
+        for (sums, added) in self.pixels.iter_mut().zip(&other.pixels) {
+            *sums += *added;
+        }
+        Ok(())
+    }
+
+    /// Adds finished pass number `index`, which must not be there yet.
+    pub fn add_pass(&mut self, index: u64, pass: &PassBuffer) {
+        debug_assert!(
+            !self.passes.contains(index),
+            "pass {index} was added before"
+        );
         let per_light_path = 1.0 / self.settings.light_paths().max(1) as f64;
         self.pixels
             .par_iter_mut()
@@ -102,17 +220,18 @@ impl Film {
             .with_min_len(4096)
             .for_each(|(i, sums)| {
                 let (camera, light) = pass.pixel(i);
-                for channel in 0..3 {
-                    sums.camera[channel] += camera[channel];
-                    sums.light[channel] += light[channel];
+                let moment = std::array::from_fn(|channel| {
                     let total = fixed::to_f64(camera[channel], VALUE_SCALE)
                         + fixed::to_f64(light[channel], VALUE_SCALE) * per_light_path;
-                    let square = fixed::from_f64(total * total, MOMENT_SCALE);
-                    // Squares are positive, so that stopping at the top depends on no order.
-                    sums.moment[channel] = sums.moment[channel].saturating_add(square);
-                }
+                    fixed::from_f64(total * total, MOMENT_SCALE)
+                });
+                *sums += PixelSums {
+                    camera,
+                    light,
+                    moment,
+                };
             });
-        self.passes += 1;
+        self.passes.insert(index..index + 1);
     }
 
     /// The mean of all passes with the variance of that mean, exposed.
@@ -128,7 +247,7 @@ impl Film {
     }
 
     fn develop_pixel(&self, sums: &PixelSums) -> (Rgb, Rgb) {
-        let passes = self.passes.max(1) as f64;
+        let passes = self.passes.len().max(1) as f64;
         let light_paths = passes * self.settings.light_paths().max(1) as f64;
         let exposure = f64::from(self.settings.exposure);
         let (mut value, mut variance) = ([0.0; 3], [0.0; 3]);
@@ -148,6 +267,7 @@ impl Film {
 impl PartialEq for Film {
     fn eq(&self, other: &Self) -> bool {
         self.passes == other.passes
+            && self.settings.resolution == other.settings.resolution
             && self.settings.crop == other.settings.crop
             && self.pixels == other.pixels
     }
@@ -166,22 +286,26 @@ mod tests {
     #[test]
     fn both_layers_add_up_with_their_own_counts() {
         let mut film = film(2, 2, Filter::default());
-        for pass in 0..2 {
+        for pass in 0..2u8 {
             let buffer = PassBuffer::new(film.settings());
-            buffer.set_camera_sample(3, [1.0, pass as f32, 0.0]);
+            buffer.set_camera_sample(3, [1.0, f32::from(pass), 0.0]);
             buffer.splat(
                 film.settings(),
                 Vec2::new(1.5, 1.5),
                 [4.0, 0.0, 8.0],
                 Vec2::splat(0.5),
             );
-            film.add_pass(&buffer);
+            film.add_pass(pass.into(), &buffer);
         }
         let picture = film.develop();
         let bits = |rgb: Rgb| rgb.map(f32::to_bits);
         assert_eq!(bits(picture.pixels[3]), bits([2.0, 0.5, 2.0]));
         assert_eq!(bits(picture.variance[3]), bits([0.0, 0.25, 0.0]));
         assert_eq!(bits(picture.pixels[0]), bits([0.0; 3]));
+        // The green of one pixel in four has standard error ½; luminance is 0.2126 R + 0.7152 G + 0.0722 B.
+        let mean = (0.2126 * 2.0 + 0.7152 * 0.5 + 0.0722 * 2.0) / 4.0;
+        let error = 0.7152 * 0.5 / 2.0;
+        assert!((picture.relative_error() - error / mean).abs() < 1e-3);
     }
 
     #[test]
@@ -205,7 +329,7 @@ mod tests {
                     Vec2::splat(0.5),
                 );
             }
-            film.add_pass(&buffer);
+            film.add_pass(0, &buffer);
             film
         };
         assert!(add([0, 1, 2]) == add([2, 0, 1]));

@@ -62,10 +62,7 @@ impl PassBuffer {
     /// Nothing happens where that pixel is outside the crop.
     #[inline]
     pub fn splat(&self, settings: &FilmSettings, raster: Vec2, value: Rgb, u: Vec2) {
-        let Some((x, y, weight)) = settings.filter.pick_pixel(raster, u) else {
-            return;
-        };
-        let Some(i) = settings.crop.index(x, y) else {
+        let Some((i, weight)) = settings.pick_pixel(raster, u) else {
             return;
         };
         for (cell, channel) in self.light[i].iter().zip(value) {

@@ -2,6 +2,7 @@
 //! in pixels, (0, 0) the top left one of the whole film, whatever the crop.
 
 use super::Filter;
+use crate::math::Vec2;
 use thiserror::Error;
 
 /// A rectangle of pixels: `min` inclusive, `max` exclusive.
@@ -75,6 +76,14 @@ impl FilmSettings {
             filter,
             exposure: 1.0,
         }
+    }
+
+    /// The pixel that a splat at `raster` goes to, drawn by the filter with `u`: its position in row
+    /// order of the crop, and what its value is multiplied by. None: it is outside.
+    #[inline]
+    pub fn pick_pixel(&self, raster: Vec2, u: Vec2) -> Option<(usize, f32)> {
+        let (x, y, weight) = self.filter.pick_pixel(raster, u)?;
+        Some((self.crop.index(x, y)?, weight))
     }
 
     /// Light subpaths of a pass: one for each pixel that is rendered. Weights and the light image

@@ -1,7 +1,9 @@
 //! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen \[Lafortune95\].
 
 use super::light::light_image;
-use super::{Integrator, Sample, Workspace};
+use super::workspace::light_vertices;
+use super::{Integrator, Link, Sample, Term, Workspace};
+use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::path::{
     Escape, Junction, LightPointChoice, PathContext, Strategy, Vertex, connect, next_event_vertex,
@@ -10,6 +12,7 @@ use crate::path::{
 use crate::sampler::{Dimension, Purpose};
 use crate::select::{Candidate, Draws, Selector};
 use crate::spectrum::Spectrum;
+use std::slice;
 
 /// Bidirectional path tracing: every strategy (s, t), weighted, with the connections that
 /// `selector` chooses.
@@ -38,7 +41,7 @@ impl Integrator for Bdpt {
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 1..workspace.camera.vertices.len() {
-        let vertex = workspace.camera.vertices[i];
+        let vertex = &workspace.camera.vertices[i];
         let Some(light) = vertex.light else { continue };
         let mut x0 = Vertex::light(context, light, &vertex.light_point());
         (x0.beta, x0.wo, x0.pdf_rev) = (vertex.beta, vertex.wo, vertex.pdf_fwd);
@@ -52,16 +55,11 @@ fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     else {
         return;
     };
+    let i = workspace.camera.vertices.len();
     for &light in context.scene.environment() {
         let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(direction));
         (x0.beta, x0.wo, x0.pdf_rev) = (beta, -direction, pdf_fwd);
-        hit(
-            context,
-            sample,
-            workspace,
-            workspace.camera.vertices.len(),
-            &x0,
-        );
+        hit(context, sample, workspace, i, &x0);
     }
 }
 
@@ -74,26 +72,23 @@ fn hit(
     i: usize,
     x0: &Vertex,
 ) {
-    let strategy = Strategy::new(0, i + 1);
     if context.count(0, i + 1) == 0.0 {
         return;
     }
-    let value = x0.beta
-        * x0.scatter(
-            context,
-            x0.wo,
-            x0.wo,
-            crate::bsdf::TransportMode::Importance,
-        );
-    if value == Spectrum::ZERO {
+    let contribution = x0.beta * x0.scatter(context, x0.wo, x0.wo, TransportMode::Importance);
+    if contribution == Spectrum::ZERO {
         return;
     }
     let Workspace {
         camera, densities, ..
     } = workspace;
-    let camera = &camera.vertices[..i];
-    let weight = weight(context, densities, &[*x0], camera, Junction::Hit);
-    workspace.add(sample, strategy, value * weight);
+    let (light, camera) = (slice::from_ref(x0), &camera.vertices[..i]);
+    let term = Term {
+        strategy: Strategy::new(0, i + 1),
+        contribution,
+        weight: weight(context, densities, light, camera, Junction::Hit),
+    };
+    workspace.add_hit(sample, term);
 }
 
 /// t = 1: every light vertex is connected to a lens point of its own. All of these rays are traced.
@@ -106,11 +101,12 @@ fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
             light, densities, ..
         } = workspace;
         let light = &light.vertices[..s];
-        let Some((lens, mut splat)) = light_image(context, sample, light) else {
+        let Some(image) = light_image(context, sample, light) else {
             continue;
         };
-        splat.value *= weight(context, densities, light, &[lens], Junction::Connection);
-        workspace.splat(context, sample, s, &lens, splat);
+        let lens = slice::from_ref(&image.lens);
+        let weight = weight(context, densities, light, lens, Junction::Connection);
+        workspace.splat(context, sample, &image, weight);
     }
 }
 
@@ -121,7 +117,7 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
         .next_events
         .resize(workspace.camera.vertices.len(), None);
     for t in 2..=workspace.camera.vertices.len() {
-        let y = workspace.camera.vertices[t - 1];
+        let y = &workspace.camera.vertices[t - 1];
         if y.is_delta() {
             continue;
         }
@@ -129,9 +125,9 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
             let at = |purpose| Dimension::at(t - 1, purpose);
             let u_light = sample.camera.get_1d(at(Purpose::NextEventLight));
             let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-            if let Some(x0) = next_event_vertex(context, &y, u_light, u) {
+            if let Some(x0) = next_event_vertex(context, y, u_light, u) {
                 workspace.next_events[t - 1] = Some(x0);
-                candidate(context, sample, workspace, 1, t);
+                candidate(context, sample, workspace, Strategy::new(1, t));
             }
         }
         let longest = workspace
@@ -140,21 +136,41 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
             .len()
             .min(context.settings.max_vertices() - t);
         for s in if fresh { 2 } else { 1 }..=longest {
-            candidate(context, sample, workspace, s, t);
+            candidate(context, sample, workspace, Strategy::new(s, t));
         }
     }
 }
 
-/// Evaluates the connection (s, t).
+/// Evaluates the connection (s, t), and offers it for selection.
 fn candidate(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
-    s: usize,
-    t: usize,
+    strategy: Strategy,
 ) {
-    if context.count(s, t) == 0.0 {
+    let Some(term) = connection(context, workspace, strategy) else {
         return;
+    };
+    let value = term.value();
+    workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
+    if workspace.accepts(sample, strategy, value) && !value.is_black() {
+        let color = context.scene.color();
+        let luminance = color.luminance(value.map(f32::abs), &context.wavelengths);
+        workspace
+            .candidates
+            .push(Candidate::new(strategy, value, luminance));
+    }
+}
+
+/// The term of the connection (s, t). None: it is zero.
+fn connection(
+    context: &PathContext<'_>,
+    workspace: &mut Workspace,
+    strategy: Strategy,
+) -> Option<Term> {
+    let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+    if context.count(s, t) == 0.0 {
+        return None;
     }
     let Workspace {
         light,
@@ -164,30 +180,13 @@ fn candidate(
         ..
     } = workspace;
     let camera = &camera.vertices[..t];
-    let light = match &next_events[t - 1] {
-        Some(x0) if s == 1 => std::slice::from_ref(x0),
-        _ => &light.vertices[..s],
-    };
-    let value = connect(context, light, camera);
-    if value == Spectrum::ZERO {
-        return;
-    }
-    let value = value * weight(context, densities, light, camera, Junction::Connection);
-    workspace.stats.candidates += 1;
-    let strategy = Strategy::new(s, t);
-    if workspace.accepts(sample, strategy, value) && !value.is_black() {
-        let luminance = context
-            .scene
-            .color()
-            .luminance(value.map(f32::abs), &context.wavelengths);
-        // What underflows must keep a chance.
-        let score = luminance.max(f32::MIN_POSITIVE);
-        workspace.candidates.push(Candidate {
-            value,
-            score,
-            strategy,
-        });
-    }
+    let light = light_vertices(light, next_events, strategy);
+    let contribution = connect(context, light, camera);
+    (contribution != Spectrum::ZERO).then(|| Term {
+        strategy,
+        contribution,
+        weight: weight(context, densities, light, camera, Junction::Connection),
+    })
 }
 
 /// Traces the chosen connections and adds what arrives, divided by its probability.
@@ -195,8 +194,8 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];
-        let (z, y) = workspace.ends(candidate.strategy);
-        if workspace.trace_connection(context.scene, &z, &y) {
+        let ends = workspace.ends(candidate.strategy);
+        if workspace.trace(context.scene, candidate.strategy, &ends) {
             let value = candidate.contribution(chosen.prob);
             workspace.add(sample, candidate.strategy, value);
         }

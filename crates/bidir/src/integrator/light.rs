@@ -2,7 +2,7 @@
 //! vertex is connected to a lens point of its own, and lands wherever on the film that is. A splat
 //! is divided by the number of light paths by the film, not here.
 
-use super::{Integrator, Sample, Splat, Workspace};
+use super::{Integrator, Link, Sample, Splat, Term, Workspace};
 use crate::math::Vec2;
 use crate::path::{PathContext, Strategy, Vertex, VertexKind, connect};
 use crate::sampler::{Dimension, Purpose};
@@ -21,46 +21,49 @@ impl Integrator for LightTracer {
         workspace.stats.samples += 1;
         workspace.walk_light(context, sample);
         for s in 1..=workspace.light.vertices.len() {
-            let Some((lens, splat)) = light_image(context, sample, &workspace.light.vertices[..s])
-            else {
-                continue;
-            };
-            workspace.splat(context, sample, s, &lens, splat);
+            if let Some(image) = light_image(context, sample, &workspace.light.vertices[..s]) {
+                workspace.splat(context, sample, &image, 1.0);
+            }
         }
     }
 }
 
-/// Connects the last vertex of a light subpath to a lens point of its own: the lens vertex, and the
-/// splat without weight or visibility. None: nothing arrives on the film.
+/// A light vertex as a lens point of its own sees it, before weight and visibility.
+pub(super) struct LightImage {
+    strategy: Strategy,
+    pub(super) lens: Vertex,
+    raster: Vec2,
+    contribution: Spectrum,
+}
+
+/// Connects the last vertex of a light subpath to a lens point of its own. None: nothing arrives on
+/// the film.
 pub(super) fn light_image(
     context: &PathContext<'_>,
     sample: &Sample,
     light: &[Vertex],
-) -> Option<(Vertex, Splat)> {
+) -> Option<LightImage> {
     let scene = context.scene;
     let (s, end) = (light.len(), light.last()?);
     // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
     if end.kind == VertexKind::Light && end.light.is_none_or(|i| scene.light(i).is_delta()) {
         return None;
     }
-    let at = |purpose| sample.light.get_2d(Dimension::at(s, purpose));
-    let lens = Vertex::camera(&scene.camera().sample_lens(at(Purpose::LightImageLens)));
+    let u_lens = sample
+        .light
+        .get_2d(Dimension::at(s, Purpose::LightImageLens));
+    let lens = Vertex::camera(&scene.camera().sample_lens(u_lens));
     let raster = scene.camera().raster(lens.point, lens.toward(end))?;
     if !reaches_film(context, raster) {
         return None;
     }
-    let value = connect(context, light, &[lens]);
-    if value == Spectrum::ZERO {
-        return None;
-    }
-    Some((
+    let contribution = connect(context, light, &[lens]);
+    (contribution != Spectrum::ZERO).then_some(LightImage {
+        strategy: Strategy::new(s, 1),
         lens,
-        Splat {
-            raster,
-            value,
-            u: at(Purpose::LightImagePixel),
-        },
-    ))
+        raster,
+        contribution,
+    })
 }
 
 /// True where the filter of some pixel of the crop may reach `raster`.
@@ -76,19 +79,34 @@ fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
 }
 
 impl Workspace {
-    /// Traces the light-image ray of strategy (s, 1) and keeps its splat if it arrives.
+    /// Traces a ray of the light image, and keeps the splat if it arrives.
     pub(super) fn splat(
         &mut self,
         context: &PathContext<'_>,
         sample: &Sample,
-        s: usize,
-        lens: &Vertex,
-        splat: Splat,
+        image: &LightImage,
+        weight: f32,
     ) {
-        let visible = self.accepts(sample, Strategy::new(s, 1), splat.value)
-            && self.trace_light_image(context.scene, &self.light.vertices[s - 1].clone(), lens);
-        if visible {
-            self.splats.push(splat);
+        let strategy = image.strategy;
+        let s = usize::from(strategy.s);
+        let term = Term {
+            strategy,
+            contribution: image.contribution,
+            weight,
+        };
+        let splat = Splat {
+            raster: image.raster,
+            value: term.value(),
+            u: sample
+                .light
+                .get_2d(Dimension::at(s, Purpose::LightImagePixel)),
+        };
+        let end = self.light.vertices[s - 1].segment_end();
+        let ends = [end, image.lens.segment_end()];
+        self.count(term, |_| Link::LightImage(ends, splat));
+        let is_fine = self.accepts(sample, strategy, splat.value);
+        if is_fine && self.trace(context.scene, strategy, &ends) {
+            self.add_splat(strategy, splat);
         }
     }
 }

@@ -7,11 +7,13 @@
 //! **Adding one**: a file, and a variant of [`IntegratorKind`] with its name.
 
 mod bdpt;
+mod journal;
 mod light;
 mod path;
 mod workspace;
 
 pub use bdpt::Bdpt;
+pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use path::PathTracer;
 pub use workspace::{Sample, Splat, Workspace};

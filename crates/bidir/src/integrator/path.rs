@@ -2,9 +2,10 @@
 //! tracing with next-event estimation. p and q are densities in the same measure, area or solid
 //! angle. It walks no light subpaths and chooses no shadow rays: all are traced.
 
-use super::{Integrator, Sample, Workspace};
+use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::light::LightPoint;
-use crate::path::{MisHeuristic, PathContext, Strategy, Vertex, connect, next_event_vertex};
+use crate::math::Vec3;
+use crate::path::{PathContext, Strategy, connect, next_event_pdf, next_event_vertex};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 
@@ -22,13 +23,19 @@ impl Integrator for PathTracer {
         workspace.begin();
         workspace.walk_camera(context, sample);
         for i in 1..workspace.camera.vertices.len() {
-            let vertex = workspace.camera.vertices[i];
+            let vertex = &workspace.camera.vertices[i];
+            let connects = i + 2 <= context.settings.max_vertices() && !vertex.is_delta();
             if let Some(light) = vertex.light {
-                let value = vertex.beta * emitted(context, light, &vertex);
-                let weight = hit_weight(context, workspace, i, light, &vertex.light_point());
-                workspace.add(sample, Strategy::new(0, i + 1), value * weight);
+                let arrival = Arrival {
+                    light,
+                    at: vertex.light_point(),
+                    wo: vertex.wo,
+                    beta: vertex.beta,
+                    pdf: vertex.pdf_fwd,
+                };
+                hit(context, sample, workspace, i, &arrival);
             }
-            if i + 2 <= context.settings.max_vertices() && !vertex.is_delta() {
+            if connects {
                 next_event(context, sample, workspace, i);
             }
         }
@@ -36,86 +43,75 @@ impl Integrator for PathTracer {
     }
 }
 
-/// Light that a surface sends back along the walk.
-fn emitted(context: &PathContext<'_>, light: u32, vertex: &Vertex) -> Spectrum {
-    let rgb = context
-        .scene
-        .light(light)
-        .emitted(&vertex.light_point(), vertex.wo);
-    context.scene.color().illuminant(rgb, &context.wavelengths)
-}
-
-/// The share of a density `p` against `q`.
-fn share(heuristic: MisHeuristic, p: f32, q: f32) -> f32 {
-    match heuristic {
-        MisHeuristic::Balance => 1.0 / (1.0 + q / p),
-        MisHeuristic::Power => 1.0 / (1.0 + (q / p) * (q / p)),
-        MisHeuristic::Uniform if q > 0.0 => 0.5,
-        MisHeuristic::Uniform => 1.0,
-    }
-}
-
-/// The weight of hitting `at` after vertex `i - 1`: 1 where next-event estimation cannot do it.
-fn hit_weight(
-    context: &PathContext<'_>,
-    workspace: &Workspace,
-    i: usize,
+/// Where a camera walk came upon a light.
+struct Arrival {
     light: u32,
-    at: &LightPoint,
-) -> f32 {
-    let from = &workspace.camera.vertices[i - 1];
-    if i == 1 || from.is_delta() {
-        return 1.0;
-    }
-    let p = match workspace.camera.escape {
-        Some(escape) if at.is_infinite => escape.pdf_fwd,
-        _ => workspace.camera.vertices[i].pdf_fwd,
-    };
-    share(
-        context.settings.mis,
-        p,
-        next_event_pdf(context, light, from, at),
-    )
+    at: LightPoint,
+    /// The unit direction back along the walk.
+    wo: Vec3,
+    /// Throughput up to the light.
+    beta: Spectrum,
+    /// The density p of the light point, in the measure of next-event estimation.
+    pdf: f32,
 }
 
-/// The density with which next-event estimation at `from` draws `at`.
-fn next_event_pdf(context: &PathContext<'_>, light: u32, from: &Vertex, at: &LightPoint) -> f32 {
-    let scene = context.scene;
-    let pdf = scene
-        .light(light)
-        .pdf_next_event(&scene.light_context(), from.point, at);
-    scene.light_choice().prob(light as usize) * pdf
+/// Adds the light that the walk came upon after the first `i` vertices.
+fn hit(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+    i: usize,
+    arrival: &Arrival,
+) {
+    let contribution = arrival.beta * context.emitted(arrival.light, &arrival.at, arrival.wo);
+    if contribution != Spectrum::ZERO {
+        let from = &workspace.camera.vertices[i - 1];
+        // Next-event estimation begins at the first surface, and skips Dirac scattering.
+        let weight = if i == 1 || from.is_delta() {
+            1.0
+        } else {
+            let q = next_event_pdf(context, from, arrival.light, &arrival.at);
+            context.settings.mis.weight_of_two(arrival.pdf, q)
+        };
+        let term = Term {
+            strategy: Strategy::new(0, i + 1),
+            contribution,
+            weight,
+        };
+        workspace.add_hit(sample, term);
+    }
 }
 
 /// Connects vertex `i` with a light point.
 fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace, i: usize) {
     let camera = &workspace.camera.vertices[..=i];
-    let vertex = camera[i];
-    let u_light = sample
-        .camera
-        .get_1d(Dimension::at(i, Purpose::NextEventLight));
-    let u = sample
-        .camera
-        .get_2d(Dimension::at(i, Purpose::NextEventPosition));
-    let Some(x0) = next_event_vertex(context, &vertex, u_light, u) else {
+    let vertex = &camera[i];
+    let at = |purpose| Dimension::at(i, purpose);
+    let u_light = sample.camera.get_1d(at(Purpose::NextEventLight));
+    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+    let Some(x0) = next_event_vertex(context, vertex, u_light, u) else {
         return;
     };
-    let value = connect(context, &[x0], camera);
-    if value == Spectrum::ZERO {
+    let contribution = connect(context, &[x0], camera);
+    if contribution == Spectrum::ZERO {
         return;
     }
     let Some(light) = x0.light else { return };
-    let q = next_event_pdf(context, light, &vertex, &x0.light_point());
+    let q = next_event_pdf(context, vertex, light, &x0.light_point());
     let p = if context.scene.light(light).is_delta() {
         0.0
     } else {
         vertex.pdf_to(context, vertex.wo, &x0)
     };
-    let value = value * share(context.settings.mis, q, p);
-    workspace.stats.candidates += 1;
-    let strategy = Strategy::new(1, i + 1);
-    if workspace.accepts(sample, strategy, value)
-        && workspace.trace_connection(context.scene, &x0, &vertex)
+    let term = Term {
+        strategy: Strategy::new(1, i + 1),
+        contribution,
+        weight: context.settings.mis.weight_of_two(q, p),
+    };
+    let ends = [x0.segment_end(), vertex.segment_end()];
+    workspace.count(term, |_| Link::Connection(ends));
+    let (strategy, value) = (term.strategy, term.value());
+    if workspace.accepts(sample, strategy, value) && workspace.trace(context.scene, strategy, &ends)
     {
         workspace.add(sample, strategy, value);
     }
@@ -127,15 +123,14 @@ fn escape(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace)
         return;
     };
     let i = workspace.camera.vertices.len();
-    let at = LightPoint::at_infinity(escape.direction);
     for &light in context.scene.environment() {
-        let rgb = context.scene.light(light).emitted(&at, -escape.direction);
-        let radiance = context.scene.color().illuminant(rgb, &context.wavelengths);
-        let weight = hit_weight(context, workspace, i, light, &at);
-        workspace.add(
-            sample,
-            Strategy::new(0, i + 1),
-            escape.beta * radiance * weight,
-        );
+        let arrival = Arrival {
+            light,
+            at: LightPoint::at_infinity(escape.direction),
+            wo: -escape.direction,
+            beta: escape.beta,
+            pdf: escape.pdf_fwd,
+        };
+        hit(context, sample, workspace, i, &arrival);
     }
 }

@@ -1,13 +1,14 @@
 //! What a sample leaves behind: subpaths, candidates, chosen rays and contributions, in buffers
 //! that the next sample uses again. A value that no film can sum is dropped and counted here.
 
+use super::{Fate, Journal, Link, Term};
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
     PathContext, PathDensities, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::Scene;
+use crate::scene::{Scene, SegmentEnd};
 use crate::select::{Candidate, Chosen};
 use crate::spectrum::Spectrum;
 use crate::stats::{Dropped, Stats};
@@ -56,21 +57,33 @@ pub struct Workspace {
     pub splats: Vec<Splat>,
     /// What was counted.
     pub stats: Stats,
+    /// What became of every term; kept where somebody asks for it.
+    pub journal: Option<Journal>,
     /// The densities of the path whose weight is computed.
     pub(super) densities: PathDensities,
 }
 
 impl Workspace {
+    /// A workspace that keeps a journal.
+    pub(crate) fn with_journal() -> Self {
+        Self {
+            journal: Some(Journal::default()),
+            ..Self::default()
+        }
+    }
+
     /// Forgets the last sample.
     pub(super) fn begin(&mut self) {
-        self.camera.vertices.clear();
-        self.camera.escape = None;
-        self.light.vertices.clear();
+        self.camera.clear();
+        self.light.clear();
         self.next_events.clear();
         self.candidates.clear();
         self.chosen.clear();
         self.splats.clear();
         self.value = Spectrum::ZERO;
+        if let Some(journal) = &mut self.journal {
+            journal.entries.clear();
+        }
     }
 
     /// Walks the camera subpath of `sample`.
@@ -89,14 +102,22 @@ impl Workspace {
         light_subpath(context, &sample.light, &mut self.light, &mut self.stats);
     }
 
-    /// The light vertex and the camera vertex that a candidate connects.
-    pub fn ends(&self, strategy: Strategy) -> (Vertex, Vertex) {
-        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-        let z = match self.next_events[t - 1] {
-            Some(x0) if s == 1 => x0,
-            _ => self.light.vertices[s - 1],
-        };
-        (z, self.camera.vertices[t - 1])
+    /// The ends of the segment that a candidate connects: light vertex and camera vertex.
+    pub(super) fn ends(&self, strategy: Strategy) -> [SegmentEnd; 2] {
+        let light = light_vertices(&self.light, &self.next_events, strategy);
+        let z = &light[usize::from(strategy.s) - 1];
+        let y = &self.camera.vertices[usize::from(strategy.t) - 1];
+        [z.segment_end(), y.segment_end()]
+    }
+
+    /// Counts a term that is not zero; `link` is asked for the journal only.
+    #[inline]
+    pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) {
+        self.stats.count_candidate(term.strategy);
+        if let Some(mut journal) = self.journal.take() {
+            journal.begin(term, link(self));
+            self.journal = Some(journal);
+        }
     }
 
     /// True where a contribution can be summed; else it is counted as dropped.
@@ -112,6 +133,7 @@ impl Workspace {
                 strategy,
             };
             self.stats.drop_contribution(dropped);
+            self.note(strategy, Fate::Dropped, Spectrum::ZERO);
         }
         fine
     }
@@ -120,22 +142,57 @@ impl Workspace {
     pub(super) fn add(&mut self, sample: &Sample, strategy: Strategy, value: Spectrum) {
         if self.accepts(sample, strategy, value) {
             self.value += value;
+            self.note(strategy, Fate::Added, value);
         }
     }
 
-    /// Traces a connection ray: true where nothing is in its way.
-    pub(super) fn trace_connection(&mut self, scene: &Scene, a: &Vertex, b: &Vertex) -> bool {
-        self.stats.rays.connection += 1;
-        let occluded = scene.occluded(&a.segment_end(), &b.segment_end());
-        self.stats.connections_blocked += u64::from(occluded);
-        !occluded
+    /// Adds the light that a camera walk found by itself: s = 0.
+    pub(super) fn add_hit(&mut self, sample: &Sample, term: Term) {
+        self.count(term, |_| Link::Walk);
+        self.add(sample, term.strategy, term.value());
     }
 
-    /// Traces a ray of the light image: true where nothing is in its way.
-    pub(super) fn trace_light_image(&mut self, scene: &Scene, a: &Vertex, b: &Vertex) -> bool {
-        self.stats.rays.light_image += 1;
-        let occluded = scene.occluded(&a.segment_end(), &b.segment_end());
-        self.stats.light_image_blocked += u64::from(occluded);
-        !occluded
+    /// Adds a contribution to the light image.
+    pub(super) fn add_splat(&mut self, strategy: Strategy, splat: Splat) {
+        self.splats.push(splat);
+        self.note(strategy, Fate::Added, splat.value);
+    }
+
+    /// Traces the shadow ray of a strategy: true where nothing is in its way.
+    pub(super) fn trace(
+        &mut self,
+        scene: &Scene,
+        strategy: Strategy,
+        [a, b]: &[SegmentEnd; 2],
+    ) -> bool {
+        self.stats.count_shadow_ray(strategy);
+        let is_blocked = scene.occluded(a, b);
+        if is_blocked {
+            self.stats.count_blocked(strategy);
+            self.note(strategy, Fate::Blocked, Spectrum::ZERO);
+        }
+        !is_blocked
+    }
+
+    /// Completes the journal of a term.
+    #[inline]
+    fn note(&mut self, strategy: Strategy, fate: Fate, added: Spectrum) {
+        if let Some(journal) = &mut self.journal {
+            journal.end(strategy, fate, added);
+        }
+    }
+}
+
+/// The light vertices that a connection uses: s = 1 may have a light point of its own.
+#[inline]
+pub(super) fn light_vertices<'a>(
+    light: &'a Subpath,
+    next_events: &'a [Option<Vertex>],
+    strategy: Strategy,
+) -> &'a [Vertex] {
+    let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+    match &next_events[t - 1] {
+        Some(x0) if s == 1 => std::slice::from_ref(x0),
+        _ => &light.vertices[..s],
     }
 }

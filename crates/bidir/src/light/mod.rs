@@ -131,6 +131,17 @@ pub enum Light {
 }
 
 impl Light {
+    /// The name of its kind, in one word.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Area(_) => "area",
+            Self::Point(_) => "point",
+            Self::Spot(_) => "spot",
+            Self::Distant(_) => "distant",
+            Self::Infinite(_) => "infinite",
+        }
+    }
+
     /// True where no ray can hit the light by chance: its position, or its direction, is a Dirac
     /// distribution.
     #[inline]

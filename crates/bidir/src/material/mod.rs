@@ -88,6 +88,15 @@ pub enum Material {
 }
 
 impl Material {
+    /// The name of its kind, in one word.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Diffuse { .. } => "diffuse",
+            Self::Conductor { .. } => "conductor",
+            Self::Dielectric { .. } => "dielectric",
+        }
+    }
+
     /// The scattering at `uv`.
     #[inline]
     pub fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {

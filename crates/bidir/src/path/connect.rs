@@ -5,6 +5,7 @@
 
 use super::{Junction, PathContext, PathDensities, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
+use crate::light::LightPoint;
 use crate::math::Vec2;
 use crate::spectrum::Spectrum;
 
@@ -48,6 +49,23 @@ pub fn next_event_vertex(
     let mut vertex = Vertex::light(context, light as u32, &sample.at);
     vertex.beta = Spectrum::splat(1.0 / (prob * sample.pdf));
     Some(vertex)
+}
+
+/// The density e(x_0 | x_1) with which [`next_event_vertex`] draws the point `at` of light number
+/// `light` for the camera vertex `receiver`. Measure: area, 1/m²; solid angle, 1/sr, for a light at
+/// infinity.
+#[inline]
+pub fn next_event_pdf(
+    context: &PathContext<'_>,
+    receiver: &Vertex,
+    light: u32,
+    at: &LightPoint,
+) -> f32 {
+    let scene = context.scene;
+    let prob = scene.light_choice().prob(light as usize);
+    prob * scene
+        .light(light)
+        .pdf_next_event(&scene.light_context(), receiver.point, at)
 }
 
 /// The weight of making the path that joins `light` and `camera` by strategy `s`.

@@ -4,7 +4,7 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{LightPointChoice, PathContext, Vertex};
+use super::{LightPointChoice, PathContext, Vertex, next_event_pdf};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,8 +114,7 @@ impl PathDensities {
         n: usize,
     ) {
         let Some(index) = light[0].light else { return };
-        let emitter = context.scene.light(index);
-        self.light_is_delta = emitter.is_delta();
+        self.light_is_delta = context.scene.light(index).is_delta();
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
         let shared = context.settings.light_point == LightPointChoice::Shared || n == 2;
         self.next_event = if shared {
@@ -126,9 +125,7 @@ impl PathDensities {
             } else {
                 &camera[camera.len() - 1]
             };
-            let prob = context.scene.light_choice().prob(index as usize);
-            let lights = context.scene.light_context();
-            prob * emitter.pdf_next_event(&lights, receiver.point, &light[0].light_point())
+            next_event_pdf(context, receiver, index, &light[0].light_point())
         };
     }
 }

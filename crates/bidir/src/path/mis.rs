@@ -32,6 +32,13 @@ impl MisHeuristic {
             Self::Uniform => f64::from(density > 0.0),
         }
     }
+
+    /// The weight of a strategy with density `p`, where one other, with density `q` in the same
+    /// measure, is all that can make the path too: share(p) / (share(p) + share(q)).
+    #[inline]
+    pub fn weight_of_two(self, p: f32, q: f32) -> f32 {
+        1.0 / (1.0 + self.share(f64::from(q / p)) as f32)
+    }
 }
 
 /// The weight of strategy `s`: share(n_s p_s) / Σ_j share(n_j p_j).
@@ -169,6 +176,26 @@ mod tests {
                 sum += weight;
             }
             prop_assert!(total == 0.0 || (sum - 1.0).abs() < 1e-9);
+        }
+
+        #[test]
+        fn two_strategies_share_by_the_same_rule(
+            p in 1e-6f32..1e6,
+            q in prop_oneof![9 => 1e-6f32..1e6, 1 => Just(0.0f32)],
+            heuristic in prop::sample::select(MisHeuristic::NAMES.map(|(_, h)| h).to_vec()),
+        ) {
+            // Seen by the lens: x_0 is hit with density p, or drawn with density q.
+            let x = |from_camera| VertexDensities { from_light: 1.0, from_camera, is_delta: false };
+            let path = PathDensities {
+                vertices: vec![x(p), x(1.0)],
+                next_event: q,
+                light_is_delta: false,
+            };
+            let [hit, drawn] = [0, 1].map(|s| mis_weight(&path, |_| 1.0, heuristic, s));
+            prop_assert!((f64::from(heuristic.weight_of_two(p, q)) - hit).abs() < 1e-6);
+            if q > 0.0 {
+                prop_assert!((f64::from(heuristic.weight_of_two(q, p)) - drawn).abs() < 1e-6);
+            }
         }
     }
 }

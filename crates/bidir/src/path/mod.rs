@@ -22,11 +22,12 @@ mod connect;
 mod densities;
 mod mis;
 mod roulette;
+mod scatter;
 mod strategy;
 mod vertex;
 mod walk;
 
-pub use connect::{connect, next_event_vertex, weight};
+pub use connect::{connect, next_event_pdf, next_event_vertex, weight};
 pub use densities::{Junction, PathDensities, VertexDensities};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;

@@ -65,28 +65,51 @@ impl Rule {
 /// Written as a comma-separated list: `all`, `-s0` (without s = 0), `-t1`, `s2t3` or `+s2t3` (with
 /// this one). A list that begins with a removal begins with all, any other with none.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Strategies(Vec<Rule>);
+pub struct Strategies {
+    rules: Vec<Rule>,
+    /// What the rules say of short subpaths, because every weight asks: bit t of number s.
+    short: [u64; SHORT],
+}
+
+/// Subpaths of fewer vertices are looked up; there is a bit for each.
+const SHORT: usize = u64::BITS as usize;
 
 impl Default for Strategies {
     fn default() -> Self {
-        Self(vec![Rule::ALL])
+        Self::new(vec![Rule::ALL])
     }
 }
 
 impl Strategies {
+    fn new(rules: Vec<Rule>) -> Self {
+        let row = |s| (0..SHORT).fold(0, |row, t| row | u64::from(decide(&rules, s, t)) << t);
+        Self {
+            short: std::array::from_fn(row),
+            rules,
+        }
+    }
+
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn contains(&self, s: usize, t: usize) -> bool {
-        let matches = |rule: &&Rule| {
-            rule.s.is_none_or(|only| usize::from(only) == s)
-                && rule.t.is_none_or(|only| usize::from(only) == t)
-        };
-        self.0
-            .iter()
-            .rev()
-            .find(matches)
-            .is_some_and(|rule| rule.enable)
+        match self.short.get(s) {
+            Some(row) if t < SHORT => (row >> t) & 1 == 1,
+            _ => decide(&self.rules, s, t),
+        }
     }
+}
+
+/// What the last rule that matches (s, t) says; false where none does.
+fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
+    let matches = |rule: &&Rule| {
+        rule.s.is_none_or(|only| usize::from(only) == s)
+            && rule.t.is_none_or(|only| usize::from(only) == t)
+    };
+    rules
+        .iter()
+        .rev()
+        .find(matches)
+        .is_some_and(|rule| rule.enable)
 }
 
 /// Why a list of strategies cannot be read.
@@ -105,7 +128,7 @@ impl FromStr for Strategies {
         if rules.first().is_some_and(|rule| !rule.enable) {
             rules.insert(0, Rule::ALL);
         }
-        Ok(Self(rules))
+        Ok(Self::new(rules))
     }
 }
 
@@ -130,7 +153,7 @@ fn parse_rule(item: &str) -> Option<Rule> {
 
 impl fmt::Display for Strategies {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, rule) in self.0.iter().enumerate() {
+        for (i, rule) in self.rules.iter().enumerate() {
             let comma = if i > 0 { "," } else { "" };
             let sign = if rule.enable { "" } else { "-" };
             write!(f, "{comma}{sign}")?;
@@ -171,6 +194,11 @@ mod tests {
         check("all,-s1,+s1t4", &[(1, 4), (2, 2)], &[(1, 3)]);
         check("-s0", &[(1, 2), (2, 1)], &[(0, 2)]);
         check("t1", &[(1, 1), (5, 1)], &[(1, 2)]);
+        check(
+            "s63,s70t70",
+            &[(63, 63), (63, 64), (70, 70)],
+            &[(62, 63), (64, 63), (70, 6)],
+        );
     }
 
     #[test]

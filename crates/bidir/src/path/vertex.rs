@@ -1,14 +1,14 @@
 //! Vertices: f = Π scatter · Π G over geometric cosines, one function of the path, whichever end a
-//! walk began at [Veach97, §5.3].
+//! walk began at [Veach97, §5.3]. Here are a vertex's data and G; `scatter` stands beside it.
 //!
 //! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
 //! at infinity). Visibility and roulette are no part of a vertex.
 
 use super::PathContext;
-use crate::bsdf::{Bsdf, Diffuse, TransportMode};
+use crate::bsdf::{Bsdf, Diffuse};
 use crate::camera::LensSample;
 use crate::light::LightPoint;
-use crate::math::{Frame, Vec2, Vec3};
+use crate::math::{Frame, Vec3};
 use crate::scene::{SegmentEnd, SurfaceHit};
 use crate::spectrum::Spectrum;
 
@@ -59,19 +59,6 @@ pub struct Vertex {
     pub is_infinite: bool,
 }
 
-/// A direction drawn at a vertex.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scattered {
-    /// The unit direction.
-    pub(super) wi: Vec3,
-    /// Scattering times geometric cosine over density.
-    pub(super) weight: Spectrum,
-    /// The density of `wi`, or the coefficient of its Dirac factor. Measure: solid angle.
-    pub(super) pdf: f32,
-    /// The same of drawing `wo` by a walk that arrives along `wi`.
-    pub(super) pdf_reverse: f32,
-}
-
 impl Vertex {
     /// A vertex of which only the kind, the point and its normal matter.
     fn endpoint(kind: VertexKind, point: Vec3, n_g: Vec3) -> Self {
@@ -114,9 +101,14 @@ impl Vertex {
         let scene = context.scene;
         let prob = scene.light_choice().prob(light as usize);
         let pdf_position = scene.light(light).pdf_position(&scene.light_context(), at);
+        Self::on_light(light, at, prob * pdf_position)
+    }
+
+    /// A point on light number `light`, the density of which is known.
+    pub(super) fn on_light(light: u32, at: &LightPoint, pdf_fwd: f32) -> Self {
         Self {
             error: at.error,
-            pdf_fwd: prob * pdf_position,
+            pdf_fwd,
             light: Some(light),
             light_primitive: at.primitive,
             is_infinite: at.is_infinite,
@@ -185,7 +177,7 @@ impl Vertex {
 
     /// |cosθ| between the geometric normal and `w`; 1 where there is no surface.
     #[inline]
-    fn abs_cos(&self, w: Vec3) -> f32 {
+    pub(super) fn abs_cos(&self, w: Vec3) -> f32 {
         if self.n_g == Vec3::ZERO {
             1.0
         } else {
@@ -207,139 +199,6 @@ impl Vertex {
             cosines / distance2
         } else {
             0.0
-        }
-    }
-
-    /// The value of this vertex in the measurement contribution: scattering, emission or
-    /// importance between `wo` (towards the previous vertex) and `wi` (towards the next).
-    ///
-    /// The whole integrand is Π scatter · Π G over **geometric** cosines, so scattering carries
-    /// |ω·n_s| / |ω·n_g| with ω the direction that light comes from: `wi` for radiance, `wo` for
-    /// importance. That is the adjoint of shading normals [Veach97, §5.3]; it makes the
-    /// integrand one function of the path, whichever end a walk began at. Where shading and
-    /// geometric normal disagree on the side of a direction, nothing is scattered.
-    ///
-    /// This is the only caller of `Bsdf::eval`.
-    #[inline]
-    pub fn scatter(
-        &self,
-        context: &PathContext<'_>,
-        wo: Vec3,
-        wi: Vec3,
-        mode: TransportMode,
-    ) -> Spectrum {
-        let scene = context.scene;
-        match (self.kind, self.light) {
-            (VertexKind::Camera, _) => Spectrum::splat(scene.camera().importance(wi)),
-            (VertexKind::Light, Some(light)) => {
-                let emitted = scene.light(light).emitted(&self.light_point(), wi);
-                scene.color().illuminant(emitted, &context.wavelengths)
-            }
-            (VertexKind::Light, None) => Spectrum::ZERO,
-            (VertexKind::Surface, _) => {
-                if !self.sides_agree(wo) || !self.sides_agree(wi) {
-                    return Spectrum::ZERO;
-                }
-                let (local_o, local_i) = (self.shading.to_local(wo), self.shading.to_local(wi));
-                let f = self.bsdf.eval(local_o, local_i, mode);
-                f * match mode {
-                    TransportMode::Radiance => self.normal_ratio(wi),
-                    TransportMode::Importance => self.normal_ratio(wo),
-                }
-            }
-        }
-    }
-
-    /// Draws the next direction of a walk. None: nothing is scattered.
-    #[inline]
-    pub(super) fn sample_scatter(
-        &self,
-        mode: TransportMode,
-        u_lobe: f32,
-        u: Vec2,
-    ) -> Option<Scattered> {
-        let wo = self.shading.to_local(self.wo);
-        let sample = self.bsdf.sample(wo, mode, u_lobe, u)?;
-        let wi = self.shading.to_world(sample.wi);
-        if !self.sides_agree(self.wo) || !self.sides_agree(wi) {
-            return None;
-        }
-        // `sample.weight` has the shading cosine of `wi`: for radiance that is `scatter` times the
-        // geometric cosine already.
-        let weight = match mode {
-            TransportMode::Radiance => sample.weight,
-            TransportMode::Importance => {
-                sample.weight * (self.normal_ratio(self.wo) / self.normal_ratio(wi))
-            }
-        };
-        Some(Scattered {
-            wi,
-            weight,
-            pdf: sample.pdf,
-            pdf_reverse: sample.pdf_reverse,
-        })
-    }
-
-    /// |w·n_s| / |w·n_g|.
-    #[inline]
-    fn normal_ratio(&self, w: Vec3) -> f32 {
-        (self.shading.z.dot(w) / self.n_g.dot(w)).abs()
-    }
-
-    /// True where both normals see `w` on the same side.
-    #[inline]
-    fn sides_agree(&self, w: Vec3) -> bool {
-        self.shading.z.dot(w) * self.n_g.dot(w) > 0.0
-    }
-
-    /// Turns a density of directions at this vertex into that of the vertex `next` which the
-    /// direction leads to.
-    #[inline]
-    pub(super) fn density_at(&self, pdf_w: f32, next: &Self) -> f32 {
-        if next.is_infinite {
-            return pdf_w;
-        }
-        let cos = next.abs_cos(self.toward(next));
-        if self.is_infinite {
-            return pdf_w * cos;
-        }
-        let distance2 = self.point.distance_squared(next.point);
-        if distance2 > 0.0 {
-            pdf_w * cos / distance2
-        } else {
-            0.0
-        }
-    }
-
-    /// Density of drawing `next` from this vertex by a walk that came along `-wo`, without
-    /// roulette. Measure: area at `next`, 1/m²; solid angle for a light at infinity. Zero where
-    /// the scattering is a Dirac distribution.
-    #[inline]
-    pub fn pdf_to(&self, context: &PathContext<'_>, wo: Vec3, next: &Self) -> f32 {
-        let scene = context.scene;
-        let wi = self.toward(next);
-        let pdf_w = match (self.kind, self.light) {
-            (VertexKind::Camera, _) => scene.camera().pdf_direction(wi),
-            (VertexKind::Light, Some(light)) => {
-                let at = self.light_point();
-                scene
-                    .light(light)
-                    .pdf_direction(&scene.light_context(), &at, wi)
-            }
-            (VertexKind::Light, None) => 0.0,
-            (VertexKind::Surface, _) => self
-                .bsdf
-                .pdf(self.shading.to_local(wo), self.shading.to_local(wi)),
-        };
-        self.density_at(pdf_w, next)
-    }
-
-    /// The largest lane of the albedo that a walk along `-wo` meets here.
-    #[inline]
-    pub(super) fn albedo_from(&self, wo: Vec3) -> f32 {
-        match self.kind {
-            VertexKind::Surface => self.bsdf.albedo(self.shading.to_local(wo)).max_lane(),
-            VertexKind::Camera | VertexKind::Light => 1.0,
         }
     }
 }

@@ -8,6 +8,7 @@
 use super::{PathContext, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;
+use crate::light::EmissionSample;
 use crate::math::Vec3;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::offset_origin;
@@ -83,23 +84,11 @@ pub fn light_subpath(
     stats: &mut Stats,
 ) {
     subpath.clear();
-    let scene = context.scene;
-    let at = |purpose| Dimension::at(0, purpose);
-    let choice = scene
-        .light_choice()
-        .sample(stream.get_1d(at(Purpose::Light)));
-    let Some((light, prob)) = choice else { return };
-    let u_position = stream.get_2d(at(Purpose::LightPosition));
-    let u_direction = stream.get_2d(at(Purpose::LightDirection));
-    let lights = scene.light_context();
-    let Some(emission) = scene.lights()[light].sample_emission(&lights, u_position, u_direction)
-    else {
+    let Some((start, emission)) = draw_emission(context, stream) else {
         return;
     };
-    let mut start = Vertex::light(context, light as u32, &emission.from.at);
-    start.pdf_fwd = prob * emission.from.pdf;
-    start.beta = Spectrum::splat(1.0 / start.pdf_fwd);
-    let emitted = scene
+    let emitted = context
+        .scene
         .color()
         .illuminant(emission.emitted_cos, &context.wavelengths);
     let step = Step {
@@ -119,8 +108,28 @@ pub fn light_subpath(
     walker.walk(subpath, origin, step, &mut stats.rays.light);
 }
 
+/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density.
+fn draw_emission(
+    context: &PathContext<'_>,
+    stream: &SampleStream,
+) -> Option<(Vertex, EmissionSample)> {
+    let scene = context.scene;
+    let at = |purpose| Dimension::at(0, purpose);
+    let u_light = stream.get_1d(at(Purpose::Light));
+    let (light, prob) = scene.light_choice().sample(u_light)?;
+    let u_position = stream.get_2d(at(Purpose::LightPosition));
+    let u_direction = stream.get_2d(at(Purpose::LightDirection));
+    let lights = scene.light_context();
+    let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
+    let from = &emission.from;
+    let mut start = Vertex::on_light(light as u32, &from.at, prob * from.pdf);
+    start.beta = Spectrum::splat(1.0 / start.pdf_fwd);
+    Some((start, emission))
+}
+
 impl Subpath {
-    fn clear(&mut self) {
+    /// Forgets the walk, and keeps the memory.
+    pub(crate) fn clear(&mut self) {
         self.vertices.clear();
         self.escape = None;
     }

@@ -158,18 +158,7 @@ impl SceneBuilder {
     pub fn build(self) -> Result<Scene, SceneError> {
         let camera = self.camera.ok_or(SceneError::NoCamera)?;
         check_crop(&self.film)?;
-        let mut primitives = Vec::new();
-        let mut geometry = Vec::new();
-        for (number, shape) in self.shapes.iter().enumerate() {
-            check_shape(number, shape)?;
-            for index in 0..shape.primitive_count() {
-                primitives.push(PrimitiveRef {
-                    shape: number as u32,
-                    index: index as u32,
-                });
-                geometry.push(shape.primitive(index));
-            }
-        }
+        let (primitives, geometry) = gather_primitives(&self.shapes)?;
         let bvh = accel::Bvh::build(&geometry, &accel::BuildOptions { isa: self.isa })
             .map_err(|error| SceneError::Intersector(error.to_string()))?;
         let (centre, radius) = bounding_sphere(&bvh, &self.lights);
@@ -209,6 +198,24 @@ fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
     } else {
         Err(SceneError::EmptyCrop)
     }
+}
+
+/// Checks all shapes: their primitives, for reference and for the intersector.
+fn gather_primitives(
+    shapes: &[Shape],
+) -> Result<(Vec<PrimitiveRef>, Vec<accel::Primitive>), SceneError> {
+    let (mut primitives, mut geometry) = (Vec::new(), Vec::new());
+    for (number, shape) in shapes.iter().enumerate() {
+        check_shape(number, shape)?;
+        for index in 0..shape.primitive_count() {
+            primitives.push(PrimitiveRef {
+                shape: number as u32,
+                index: index as u32,
+            });
+            geometry.push(shape.primitive(index));
+        }
+    }
+    Ok((primitives, geometry))
 }
 
 fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {

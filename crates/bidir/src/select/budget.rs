@@ -48,12 +48,18 @@ impl Budget {
     }
 }
 
+/// min(1, g_c / δ); 1 where there is no δ.
+#[inline]
+fn prob(candidate: &Candidate, threshold: Option<f64>) -> f64 {
+    threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0))
+}
+
 impl Selector for Budget {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         let threshold = self.threshold(candidates);
         let mut pointer = draws.get(0);
         for (i, candidate) in candidates.iter().enumerate() {
-            let prob = threshold.map_or(1.0, |delta| (f64::from(candidate.score) / delta).min(1.0));
+            let prob = prob(candidate, threshold);
             pointer += prob;
             if pointer >= 1.0 {
                 pointer -= 1.0;
@@ -63,5 +69,10 @@ impl Selector for Budget {
                 });
             }
         }
+    }
+
+    fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64> {
+        let threshold = self.threshold(candidates);
+        candidates.iter().map(|c| prob(c, threshold)).collect()
     }
 }

@@ -33,38 +33,58 @@ impl OnePerGroup {
             Group::Pair => 0,
         }
     }
+
+    /// The members of a group, each with its number among the candidates.
+    #[inline]
+    fn members(
+        self,
+        candidates: &[Candidate],
+        group: u16,
+    ) -> impl Iterator<Item = (usize, &Candidate)> {
+        candidates
+            .iter()
+            .enumerate()
+            .filter(move |(_, c)| self.number(c) == group)
+    }
+
+    /// Σ g of a group. In f64: scores of one group span ten orders of magnitude.
+    #[inline]
+    fn sum(self, candidates: &[Candidate], group: u16) -> f64 {
+        self.members(candidates, group)
+            .map(|(_, c)| f64::from(c.score))
+            .sum()
+    }
+}
+
+/// g_c / Σ g, `sum` being that of the candidate's group.
+#[inline]
+fn prob(candidate: &Candidate, sum: f64) -> f64 {
+    f64::from(candidate.score) / sum
 }
 
 impl Selector for OnePerGroup {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
-        let groups = candidates
-            .iter()
-            .map(|c| self.number(c) + 1)
-            .max()
-            .unwrap_or(0);
-        for group in 0..groups {
-            let members = || {
-                candidates
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, c)| self.number(c) == group)
-            };
-            // In f64: scores of one group span ten orders of magnitude.
-            let sum: f64 = members().map(|(_, c)| f64::from(c.score)).sum();
+        let numbers = candidates.iter().map(|c| self.number(c) + 1);
+        for group in 0..numbers.max().unwrap_or(0) {
+            let sum = self.sum(candidates, group);
             let mut rest = draws.get(usize::from(group)) * sum;
             let mut picked = None;
-            for (i, candidate) in members() {
-                let score = f64::from(candidate.score);
+            for (i, candidate) in self.members(candidates, group) {
                 picked = Some(Chosen {
                     candidate: i as u32,
-                    prob: score / sum,
+                    prob: prob(candidate, sum),
                 });
-                rest -= score;
+                rest -= f64::from(candidate.score);
                 if rest < 0.0 {
                     break;
                 }
             }
             chosen.extend(picked);
         }
+    }
+
+    fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64> {
+        let of = |c| prob(c, self.sum(candidates, self.number(c)));
+        candidates.iter().map(of).collect()
     }
 }

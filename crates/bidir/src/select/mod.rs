@@ -38,6 +38,18 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// A candidate for `value`, which is not black and has the luminance `luminance` without regard
+    /// to signs.
+    #[inline]
+    pub fn new(strategy: Strategy, value: Spectrum, luminance: f32) -> Self {
+        Self {
+            value,
+            // What underflows must keep a chance.
+            score: luminance.max(f32::MIN_POSITIVE),
+            strategy,
+        }
+    }
+
     /// What the candidate adds if it was chosen with probability `prob` and nothing blocks it:
     /// value / π.
     #[inline]
@@ -74,6 +86,9 @@ pub trait Selector: Sync + Send {
     /// Appends the chosen ones of `candidates` to `chosen`, each with its inclusion probability.
     /// A candidate may be appended once.
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>);
+
+    /// π of every one of `candidates`, chosen or not, for those who look into a selection.
+    fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64>;
 }
 
 /// The rules by name, with their settings.
@@ -110,10 +125,17 @@ impl ShadowRays {
                 group: Group::CameraVertex,
             }),
             Self::PerPair => Box::new(OnePerGroup { group: Group::Pair }),
-            Self::RayRoulette(part) => Box::new(RayRoulette {
-                threshold: part * mean_luminance,
-            }),
+            Self::RayRoulette(part) => Box::new(RayRoulette::new(part, mean_luminance)),
             Self::Budget(rays) => Box::new(Budget { rays }),
+        }
+    }
+
+    /// The score from which on `ray-roulette` is sure to trace a candidate, given the image's mean
+    /// luminance. None: another rule.
+    pub fn threshold(self, mean_luminance: f32) -> Option<f32> {
+        match self {
+            Self::RayRoulette(part) => Some(RayRoulette::new(part, mean_luminance).threshold),
+            _ => None,
         }
     }
 

@@ -14,6 +14,10 @@ impl Selector for All {
             prob: 1.0,
         }));
     }
+
+    fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64> {
+        vec![1.0; candidates.len()]
+    }
 }
 
 /// Keeps each candidate by a coin of its own: π = min(1, score / threshold)
@@ -24,11 +28,25 @@ pub struct RayRoulette {
     pub threshold: f32,
 }
 
+impl RayRoulette {
+    /// Roulette with this part of the image's mean luminance as its threshold.
+    pub fn new(part: f32, mean_luminance: f32) -> Self {
+        Self {
+            threshold: part * mean_luminance,
+        }
+    }
+
+    #[inline]
+    fn prob(self, candidate: &Candidate) -> f64 {
+        // A black training image has threshold 0: then everything is traced.
+        (f64::from(candidate.score) / f64::from(self.threshold)).min(1.0)
+    }
+}
+
 impl Selector for RayRoulette {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
         for (i, candidate) in candidates.iter().enumerate() {
-            // A black training image has threshold 0: then everything is traced.
-            let prob = (f64::from(candidate.score) / f64::from(self.threshold)).min(1.0);
+            let prob = self.prob(candidate);
             if prob >= 1.0 || draws.get(i) < prob {
                 chosen.push(Chosen {
                     candidate: i as u32,
@@ -36,5 +54,9 @@ impl Selector for RayRoulette {
                 });
             }
         }
+    }
+
+    fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64> {
+        candidates.iter().map(|c| self.prob(c)).collect()
     }
 }

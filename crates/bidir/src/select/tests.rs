@@ -31,12 +31,13 @@ const RULES: [ShadowRays; 8] = [
     ShadowRays::Budget(6),
 ];
 
-/// How often each candidate was chosen in `n` draws, and the probability it was said to have;
-/// `check` sees every draw.
+/// How often each candidate was chosen in `n` draws, and the probability it is said to have, whether
+/// it is chosen or not; `check` sees every draw.
 fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Vec<(f64, f64)> {
     let (candidates, selector) = (candidates(), rule.selector(10.0));
     let sampler = Sampler::new(SamplerKind::Independent, 11);
-    let mut result = vec![(0.0, 0.0); candidates.len()];
+    let probs = selector.probabilities(&candidates);
+    let mut frequencies = vec![0.0; candidates.len()];
     let mut chosen = Vec::new();
     for index in 0..n {
         chosen.clear();
@@ -44,11 +45,12 @@ fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Ve
         selector.select(&candidates, Draws(&stream), &mut chosen);
         check(&chosen);
         for c in &chosen {
-            let entry = &mut result[c.candidate as usize];
-            *entry = (entry.0 + 1.0 / n as f64, c.prob);
+            let i = c.candidate as usize;
+            frequencies[i] += 1.0 / n as f64;
+            assert_eq!(c.prob.to_bits(), probs[i].to_bits(), "{rule} {i}");
         }
     }
-    result
+    frequencies.into_iter().zip(probs).collect()
 }
 
 #[test]
@@ -84,17 +86,10 @@ fn no_rule_traces_more_rays_than_it_says() {
 
 #[test]
 fn one_ray_of_budget_is_one_per_pair() {
-    let probabilities = |rule| frequencies(rule, 100_000, |_| ());
-    let (budget, pair) = (
-        probabilities(ShadowRays::Budget(1)),
-        probabilities(ShadowRays::PerPair),
-    );
-    for (a, b) in budget
-        .iter()
-        .zip(&pair)
-        .filter(|(a, b)| a.1 > 0.0 && b.1 > 0.0)
-    {
-        assert!((a.1 - b.1).abs() < 1e-6);
+    let probabilities = |rule: ShadowRays| rule.selector(10.0).probabilities(&candidates());
+    let budget = probabilities(ShadowRays::Budget(1));
+    for (a, b) in budget.iter().zip(probabilities(ShadowRays::PerPair)) {
+        assert!((a - b).abs() < 1e-6);
     }
 }
 

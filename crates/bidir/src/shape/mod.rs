@@ -60,6 +60,15 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// The name of its kind, in one word.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Mesh(_) => "mesh",
+            Self::Sphere(_) => "sphere",
+            Self::Disk(_) => "disk",
+        }
+    }
+
     /// The number of primitives that [`primitive`](Self::primitive) counts.
     pub fn primitive_count(&self) -> usize {
         match self {

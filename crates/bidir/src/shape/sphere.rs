@@ -198,6 +198,7 @@ impl Sphere {
         let theta = |z: f32| libm::acosf((z / self.radius).clamp(-1.0, 1.0));
         let (bottom, top) = (theta(self.z_min), theta(self.z_max));
         let v = (theta(n.z * self.radius) - bottom) / (top - bottom);
-        Vec2::new(phi / self.phi_max, v)
+        // Rounding may leave the unit square.
+        Vec2::new(phi / self.phi_max, v).clamp(Vec2::ZERO, Vec2::ONE)
     }
 }

@@ -1,13 +1,23 @@
 //! The command line: what can be asked, and the help text that documents it.
 
+mod farm;
+mod film;
+mod long;
 mod render;
+mod sources;
+mod tonemap;
 mod values;
 
+pub(crate) use farm::{FarmArgs, FarmCommand};
+pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
+pub(crate) use long::{LongArgs, Part};
 pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, OutputArgs, RenderArgs};
+pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, ReplayTarget};
 
 use crate::exit::Exit;
-use clap::{Args, Parser, Subcommand, ValueHint};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};
+use sources::Sources;
 use std::path::PathBuf;
 
 /// Renders scenes by bidirectional path tracing, and spends its shadow rays where they matter.
@@ -23,6 +33,23 @@ pub(crate) struct Cli {
     /// Colour.
     #[command(flatten)]
     pub(crate) color: ColorArgs,
+}
+
+impl Cli {
+    /// Reads the command line and the environment.
+    pub(crate) fn read() -> Result<Self, clap::Error> {
+        let mut command = Self::command();
+        let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+        let cli = Self::from_arg_matches(&matches);
+        let mut cli = cli.map_err(|error| error.format(&mut command))?;
+        if let Command::Render(args) = &mut cli.command
+            && let Some((name, matches)) = matches.subcommand()
+            && let Some(command) = command.find_subcommand(name)
+        {
+            args.estimator.sources = Sources::new(command, matches);
+        }
+        Ok(cli)
+    }
 }
 
 /// Colour of messages.
@@ -42,7 +69,8 @@ pub(crate) enum Command {
     /// variable, the scene file, the default. Rendering goes pass by pass, one sample of every pixel
     /// at a time.
     ///
-    /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once.
+    /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once. With
+    /// --checkpoint such an end has exit code 75: the same command with --resume goes on.
     Render(Box<RenderArgs>),
     /// Tell what is in a scene.
     ///
@@ -55,6 +83,34 @@ pub(crate) enum Command {
     /// mean of (a-b)²/(b²+0.01) (relmse), the mean of A divided by the mean of B (`mean_ratio`), and
     /// whether both have the same size and the same bits (identical).
     Compare(CompareArgs),
+    /// Tell what is in film files, develop them to images, or check them.
+    #[command(subcommand)]
+    Film(FilmCommand),
+    /// Add film files of one render to one film file.
+    ///
+    /// In any order and any grouping the result has the bits of one render. Files of another scene or
+    /// other settings, and passes that two files have, are refused.
+    Merge(MergeArgs),
+    /// Tell which passes of a shared render no film file has.
+    ///
+    /// Prints one range per line, as `render --passes` takes it, or with --parts one share per line,
+    /// as `render --part` takes it; exits with 6 where something is missing.
+    Missing(MissingArgs),
+    /// Bring an image to the screen: linear light becomes a PNG.
+    ///
+    /// The image that `bidir render` writes has light of any strength; this makes it brighter or
+    /// darker, and fits it to the screen. The image itself is not changed.
+    Tonemap(TonemapArgs),
+    /// Print a job file that renders a scene in shares on many machines.
+    ///
+    /// Each share is a part of the passes, with a film file NAME-I.film from which it goes on where it
+    /// was stopped; the last step merges them to NAME.film and develops NAME.exr, which has the bits
+    /// of a render in one piece. The job file is a beginning: read it, and add what your machines ask
+    /// for.
+    ///
+    /// For example: bidir farm slurm room.pbrt --parts 16 --spp 4096 > room.sh; sh room.sh
+    #[command(subcommand)]
+    Farm(FarmCommand),
     /// Print a completion script for a shell.
     ///
     /// For example: bidir completions bash > ~/.local/share/bash-completion/completions/bidir
@@ -117,6 +173,8 @@ pub(crate) struct CompareArgs {
     #[arg(long)]
     pub(crate) resample: bool,
     /// Print JSON with the keys rmse, relmse, `mean_ratio`, identical, size and resampled.
+    ///
+    /// Numbers that are not finite are null, as are all numbers where sizes differ.
     #[arg(long)]
     pub(crate) json: bool,
 }

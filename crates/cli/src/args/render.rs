@@ -1,7 +1,10 @@
 //! The flags of `bidir render`.
 
-use super::SceneArgs;
+use super::long::LongArgs;
+use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
+use super::{SceneArgs, values};
+use crate::console::Display;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
@@ -19,6 +22,8 @@ Examples:
       as many passes as fit into ten minutes
   bidir render room.pbrt --shadow-rays per-pair --spp 256
       one connection ray for each pair of subpaths
+  bidir render room.pbrt --spp 65536 --checkpoint room.film --resume
+      survives the night: the same command goes on where it was stopped
   bidir render room.pbrt --strategies all,-s0
       without the light that camera subpaths hit by chance
   bidir render room.pbrt --replay 17,4,3
@@ -36,6 +41,9 @@ pub(crate) struct RenderArgs {
     /// When it is enough.
     #[command(flatten)]
     pub(crate) budget: BudgetArgs,
+    /// How it survives and is shared.
+    #[command(flatten)]
+    pub(crate) long: LongArgs,
     /// The picture's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
@@ -65,9 +73,16 @@ pub(crate) struct OutputArgs {
     /// Write what was counted and measured, with all settings, as JSON.
     #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
     pub(crate) stats: Option<PathBuf>,
-    /// Tell nothing but warnings and errors.
+    /// Tell nothing but warnings and errors, and the progress that --progress asks for.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+    /// How progress is told [default: bar on a terminal, plain elsewhere].
+    ///
+    /// bar: a bar that is drawn over. plain: a line now and then. ndjson: such lines as objects of
+    /// JSON, with the keys progress (0 to 1), pass, passes, seconds and left (seconds). openjd: lines
+    /// of Open Job Description on stdout, openjd_progress, openjd_status and openjd_fail.
+    #[arg(long, value_parser = named(Display::NAMES))]
+    pub(crate) progress: Option<Display>,
 }
 
 /// How light is estimated.
@@ -115,6 +130,9 @@ pub(crate) struct EstimatorArgs {
     /// Other seeds give unrelated noise [default: the scene's, or 0].
     #[arg(long, env = "BIDIR_SEED", value_name = "N")]
     pub(crate) seed: Option<u64>,
+    /// What the values above come from.
+    #[arg(skip)]
+    pub(crate) sources: Sources,
 }
 
 /// When it is enough: what is reached first ends the render.
@@ -123,7 +141,7 @@ pub(crate) struct EstimatorArgs {
 pub(crate) struct BudgetArgs {
     /// Samples per pixel, which is the number of passes [default: the scene's].
     ///
-    /// With --time alone there is no limit.
+    /// With --time or --noise and no --spp there is no limit.
     #[arg(long, env = "BIDIR_SPP", value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: Option<u64>,
@@ -133,6 +151,13 @@ pub(crate) struct BudgetArgs {
     /// but the first one always is.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
+    /// The relative error to reach: the root mean square of the pixels' standard errors, divided by
+    /// the mean of the image, both of luminance.
+    ///
+    /// Looked at from 16 passes on, after every eighth more. A picture that decides itself when it is
+    /// done is slightly biased: the file says so.
+    #[arg(long, value_name = "ERROR", value_parser = values::positive_number)]
+    pub(crate) noise: Option<f64>,
     /// Threads; 0 is one for each processor [default: 0].
     #[arg(
         long,

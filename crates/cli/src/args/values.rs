@@ -48,6 +48,13 @@ impl FromStr for Size {
     }
 }
 
+/// A finite number above zero.
+pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok();
+    let number = number.filter(|number| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "expected a number above 0, such as 0.01".into())
+}
+
 fn positive(text: &str) -> Option<u32> {
     text.trim().parse().ok().filter(|&number| number > 0)
 }

@@ -30,8 +30,9 @@ fn every_flag_is_described() {
     check_flags("", "--help --no-color --version");
     check_flags(
         "render",
-        "--crop --cropwindow --help --integrator --isa --json --lenient --light-point --max-depth \
-         --mis --no-color --output --path-roulette --pixelbounds --quiet --replay --sampler --seed \
+        "--checkpoint --checkpoint-every --crop --cropwindow --help --integrator --isa --json \
+         --lenient --light-point --max-depth --mis --no-color --noise --output --part --passes \
+         --path-roulette --pixelbounds --progress --quiet --replay --restart --resume --sampler --seed \
          --shadow-rays --size --spp --stats --strategies --strict --threads --time --version",
     );
     check_flags(
@@ -42,6 +43,14 @@ fn every_flag_is_described() {
         "compare",
         "--exact --help --json --no-color --resample --version",
     );
+    check_flags(
+        "tonemap",
+        "--exposure --help --no-color --operator --output --version",
+    );
+    for farm in ["slurm", "hyperqueue", "k8s", "shell"] {
+        let flags = "--help --no-color --output --parts --spp --version";
+        check_flags(&format!("farm {farm}"), flags);
+    }
 }
 
 #[test]

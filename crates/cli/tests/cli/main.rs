@@ -5,9 +5,13 @@
 mod common;
 mod compare;
 mod failures;
+mod farm;
+mod film;
 mod help;
 mod info;
+mod progress;
 mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+mod tonemap;

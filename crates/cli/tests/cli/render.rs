@@ -127,6 +127,47 @@ fn statistics_tell_settings_times_and_rays() {
     let per_sample = number("/rays/connection") / number("/samples");
     assert!((number("/connection_rays_per_sample") - per_sample).abs() < 1e-9);
     assert!(stats["dropped_list"].is_array() && stats["connection_blocked"].is_u64());
+    let training = |kind| number(&format!("/training/rays/{kind}")) as u64;
+    assert_eq!(kinds.map(training).iter().sum::<u64>(), training("total"));
+    assert_eq!(training("total"), number("/rays/training") as u64);
+    let threshold = 0.2 * number("/training/mean_luminance");
+    assert!((number("/training/threshold") - threshold).abs() < 1e-5 * threshold);
+}
+
+#[test]
+fn statistics_tell_what_became_of_each_strategy() {
+    let place = Workplace::new();
+    let arguments = "--stats s.json --shadow-rays per-camera-vertex --spp 4";
+    place
+        .run(&format!("render room.pbrt {arguments}"))
+        .expect(0);
+    let stats: serde_json::Value = serde_json::from_str(&place.read("s.json")).unwrap();
+    let rows = stats["strategies"].as_array().unwrap();
+    let sum = |count: &str, is_counted: &dyn Fn(u64, u64) -> bool| {
+        let number = |row: &serde_json::Value, key: &str| row[key].as_u64().unwrap();
+        let rows = rows
+            .iter()
+            .filter(|row| is_counted(number(row, "s"), number(row, "t")));
+        rows.map(|row| number(row, count)).sum::<u64>()
+    };
+    let number = |path: &str| stats.pointer(path).unwrap().as_u64().unwrap();
+    let is_connection = |s: u64, t: u64| s >= 1 && t >= 2;
+    for (count, total) in [
+        ("candidates", "/candidates"),
+        ("traced", "/rays/connection"),
+        ("blocked", "/connection_blocked"),
+    ] {
+        assert_eq!(sum(count, &is_connection), number(total), "{count}");
+    }
+    let is_light_image = |_, t: u64| t == 1;
+    assert_eq!(sum("traced", &is_light_image), number("/rays/light_image"));
+    assert_eq!(
+        sum("blocked", &is_light_image),
+        number("/light_image_blocked")
+    );
+    let is_hit = |s: u64, _| s == 0;
+    assert!(sum("candidates", &is_hit) > 0 && sum("traced", &is_hit) == 0);
+    assert_eq!(number("/longer_paths/candidates"), 0);
 }
 
 #[test]

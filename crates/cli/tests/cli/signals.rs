@@ -71,3 +71,37 @@ fn a_signal_that_comes_too_late_stops_nothing() {
     let ran = interrupted(&place, arguments, &[("Progress:", "INT")]);
     ran.expect(0).says("1 spp");
 }
+
+#[test]
+fn with_a_film_file_the_render_can_go_on() {
+    let place = Workplace::new();
+    let arguments = "--spp 1000000 --checkpoint a.film --time 10";
+    let signals = [("Progress:", "TERM")];
+    interrupted(&place, arguments, &signals)
+        .expect(75)
+        .says("a.film");
+    let info = place.run("film info a.film --json").expect(0).json();
+    assert_eq!(info["stopping"], "time");
+}
+
+#[test]
+fn a_signal_writes_now() {
+    let place = Workplace::new();
+    let arguments = "--time 3 -o a.exr --checkpoint a.film";
+    let mut command = place.command(&format!("render room.pbrt {arguments}"));
+    let mut child = command.stderr(Stdio::null()).spawn().unwrap();
+    // The film file is locked when signals are watched.
+    while !place.path("a.film.lock").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send("USR1", &child);
+    while !place.path("a.exr").exists() {
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "written at the end only"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    place.run("film verify a.film").expect(0);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}

@@ -1,8 +1,8 @@
 //! OpenEXR: every kind of flat image in, 32-bit scan lines out.
 
 use super::{ImageData, broken, check_size};
-use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
+use crate::file;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
@@ -49,7 +49,7 @@ pub struct ExrImage<'a> {
 /// Writes an EXR of 32-bit numbers with Rec. 709 primaries. The same image gives the same bytes.
 pub fn write_exr(path: &Path, image: &ExrImage<'_>) -> Result<()> {
     let encoded = encode(image).map_err(|error| error.in_file(path))?;
-    bytes::write(path, &encoded)
+    file::replace(path, &encoded)
 }
 
 fn encode(image: &ExrImage<'_>) -> Result<Vec<u8>> {

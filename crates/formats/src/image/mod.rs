@@ -5,8 +5,9 @@
 //! linear as they are.
 //!
 //! Decoders written by others may still meet bytes that they panic on; such a panic becomes an
-//! [`Error`] like any other.
+//! [`Error`] like any other, and prints nothing.
 
+mod catch;
 mod exr;
 mod pfm;
 mod png;
@@ -19,7 +20,7 @@ pub use transfer::Encoding;
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use catch::catch_silently;
 use std::path::Path;
 
 /// Bytes of a file.
@@ -88,6 +89,15 @@ impl Format {
 
 /// Reads an image; `encoding` is what a PNG file holds, sRGB where there is none.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
+    read_inspected(path, encoding, |_| ())
+}
+
+/// The same as [`read`], with a look at the bytes.
+pub(crate) fn read_inspected(
+    path: &Path,
+    encoding: Option<Encoding>,
+    inspect: impl FnOnce(&[u8]),
+) -> Result<ImageData> {
     let Some(format) = Format::of(path) else {
         let error = Error::new(ErrorKind::Unsupported, "an image format that is not read");
         return Err(error
@@ -95,6 +105,7 @@ pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
             .in_file(path));
     };
     let bytes = bytes::read(path, LARGEST_FILE)?;
+    inspect(&bytes);
     decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
 }
 
@@ -105,8 +116,7 @@ pub fn decode(format: Format, bytes: &[u8], encoding: Option<Encoding>) -> Resul
         Format::Pfm => pfm::decode(bytes),
         _ => raster::decode(format, bytes, encoding.unwrap_or(Encoding::Srgb)),
     };
-    let panicked = |_| Err(broken("the decoder gave up"));
-    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(panicked)
+    catch_silently(decode).unwrap_or_else(|_| Err(broken("the decoder gave up")))
 }
 
 fn broken(message: impl std::fmt::Display) -> Error {

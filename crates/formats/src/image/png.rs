@@ -1,8 +1,8 @@
 //! Images for the screen.
 
 use super::transfer::srgb_byte;
-use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
+use crate::file;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
@@ -26,5 +26,5 @@ pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()>
     PngEncoder::new(&mut encoded)
         .write_image(&stored, size[0], size[1], ExtendedColorType::Rgb8)
         .map_err(|error| failed(format!("cannot write: {error}")))?;
-    bytes::write(path, &encoded)
+    file::replace(path, &encoded)
 }

@@ -11,6 +11,7 @@
 
 mod build;
 mod definitions;
+mod digest;
 mod directives;
 mod known;
 mod lexer;
@@ -25,6 +26,7 @@ mod v3;
 mod tests;
 
 pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load};
+pub use digest::SceneDigest;
 pub use parameters::{Parameter, ParameterList, ParameterType, Values};
 pub use parser::{parse_file, parse_text};
 pub use scene::{

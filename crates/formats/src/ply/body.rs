@@ -100,32 +100,30 @@ impl<'b> Body<'b> {
     /// Reads a number.
     #[inline]
     pub(super) fn scalar(&mut self, scalar: Scalar) -> Result<f64, Broken> {
-        let big = match self.format {
-            Format::Ascii => return self.word(),
-            Format::LittleEndian => false,
-            Format::BigEndian => true,
-        };
+        if self.format == Format::Ascii {
+            return self.word();
+        }
         Ok(match scalar {
-            Scalar::I8 => f64::from(i8::from_le_bytes(self.take(big)?)),
-            Scalar::U8 => f64::from(u8::from_le_bytes(self.take(big)?)),
-            Scalar::I16 => f64::from(i16::from_le_bytes(self.take(big)?)),
-            Scalar::U16 => f64::from(u16::from_le_bytes(self.take(big)?)),
-            Scalar::I32 => f64::from(i32::from_le_bytes(self.take(big)?)),
-            Scalar::U32 => f64::from(u32::from_le_bytes(self.take(big)?)),
-            Scalar::F32 => f64::from(f32::from_le_bytes(self.take(big)?)),
-            Scalar::F64 => f64::from_le_bytes(self.take(big)?),
+            Scalar::I8 => f64::from(i8::from_le_bytes(self.take()?)),
+            Scalar::U8 => f64::from(u8::from_le_bytes(self.take()?)),
+            Scalar::I16 => f64::from(i16::from_le_bytes(self.take()?)),
+            Scalar::U16 => f64::from(u16::from_le_bytes(self.take()?)),
+            Scalar::I32 => f64::from(i32::from_le_bytes(self.take()?)),
+            Scalar::U32 => f64::from(u32::from_le_bytes(self.take()?)),
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.take()?)),
+            Scalar::F64 => f64::from_le_bytes(self.take()?),
         })
     }
 
-    /// The next bytes, least significant first.
+    /// The next bytes of a binary body, least significant first.
     #[inline]
-    fn take<const N: usize>(&mut self, big: bool) -> Result<[u8; N], Broken> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], Broken> {
         let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else {
             return Err(Broken::new("the file ends too early"));
         };
         self.rest = rest;
         let mut bytes = *bytes;
-        if big {
+        if self.format == Format::BigEndian {
             bytes.reverse();
         }
         Ok(bytes)

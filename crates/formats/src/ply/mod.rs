@@ -61,7 +61,14 @@ impl Broken {
 
 /// Reads the mesh of a file; `.gz` is unpacked.
 pub fn read(path: &Path) -> Result<PlyMesh> {
-    parse(&bytes::read(path, LARGEST)?).map_err(|error| error.in_file(path))
+    read_inspected(path, |_| ())
+}
+
+/// The same as [`read`], with a look at the unpacked bytes.
+pub(crate) fn read_inspected(path: &Path, inspect: impl FnOnce(&[u8])) -> Result<PlyMesh> {
+    let bytes = bytes::read(path, LARGEST)?;
+    inspect(&bytes);
+    parse(&bytes).map_err(|error| error.in_file(path))
 }
 
 /// Reads the mesh in `bytes`, which are unpacked.

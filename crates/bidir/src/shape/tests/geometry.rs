@@ -1,5 +1,5 @@
-use super::{Example, disk, examples, mirrored, sphere, triangle, uneven};
-use crate::math::{PI, Vec2, Vec3};
+use super::{Example, disk, examples, mirrored, moved, sphere, triangle, uneven};
+use crate::math::{ONE_MINUS_EPSILON, PI, Vec2, Vec3};
 use crate::sampler::{Dimension, Purpose};
 use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere, SurfacePoint};
 use crate::testing::samples;
@@ -94,6 +94,20 @@ fn a_hit_has_the_geometry_of_the_sample() {
                 && (hit.n_g - at.n_g).length() < 1e-3
                 && (hit.shading.x - at.shading.x).length() < 1e-2;
             assert!(close, "{}: {hit:?} instead of {at:?}", example.name);
+        }
+    }
+}
+
+/// Rounding at the rim does not leave the unit square.
+#[test]
+fn parameters_of_a_part_of_a_sphere_stay_in_the_unit_square() {
+    let map = moved(Vec3::ONE, 1.0);
+    for phi_max in [0.3, 2.5, 4.0] {
+        let part = sphere("partial", map, 1.0, Vec3::new(-0.3, 0.9, phi_max));
+        for i in 0..=100 {
+            let u = Vec2::new(i as f32 / 100.0, ONE_MINUS_EPSILON);
+            let uv = part.shape.sample(0, u).surface.uv;
+            assert!(uv == uv.clamp(Vec2::ZERO, Vec2::ONE), "{uv} for {phi_max}");
         }
     }
 }

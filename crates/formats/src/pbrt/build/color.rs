@@ -38,7 +38,7 @@ const GLASSES: &[(&str, f32)] = &[
 ];
 
 /// What a colour is for: what values it may have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Purpose {
     /// Between 0 and 1.
     Albedo,
@@ -46,6 +46,25 @@ pub(super) enum Purpose {
     Unbounded,
     /// Not negative; relative to the white of its colour space.
     Illuminant,
+}
+
+impl Purpose {
+    /// The largest value.
+    fn most(self) -> f32 {
+        match self {
+            Self::Albedo => 1.0,
+            Self::Unbounded | Self::Illuminant => f32::MAX,
+        }
+    }
+
+    /// Refuses values that are too large.
+    fn check(self, parameter: &Parameter, value: Rgb) -> Result<Rgb, Fault> {
+        if value.iter().all(|&channel| channel <= self.most()) {
+            return Ok(value);
+        }
+        let message = format!("the reflectance `{}` is above 1", parameter.name);
+        Err(Fault::scene(parameter.value_span, message))
+    }
 }
 
 /// Reads a colour given as `rgb`, `spectrum` or `blackbody`. None: where the file gives none.
@@ -117,13 +136,9 @@ fn positive(reader: &Reader<'_>, eta: f32) -> Result<f32, Fault> {
 }
 
 fn rgb(context: &mut Context<'_>, parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
-    let value = three(parameter)?;
+    let value = purpose.check(parameter, three(parameter)?)?;
     if value.iter().any(|&channel| channel < 0.0) {
         let message = format!("the colour `{}` has a negative part", parameter.name);
-        return Err(Fault::scene(parameter.value_span, message));
-    }
-    if purpose == Purpose::Albedo && value.iter().any(|&channel| channel > 1.0) {
-        let message = format!("the reflectance `{}` is above 1", parameter.name);
         return Err(Fault::scene(parameter.value_span, message));
     }
     if parameter.color_space == ColorSpace::Aces2065 {
@@ -131,12 +146,7 @@ fn rgb(context: &mut Context<'_>, parameter: &Parameter, purpose: Purpose) -> Re
         context.unsupported(parameter.value_span, what, "the numbers are taken as sRGB")?;
     }
     let value = to_rec709(parameter.color_space, value);
-    let most = if purpose == Purpose::Albedo {
-        1.0
-    } else {
-        f32::MAX
-    };
-    Ok(value.map(|channel| channel.clamp(0.0, most)))
+    Ok(value.map(|channel| channel.clamp(0.0, purpose.most())))
 }
 
 /// Linear Rec. 709 of a colour in another space with the same white.
@@ -178,7 +188,7 @@ fn spectrum(
                 return Ok([1.0; 3]);
             }
             if let Some(value) = metal(name) {
-                return Ok(value);
+                return purpose.check(parameter, value);
             }
             let what = format!("the spectrum `{name}`");
             let stand_in = format!("{} stands in", neutral[0]);
@@ -194,12 +204,7 @@ fn spectrum(
             }
             let stand_in = "its values at 650, 550 and 450 nm stand in";
             context.unsupported(parameter.value_span, "a spectrum of samples", stand_in)?;
-            let most = if purpose == Purpose::Albedo {
-                1.0
-            } else {
-                f32::MAX
-            };
-            Ok([650.0, 550.0, 450.0].map(|nm| interpolate(pairs, nm).clamp(0.0, most)))
+            Ok([650.0, 550.0, 450.0].map(|nm| interpolate(pairs, nm).clamp(0.0, purpose.most())))
         }
         _ => Ok(neutral),
     }

@@ -1,23 +1,66 @@
-//! What building knows throughout: the description, what may stand in for what is missing, warnings.
+//! What building knows throughout: the description, what the caller wants, warnings, what was read.
 
+use super::LoadOptions;
 use crate::error::ErrorKind;
+use crate::image::{self, Encoding, ImageData};
+use crate::pbrt::digest::{Content, DigestBuilder};
 use crate::pbrt::scene::{SceneDescription, Warning, warn};
+use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, Span};
+use std::path::Path;
+
+/// Whether something simpler may replace what is not supported yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StandIns {
+    Accepted,
+    Refused,
+}
 
 pub(super) struct Context<'a> {
     pub(super) description: &'a SceneDescription,
-    /// True where a stand-in may replace what is not supported yet.
-    lenient: bool,
+    pub(super) options: &'a LoadOptions,
+    stand_ins: StandIns,
     pub(super) warnings: Vec<Warning>,
+    /// Of the texts and of every file that was read since.
+    pub(super) digest: DigestBuilder,
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(description: &'a SceneDescription, lenient: bool) -> Self {
+    pub(super) fn new(description: &'a SceneDescription, options: &'a LoadOptions) -> Self {
+        let stand_ins = if options.lenient {
+            StandIns::Accepted
+        } else {
+            StandIns::Refused
+        };
+        let mut digest = DigestBuilder::new();
+        for text in description.sources.texts() {
+            digest.add(Content::Text, text.as_bytes());
+        }
         Self {
             description,
-            lenient,
+            options,
+            stand_ins,
             warnings: description.warnings.clone(),
+            digest,
         }
+    }
+
+    /// Reads a mesh, which `span` names.
+    pub(super) fn read_mesh(&mut self, path: &Path, span: Span) -> Result<PlyMesh, Fault> {
+        let inspect = |bytes: &[u8]| self.digest.add(Content::Mesh, bytes);
+        ply::read_inspected(path, inspect).map_err(|error| Fault::from_error(span, &error))
+    }
+
+    /// Reads an image, which `span` names.
+    pub(super) fn read_image(
+        &mut self,
+        path: &Path,
+        encoding: Option<Encoding>,
+        span: Span,
+    ) -> Result<ImageData, Fault> {
+        let inspect = |bytes: &[u8]| self.digest.add(Content::Image, bytes);
+        image::read_inspected(path, encoding, inspect)
+            .map_err(|error| Fault::from_error(span, &error))
     }
 
     pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {
@@ -32,12 +75,27 @@ impl<'a> Context<'a> {
         what: &str,
         stand_in: &str,
     ) -> Result<(), Fault> {
-        if self.lenient {
+        if self.stand_ins == StandIns::Accepted {
             self.warn(span, format!("{what} is not supported yet: {stand_in}"));
             return Ok(());
         }
         let message = format!("{what} is recognised but not supported yet");
         let fault = Fault::new(ErrorKind::Unsupported, span, message);
         Err(fault.with_hint(format!("with --lenient: {stand_in}")))
+    }
+
+    /// Builds something that nobody uses: it must not be wrong, but what is not supported is no
+    /// reason to refuse a scene, and nothing has to stand in for it. None: it is not supported.
+    pub(super) fn unused<T>(
+        &mut self,
+        build: impl FnOnce(&mut Self) -> Result<T, Fault>,
+    ) -> Result<Option<T>, Fault> {
+        let stand_ins = std::mem::replace(&mut self.stand_ins, StandIns::Refused);
+        let built = build(self);
+        self.stand_ins = stand_ins;
+        match built {
+            Err(fault) if fault.kind == ErrorKind::Unsupported => Ok(None),
+            built => built.map(Some),
+        }
     }
 }

@@ -1,20 +1,16 @@
-//! The film and its filter.
+//! The film.
 
-use super::LoadOptions;
 use super::context::Context;
+use super::filter;
 use super::reader::Reader;
 use crate::error::ErrorKind;
-use crate::pbrt::parameters::{ParameterType, Values};
-use crate::pbrt::scene::{ColorSpace, Entity};
-use crate::source::{Fault, Span};
-use bidir::film::{FilmSettings, Filter, FilterKind, PixelRect};
-use bidir::math::Vec2;
+use crate::pbrt::parameters::{ParameterList, ParameterType, Values};
+use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
+use crate::source::{Fault, SourceMap, Span};
+use bidir::film::{FilmSettings, PixelRect};
 
 /// The most pixels along one side.
 const LARGEST_SIDE: u32 = 1 << 16;
-
-/// The widest filter, as a half width. Unit: pixels.
-const WIDEST_FILTER: f32 = 32.0;
 
 /// The part of a film that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +22,8 @@ pub enum Crop {
 }
 
 impl Crop {
+    const WHOLE: Self = Self::Fractions([0.0, 1.0, 0.0, 1.0]);
+
     fn pixels(self, [width, height]: [u32; 2]) -> PixelRect {
         let [left, right, top, bottom] = match self {
             Self::Pixels(bounds) => bounds,
@@ -54,25 +52,10 @@ pub(super) struct BuiltFilm {
 }
 
 /// Builds the film. `exposure_time` is that of the camera.
-pub(super) fn build(
-    context: &mut Context<'_>,
-    options: &LoadOptions,
-    exposure_time: f32,
-) -> Result<BuiltFilm, Fault> {
-    let filter = filter(context)?;
-    let Some(film) = &context.description.film else {
-        let own_resolution = [1280, 720];
-        let mut settings = FilmSettings::new(options.resolution.unwrap_or(own_resolution), filter);
-        settings.exposure = exposure_time;
-        if let Some(crop) = options.crop {
-            settings.crop = crop.pixels(settings.resolution);
-        }
-        return Ok(BuiltFilm {
-            settings,
-            own_resolution,
-            output: None,
-        });
-    };
+pub(super) fn build(context: &mut Context<'_>, exposure_time: f32) -> Result<BuiltFilm, Fault> {
+    let filter = filter::build(context)?;
+    let default = default_film();
+    let film = context.description.film.as_ref().unwrap_or(&default);
     let span = film.entity.span;
     let mut reader = Reader::new(&film.entity);
     if film.color_space != ColorSpace::Srgb {
@@ -86,23 +69,9 @@ pub(super) fn build(
         reader.integer("xresolution", 1280, 1)?,
         reader.integer("yresolution", 720, 1)?,
     ];
-    let resolution = options.resolution.unwrap_or(own);
-    if resolution
-        .iter()
-        .any(|side| !(1..=LARGEST_SIDE).contains(side))
-    {
-        let [width, height] = resolution;
-        let message = format!("a film of {width} × {height} pixels is empty or too large");
-        return Err(Fault::new(ErrorKind::Limit, span, message));
-    }
-    let crop = read_crop(&mut reader, own, resolution)?;
+    let resolution = resolution(context, span, own)?;
     let mut settings = FilmSettings::new(resolution, filter);
-    if let Some(crop) = options.crop.or(crop) {
-        settings.crop = crop.pixels(resolution);
-    }
-    if settings.crop.area() == 0 {
-        return Err(Fault::scene(span, "the crop leaves no pixels of the film"));
-    }
+    settings.crop = crop(context, &mut reader, own, resolution)?;
     settings.exposure = exposure_time * reader.float_within("iso", 100.0, [0.0, f32::MAX])? / 100.0;
     let output = reader.string("filename")?.map(|(name, _)| name.to_owned());
     film_details(context, &mut reader)?;
@@ -113,6 +82,54 @@ pub(super) fn build(
         own_resolution: own,
         output,
     })
+}
+
+/// The film of a scene that describes none.
+fn default_film() -> FilmDescription {
+    FilmDescription {
+        entity: Entity {
+            kind: "rgb".into(),
+            parameters: ParameterList::default(),
+            span: SourceMap::BEGINNING,
+        },
+        color_space: ColorSpace::Srgb,
+    }
+}
+
+/// Width and height: those that the caller asks for, else the file's `own`.
+fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 2], Fault> {
+    let [width, height] = context.options.resolution.unwrap_or(own);
+    let sides = 1..=LARGEST_SIDE;
+    if sides.contains(&width) && sides.contains(&height) {
+        return Ok([width, height]);
+    }
+    let message = format!("a film of {width} × {height} pixels is empty or too large");
+    Err(Fault::new(ErrorKind::Limit, span, message))
+}
+
+/// The pixels that are rendered: those that the caller asks for, else the file's.
+fn crop(
+    context: &Context<'_>,
+    reader: &mut Reader<'_>,
+    own: [u32; 2],
+    resolution: [u32; 2],
+) -> Result<PixelRect, Fault> {
+    let described = read_crop(reader, own, resolution)?;
+    let asked = context.options.crop;
+    let crop = asked
+        .or(described)
+        .unwrap_or(Crop::WHOLE)
+        .pixels(resolution);
+    if crop.area() > 0 {
+        return Ok(crop);
+    }
+    if asked.is_none() {
+        let message = "the crop leaves no pixels of the film";
+        return Err(Fault::scene(reader.span(), message));
+    }
+    let [width, height] = resolution;
+    let message = format!("the crop asked for has no pixels of this film of {width} × {height}");
+    Err(Fault::new(ErrorKind::Options, reader.span(), message))
 }
 
 /// Says so where another size than the file's has another shape: its pixels are not square.
@@ -165,7 +182,8 @@ fn film_details(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<()
     }
 }
 
-/// `cropwindow`, else `pixelbounds`, which count pixels of the film's `own` resolution.
+/// `cropwindow`, else `pixelbounds`, which count pixels of the film's `own` resolution. None: where
+/// the file gives neither.
 fn read_crop(
     reader: &mut Reader<'_>,
     own: [u32; 2],
@@ -176,75 +194,36 @@ fn read_crop(
     let Some(parameter) = window.or(bounds) else {
         return Ok(None);
     };
-    let wrong = || {
-        let message = format!(
-            "`{}` is left, right, top and bottom of a part of the film",
-            parameter.name
-        );
+    let crop = match &parameter.values {
+        Values::Floats(values) => window_crop(values),
+        Values::Integers(values) => bounds_crop(values, own, resolution),
+        _ => None,
+    };
+    crop.map(Some).ok_or_else(|| {
+        let name = &parameter.name;
+        let message = format!("`{name}` is left, right, top and bottom of a part of the film");
         Fault::scene(parameter.value_span, message)
-    };
-    if let Values::Floats(values) = &parameter.values {
-        let window: [f32; 4] = values.as_slice().try_into().map_err(|_| wrong())?;
-        let inside = window.iter().all(|edge| (0.0..=1.0).contains(edge));
-        return if inside {
-            Ok(Some(Crop::Fractions(window)))
-        } else {
-            Err(wrong())
-        };
-    }
-    let Values::Integers(values) = &parameter.values else {
-        return Err(wrong());
-    };
+    })
+}
+
+/// None: these are no four fractions; so below, no four pixel numbers.
+fn window_crop(values: &[f32]) -> Option<Crop> {
+    let window: [f32; 4] = values.try_into().ok()?;
+    let inside = window.iter().all(|edge| (0.0..=1.0).contains(edge));
+    inside.then_some(Crop::Fractions(window))
+}
+
+fn bounds_crop(values: &[i32], own: [u32; 2], resolution: [u32; 2]) -> Option<Crop> {
     let values: Vec<u32> = values
         .iter()
         .filter_map(|&edge| u32::try_from(edge).ok())
         .collect();
-    let [x0, x1, y0, y1] = values.try_into().map_err(|_| wrong())?;
+    let bounds: [u32; 4] = values.try_into().ok()?;
     if own == resolution {
-        return Ok(Some(Crop::Pixels([x0, x1, y0, y1])));
+        return Some(Crop::Pixels(bounds));
     }
     let [width, height] = own.map(|side| side as f32);
-    let fractions = [
-        x0 as f32 / width,
-        x1 as f32 / width,
-        y0 as f32 / height,
-        y1 as f32 / height,
-    ];
-    Ok(Some(Crop::Fractions(fractions)))
-}
-
-fn filter(context: &mut Context<'_>) -> Result<Filter, Fault> {
-    let gaussian = FilterKind::Gaussian { sigma: 0.5 };
-    let Some(entity) = &context.description.filter else {
-        return Ok(Filter::new(gaussian, Vec2::splat(1.5)));
-    };
-    let mut reader = Reader::new(entity);
-    // Beyond these a filter is a point, or flat, and its integral not to be computed.
-    let positive = [0.05, 100.0];
-    let (kind, radius) = match entity.kind.as_str() {
-        "box" => (FilterKind::Box, 0.5),
-        "triangle" => (FilterKind::Triangle, 2.0),
-        "mitchell" => {
-            let third = 1.0 / 3.0;
-            let (b, c) = (reader.float("B", third)?, reader.float("C", third)?);
-            (FilterKind::Mitchell { b, c }, 2.0)
-        }
-        "sinc" => (
-            FilterKind::Sinc {
-                tau: reader.float_within("tau", 3.0, positive)?,
-            },
-            4.0,
-        ),
-        _ => {
-            let sigma = reader.float_within("sigma", 0.5, positive)?;
-            (FilterKind::Gaussian { sigma }, 1.5)
-        }
-    };
-    let range = [1e-3, WIDEST_FILTER];
-    let radius = Vec2::new(
-        reader.float_within("xradius", radius, range)?,
-        reader.float_within("yradius", radius, range)?,
-    );
-    reader.finish()?;
-    Ok(Filter::new(kind, radius))
+    let [x0, x1, y0, y1] = bounds.map(|edge| edge as f32);
+    let fractions = [x0 / width, x1 / width, y0 / height, y1 / height];
+    Some(Crop::Fractions(fractions))
 }

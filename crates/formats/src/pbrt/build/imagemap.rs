@@ -235,8 +235,7 @@ fn shared<const N: usize>(
     if let Some(image) = images.get(&key) {
         return Ok(Arc::clone(image));
     }
-    let data = crate::image::read(&settings.path, settings.encoding)
-        .map_err(|error| Fault::from_error(settings.span, &error))?;
+    let data = context.read_image(&settings.path, settings.encoding, settings.span)?;
     let width = data.width;
     let mut texels = texels(data);
     let replaced = texels

@@ -160,7 +160,7 @@ fn infinite(
 /// Reads an equal-area image of the sphere.
 fn environment(context: &mut Context<'_>, name: &str, span: Span) -> Result<Image<3>, Fault> {
     let path = context.description.resolve(name);
-    let data = crate::image::read(&path, None).map_err(|error| Fault::from_error(span, &error))?;
+    let data = context.read_image(&path, None, span)?;
     if data.width != data.height {
         let (width, height) = (data.width, data.height);
         let message =

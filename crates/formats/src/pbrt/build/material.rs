@@ -10,18 +10,12 @@ use crate::source::Fault;
 use bidir::material::{ConductorIndex, Material, Roughness, RoughnessMapping};
 use bidir::texture::{ColorTexture, FloatTexture};
 
-/// True for materials that are built as what they are.
-pub(super) fn is_supported(entity: Option<&Entity>) -> bool {
-    entity
-        .is_none_or(|entity| matches!(entity.kind.as_str(), "diffuse" | "conductor" | "dielectric"))
-}
-
 /// Builds a material; without an entity it is the one that shapes have before any is named.
 ///
 /// None: there is no surface.
 pub(super) fn build(
     context: &mut Context<'_>,
-    textures: &Textures,
+    textures: &mut Textures<'_>,
     entity: Option<&Entity>,
 ) -> Result<Option<Material>, Fault> {
     let Some(entity) = entity else {
@@ -53,7 +47,7 @@ fn bump(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault>
 
 fn diffuse(
     context: &mut Context<'_>,
-    textures: &Textures,
+    textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
     let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
@@ -64,7 +58,7 @@ fn diffuse(
 
 fn conductor(
     context: &mut Context<'_>,
-    textures: &Textures,
+    textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
     let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
@@ -83,43 +77,48 @@ fn conductor(
     };
     Ok(Material::Conductor {
         index,
-        roughness: roughness(textures, reader)?,
+        roughness: roughness(context, textures, reader)?,
     })
 }
 
 fn dielectric(
     context: &mut Context<'_>,
-    textures: &Textures,
+    textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
     let eta = color::read_eta(context, reader)?;
     Ok(Material::Dielectric {
         eta,
-        roughness: roughness(textures, reader)?,
+        roughness: roughness(context, textures, reader)?,
     })
 }
 
-fn roughness(textures: &Textures, reader: &mut Reader<'_>) -> Result<Roughness, Fault> {
-    let both = textures
-        .float(reader, "roughness")?
-        .unwrap_or(FloatTexture::Constant(0.0));
-    let u = textures
-        .float(reader, "uroughness")?
-        .unwrap_or_else(|| both.clone());
-    let v = textures.float(reader, "vroughness")?.unwrap_or(both);
+fn roughness(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Roughness, Fault> {
+    let both = textures.float(context, reader, "roughness")?;
+    let both = both.unwrap_or(FloatTexture::Constant(0.0));
+    let u = textures.float(context, reader, "uroughness")?;
+    let v = textures.float(context, reader, "vroughness")?;
     let mapping = if reader.bool("remaproughness", true)? {
         RoughnessMapping::SquareRoot
     } else {
         RoughnessMapping::Identity
     };
-    Ok(Roughness { u, v, mapping })
+    Ok(Roughness {
+        u: u.unwrap_or_else(|| both.clone()),
+        v: v.unwrap_or(both),
+        mapping,
+    })
 }
 
 /// What is accepted in place of a material that is not built yet. Its own parameters are not
 /// looked through.
 fn stand_in(
     context: &mut Context<'_>,
-    textures: &Textures,
+    textures: &mut Textures<'_>,
     entity: &Entity,
 ) -> Result<Option<Material>, Fault> {
     let what = format!("the material `{}`", entity.kind);

@@ -12,6 +12,7 @@ mod color;
 mod context;
 mod emission;
 mod film;
+mod filter;
 mod imagemap;
 mod light;
 mod material;
@@ -23,6 +24,7 @@ mod texture;
 pub use film::Crop;
 pub use settings::SceneSettings;
 
+use super::digest::SceneDigest;
 use super::scene::{SceneDescription, ShapeDescription};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
@@ -43,7 +45,8 @@ pub struct LoadOptions {
     pub lenient: bool,
     /// Width and height of the film, instead of the file's. Unit: pixels.
     pub resolution: Option<[u32; 2]>,
-    /// The part of the film that is rendered, instead of the file's.
+    /// The part of the film that is rendered, instead of the file's. Errors: where there are no
+    /// such pixels, the error's kind is [`ErrorKind::Options`].
     pub crop: Option<Crop>,
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
@@ -60,6 +63,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// What the scene is made of.
     pub summary: Summary,
+    /// Which scene it is.
+    pub digest: SceneDigest,
 }
 
 /// What a scene is made of.
@@ -91,8 +96,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
 
 /// Builds a described scene: reads its meshes and images, and checks everything.
 pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Loaded> {
-    let mut context = Context::new(description, options.lenient);
-    let built = Assembly::build(&mut context, options);
+    let mut context = Context::new(description, options);
+    let built = Assembly::build(&mut context);
     let (scene, settings, summary) = built.map_err(|fault| description.sources.error(fault))?;
     let warnings = context.warnings.iter().map(|warning| {
         let (line, column) = description.sources.line_and_column(warning.span);
@@ -108,6 +113,7 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
         settings,
         warnings: warnings.collect(),
         summary,
+        digest: context.digest.finish(),
     })
 }
 
@@ -122,18 +128,15 @@ struct Assembly {
 }
 
 impl Assembly {
-    fn build(
-        context: &mut Context<'_>,
-        options: &LoadOptions,
-    ) -> Result<(Scene, SceneSettings, Summary), Fault> {
+    fn build(context: &mut Context<'_>) -> Result<(Scene, SceneSettings, Summary), Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
-        let film = film::build(context, options, lens.exposure_time)?;
+        let film = film::build(context, lens.exposure_time)?;
         let settings = settings::build(context, film.output)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
         builder.camera(camera);
-        if let Some(isa) = options.isa {
+        if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
         let mut assembly = Self {
@@ -162,22 +165,23 @@ impl Assembly {
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
-        let textures = Textures::build(context)?;
-        self.summary.textures = context.description.textures.len();
-        let used = used_materials(context.description);
-        for (index, material) in context.description.materials.iter().enumerate() {
+        let description = context.description;
+        let mut textures = Textures::new(description);
+        self.summary.textures = description.textures.len();
+        let used = used_materials(description);
+        for (index, material) in description.materials.iter().enumerate() {
             let entity = material.entity.as_ref();
-            // What nobody looks at is no reason to refuse a scene.
-            let built = if used.contains(&index) || material::is_supported(entity) {
-                material::build(context, &textures, entity)?
+            let mut build = |context: &mut _| material::build(context, &mut textures, entity);
+            let built = if used.contains(&index) {
+                build(context)?
             } else {
-                None
+                context.unused(build)?.flatten()
             };
             self.summary.materials += usize::from(built.is_some());
             let id = built.map(|material| self.builder.material(material));
             self.materials.push(id);
         }
-        Ok(())
+        textures.check_unused(context)
     }
 
     /// Adds a shape once for each of `places`.
@@ -217,7 +221,7 @@ impl Assembly {
         }
         for place in places {
             let world_from_local = *place * shape.transforms.start;
-            let placed = geometry.place(&world_from_local, shape.reverse_orientation);
+            let placed = geometry.place(&world_from_local, shape::orientation(shape));
             shape::check_extent(span, &placed)?;
             self.add_placed(placed, material, emission.as_ref(), span)?;
         }

@@ -5,7 +5,7 @@ use super::reader::Reader;
 use crate::error::ErrorKind;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::ShapeDescription;
-use crate::ply::{self, PlyMesh};
+use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
@@ -67,33 +67,18 @@ impl Geometry {
         }
     }
 
-    /// The shape at a place.
-    pub(super) fn place(&self, world_from_local: &DAffine3, is_reversed: bool) -> Shape {
-        let orientation = |reversed| {
-            if reversed {
-                Orientation::Reversed
-            } else {
-                Orientation::Natural
-            }
-        };
+    /// The shape at a place. Mirroring does not change which side is the front: of a quadric it is
+    /// the outside, of a mesh what its corners say in its own space.
+    pub(super) fn place(&self, world_from_local: &DAffine3, orientation: Orientation) -> Shape {
         let affine = world_from_local.as_affine3a();
         match self {
-            // Quadrics keep their outside in front whether or not they are mirrored.
-            Self::Sphere(radius, limits) => Shape::Sphere(Sphere::partial(
-                affine,
-                *radius,
-                *limits,
-                orientation(is_reversed),
-            )),
+            Self::Sphere(radius, limits) => {
+                Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
+            }
             Self::Disk(height, radii, phi_max) => {
-                let orientation = orientation(is_reversed);
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
             }
-            Self::Mesh(mesh) => {
-                let is_mirrored = world_from_local.matrix3.determinant() < 0.0;
-                let orientation = orientation(is_reversed != is_mirrored);
-                Shape::Mesh(place_mesh(mesh, world_from_local, is_reversed, orientation))
-            }
+            Self::Mesh(mesh) => Shape::Mesh(place_mesh(mesh, world_from_local, orientation)),
         }
     }
 }
@@ -132,14 +117,10 @@ pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
     if fits { Ok(()) } else { Err(too_far(span)) }
 }
 
-fn place_mesh(
-    mesh: &PlyMesh,
-    world_from_local: &DAffine3,
-    is_reversed: bool,
-    orientation: Orientation,
-) -> Mesh {
+fn place_mesh(mesh: &PlyMesh, world_from_local: &DAffine3, orientation: Orientation) -> Mesh {
     let normal_matrix = world_from_local.matrix3.inverse().transpose();
-    let sign = if is_reversed { -1.0 } else { 1.0 };
+    let sign = f64::from(orientation.sign());
+    let is_mirrored = world_from_local.matrix3.determinant() < 0.0;
     let vector = |v: &[f32; 3]| DVec3::from(v.map(f64::from));
     let point = |p| world_from_local.transform_point3(vector(p)).as_vec3();
     // Normalised, so that interpolation weighs the corners as the file means it.
@@ -149,7 +130,27 @@ fn place_mesh(
         normals: mesh.normals.iter().map(normal).collect(),
         uvs: mesh.uvs.iter().map(|&uv| Vec2::from(uv)).collect(),
         triangles: mesh.triangles.clone(),
-        orientation,
+        orientation: if is_mirrored {
+            opposite(orientation)
+        } else {
+            orientation
+        },
+    }
+}
+
+/// What the file says of the front, whatever the shape's place.
+pub(super) fn orientation(shape: &ShapeDescription) -> Orientation {
+    if shape.reverse_orientation {
+        Orientation::Reversed
+    } else {
+        Orientation::Natural
+    }
+}
+
+fn opposite(orientation: Orientation) -> Orientation {
+    match orientation {
+        Orientation::Natural => Orientation::Reversed,
+        Orientation::Reversed => Orientation::Natural,
     }
 }
 
@@ -181,7 +182,7 @@ fn ply_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMes
     reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
     reader.ignore(context, ParameterType::Float, "edgelength");
     let path = context.description.resolve(name);
-    let mesh = ply::read(&path).map_err(|error| Fault::from_error(span, &error))?;
+    let mesh = context.read_mesh(&path, span)?;
     if mesh.skipped_faces > 0 {
         let count = mesh.skipped_faces;
         let message =

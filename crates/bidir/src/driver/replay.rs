@@ -1,0 +1,151 @@
+//! One sample again, with every term of its estimate: what it is worth, how likely it was to be
+//! traced, whether anything is in its way, and what came of it.
+//!
+//! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
+//! are not counted.
+
+use crate::film::FilmSettings;
+use crate::integrator::{Entry, Fate, Link, Splat, Term, Workspace};
+use crate::path::{PathContext, Strategy};
+use crate::select::Selector;
+use crate::spectrum::{Spectrum, Wavelengths};
+
+/// One sample again, with all that it made.
+pub struct Replay {
+    /// The buffers as the sample left them: subpaths, candidates, chosen rays, contributions.
+    pub workspace: Workspace,
+    /// The wavelengths of the sample.
+    pub wavelengths: Wavelengths,
+    /// The terms that are not zero, in the order in which they were evaluated.
+    pub terms: Vec<ReplayedTerm>,
+    /// The connections of the two subpaths that are zero: for a Dirac distribution, for sides that
+    /// face away, or because they take no part.
+    pub zeros: Vec<Strategy>,
+}
+
+/// A term of the estimate, and what came of it.
+#[derive(Clone, Copy, Debug)]
+pub struct ReplayedTerm {
+    /// What the strategy gives.
+    pub term: Term,
+    /// What was done with it.
+    pub fate: Fate,
+    /// For what is chosen from: importance and probability.
+    pub selection: Option<Selection>,
+    /// True where nothing is in the way, traced or not.
+    pub is_visible: bool,
+    /// For t = 1: where it lands if it is visible.
+    pub landing: Option<Landing>,
+    /// What it added to a pixel of an image of one pass.
+    pub added: Spectrum,
+}
+
+/// How a candidate was chosen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Selection {
+    /// What candidates are compared by: the luminance of the weighted contribution.
+    pub score: f32,
+    /// The probability π of being traced.
+    pub prob: f64,
+}
+
+/// Where a contribution to the light image lands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// The point on the film. Unit: pixels.
+    pub raster: [f32; 2],
+    /// The pixel that the filter drew. None: it is outside the crop.
+    pub pixel: Option<[u32; 2]>,
+}
+
+impl Replay {
+    /// Looks into what a sample with a journal left in `workspace`; `selector` is the rule that
+    /// chose its rays.
+    pub(super) fn new(
+        context: &PathContext<'_>,
+        workspace: Workspace,
+        selector: &dyn Selector,
+    ) -> Self {
+        let probs = selector.probabilities(&workspace.candidates);
+        let entries = workspace.journal.iter().flat_map(|j| &j.entries);
+        let term = |entry: &Entry| {
+            let strategy = entry.term.strategy;
+            let mut candidates = workspace.candidates.iter().zip(&probs);
+            let candidate = candidates.find(|(candidate, _)| candidate.strategy == strategy);
+            let selection = candidate.map(|(candidate, &prob)| Selection {
+                score: candidate.score,
+                prob,
+            });
+            ReplayedTerm::new(context, entry, selection)
+        };
+        let terms: Vec<_> = entries.map(term).collect();
+        Self {
+            zeros: zeros(context, &workspace, &terms),
+            terms,
+            wavelengths: context.wavelengths,
+            workspace,
+        }
+    }
+}
+
+/// The connections within the limit of length that no term is about.
+fn zeros(
+    context: &PathContext<'_>,
+    workspace: &Workspace,
+    terms: &[ReplayedTerm],
+) -> Vec<Strategy> {
+    let lengths = [&workspace.light, &workspace.camera].map(|subpath| subpath.vertices.len());
+    let all = (2..=lengths[1]).flat_map(|t| (1..=lengths[0]).map(move |s| Strategy::new(s, t)));
+    let is_short = |strategy: &Strategy| {
+        usize::from(strategy.s) + usize::from(strategy.t) <= context.settings.max_vertices()
+    };
+    all.filter(is_short)
+        .filter(|strategy| terms.iter().all(|term| term.term.strategy != *strategy))
+        .collect()
+}
+
+impl ReplayedTerm {
+    fn new(context: &PathContext<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
+        let (scene, ends) = (context.scene, entry.link.ends());
+        let is_visible = ends.is_none_or(|[a, b]| !scene.occluded(a, b));
+        let (landing, scale) = match &entry.link {
+            Link::Walk | Link::Connection(_) => (None, 1.0),
+            Link::LightImage(_, splat) => {
+                let (landing, scale) = land(scene.film(), splat);
+                (Some(landing), scale)
+            }
+        };
+        Self {
+            term: entry.term,
+            fate: entry.fate,
+            selection,
+            is_visible,
+            landing,
+            added: entry.added * scale,
+        }
+    }
+
+    /// True where the term is let through by selection, or where nothing is chosen from.
+    pub fn is_chosen(&self) -> bool {
+        match self.fate {
+            Fate::NotTraced => false,
+            // Dropped before selection, or after.
+            Fate::Dropped => self.selection.is_some(),
+            Fate::Blocked | Fate::Added => true,
+        }
+    }
+}
+
+/// Where a splat lands, and what makes of its value a part of a pixel in an image of one pass.
+fn land(film: &FilmSettings, splat: &Splat) -> (Landing, f32) {
+    let picked = film.pick_pixel(splat.raster, splat.u);
+    let landing = Landing {
+        raster: splat.raster.to_array(),
+        pixel: picked.map(|(i, _)| film.crop.pixel(i)),
+    };
+    let weight = picked.map_or(0.0, |(_, weight)| weight);
+    (landing, weight / film.light_paths() as f32)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! Counts by strategy (s, t), in a triangle of rows n = s + t; row n begins at n(n-1)/2.
+
+use crate::path::Strategy;
+use std::ops::AddAssign;
+
+/// What became of the contributions of a strategy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StrategyCounts {
+    /// Contributions that are not zero, before selection and visibility.
+    pub candidates: u64,
+    /// Those whose shadow ray was traced. s = 0 needs none; all of t = 1 are.
+    pub traced: u64,
+    /// Those whose ray something blocked.
+    pub blocked: u64,
+}
+
+impl AddAssign for StrategyCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.candidates += other.candidates;
+        self.traced += other.traced;
+        self.blocked += other.blocked;
+    }
+}
+
+/// Paths of more vertices are counted together: without a limit of depth there may be half a
+/// million strategies.
+const MAX_ROW: usize = 32;
+
+/// The counts of each strategy; adding tables in any order gives the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StrategyTable {
+    /// Rows of n = 1, 2, … vertices, by s; as far as was counted.
+    rows: Vec<StrategyCounts>,
+    /// All strategies of more than [`MAX_ROW`] vertices.
+    longer: StrategyCounts,
+}
+
+impl StrategyTable {
+    /// The counts of a strategy, to be raised.
+    #[inline]
+    pub(super) fn of(&mut self, strategy: Strategy) -> &mut StrategyCounts {
+        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+        let n = s + t;
+        if n > MAX_ROW {
+            return &mut self.longer;
+        }
+        let i = n * n.saturating_sub(1) / 2 + s;
+        if i >= self.rows.len() {
+            self.rows.resize(i + 1, StrategyCounts::default());
+        }
+        &mut self.rows[i]
+    }
+
+    /// Every strategy of which something was counted, shorter paths first.
+    pub fn rows(&self) -> impl Iterator<Item = (Strategy, StrategyCounts)> {
+        let strategies = (1..).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
+        strategies
+            .zip(self.rows.iter().copied())
+            .filter(|(_, counts)| *counts != StrategyCounts::default())
+    }
+
+    /// The counts of all strategies of paths that are too long for a row of their own.
+    pub fn longer(&self) -> StrategyCounts {
+        self.longer
+    }
+}
+
+impl AddAssign<&Self> for StrategyTable {
+    fn add_assign(&mut self, other: &Self) {
+        for (strategy, counts) in other.rows() {
+            *self.of(strategy) += counts;
+        }
+        self.longer += other.longer;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(strategies: &[(usize, usize)]) -> StrategyTable {
+        let mut table = StrategyTable::default();
+        for &(s, t) in strategies {
+            table.of(Strategy::new(s, t)).candidates += 1;
+        }
+        table
+    }
+
+    #[test]
+    fn every_strategy_has_a_place_of_its_own() {
+        let all: Vec<_> = (1..=MAX_ROW)
+            .flat_map(|n| (0..n).map(move |s| (s, n - s)))
+            .collect();
+        let table = table(&all);
+        let named = table.rows().map(|(strategy, counts)| {
+            assert_eq!(counts.candidates, 1);
+            (usize::from(strategy.s), usize::from(strategy.t))
+        });
+        assert_eq!(named.collect::<Vec<_>>(), all);
+        assert_eq!(table.longer(), StrategyCounts::default());
+    }
+
+    #[test]
+    fn tables_add_up_in_any_order() {
+        let (a, b) = (table(&[(0, 2), (3, 4)]), table(&[(1, 1), (3, 4), (700, 2)]));
+        let (mut ab, mut ba) = (a.clone(), b.clone());
+        ab += &b;
+        ba += &a;
+        assert_eq!(ab, ba);
+        assert_eq!(ab.of(Strategy::new(3, 4)).candidates, 2);
+        assert_eq!(ab.longer().candidates, 1);
+    }
+}

@@ -1,0 +1,185 @@
+//! The flags of long renders: film files, and shares of the passes.
+
+use super::values::Duration;
+use clap::{Args, ValueHint};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// How a render survives, and how it is shared.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Long renders")]
+pub(crate) struct LongArgs {
+    /// Keep the exact sums in this film file, now and then and at the end.
+    ///
+    /// It can be gone on from with --resume, merged with `bidir merge`, and developed with
+    /// `bidir film develop`. The one before is kept as FILE.previous. SIGUSR1 writes image and film
+    /// file after the running pass.
+    #[arg(long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
+    pub(crate) checkpoint: Option<PathBuf>,
+    /// The time between film files.
+    #[arg(
+        long,
+        value_name = "DURATION",
+        default_value = "5m",
+        requires = "checkpoint"
+    )]
+    pub(crate) checkpoint_every: Duration,
+    /// Go on from the film file where there is one: the result has the bits of a render without a
+    /// break.
+    ///
+    /// --spp counts all passes, --time what this run adds. Another scene or other settings are
+    /// refused.
+    #[arg(long, requires = "checkpoint", conflicts_with = "restart")]
+    pub(crate) resume: bool,
+    /// Begin anew where there is a film file, and replace it.
+    #[arg(long, requires = "checkpoint")]
+    pub(crate) restart: bool,
+    /// Render only these passes, from A up to but not including B, counted from 0.
+    ///
+    /// Ranges that begin and end at multiples of powers of two are the best stratified ones. The
+    /// image of a share is written only where --output names it.
+    #[arg(long, value_name = "A..B", conflicts_with_all = ["spp", "part"])]
+    pub(crate) passes: Option<PassRange>,
+    /// Render share I of N of the passes, I counted from 0: `3/16`.
+    ///
+    /// `env/16` takes I from SLURM_ARRAY_TASK_ID (less SLURM_ARRAY_TASK_MIN), HQ_TASK_ID or
+    /// JOB_COMPLETION_INDEX.
+    #[arg(long, value_name = "I/N")]
+    pub(crate) part: Option<Part>,
+}
+
+/// Half-open and not empty, written `A..B`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PassRange(pub(crate) Range<u64>);
+
+impl FromStr for PassRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").and_then(|(begin, end)| {
+            let number = |text: &str| text.trim().parse::<u64>().ok();
+            Some(number(begin)?..number(end)?)
+        });
+        let range = ends.filter(|range| !range.is_empty());
+        range
+            .map(Self)
+            .ok_or_else(|| "expected A..B with A < B, such as 0..64".into())
+    }
+}
+
+/// One of several equal shares, written `I/N`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Part {
+    /// Below `of`.
+    pub(crate) index: u64,
+    /// How many shares there are; positive.
+    pub(crate) of: u64,
+}
+
+impl Part {
+    /// The passes of this share out of `passes`: all shares together are all passes, once each.
+    pub(crate) fn range(self, passes: u64) -> Range<u64> {
+        let edge = |i: u64| (u128::from(passes) * u128::from(i) / u128::from(self.of)) as u64;
+        edge(self.index)..edge(self.index + 1)
+    }
+
+    fn new(index: u64, of: u64) -> Result<Self, String> {
+        if index < of {
+            Ok(Self { index, of })
+        } else {
+            Err(format!(
+                "there is no share {index} of {of}: the first is 0, the last is {of} - 1"
+            ))
+        }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || "expected I/N, such as 3/16, or env/16".to_owned();
+        let (index, of) = text.split_once('/').ok_or_else(expected)?;
+        let of = of.parse().map_err(|_| expected())?;
+        if index == "env" {
+            return Self::new(index_from_environment(|name| std::env::var(name).ok())?, of);
+        }
+        Self::new(index.parse().map_err(|_| expected())?, of)
+    }
+}
+
+/// Which of its tasks a scheduler says this one is, counted from 0.
+fn index_from_environment(variable: impl Fn(&str) -> Option<String>) -> Result<u64, String> {
+    let number = |name: &str| {
+        let text = variable(name)?;
+        Some(
+            text.parse::<u64>()
+                .map_err(|_| format!("{name}={text} is not a whole number")),
+        )
+    };
+    if let Some(id) = number("SLURM_ARRAY_TASK_ID") {
+        let first = number("SLURM_ARRAY_TASK_MIN").unwrap_or(Ok(0))?;
+        let before = || format!("SLURM_ARRAY_TASK_ID is below SLURM_ARRAY_TASK_MIN, {first}");
+        return id?.checked_sub(first).ok_or_else(before);
+    }
+    let others = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX"]
+        .iter()
+        .find_map(|name| number(name));
+    others.unwrap_or_else(|| {
+        Err("none of SLURM_ARRAY_TASK_ID, HQ_TASK_ID, JOB_COMPLETION_INDEX is set".into())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_all_passes_once_each() {
+        for (passes, of) in [(7, 3), (64, 7), (3, 5), (u64::MAX, 2)] {
+            let ranges = (0..of).map(|index| Part { index, of }.range(passes));
+            let end = ranges.fold(0, |end, range| {
+                assert_eq!(range.start, end);
+                range.end
+            });
+            assert_eq!(end, passes);
+        }
+    }
+
+    #[test]
+    fn texts_that_mean_nothing_are_refused() {
+        for text in ["", "3", "3/3", "-1/3", "a/b", "0/0", "1/"] {
+            assert!(text.parse::<Part>().is_err(), "{text}");
+        }
+        for text in ["", "4", "4..4", "5..4", "..4", "4..", "a..b"] {
+            assert!(text.parse::<PassRange>().is_err(), "{text}");
+        }
+        assert_eq!("2/3".parse(), Ok(Part { index: 2, of: 3 }));
+        assert_eq!("4..9".parse(), Ok(PassRange(4..9)));
+    }
+
+    #[test]
+    fn schedulers_say_which_task_this_is() {
+        let check = |set: &[(&str, &str)], expected: Option<u64>| {
+            let variable = |name: &str| {
+                let found = set.iter().find(|(key, _)| *key == name)?;
+                Some(found.1.to_owned())
+            };
+            assert_eq!(index_from_environment(variable).ok(), expected, "{set:?}");
+        };
+        check(&[("SLURM_ARRAY_TASK_ID", "5")], Some(5));
+        check(
+            &[("SLURM_ARRAY_TASK_ID", "5"), ("SLURM_ARRAY_TASK_MIN", "1")],
+            Some(4),
+        );
+        check(
+            &[("SLURM_ARRAY_TASK_ID", "0"), ("SLURM_ARRAY_TASK_MIN", "1")],
+            None,
+        );
+        check(&[("HQ_TASK_ID", "3")], Some(3));
+        check(&[("JOB_COMPLETION_INDEX", "2")], Some(2));
+        check(&[("HQ_TASK_ID", "x")], None);
+        check(&[], None);
+    }
+}

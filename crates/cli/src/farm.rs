@@ -1,0 +1,262 @@
+//! `bidir farm`: a job file for a scheduler, from which shares of a render are started.
+//!
+//! Every share renders its part of the passes and keeps a film file NAME-I.film, from which it goes
+//! on where it is started again; the last step merges them and develops the image. There is no
+//! protocol and no server of our own: the job file is text, made to be read and changed.
+
+mod hyperqueue;
+mod kubernetes;
+mod local;
+mod quote;
+mod slurm;
+
+use crate::args::{Cli, Command, FarmArgs, FarmCommand};
+use crate::console::print;
+use crate::exit::{Exit, Failure};
+use clap::Parser;
+use quote::quote;
+use std::path::Path;
+
+/// Prints a job file.
+pub(crate) fn run(command: &FarmCommand) -> Result<Exit, Failure> {
+    let (args, write): (_, fn(&Plan<'_>) -> String) = match command {
+        FarmCommand::Slurm(args) => (args, slurm::script),
+        FarmCommand::Hyperqueue(args) => (args, hyperqueue::script),
+        FarmCommand::K8s(args) => (args, kubernetes::manifest),
+        FarmCommand::Shell(args) => (args, local::script),
+    };
+    let plan = Plan::new(args)?;
+    plan.check()?;
+    print(&write(&plan))
+}
+
+/// What a job file is made of.
+struct Plan<'a> {
+    scene: String,
+    /// The image without .exr; film files begin with it.
+    name: String,
+    image: String,
+    parts: u64,
+    spp: Option<u64>,
+    flags: &'a [String],
+}
+
+/// A word of a command.
+enum Word {
+    /// Always the same.
+    Fixed(String),
+    /// With the number of the share between these.
+    Share(String, String),
+}
+
+impl<'a> Plan<'a> {
+    fn new(args: &'a FarmArgs) -> Result<Self, Failure> {
+        if args.scene == "-" {
+            let message = "a scene from standard input cannot be shared";
+            return Err(Failure::usage(message).with_hint("name a file that every machine finds"));
+        }
+        let image = match &args.output {
+            Some(image) => image.clone(),
+            None => format!("{}.exr", stem(&args.scene)),
+        };
+        let Some(name) = image.strip_suffix(".exr") else {
+            let message = format!("{image}: not the name of an image that is developed");
+            return Err(Failure::usage(message).with_hint("end it with .exr"));
+        };
+        if let Some(spp) = args.spp.filter(|spp| *spp < args.parts) {
+            let message = format!(
+                "{} shares of {spp} passes: some would have none",
+                args.parts
+            );
+            return Err(Failure::usage(message).with_hint("make fewer shares, or more passes"));
+        }
+        Ok(Self {
+            scene: not_a_flag(&args.scene),
+            name: not_a_flag(name),
+            image: not_a_flag(&image),
+            parts: args.parts,
+            spp: args.spp,
+            flags: &args.flags,
+        })
+    }
+
+    /// The command that renders a share; `part` is what --part gets.
+    fn render(&self, part: Word) -> Vec<Word> {
+        let mut words = fixed(&["bidir", "render", &self.scene, "--part"]);
+        words.push(part);
+        if let Some(spp) = self.spp {
+            words.extend(fixed(&["--spp", &spp.to_string()]));
+        }
+        words.extend(fixed(&["--checkpoint"]));
+        words.push(Word::Share(format!("{}-", self.name), ".film".into()));
+        words.extend(fixed(&["--resume"]));
+        words.extend(self.flags.iter().cloned().map(Word::Fixed));
+        words
+    }
+
+    /// The same where a scheduler's variable says which share it is.
+    fn render_env(&self) -> Vec<Word> {
+        self.render(Word::Fixed(format!("env/{}", self.parts)))
+    }
+
+    /// The last step: the commands that make the image, for a shell.
+    fn last_step(&self) -> [String; 2] {
+        let shares = quote(&format!("{}-", self.name));
+        let [all, image] = [&format!("{}.film", self.name), &self.image].map(|file| quote(file));
+        [
+            // The pattern leaves out film files of other names that begin alike.
+            format!("bidir merge {shares}[0-9]*.film -o {all}"),
+            format!("bidir film develop {all} -o {image}"),
+        ]
+    }
+
+    /// A name for the job: letters, digits, dashes, dots.
+    fn job(&self) -> String {
+        let file = Path::new(&self.name).file_name().unwrap_or_default();
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
+        let file = file.to_string_lossy();
+        let name: String = file
+            .chars()
+            .map(|c| if is_plain(c) { c } else { '-' })
+            .collect();
+        let name = name.trim_start_matches(['-', '.']);
+        if name.is_empty() {
+            "bidir".into()
+        } else {
+            name.into()
+        }
+    }
+
+    /// What the job file is, in a comment's first line.
+    fn title(&self) -> String {
+        let scene = self.scene.replace(char::is_control, "?");
+        format!("{scene} in {} shares of its passes", self.parts)
+    }
+
+    /// Fails here, rather than on every machine, where `bidir render` would not take the flags.
+    fn check(&self) -> Result<(), Failure> {
+        let words = self.render(Word::Fixed(format!("0/{}", self.parts)));
+        let words = words.into_iter().map(|word| match word {
+            Word::Fixed(text) => text,
+            Word::Share(before, after) => format!("{before}0{after}"),
+        });
+        let cli = Cli::try_parse_from(words).map_err(|error| {
+            let text = error.render().to_string();
+            let ends = ["\n\nUsage:", "\n\nFor more"].map(|end| text.find(end));
+            let end = ends.into_iter().flatten().min().unwrap_or(text.len());
+            Failure::usage(text[..end].trim_start_matches("error: "))
+                .with_hint("see `bidir render --help` for what can be given after `--`")
+        })?;
+        let Command::Render(args) = &cli.command else {
+            return Err(Failure::usage(
+                "the flags after `--` are not those of `bidir render`",
+            ));
+        };
+        let taken = [
+            ("--output", args.output.output.is_some()),
+            ("--stats", args.output.stats.is_some()),
+            ("--replay", args.replay.is_some()),
+        ];
+        match taken.iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((flag, _)) => {
+                let message =
+                    format!("{flag} cannot be given after `--`: all shares would share it");
+                Err(Failure::usage(message))
+            }
+        }
+    }
+}
+
+fn fixed(words: &[&str]) -> Vec<Word> {
+    words
+        .iter()
+        .map(|&word| Word::Fixed(word.to_owned()))
+        .collect()
+}
+
+/// A command for a shell, where `variable` is the number of the share.
+fn shell_command(words: &[Word], variable: &str) -> String {
+    let words = words.iter().map(|word| match word {
+        Word::Fixed(text) => quote(text),
+        Word::Share(before, after) => {
+            let before = if before.is_empty() {
+                String::new()
+            } else {
+                quote(before)
+            };
+            format!("{before}\"${variable}\"{after}")
+        }
+    });
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// The scene's name without folder and endings.
+fn stem(scene: &str) -> String {
+    let name = Path::new(scene)
+        .file_name()
+        .map_or(scene.into(), |name| name.to_string_lossy());
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    name.strip_suffix(".pbrt").unwrap_or(name).to_owned()
+}
+
+/// The same file under a name that no command takes for a flag.
+fn not_a_flag(file: &str) -> String {
+    if file.starts_with('-') {
+        format!("./{file}")
+    } else {
+        file.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args(scene: &str, output: Option<&str>) -> FarmArgs {
+        let output = output.map(Into::into);
+        FarmArgs {
+            scene: scene.into(),
+            parts: 4,
+            spp: None,
+            output,
+            flags: Vec::new(),
+        }
+    }
+
+    #[track_caller]
+    fn check_names(scene: &str, output: Option<&str>, expected: [&str; 3]) {
+        let args = args(scene, output);
+        let plan = Plan::new(&args).unwrap();
+        assert_eq!([&plan.name, &plan.image, &plan.job()], expected);
+    }
+
+    #[test]
+    fn names_come_from_the_image_then_the_scene() {
+        check_names("a/room.pbrt", None, ["room", "room.exr", "room"]);
+        check_names("a/room.pbrt.gz", None, ["room", "room.exr", "room"]);
+        check_names("a/room", None, ["room", "room.exr", "room"]);
+        check_names(
+            "r.pbrt",
+            Some("out/my room.exr"),
+            ["out/my room", "out/my room.exr", "my-room"],
+        );
+        check_names("r.pbrt", Some("-x.exr"), ["./-x", "./-x.exr", "x"]);
+        check_names("r.pbrt", Some("é.exr"), ["é", "é.exr", "bidir"]);
+        assert!(Plan::new(&args("r.pbrt", Some("room.png"))).is_err());
+        assert!(Plan::new(&args("-", None)).is_err());
+    }
+
+    #[test]
+    fn the_number_of_the_share_is_a_variable_outside_quotes() {
+        let args = args("my scene.pbrt", None);
+        let plan = Plan::new(&args).unwrap();
+        let command = shell_command(
+            &plan.render(Word::Share(String::new(), "/4".into())),
+            "part",
+        );
+        let expected = "bidir render 'my scene.pbrt' --part \"$part\"/4 \
+                        --checkpoint 'my scene-'\"$part\".film --resume";
+        assert_eq!(command, expected);
+    }
+}

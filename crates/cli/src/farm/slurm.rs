@@ -1,0 +1,73 @@
+//! A job array of Slurm.
+
+use super::quote::quote;
+use super::{Plan, shell_command};
+
+/// The script is three things: what `sbatch` reads, a share, and what submits both steps.
+///
+/// Two minutes before its time is over Slurm sends USR1 to the shell alone, which asks the render to
+/// stop with TERM, and then gives the share back to the queue. TERM of Slurm's own, at the end of the
+/// time, before preemption and for scancel, reaches every process: the shell only has to wait, and a
+/// cancelled share must not come back.
+pub(super) fn script(plan: &Plan<'_>) -> String {
+    let (parts, job) = (plan.parts, plan.job());
+    let last = parts - 1;
+    let render = shell_command(&plan.render_env(), "part");
+    let last_step = quote(&plan.last_step().join(" && "));
+    format!(
+        r#"#!/bin/sh
+# {title}. Written by `bidir farm slurm`.
+#
+#   sh FILE       submits the shares, and a last job that makes the image when all are done
+#   sbatch FILE   submits the shares alone
+#
+# What was stopped goes on when it is submitted again; shares that are done return at once.
+#SBATCH --job-name={job}
+#SBATCH --array=0-{last}
+#SBATCH --requeue
+#SBATCH --open-mode=append
+# The notice before the time is over, in seconds: longer than a pass takes.
+#SBATCH --signal=B:USR1@120
+# Here belongs what your cluster asks for; remove one # where it applies.
+##SBATCH --time=1:00:00
+##SBATCH --cpus-per-task=16
+##SBATCH --mem=8G
+##SBATCH --partition=NAME
+
+if [ -z "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
+  shares=$(sbatch --parsable "$0") || exit
+  sbatch --job-name={job}-image --dependency=afterok:"${{shares%%;*}}" \
+    --wrap={last_step}
+  exit
+fi
+
+# Shares are counted from the array's first task, so a part of the array would be other shares.
+if [ "${{SLURM_ARRAY_TASK_COUNT:-{parts}}}" -ne {parts} ]; then
+  echo "submit the whole array: shares that are done return at once" >&2
+  exit 2
+fi
+part=$((SLURM_ARRAY_TASK_ID - ${{SLURM_ARRAY_TASK_MIN:-0}}))
+
+{render} &
+render=$!
+
+# The notice is for this shell alone, TERM for all: then there is only the end to wait for.
+noticed=
+trap 'noticed=yes; again=yes; kill -s TERM "$render"' USR1
+trap 'again=yes' TERM
+again=yes
+while [ -n "$again" ]; do
+  again=
+  code=0
+  wait "$render" || code=$?
+done
+
+# 75: stopped early, with a film file to go on from. The share goes back to the queue.
+if [ "$code" -eq 75 ] && [ -n "$noticed" ]; then
+  scontrol requeue "$SLURM_JOB_ID"
+fi
+exit "$code"
+"#,
+        title = plan.title(),
+    )
+}

@@ -1,0 +1,200 @@
+//! `bidir film`, `bidir merge` and `bidir missing`: what can be done with film files.
+
+use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
+use crate::console::{Console, print, print_json, say};
+use crate::exit::{Exit, Failure};
+use crate::scene_io::{self, FilmFile, FilmHeader, MetadataValue};
+use bidir::film::PassSet;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Tells, develops or checks film files.
+pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failure> {
+    match command {
+        FilmCommand::Info { file, json } => info(file, *json),
+        FilmCommand::Develop { file, output } => develop(file, output),
+        FilmCommand::Verify { files } => Ok(verify(files, console)),
+    }
+}
+
+fn info(file: &Path, as_json: bool) -> Result<Exit, Failure> {
+    let header = scene_io::read_film(file)?.header;
+    if as_json {
+        return print_json(&header);
+    }
+    let [left, top, right, bottom] = header.crop;
+    let [width, height] = header.resolution;
+    let settings = header.settings.iter();
+    let settings = settings.map(|(name, value)| format!("  {name:16}{value}\n"));
+    print(&format!(
+        "passes    {} ({})\nfilm      {width} x {height} pixels, {left},{top} to {right},{bottom}\n\
+         scene     {}\nprogram   {}\nidentity  {}\nstopped   {}\ntime      {:.1} s\n{}",
+        header.passes,
+        header.passes.len(),
+        header.scene,
+        header.program,
+        header.identity,
+        header.stopping.name(),
+        header.seconds,
+        settings.collect::<String>(),
+    ))
+}
+
+fn develop(file: &Path, output: &Path) -> Result<Exit, Failure> {
+    let FilmFile { header, film } = scene_io::read_film(file)?;
+    if film.passes().is_empty() {
+        let message = format!("{}: the film has no passes", file.display());
+        return Err(Failure::new(Exit::Validation, message));
+    }
+    write_image(output, &header, &film)?;
+    say(format_args!(
+        "{} passes; wrote {}",
+        film.passes().len(),
+        output.display()
+    ));
+    Ok(Exit::Done)
+}
+
+fn write_image(
+    output: &Path,
+    header: &FilmHeader,
+    film: &bidir::film::Film,
+) -> Result<(), Failure> {
+    scene_io::write_picture(output, film.settings(), &film.develop(), &metadata(header))
+}
+
+/// The attributes of a developed image.
+fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
+    let passes = i32::try_from(header.passes.len()).unwrap_or(i32::MAX);
+    let own = [
+        ("program", header.program.clone()),
+        ("scene", header.scene.clone()),
+        ("identity", header.identity.clone()),
+        ("passes", header.passes.to_string()),
+        ("stopping", header.stopping.name().to_owned()),
+    ];
+    let settings = header
+        .settings
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.clone()));
+    let texts = settings.chain(own);
+    let texts = texts.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text)));
+    let pbrt = [
+        ("samplesPerPixel".to_owned(), MetadataValue::Integer(passes)),
+        (
+            "renderTimeSeconds".to_owned(),
+            MetadataValue::Float(header.seconds as f32),
+        ),
+    ];
+    pbrt.into_iter().chain(texts).collect()
+}
+
+/// Reads every file to its end; checksums are compared by the way.
+fn verify(files: &[PathBuf], console: Console) -> Exit {
+    let mut last = None;
+    for file in files {
+        match scene_io::read_film(file) {
+            Ok(film) => say(format_args!(
+                "{}: whole, passes {}",
+                file.display(),
+                film.header.passes
+            )),
+            Err(failure) => {
+                console.failure(&failure);
+                last = Some(failure.exit());
+            }
+        }
+    }
+    last.unwrap_or(Exit::Done)
+}
+
+/// Adds films of the same render and different passes.
+pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
+    scene_io::check_writable(&args.output)?;
+    let mut films = args.files.iter();
+    let first = films.next().expect("clap asks for a file");
+    let mut all = scene_io::read_film(first)?;
+    for file in films {
+        let film = scene_io::read_film(file)?;
+        add(&mut all, &film).map_err(|reason| {
+            let message = format!(
+                "{}: cannot be merged with {}: {reason}",
+                file.display(),
+                first.display()
+            );
+            Failure::new(Exit::FilmMismatch, message)
+                .with_hint("film files of one render with different passes can be merged")
+        })?;
+    }
+    scene_io::write_film(&args.output, &all.header, &all.film)?;
+    if let Some(image) = &args.image {
+        write_image(image, &all.header, &all.film)?;
+    }
+    say(format_args!(
+        "passes {} of {} files; wrote {}",
+        all.film.passes(),
+        args.files.len(),
+        args.output.display()
+    ));
+    Ok(Exit::Done)
+}
+
+/// Adds `other`; else the reason why not.
+fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
+    if let Some(difference) = other.header.difference(&all.header) {
+        return Err(difference);
+    }
+    all.film
+        .merge(&other.film)
+        .map_err(|error| error.to_string())?;
+    all.header = all.header.joined(&other.header);
+    all.header.passes = all.film.passes().clone();
+    Ok(())
+}
+
+/// What is still to do.
+#[derive(Serialize)]
+struct Missing {
+    /// Ranges of passes, as `--passes` takes them.
+    passes: Vec<String>,
+    /// Shares, as `--part` takes them.
+    parts: Vec<String>,
+}
+
+/// Tells which passes no file has.
+pub(crate) fn missing(args: &MissingArgs) -> Result<Exit, Failure> {
+    let mut held = PassSet::default();
+    for file in &args.files {
+        held = held.union(&scene_io::read_film(file)?.header.passes);
+    }
+    let lacking = PassSet::from(0..args.spp).difference(&held);
+    let parts = (0..args.parts.unwrap_or(0)).filter_map(|index| {
+        let of = args.parts?;
+        let share = PassSet::from(Part { index, of }.range(args.spp));
+        let open = !share.intersection(&lacking).is_empty();
+        open.then(|| format!("{index}/{of}"))
+    });
+    let ranges = lacking.ranges().iter();
+    let missing = Missing {
+        parts: parts.collect(),
+        passes: ranges
+            .map(|range| format!("{}..{}", range.start, range.end))
+            .collect(),
+    };
+    let lines = if args.parts.is_some() {
+        &missing.parts
+    } else {
+        &missing.passes
+    };
+    if args.json {
+        print_json(&missing)?;
+    } else if !lines.is_empty() {
+        print(&(lines.join("\n") + "\n"))?;
+    }
+    let exit = if lacking.is_empty() {
+        Exit::Done
+    } else {
+        Exit::Validation
+    };
+    Ok(exit)
+}

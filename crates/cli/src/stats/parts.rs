@@ -1,0 +1,144 @@
+//! The parts of a report, as JSON has them. Numbers that are not finite become null.
+
+use crate::settings::Budget;
+use bidir::driver::{Session, Training};
+use bidir::path::Strategy;
+use bidir::stats::{Dropped, RayCounts, Stats, StrategyCounts};
+use serde::Serialize;
+
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct BudgetReport {
+    spp: Option<u64>,
+    seconds: Option<f64>,
+}
+
+impl From<Budget> for BudgetReport {
+    fn from(budget: Budget) -> Self {
+        Self {
+            spp: budget.passes,
+            seconds: budget.time.map(|time| time.as_secs_f64()),
+        }
+    }
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct KindsReport {
+    pub(crate) camera: u64,
+    pub(crate) light: u64,
+    pub(crate) connection: u64,
+    pub(crate) light_image: u64,
+    /// The sum of those above.
+    pub(crate) total: u64,
+}
+
+impl From<RayCounts> for KindsReport {
+    fn from(rays: RayCounts) -> Self {
+        Self {
+            camera: rays.camera,
+            light: rays.light,
+            connection: rays.connection,
+            light_image: rays.light_image,
+            total: rays.total(),
+        }
+    }
+}
+
+/// The rays of a render.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct RayReport {
+    #[serde(flatten)]
+    pub(super) of_image: KindsReport,
+    /// Not in the sum.
+    pub(super) training: u64,
+}
+
+impl RayReport {
+    pub(super) fn new(stats: &Stats, training: Option<&Training>) -> Self {
+        Self {
+            of_image: KindsReport::from(stats.rays),
+            training: training.map_or(0, |training| training.rays.total()),
+        }
+    }
+}
+
+/// The render before the first pass.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct TrainingReport {
+    pub(crate) samples: u64,
+    /// Of the image.
+    pub(crate) mean_luminance: f32,
+    /// The score from which on a candidate is sure to be traced.
+    pub(crate) threshold: Option<f32>,
+    pub(crate) rays: KindsReport,
+}
+
+impl TrainingReport {
+    /// None: there was none.
+    pub(crate) fn new(session: &Session<'_>) -> Option<Self> {
+        let training = session.training()?;
+        let rule = session.settings().shadow_rays;
+        Some(Self {
+            samples: training.samples,
+            mean_luminance: training.mean_luminance,
+            threshold: rule.threshold(training.mean_luminance),
+            rays: KindsReport::from(training.rays),
+        })
+    }
+}
+
+/// What became of contributions that are not zero.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct CountsReport {
+    /// Before selection and visibility.
+    candidates: u64,
+    /// Of those, shadow rays; s = 0 needs none.
+    traced: u64,
+    /// Of those, in vain.
+    blocked: u64,
+}
+
+impl From<StrategyCounts> for CountsReport {
+    fn from(counts: StrategyCounts) -> Self {
+        Self {
+            candidates: counts.candidates,
+            traced: counts.traced,
+            blocked: counts.blocked,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct StrategyReport {
+    s: u16,
+    t: u16,
+    #[serde(flatten)]
+    counts: CountsReport,
+}
+
+impl From<(Strategy, StrategyCounts)> for StrategyReport {
+    fn from((strategy, counts): (Strategy, StrategyCounts)) -> Self {
+        Self {
+            s: strategy.s,
+            t: strategy.t,
+            counts: CountsReport::from(counts),
+        }
+    }
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct DroppedReport {
+    pub(super) pass: u64,
+    pub(super) pixel: [u32; 2],
+    pub(super) strategy: String,
+}
+
+impl From<&Dropped> for DroppedReport {
+    fn from(dropped: &Dropped) -> Self {
+        Self {
+            pass: dropped.pass,
+            pixel: dropped.pixel,
+            strategy: dropped.strategy.to_string(),
+        }
+    }
+}

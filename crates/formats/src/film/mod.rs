@@ -1,0 +1,150 @@
+//! Film files: the exact sums of a render on disk, to go on from, to merge, and to develop.
+//!
+//! A file is one header and the sums of all pixels in row order:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 8 | `BIDIRFLM` |
+//! | 4 | version of the format, 1 |
+//! | 4 | length of the header |
+//! | … | the header, JSON ([`FilmHeader`]) |
+//! | 4 | checksum of all bytes before it |
+//! | … | blocks of 4096 pixels, the last one shorter: length of what is packed, checksum of what is unpacked, the packed bytes |
+//! | 8 | `BIDIREND` |
+//!
+//! Numbers are little-endian, checksums CRC-32. A block unpacks (DEFLATE) to planes of bytes: first
+//! the lowest byte of the first sum of every pixel, then the second byte, and so on to the highest
+//! byte of the last sum. Sums are 128-bit two's complements, in the order of
+//! [`PixelSums::to_array`]; most of their bytes are the same in all pixels, which is why planes pack
+//! well.
+//!
+//! Nothing is normalised: equal films are equal files but for the header, and adding the sums of two
+//! files of different passes is the file of both.
+
+mod block;
+mod header;
+#[cfg(test)]
+mod tests;
+
+pub use header::{FilmHeader, Stopping};
+
+use crate::bytes;
+use crate::error::{Error, ErrorKind, Result};
+use crate::file;
+use bidir::film::{Film, PixelSums};
+use std::path::Path;
+
+const MAGIC: &[u8; 8] = b"BIDIRFLM";
+const END: &[u8; 8] = b"BIDIREND";
+const VERSION: u32 = 1;
+/// Bytes of a file.
+const LARGEST_FILE: u64 = 1 << 36;
+/// Bytes before the header.
+const PREAMBLE: usize = 16;
+
+/// A film file in memory.
+#[derive(Clone, Debug)]
+pub struct FilmFile {
+    /// Whose film it is.
+    pub header: FilmHeader,
+    /// The sums, with the header's geometry and passes. Its filter is the default one: nothing can
+    /// be added but other films.
+    pub film: Film,
+}
+
+/// Writes a film file, so that its name stands for the whole of it or for what was there before.
+///
+/// Passes and geometry in `header` are those of `film`, whatever it said before.
+///
+/// Errors: the file cannot be written.
+pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
+    file::replace(path, &encode(&header.of(film), film.pixels()))
+}
+
+/// Reads a film file.
+///
+/// Errors: it cannot be read, or is no whole film file of this version.
+pub fn read(path: &Path) -> Result<FilmFile> {
+    let bytes = bytes::read(path, LARGEST_FILE)?;
+    decode(&bytes).map_err(|error| error.in_file(path))
+}
+
+fn encode(header: &FilmHeader, pixels: &[PixelSums]) -> Vec<u8> {
+    let json = header.to_json();
+    let mut bytes = Vec::with_capacity(PREAMBLE + json.len() + 64 * pixels.len());
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(json.len() as u32).to_le_bytes());
+    bytes.extend_from_slice(json.as_bytes());
+    let checksum = block::checksum(&bytes);
+    bytes.extend_from_slice(&checksum.to_le_bytes());
+    for pixels in pixels.chunks(block::PIXELS) {
+        block::write(pixels, &mut bytes);
+    }
+    bytes.extend_from_slice(END);
+    bytes
+}
+
+fn decode(bytes: &[u8]) -> Result<FilmFile> {
+    let mut rest = bytes;
+    if take(&mut rest, MAGIC.len())? != MAGIC {
+        return Err(broken("not a film file")
+            .with_hint("film files are made by `bidir render --checkpoint`"));
+    }
+    let version = take_u32(&mut rest)?;
+    if version != VERSION {
+        let message = format!("version {version} of the film format, this program reads {VERSION}");
+        return Err(broken(message));
+    }
+    let length = take_u32(&mut rest)? as usize;
+    let json = take(&mut rest, length)?;
+    if take_u32(&mut rest)? != block::checksum(&bytes[..PREAMBLE + length]) {
+        return Err(broken("damaged: the header's checksum is wrong"));
+    }
+    let header = FilmHeader::from_json(json)?;
+    let pixels = take_pixels(&mut rest, header.area())?;
+    if rest != END {
+        return Err(broken("damaged: the end is missing"));
+    }
+    let film = Film::restore(header.film_settings(), header.passes.clone(), pixels)
+        .map_err(|error| broken(error.to_string()))?;
+    Ok(FilmFile { header, film })
+}
+
+/// Unpacks the blocks of `area` pixels.
+fn take_pixels(rest: &mut &[u8], area: u64) -> Result<Vec<PixelSums>> {
+    // A block that is not there fails before memory is taken for it.
+    let mut pixels = Vec::new();
+    while (pixels.len() as u64) < area {
+        let left = area - pixels.len() as u64;
+        let packed = take_u32(rest)? as usize;
+        let checksum = take_u32(rest)?;
+        let bytes = take(rest, packed)?;
+        let count = left.min(block::PIXELS as u64) as usize;
+        let first = pixels.len();
+        block::read(bytes, checksum, count, &mut pixels).ok_or_else(|| {
+            broken(format!(
+                "damaged: the checksum of the pixels from {first} on is wrong"
+            ))
+        })?;
+    }
+    Ok(pixels)
+}
+
+/// The next `count` bytes.
+fn take<'a>(rest: &mut &'a [u8], count: usize) -> Result<&'a [u8]> {
+    let (bytes, after) = rest
+        .split_at_checked(count)
+        .ok_or_else(|| broken("damaged: the file ends too early"))?;
+    *rest = after;
+    Ok(bytes)
+}
+
+fn take_u32(rest: &mut &[u8]) -> Result<u32> {
+    let bytes = take(rest, 4)?;
+    Ok(u32::from_le_bytes(bytes.try_into().expect("four bytes")))
+}
+
+fn broken(message: impl Into<String>) -> Error {
+    Error::new(ErrorKind::Data, message)
+}

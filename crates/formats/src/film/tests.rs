@@ -1,0 +1,111 @@
+use super::*;
+use bidir::film::{FilmSettings, Filter, PassBuffer, PassSet};
+use bidir::math::Vec2;
+use serde_json::json;
+
+/// A film of two blocks and a bit, with sums of both signs.
+fn film(first_pass: u64) -> Film {
+    let settings = FilmSettings::new([100, 90], Filter::default());
+    let mut film = Film::new(settings, u64::MAX).unwrap();
+    for pass in first_pass..first_pass + 2 {
+        let buffer = PassBuffer::new(film.settings());
+        for i in 0..9000 {
+            let value = (i as f32 + pass as f32) * 0.37 - 900.0;
+            buffer.set_camera_sample(i, [value, value * 1e-6, value * 1e6]);
+        }
+        let raster = Vec2::new(3.5, 80.5);
+        buffer.splat(film.settings(), raster, [1e-3, 2.0, 1e9], Vec2::splat(0.5));
+        film.add_pass(pass, &buffer);
+    }
+    film
+}
+
+fn header_with(seed: &str) -> FilmHeader {
+    let settings = [("seed".to_owned(), seed.to_owned())].into();
+    FilmHeader {
+        seconds: 1.5,
+        counts: json!({"rays": {"camera": 12}, "dropped": 0}),
+        ..FilmHeader::new("bidir", "room.pbrt".to_owned(), settings)
+    }
+}
+
+fn header() -> FilmHeader {
+    header_with("1")
+}
+
+fn bytes() -> Vec<u8> {
+    let film = film(0);
+    encode(&header().of(&film), film.pixels())
+}
+
+#[test]
+fn a_film_survives_the_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.film");
+    let film = film(7);
+    write(&path, &header(), &film).unwrap();
+    let file = read(&path).unwrap();
+    assert!(file.film == film);
+    assert_eq!(file.header, header().of(&film));
+    assert_eq!(file.header.passes, PassSet::from(7..9));
+}
+
+#[test]
+fn planes_are_packed() {
+    // Nine sums of sixteen bytes for each pixel.
+    assert!(bytes().len() < 9000 * 144 / 3);
+}
+
+#[test]
+fn a_film_that_ends_early_is_damaged() {
+    let bytes = bytes();
+    for length in (0..bytes.len()).step_by(997).chain([bytes.len() - 1]) {
+        let error = decode(&bytes[..length]).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Data, "{length}");
+    }
+}
+
+#[test]
+fn a_flipped_bit_is_seen() {
+    let bytes = bytes();
+    for at in (0..bytes.len()).step_by(211).chain(0..64) {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        // Where packed bytes have two spellings the film is still the same.
+        if let Ok(file) = decode(&flipped) {
+            assert!(file.film == film(0), "{at}");
+        }
+    }
+}
+
+#[test]
+fn other_files_and_versions_are_told() {
+    let check = |bytes: &[u8], text: &str| {
+        let error = decode(bytes).unwrap_err().to_string();
+        assert!(error.contains(text), "{error}");
+    };
+    check(b"\x89PNG and more than that", "not a film file");
+    let mut newer = bytes();
+    newer[8] = 9;
+    check(&newer, "version 9");
+    let mut longer = bytes();
+    longer.push(0);
+    check(&longer, "the end is missing");
+    check(&bytes()[..bytes().len() / 2], "ends too early");
+}
+
+#[test]
+fn a_difference_is_named() {
+    assert_eq!(header().difference(&header()), None);
+    assert_eq!(
+        header().difference(&header_with("2")).unwrap(),
+        "seed is 1 here and 2 there"
+    );
+}
+
+#[test]
+fn headers_add_up() {
+    let joined = header().joined(&header());
+    assert_eq!(joined.counts, json!({"rays": {"camera": 24}, "dropped": 0}));
+    assert!((joined.seconds - 3.0).abs() < 1e-9);
+}

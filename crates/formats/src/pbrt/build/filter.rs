@@ -1,0 +1,71 @@
+//! The pixel filter.
+
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::scene::Entity;
+use crate::source::Fault;
+use bidir::film::{Filter, FilterKind};
+use bidir::math::Vec2;
+
+/// The range of half widths. Unit: pixels.
+const RADII: [f32; 2] = [1e-3, 32.0];
+
+/// The range of the numbers that shape a filter: beyond it one is a point, or flat, and its integral
+/// not to be computed.
+const SHAPES: [f32; 2] = [0.05, 100.0];
+
+/// A filter that is narrower than this along an axis is warned of. Unit: pixels.
+const NARROW: f32 = 0.25;
+
+/// Builds the pixel filter; without one it is the format's default.
+pub(super) fn build(context: &mut Context<'_>) -> Result<Filter, Fault> {
+    let Some(entity) = &context.description.filter else {
+        let kind = FilterKind::Gaussian { sigma: 0.5 };
+        return Ok(Filter::new(kind, Vec2::splat(1.5)));
+    };
+    let mut reader = Reader::new(entity);
+    let (kind, radius) = read_kind(&mut reader, entity)?;
+    let radius = Vec2::new(
+        reader.float_within("xradius", radius, RADII)?,
+        reader.float_within("yradius", radius, RADII)?,
+    );
+    reader.finish()?;
+    let narrowest = effective_radius(kind, radius.x).min(effective_radius(kind, radius.y));
+    if narrowest < NARROW {
+        let message = format!(
+            "the filter is as narrow as a box with a radius of {narrowest:.3} pixels: what \
+             light subpaths splat hits it rarely, so `bdpt` and `light` will be noisy"
+        );
+        context.warn(entity.span, message);
+    }
+    Ok(Filter::new(kind, radius))
+}
+
+/// The kind of a filter, and the radius of that kind where the file gives none.
+fn read_kind(reader: &mut Reader<'_>, entity: &Entity) -> Result<(FilterKind, f32), Fault> {
+    Ok(match entity.kind.as_str() {
+        "box" => (FilterKind::Box, 0.5),
+        "triangle" => (FilterKind::Triangle, 2.0),
+        "mitchell" => {
+            let third = 1.0 / 3.0;
+            let (b, c) = (reader.float("B", third)?, reader.float("C", third)?);
+            (FilterKind::Mitchell { b, c }, 2.0)
+        }
+        "sinc" => {
+            let tau = reader.float_within("tau", 3.0, SHAPES)?;
+            (FilterKind::Sinc { tau }, 4.0)
+        }
+        _ => {
+            let sigma = reader.float_within("sigma", 0.5, SHAPES)?;
+            (FilterKind::Gaussian { sigma }, 1.5)
+        }
+    })
+}
+
+/// The radius of the box that is as high as the filter, along one axis. A splat is weighted by the
+/// height, but n_j, the number of splats that weights count on, knows no filter: the variance of
+/// the light image grows with the height, and no other strategy takes over.
+fn effective_radius(kind: FilterKind, radius: f32) -> f32 {
+    let height = Filter::new(kind, Vec2::splat(radius)).eval(Vec2::ZERO);
+    0.5 / height.sqrt()
+}

@@ -1,0 +1,99 @@
+use super::{LoadOptions, STRICT, load_text, refusal};
+use crate::error::ErrorKind;
+use crate::pbrt::Crop;
+
+#[test]
+fn the_caller_may_choose_size_and_crop() {
+    let text = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20\n\
+        \"integer pixelbounds\" [10 20 0 10] WorldBegin";
+    let options = LoadOptions {
+        resolution: Some([80, 40]),
+        ..STRICT
+    };
+    let film = load_text(text, &options).scene.film().clone();
+    assert_eq!((film.crop.min, film.crop.max), ([20, 0], [40, 20]));
+    let options = LoadOptions {
+        crop: Some(Crop::Pixels([1, 3, 2, 900])),
+        ..STRICT
+    };
+    let film = load_text(text, &options).scene.film().clone();
+    assert_eq!((film.crop.min, film.crop.max), ([1, 2], [3, 20]));
+}
+
+/// Checks what is said of a scene that is to be rendered with `options`, and whose fault it is.
+#[track_caller]
+fn check_asked(text: &str, options: &LoadOptions, kind: ErrorKind, expected: &str) {
+    let error = refusal(text, options);
+    assert_eq!((error.kind(), &*error.to_string()), (kind, expected));
+}
+
+#[test]
+fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
+    let small = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20 WorldBegin";
+    let crop = |crop| LoadOptions {
+        crop: Some(crop),
+        ..STRICT
+    };
+    check_asked(
+        small,
+        &crop(Crop::Pixels([40, 50, 0, 10])),
+        ErrorKind::Options,
+        "s.pbrt:1:6: the crop asked for has no pixels of this film of 40 × 20",
+    );
+    check_asked(
+        "WorldBegin",
+        &crop(Crop::Pixels([1300, 1400, 0, 10])),
+        ErrorKind::Options,
+        "s.pbrt:1:1: the crop asked for has no pixels of this film of 1280 × 720",
+    );
+    check_asked(
+        "WorldBegin",
+        &crop(Crop::Fractions([0.0, 1.0, 0.5, 0.5])),
+        ErrorKind::Options,
+        "s.pbrt:1:1: the crop asked for has no pixels of this film of 1280 × 720",
+    );
+    let size = |resolution| LoadOptions {
+        resolution: Some(resolution),
+        ..STRICT
+    };
+    for (resolution, name) in [([0, 4], "0 × 4"), ([4, 65537], "4 × 65537")] {
+        let expected = format!("s.pbrt:1:1: a film of {name} pixels is empty or too large");
+        check_asked("WorldBegin", &size(resolution), ErrorKind::Limit, &expected);
+    }
+    let [warning] = &load_text("WorldBegin", &size([20, 20])).warnings[..] else {
+        panic!("the pixels are not square");
+    };
+    assert!(warning.starts_with("s.pbrt:1:1: the view of this film of 1280 × 720 pixels is kept"));
+}
+
+/// Checks the radius that a filter is warned of. None: it is not.
+#[track_caller]
+fn check_narrow(filter: &str, radius: Option<&str>) {
+    let loaded = load_text(&format!("PixelFilter {filter} WorldBegin"), &STRICT);
+    let expected = radius.map(|radius| {
+        format!(
+            "s.pbrt:1:13: the filter is as narrow as a box with a radius of {radius} pixels: what \
+             light subpaths splat hits it rarely, so `bdpt` and `light` will be noisy"
+        )
+    });
+    assert_eq!(loaded.warnings, Vec::from_iter(expected), "{filter}");
+}
+
+#[test]
+fn filters_much_narrower_than_a_pixel_are_warned_of() {
+    for kind in ["box", "triangle", "gaussian", "mitchell", "sinc"] {
+        check_narrow(&format!("\"{kind}\""), None);
+        let narrow = format!("\"{kind}\" \"float xradius\" 0.001");
+        let [warning] =
+            &load_text(&format!("PixelFilter {narrow} WorldBegin"), &STRICT).warnings[..]
+        else {
+            panic!("{kind} is narrow");
+        };
+        assert!(warning.starts_with("s.pbrt:1:13: the filter is as narrow"));
+    }
+    check_narrow("\"box\" \"float xradius\" 0.25", None);
+    check_narrow("\"box\" \"float yradius\" 0.24", Some("0.240"));
+    check_narrow("\"triangle\" \"float xradius\" 0.4", Some("0.200"));
+    // A wide filter may have a narrow peak.
+    check_narrow("\"gaussian\" \"float sigma\" 0.05", Some("0.063"));
+}

@@ -1,0 +1,91 @@
+use super::{STRICT, world};
+use crate::pbrt::load;
+use bidir::light::{Light, LightPoint};
+use bidir::math::Vec3;
+use bidir::shape::{Orientation, Shape};
+use bidir::spectrum::luminance;
+
+#[test]
+fn power_goes_to_every_triangle_of_a_mesh() {
+    let scene = world(
+        "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 3\n\
+         Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 9 0] \"integer indices\" [0 1 2 0 2 3]",
+    );
+    assert_eq!(scene.lights().len(), 2);
+    for light in scene.lights() {
+        assert!((light.power(&scene.light_context()) - 3.0).abs() < 1e-4);
+    }
+    let Shape::Mesh(mesh) = &scene.shapes()[1] else {
+        panic!("a mesh stays a mesh")
+    };
+    assert_eq!(
+        (mesh.positions.len(), mesh.orientation),
+        (3, Orientation::Natural)
+    );
+}
+
+#[test]
+fn lights_stand_where_they_are_put() {
+    let scene = world(
+        "Translate 1 0 0 LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 2 \"point3 from\" [0 1 0]\n\
+         LightSource \"spot\" \"float power\" 10\n\
+         LightSource \"distant\" \"rgb L\" [4 4 4] \"point3 from\" [0 5 0] \"point3 to\" [0 0 0]\n\
+         LightSource \"infinite\" \"rgb L\" [1 1 1] \"float illuminance\" 2",
+    );
+    let [
+        Light::Point(point),
+        spot @ Light::Spot(_),
+        Light::Distant(distant),
+        infinite,
+    ] = scene.lights()
+    else {
+        panic!("the lights are in the order of the file");
+    };
+    assert_eq!(
+        (point.position, point.intensity),
+        (Vec3::new(1.0, 1.0, 0.0), [2.0, 4.0, 6.0])
+    );
+    assert!((spot.power(&scene.light_context()) - 10.0).abs() < 1e-3);
+    assert_eq!((distant.to_light, distant.irradiance), (Vec3::Y, [4.0; 3]));
+    let at = LightPoint::at_infinity(Vec3::Z);
+    let radiance = luminance(infinite.emitted(&at, -Vec3::Z));
+    assert!((radiance * std::f32::consts::PI - 2.0).abs() < 1e-5);
+}
+
+#[test]
+fn environments_are_square_and_their_numbers_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, size: [usize; 2], data: &[f32]| {
+        let layers = [crate::image::ExrLayer {
+            name: "",
+            channels: &["R", "G", "B"],
+            data,
+        }];
+        let crop = [0, 0, size[0], size[1]];
+        let image = crate::image::ExrImage {
+            resolution: size,
+            crop,
+            layers: &layers,
+            metadata: &[],
+        };
+        crate::image::write_exr(&folder.path().join(name), &image).unwrap();
+    };
+    write("wide.exr", [2, 1], &[1.0; 6]);
+    write("square.exr", [1, 1], &[2.0, f32::NAN, -1.0]);
+    let load = |name: &str| {
+        let text = format!("WorldBegin LightSource \"infinite\" \"string filename\" \"{name}\"");
+        let path = folder.path().join("s.pbrt");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &STRICT)
+    };
+    let error = load("wide.exr").unwrap_err();
+    assert_eq!(
+        error.message(),
+        "an environment is a square image, this one has 2 × 1 pixels"
+    );
+    let loaded = load("square.exr").unwrap();
+    let at = LightPoint::at_infinity(Vec3::X);
+    let radiance = Vec3::from(loaded.scene.lights()[0].emitted(&at, -Vec3::X));
+    assert_eq!(radiance, Vec3::new(2.0, 0.0, 0.0));
+    assert!(loaded.warnings[0].ends_with("2 numbers of the image are no radiance and taken as 0"));
+}

@@ -1,0 +1,184 @@
+use super::{LENIENT, check, check_world, load_text, world};
+
+#[test]
+fn wrong_parameters_are_told() {
+    check(
+        "Camera \"perspective\" \"float fvo\" 3 WorldBegin",
+        "s.pbrt:1:22: unknown parameter `fvo` of `perspective`; did you mean `fov`?",
+    );
+    check(
+        "Camera \"perspective\" \"integer fov\" 3 WorldBegin",
+        "s.pbrt:1:22: `fov` is not of type `integer`; write `float fov`",
+    );
+    check(
+        "Camera \"perspective\" \"float fov\" [3 4] WorldBegin",
+        "s.pbrt:1:34: `fov` has one value, found 2",
+    );
+    check(
+        "Camera \"perspective\" \"float fov\" 190 WorldBegin",
+        "s.pbrt:1:34: `fov` is 190, but has to be between 0.001 and 179.999",
+    );
+    check(
+        "Camera \"perspective\" \"float shutterclose\" 0 WorldBegin",
+        "s.pbrt:1:8: the shutter closes before it opens",
+    );
+    check(
+        "Film \"rgb\" \"integer xresolution\" -3 WorldBegin",
+        "s.pbrt:1:34: `xresolution` is -3, but has to be at least 1",
+    );
+    check(
+        "Film \"rgb\" \"integer xresolution\" 100000 WorldBegin",
+        "s.pbrt:1:6: a film of 100000 × 720 pixels is empty or too large",
+    );
+    check(
+        "Film \"rgb\" \"float cropwindow\" [0 1 0.5 0.5] WorldBegin",
+        "s.pbrt:1:6: the crop leaves no pixels of the film",
+    );
+    check(
+        "Film \"rgb\" \"integer pixelbounds\" [0 1 2] WorldBegin",
+        "s.pbrt:1:34: `pixelbounds` is left, right, top and bottom of a part of the film",
+    );
+    check(
+        "Scale 1 2 1 Camera \"perspective\" WorldBegin",
+        "s.pbrt:1:20: the camera's screen is empty, or its transformation is sheared or uneven",
+    );
+    check(
+        "Sampler \"sobol\" \"integer pixelsamples\" 0 WorldBegin",
+        "s.pbrt:1:40: `pixelsamples` is 0, but has to be at least 1",
+    );
+}
+
+#[test]
+fn wrong_worlds_are_told() {
+    check_world(
+        "Material \"diffuse\" \"rgb reflectance\" [1 2 1]",
+        "s.pbrt:2:38: the reflectance `reflectance` is above 1",
+    );
+    check_world(
+        "Material \"diffuse\" \"rgb reflectance\" [0 -1 0]",
+        "s.pbrt:2:38: the colour `reflectance` has a negative part",
+    );
+    check_world(
+        "Texture \"wood\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" \"wod\"",
+        "s.pbrt:3:42: unknown spectrum texture `wod`; did you mean `wood`?",
+    );
+    check_world(
+        "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n\
+         Material \"diffuse\" \"texture reflectance\" \"t\"",
+        "s.pbrt:2:53: no.png: cannot open: no such file",
+    );
+    check_world(
+        "Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
+        "s.pbrt:2:10: a conductor has `reflectance` or `eta` and `k`, not both",
+    );
+    check_world(
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
+        "s.pbrt:2:71: index 3 is not that of a point: there are 3",
+    );
+    check_world(
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]",
+        "s.pbrt:2:7: the mesh has 3 points, but 1 values of `N`",
+    );
+    check_world(
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0]",
+        "s.pbrt:2:7: the parameter `integer indices` is missing",
+    );
+    check_world(
+        "Shape \"plymesh\" \"string filename\" \"no.ply\"",
+        "s.pbrt:2:35: no.ply: cannot open: no such file",
+    );
+    check_world(
+        "LightSource \"distant\" \"point3 to\" [0 0 0]",
+        "s.pbrt:2:13: `from` and `to` of the light are the same point",
+    );
+}
+
+#[test]
+fn what_is_not_built_is_refused_by_name() {
+    check_world(
+        "Material \"coateddiffuse\" Shape \"sphere\"",
+        "s.pbrt:2:10: the material `coateddiffuse` is recognised but not supported yet; \
+         with --lenient: `diffuse` of its reflectance stands in",
+    );
+    check_world(
+        "Texture \"t\" \"float\" \"fbm\"\n\
+         Material \"conductor\" \"texture roughness\" \"t\" Shape \"sphere\"",
+        "s.pbrt:2:21: the texture class `fbm` is recognised but not supported yet; \
+         with --lenient: 0.5 stands in",
+    );
+    check_world(
+        "Shape \"cylinder\"",
+        "s.pbrt:2:7: the shape `cylinder` is recognised but not supported yet; \
+         with --lenient: it is left out",
+    );
+    check_world(
+        "Shape \"sphere\" \"float alpha\" 0.5",
+        "s.pbrt:2:7: the parameter `float alpha` is recognised but not supported yet; \
+         with --lenient: the shape is opaque",
+    );
+    check_world(
+        "LightSource \"point\" \"blackbody I\" 5000",
+        "s.pbrt:2:21: a blackbody spectrum is recognised but not supported yet; \
+         with --lenient: white stands in",
+    );
+    check(
+        "Integrator \"mlt\" \"integer chains\" 3 WorldBegin",
+        "s.pbrt:1:12: the integrator `mlt` is recognised but not supported yet; \
+         with --lenient: `bdpt` stands in",
+    );
+    check_world(
+        "MediumInterface \"fog\" Shape \"sphere\"",
+        "s.pbrt:2:17: a participating medium is recognised but not supported yet; \
+         with --lenient: vacuum stands in",
+    );
+}
+
+#[test]
+fn with_leniency_something_stands_in_and_is_counted() {
+    let loaded = load_text(
+        "Integrator \"sppm\" WorldBegin\nMaterial \"coateddiffuse\" \"rgb reflectance\" [1 0 0]\n\
+         Shape \"sphere\" Shape \"cylinder\" Shape \"cylinder\"\nMaterial \"interface\" Shape \"sphere\"",
+        &LENIENT,
+    );
+    assert_eq!((loaded.summary.shapes, loaded.summary.materials), (1, 2));
+    assert_eq!(
+        loaded.warnings,
+        [
+            "s.pbrt:1:12: the integrator `sppm` is not supported yet: `bdpt` stands in",
+            "s.pbrt:2:10: the material `coateddiffuse` is not supported yet: \
+             `diffuse` of its reflectance stands in",
+            "s.pbrt:4:10: the material `interface` is not supported yet: its shapes are left out",
+            "s.pbrt:3:22: the shape `cylinder` is not supported yet: it is left out (2 times)",
+        ]
+    );
+}
+
+#[test]
+fn what_nobody_uses_is_no_reason_to_refuse() {
+    let unused = "Texture \"marble\" \"spectrum\" \"marble\" \"float scale\" 3\n\
+        Texture \"bumps\" \"float\" \"fbm\"\n\
+        Texture \"ball\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\" \"string mapping\" \"spherical\"\n\
+        Texture \"gone\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n\
+        Material \"hair\" Material \"diffuse\" \"texture reflectance\" \"marble\"\n\
+        Material \"diffuse\" Shape \"sphere\"";
+    assert_eq!(world(unused).materials().len(), 2);
+    // Nothing has to stand in for it either.
+    let lenient = load_text(&format!("WorldBegin {unused}"), &LENIENT);
+    assert_eq!(lenient.warnings, [""; 0]);
+}
+
+#[test]
+fn what_nobody_uses_is_refused_where_it_is_wrong() {
+    check_world(
+        "Texture \"t\" \"spectrum\" \"constant\" \"rgb valeu\" [1 1 1]",
+        "s.pbrt:2:35: unknown parameter `valeu` of `constant`; did you mean `value`?",
+    );
+    check_world(
+        "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t.png\" \"string wrap\" \"round\"",
+        "s.pbrt:2:72: unknown wrap mode `round`",
+    );
+    check_world(
+        "Material \"diffuse\" \"rgb reflectence\" [1 1 1]",
+        "s.pbrt:2:20: unknown parameter `reflectence` of `diffuse`; did you mean `reflectance`?",
+    );
+}
