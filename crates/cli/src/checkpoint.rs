@@ -5,8 +5,9 @@ use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
 use bidir::driver::Session;
-use bidir::film::Film;
+use bidir::film::{Film, PassSet};
 use std::fs::{File, TryLockError};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,8 @@ struct Checkpoint {
     path: PathBuf,
     every: Duration,
     written: Instant,
+    /// True where the file is there and can be read.
+    is_whole: bool,
     /// Locked as long as it lives; the system unlocks it where the process is killed.
     _lock: File,
 }
@@ -24,27 +27,29 @@ impl Checkpoint {
     /// The film file that the flags ask for, if any, and the film in it that is gone on from.
     ///
     /// Errors: another process writes the same file; it is there and nothing was said of it; it is
-    /// damaged; it is not of the render that `header` describes.
+    /// damaged; it is not of the render that `header` describes, or has other passes than `asked`.
     fn open(
         args: &LongArgs,
         header: &FilmHeader,
+        asked: Range<u64>,
     ) -> Result<Option<(Self, Option<FilmFile>)>, Failure> {
         let Some(path) = &args.checkpoint else {
             return Ok(None);
         };
         scene_io::check_writable(path)?;
-        let lock = lock(path)?;
-        let film = match (path.exists(), args.resume, args.restart) {
-            (true, true, _) => Some(load(path, header)?),
-            (true, false, false) => {
-                let message = format!("{}: there is a film file already", path.display());
-                let hint = "go on from it with --resume, or begin anew with --restart";
-                return Err(Failure::usage(message).with_hint(hint));
-            }
-            _ => None,
+        // The lock is that of the file itself, whatever link leads to it.
+        let path = scene_io::target_of(path);
+        let lock = lock(&path)?;
+        check_existing(&path, args)?;
+        let film = if path.exists() && args.resume {
+            Some(load(&path, header, asked)?)
+        } else {
+            None
         };
         let checkpoint = Self {
-            path: path.clone(),
+            // What is damaged shall not push out the whole file before it.
+            is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
+            path,
             every: args.checkpoint_every.0,
             written: Instant::now(),
             _lock: lock,
@@ -56,9 +61,42 @@ impl Checkpoint {
     fn write(&mut self, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
         // A disk that is full shall not be asked again after every pass.
         self.written = Instant::now();
-        keep_previous(&self.path)?;
-        scene_io::write_film(&self.path, header, film)
+        if self.is_whole {
+            let previous = beside(&self.path, ".previous");
+            return scene_io::write_film_keeping(&self.path, &previous, header, film);
+        }
+        scene_io::write_film(&self.path, header, film)?;
+        self.is_whole = true;
+        Ok(())
     }
+}
+
+/// Refuses to replace what is there unasked, and what is no film file at all.
+fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
+    let previous = beside(path, ".previous");
+    let name = path.display();
+    let failure = |message: String, hint: String| Err(Failure::usage(message).with_hint(hint));
+    if !path.exists() {
+        if args.restart || !previous.exists() {
+            return Ok(());
+        }
+        let message = format!("{name}: there is none, but the one before it is there");
+        let hint = format!(
+            "rename {} to go on from it, or begin anew with --restart",
+            previous.display()
+        );
+        return failure(message, hint);
+    }
+    if args.restart && !scene_io::is_film(path) {
+        let message = format!("{name}: not a film file, and so not replaced by one");
+        return failure(message, "give --checkpoint another name".into());
+    }
+    if !args.resume && !args.restart {
+        let message = format!("{name}: there is a film file already");
+        let hint = "go on from it with --resume, or begin anew with --restart";
+        return failure(message, hint.into());
+    }
+    Ok(())
 }
 
 /// What a running render writes to its film file, if it has one.
@@ -71,15 +109,17 @@ pub(crate) struct Keeper {
 }
 
 impl Keeper {
-    /// Opens the film file that the flags ask for, and gives its film to `session`.
+    /// Opens the film file that the flags ask for, and gives its film to `session`, which is to
+    /// render the passes `asked`.
     ///
     /// Errors: as [`Checkpoint::open`].
     pub(crate) fn open(
         args: &LongArgs,
         header: FilmHeader,
         session: &mut Session<'_>,
+        asked: Range<u64>,
     ) -> Result<Self, Failure> {
-        let (checkpoint, file) = Checkpoint::open(args, &header)?.unzip();
+        let (checkpoint, file) = Checkpoint::open(args, &header, asked)?.unzip();
         let file = file.flatten();
         if let Some(file) = &file {
             session
@@ -114,6 +154,15 @@ impl Keeper {
         let Some(checkpoint) = &mut self.checkpoint else {
             return Ok(());
         };
+        // Nothing was added: what the file says of its passes stays true.
+        let passes = session.film().passes();
+        if self
+            .earlier
+            .as_ref()
+            .is_some_and(|earlier| earlier.passes == *passes)
+        {
+            return Ok(());
+        }
         let now = film_header::of_run(&self.header, session, self.start.elapsed());
         let all = self
             .earlier
@@ -124,7 +173,7 @@ impl Keeper {
 }
 
 /// Reads the film file of a render that goes on.
-fn load(path: &Path, header: &FilmHeader) -> Result<FilmFile, Failure> {
+fn load(path: &Path, header: &FilmHeader, asked: Range<u64>) -> Result<FilmFile, Failure> {
     let previous = beside(path, ".previous");
     let file = scene_io::read_film(path).map_err(|failure| {
         if previous.exists() {
@@ -133,17 +182,19 @@ fn load(path: &Path, header: &FilmHeader) -> Result<FilmFile, Failure> {
             failure
         }
     })?;
-    match header.difference(&file.header) {
-        None => Ok(file),
-        Some(difference) => {
-            let message = format!(
-                "{}: the film of another render: {difference}",
-                path.display()
-            );
-            let hint = "render as before, or begin anew with --restart";
-            Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
-        }
+    let name = path.display();
+    if let Some(difference) = header.difference(&file.header) {
+        let message = format!("{name}: the film of another render: {difference}");
+        let hint = "render as before, or begin anew with --restart";
+        return Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint));
     }
+    let others = file.header.passes.difference(&PassSet::from(asked));
+    if !others.is_empty() {
+        let message = format!("{name}: it has the passes {others}, which are not asked for");
+        let hint = "ask for at least the passes that it has, or write to another file";
+        return Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint));
+    }
+    Ok(file)
 }
 
 /// Says which film file was written before the one that cannot be read.
@@ -157,18 +208,6 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(ending);
     name.into()
-}
-
-/// Gives the file a second name, which stays when the first is given to new bytes.
-fn keep_previous(path: &Path) -> Result<(), Failure> {
-    if !path.exists() {
-        return Ok(());
-    }
-    let previous = beside(path, ".previous");
-    let _ = std::fs::remove_file(&previous);
-    std::fs::hard_link(path, &previous)
-        .or_else(|_| std::fs::copy(path, &previous).map(drop))
-        .map_err(|error| Failure::io(&previous, "write", &error))
 }
 
 /// Keeps other processes from writing the same film file.

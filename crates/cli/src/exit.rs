@@ -33,7 +33,10 @@ impl Exit {
     const ALL: [(Self, &'static str); 10] = [
         (Self::Done, "done"),
         (Self::RenderFailed, "the render failed"),
-        (Self::Usage, "the command line is wrong"),
+        (
+            Self::Usage,
+            "the command line is wrong, or its crop is outside the film",
+        ),
         (Self::Scene, "the scene is wrong, or too large"),
         (
             Self::InputOutput,
@@ -45,7 +48,7 @@ impl Exit {
         ),
         (
             Self::Validation,
-            "a check failed: `render --strict`, `compare --exact`",
+            "a check failed: `render --strict`, `compare --exact`, `missing`",
         ),
         (
             Self::Checkpoint,

@@ -153,20 +153,26 @@ impl<'a> Plan<'a> {
             ));
         };
         let taken = [
-            ("--output", args.output.output.is_some()),
-            ("--stats", args.output.stats.is_some()),
-            ("--replay", args.replay.is_some()),
+            ("--output", args.output.output.is_some(), SHARED),
+            ("--stats", args.output.stats.is_some(), SHARED),
+            ("--replay", args.replay.is_some(), SHARED),
+            ("--time", args.budget.time.is_some(), INCOMPLETE),
+            ("--noise", args.budget.noise.is_some(), INCOMPLETE),
         ];
-        match taken.iter().find(|(_, is_given)| *is_given) {
+        match taken.iter().find(|(_, is_given, _)| *is_given) {
             None => Ok(()),
-            Some((flag, _)) => {
-                let message =
-                    format!("{flag} cannot be given after `--`: all shares would share it");
+            Some((flag, _, reason)) => {
+                let message = format!("{flag} cannot be given after `--`: {reason}");
                 Err(Failure::usage(message))
             }
         }
     }
 }
+
+/// Why flags that name one file are refused.
+const SHARED: &str = "all shares would share it";
+/// Why flags that end a share early are refused.
+const INCOMPLETE: &str = "shares would end with passes missing";
 
 fn fixed(words: &[&str]) -> Vec<Word> {
     words

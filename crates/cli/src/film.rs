@@ -36,8 +36,14 @@ fn info(file: &Path, as_json: bool) -> Result<Exit, Failure> {
         header.identity,
         header.stopping.name(),
         header.seconds,
-        settings.collect::<String>(),
+        settings.chain(counts(&header)).collect::<String>(),
     ))
+}
+
+/// What was counted, line by line.
+fn counts(header: &FilmHeader) -> impl Iterator<Item = String> {
+    let counts = header.counts.as_object().into_iter().flatten();
+    counts.map(|(name, count)| format!("  {name:20}{count}\n"))
 }
 
 fn develop(file: &Path, output: &Path) -> Result<Exit, Failure> {
@@ -111,6 +117,9 @@ fn verify(files: &[PathBuf], console: Console) -> Exit {
 /// Adds films of the same render and different passes.
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     scene_io::check_writable(&args.output)?;
+    if let Some(image) = &args.image {
+        scene_io::check_image_name(image)?;
+    }
     let mut films = args.files.iter();
     let first = films.next().expect("clap asks for a file");
     let mut all = scene_io::read_film(first)?;
@@ -161,12 +170,34 @@ struct Missing {
     parts: Vec<String>,
 }
 
-/// Tells which passes no file has.
-pub(crate) fn missing(args: &MissingArgs) -> Result<Exit, Failure> {
+/// The passes of all files that can be merged. What cannot be read has none, and is told.
+fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
+    let mut first: Option<FilmHeader> = None;
     let mut held = PassSet::default();
-    for file in &args.files {
-        held = held.union(&scene_io::read_film(file)?.header.passes);
+    for file in files {
+        let header = match scene_io::read_film(file) {
+            Ok(film) => film.header,
+            Err(failure) => {
+                console.failure(&failure);
+                continue;
+            }
+        };
+        let first = first.get_or_insert_with(|| header.clone());
+        if let Some(difference) = header.difference(first) {
+            let message = format!(
+                "{}: the film of another render: {difference}",
+                file.display()
+            );
+            return Err(Failure::new(Exit::FilmMismatch, message));
+        }
+        held = held.union(&header.passes);
     }
+    Ok(held)
+}
+
+/// Tells which passes no file has.
+pub(crate) fn missing(args: &MissingArgs, console: Console) -> Result<Exit, Failure> {
+    let held = held(&args.files, console)?;
     let lacking = PassSet::from(0..args.spp).difference(&held);
     let parts = (0..args.parts.unwrap_or(0)).filter_map(|index| {
         let of = args.parts?;

@@ -22,7 +22,7 @@ fn settings(loaded: &LoadedScene, session: &Session<'_>) -> BTreeMap<String, Str
     let texts = serde_json::to_value(SettingsText::from(session.settings()));
     let mut settings: BTreeMap<_, _> = match texts {
         Ok(Value::Object(texts)) => texts.into_iter().map(|(k, v)| (k, text(&v))).collect(),
-        _ => BTreeMap::new(),
+        _ => unreachable!("settings are an object of texts and numbers"),
     };
     let [width, height] = film.resolution;
     let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);

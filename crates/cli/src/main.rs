@@ -58,7 +58,7 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Compare(args) => compare::run(args),
         Command::Film(command) => film::run(command, console),
         Command::Merge(args) => film::merge(args),
-        Command::Missing(args) => film::missing(args),
+        Command::Missing(args) => film::missing(args, console),
         Command::Tonemap(args) => tonemap::run(args),
         Command::Farm(command) => farm::run(command),
         Command::Completions(args) => shell::completions(args),

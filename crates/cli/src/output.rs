@@ -39,8 +39,16 @@ impl Outputs {
     }
 
     /// Fails now rather than after hours where a file could not be written.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        for file in self.files() {
+    pub(crate) fn check(&self, args: &RenderArgs) -> Result<(), Failure> {
+        let mut taken = vec![scene_io::target_of(&args.scene.scene)];
+        for file in self.files().chain(args.long.checkpoint.as_deref()) {
+            let target = scene_io::target_of(file);
+            if taken.contains(&target) {
+                let message = format!("{}: two files of this name", file.display());
+                let hint = "give the scene, the image, --stats and --checkpoint names of their own";
+                return Err(Failure::usage(message).with_hint(hint));
+            }
+            taken.push(target);
             if file.is_dir() {
                 let message = format!("{}: cannot write: it is a folder", file.display());
                 return Err(Failure::new(Exit::InputOutput, message));

@@ -19,6 +19,8 @@ use std::time::{Duration, Instant};
 
 /// Renders a scene, or repeats one sample.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
+    // First of all: a signal during loading shall not kill what asks to be told of it.
+    let signals = Signals::watch()?;
     set_threads(args.budget.threads)?;
     let start = Instant::now();
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
@@ -31,13 +33,14 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         return replay::run(args, &loaded.scene, &session, target);
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
-    outputs.check()?;
+    outputs.check(args)?;
     Job {
         args,
         console,
         loaded: &loaded,
         settings: &settings,
         outputs: &outputs,
+        signals: &signals,
     }
     .run(load)
 }
@@ -81,24 +84,24 @@ struct Job<'a> {
     loaded: &'a LoadedScene,
     settings: &'a Settings,
     outputs: &'a Outputs,
+    signals: &'a Signals,
 }
 
 impl Job<'_> {
     fn run(&self, load: Duration) -> Result<Exit, Failure> {
         let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
-        let signals = Signals::watch()?;
         let start = Instant::now();
         let mut session = new_session(self.args, self.loaded, self.settings)?;
         session.start_at(budget.first);
         let name = self.args.scene.scene.display().to_string();
         let header = film_header::header(name.clone(), self.loaded, &session);
-        let mut keeper = Keeper::open(&self.args.long, header, &mut session)?;
+        let mut keeper = Keeper::open(&self.args.long, header, &mut session, budget.range())?;
         let clock = Clock {
             budget,
             samples_per_pass: self.loaded.scene.film().crop.area(),
             start,
         };
-        let end = self.render(&mut session, clock, &signals, &mut keeper);
+        let end = self.render(&mut session, clock, self.signals, &mut keeper);
         let course = Course {
             load,
             render: start.elapsed(),
@@ -107,12 +110,16 @@ impl Job<'_> {
         if session.film().passes().is_empty() {
             self.console
                 .warning("stopped before the first pass: nothing is written");
-            return Ok(end.exit(&keeper).unwrap_or(Exit::RenderFailed));
+            return Ok(match end {
+                End::Signal(exit) => exit,
+                _ => Exit::RenderFailed,
+            });
         }
         let kept = keeper.keep(&session, course.stopping);
         let report = Report::new(name, &session, budget, course);
-        self.write(&session, &report)?;
+        let written = self.write(&session, &report);
         kept?;
+        written?;
         self.tell(&report, &keeper);
         Ok(end.exit(&keeper).unwrap_or(Exit::Done))
     }

@@ -12,8 +12,8 @@ use formats::image::{ExrImage, ExrLayer, Format};
 use formats::pbrt::{Crop, LoadOptions, Summary};
 use std::path::{Path, PathBuf};
 
-pub(crate) use formats::file::folder_of;
-pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping};
+pub(crate) use formats::file::{folder_of, target_of};
+pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping, is_film};
 pub(crate) use formats::image::MetadataValue;
 
 /// A scene that was read, with what else its file says.
@@ -178,16 +178,33 @@ pub(crate) fn write_picture(
     match Format::of(path) {
         Some(Format::Exr) => write_exr(path, film, picture, metadata),
         Some(Format::Png) => write_png(path, picture),
-        _ => {
-            let message = format!("{}: not the name of an image", path.display());
-            Err(Failure::usage(message).with_hint("end it with .exr or .png"))
-        }
+        _ => check_image_name(path),
     }
+}
+
+/// Fails where a name says no kind of image that is written.
+pub(crate) fn check_image_name(path: &Path) -> Result<(), Failure> {
+    if matches!(Format::of(path), Some(Format::Exr | Format::Png)) {
+        return Ok(());
+    }
+    let message = format!("{}: not the name of an image", path.display());
+    Err(Failure::usage(message).with_hint("end it with .exr or .png"))
 }
 
 /// Reads a film file.
 pub(crate) fn read_film(path: &Path) -> Result<FilmFile, Failure> {
     formats::film::read(path).map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+}
+
+/// Writes a film file, and calls the one before `previous`.
+pub(crate) fn write_film_keeping(
+    path: &Path,
+    previous: &Path,
+    header: &FilmHeader,
+    film: &Film,
+) -> Result<(), Failure> {
+    formats::film::write_keeping(path, previous, header, film)
+        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
 }
 
 /// Writes a film file.

@@ -6,7 +6,7 @@ use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic};
+use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
 use std::ops::Range;
@@ -72,6 +72,12 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
+    /// The passes that may be rendered.
+    pub(crate) fn range(&self) -> Range<u64> {
+        let end = self.passes.map_or(u64::MAX, |passes| self.first + passes);
+        self.first..end
+    }
+
     /// The budget of a render; `scene` is the number of samples that the scene file says.
     ///
     /// Errors: a share that has no passes.
@@ -151,17 +157,31 @@ pub(crate) struct SettingsText {
 
 impl From<&Settings> for SettingsText {
     fn from(settings: &Settings) -> Self {
-        let path = &settings.path;
+        // Taken apart, so that no setting can be forgotten: identities of films are made of these.
+        let Settings {
+            integrator,
+            shadow_rays,
+            path,
+            sampler,
+            seed,
+        } = settings;
+        let PathSettings {
+            max_depth,
+            roulette,
+            strategies,
+            mis,
+            light_point,
+        } = path;
         Self {
-            integrator: name_of(&IntegratorKind::NAMES, settings.integrator),
-            shadow_rays: settings.shadow_rays.to_string(),
-            mis: name_of(&MisHeuristic::NAMES, path.mis),
-            strategies: path.strategies.to_string(),
-            light_point: name_of(&LightPointChoice::NAMES, path.light_point),
-            path_roulette: path.roulette.to_string(),
-            max_depth: path.max_depth,
-            sampler: name_of(&SamplerKind::NAMES, settings.sampler),
-            seed: settings.seed,
+            integrator: name_of(&IntegratorKind::NAMES, *integrator),
+            shadow_rays: shadow_rays.to_string(),
+            mis: name_of(&MisHeuristic::NAMES, *mis),
+            strategies: strategies.to_string(),
+            light_point: name_of(&LightPointChoice::NAMES, *light_point),
+            path_roulette: roulette.to_string(),
+            max_depth: *max_depth,
+            sampler: name_of(&SamplerKind::NAMES, *sampler),
+            seed: *seed,
         }
     }
 }

@@ -11,25 +11,71 @@
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Replaces a file, or makes it where there is none. Readers that have it open keep the old bytes.
+/// What a link stands for is replaced, not the link; what is no plain file is written to.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
+    replace_with(path, bytes, |_| Ok(()))
+}
+
+/// Replaces a file, and gives the old one the name `previous`. Where anything fails, both names
+/// stand for what they stood for before.
+pub fn replace_keeping(path: &Path, previous: &Path, bytes: &[u8]) -> Result<()> {
+    replace_with(path, bytes, |target| {
+        if !target.exists() {
+            return Ok(());
+        }
+        // A second name for the old file, which stays when the first is given to the new bytes.
+        let name = temporary_in(folder_of(previous))?.into_temp_path();
+        std::fs::remove_file(&name)?;
+        std::fs::hard_link(target, &name).or_else(|_| std::fs::copy(target, &name).map(drop))?;
+        name.persist(previous)?;
+        Ok(())
+    })
+}
+
+/// Calls `before` with the file that is replaced when the new bytes are on the disk.
+fn replace_with(
+    path: &Path,
+    bytes: &[u8],
+    before: impl FnOnce(&Path) -> io::Result<()>,
+) -> Result<()> {
     let written = || {
-        let folder = folder_of(path);
+        let target = &target_of(path);
+        if is_special(target) {
+            return std::fs::write(target, bytes);
+        }
+        let folder = folder_of(target);
         let mut file = temporary_in(folder)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
-        file.persist(path)?;
+        before(target)?;
+        file.persist(target)?;
         sync_folder(folder)
     };
     written().map_err(|error| Error::io(path, "write", &error))
 }
 
+/// The file that a name stands for, through links.
+pub fn target_of(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// Something that is there and no plain file, such as a device, which a rename would destroy.
+fn is_special(path: &Path) -> bool {
+    path.metadata()
+        .is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+}
+
 /// Says now whether [`replace`] can make its temporary file; nothing is left behind.
 pub fn check_replaceable(path: &Path) -> Result<()> {
-    let made = temporary_in(folder_of(path));
+    let target = target_of(path);
+    if is_special(&target) {
+        return Ok(());
+    }
+    let made = temporary_in(folder_of(&target));
     made.map(drop)
         .map_err(|error| Error::io(path, "write", &error))
 }
@@ -115,6 +161,37 @@ mod tests {
         let kinds = [check_replaceable(&missing), replace(&missing, b"new")]
             .map(|result| result.unwrap_err().kind());
         assert_eq!(kinds, [ErrorKind::MissingFile; 2]);
+    }
+
+    #[test]
+    fn the_old_file_is_kept_under_another_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, previous] = ["a", "a.previous"].map(|name| folder.path().join(name));
+        for (bytes, kept) in [(b"1", None), (b"2", Some(b"1")), (b"3", Some(b"2"))] {
+            replace_keeping(&path, &previous, bytes).unwrap();
+            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+            assert_eq!(
+                std::fs::read(&previous).ok().as_deref(),
+                kept.map(|b| &b[..])
+            );
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_and_devices_stay_what_they_are() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, link] = ["a", "link"].map(|name| folder.path().join(name));
+        std::fs::write(&path, b"old").unwrap();
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        replace(&link, b"new").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+        assert!(link.is_symlink());
+        let null = Path::new("/dev/null");
+        check_replaceable(null).unwrap();
+        replace(null, b"nothing").unwrap();
+        assert!(is_special(null));
     }
 
     #[test]

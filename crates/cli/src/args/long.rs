@@ -28,23 +28,23 @@ pub(crate) struct LongArgs {
     /// Go on from the film file where there is one: the result has the bits of a render without a
     /// break.
     ///
-    /// --spp counts all passes, --time what this run adds. Another scene or other settings are
-    /// refused.
+    /// --spp counts all passes, --time what this run adds. A film of another scene, of other settings
+    /// or of passes that are not asked for is refused.
     #[arg(long, requires = "checkpoint", conflicts_with = "restart")]
     pub(crate) resume: bool,
     /// Begin anew where there is a film file, and replace it.
     #[arg(long, requires = "checkpoint")]
     pub(crate) restart: bool,
-    /// Render only these passes, from A up to but not including B, counted from 0.
+    /// Render only these passes, from A up to but not including B, counted from 0; --spp is not asked.
     ///
     /// Ranges that begin and end at multiples of powers of two are the best stratified ones. The
     /// image of a share is written only where --output names it.
-    #[arg(long, value_name = "A..B", conflicts_with_all = ["spp", "part"])]
+    #[arg(long, value_name = "A..B", conflicts_with = "part")]
     pub(crate) passes: Option<PassRange>,
     /// Render share I of N of the passes, I counted from 0: `3/16`.
     ///
-    /// `env/16` takes I from SLURM_ARRAY_TASK_ID (less SLURM_ARRAY_TASK_MIN), HQ_TASK_ID or
-    /// JOB_COMPLETION_INDEX.
+    /// `env/16` takes I from the first of HQ_TASK_ID, JOB_COMPLETION_INDEX and SLURM_ARRAY_TASK_ID
+    /// (less SLURM_ARRAY_TASK_MIN) that is set.
     #[arg(long, value_name = "I/N")]
     pub(crate) part: Option<Part>,
 }
@@ -118,17 +118,16 @@ fn index_from_environment(variable: impl Fn(&str) -> Option<String>) -> Result<u
                 .map_err(|_| format!("{name}={text} is not a whole number")),
         )
     };
-    if let Some(id) = number("SLURM_ARRAY_TASK_ID") {
-        let first = number("SLURM_ARRAY_TASK_MIN").unwrap_or(Ok(0))?;
-        let before = || format!("SLURM_ARRAY_TASK_ID is below SLURM_ARRAY_TASK_MIN, {first}");
-        return id?.checked_sub(first).ok_or_else(before);
+    // Workers of the first two may run inside of a Slurm job, and then it is their number that counts.
+    let inner = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX"];
+    if let Some(id) = inner.iter().find_map(|name| number(name)) {
+        return id;
     }
-    let others = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX"]
-        .iter()
-        .find_map(|name| number(name));
-    others.unwrap_or_else(|| {
-        Err("none of SLURM_ARRAY_TASK_ID, HQ_TASK_ID, JOB_COMPLETION_INDEX is set".into())
-    })
+    let id = number("SLURM_ARRAY_TASK_ID")
+        .ok_or("none of HQ_TASK_ID, JOB_COMPLETION_INDEX, SLURM_ARRAY_TASK_ID is set")??;
+    let first = number("SLURM_ARRAY_TASK_MIN").unwrap_or(Ok(0))?;
+    let before = || format!("SLURM_ARRAY_TASK_ID is below SLURM_ARRAY_TASK_MIN, {first}");
+    id.checked_sub(first).ok_or_else(before)
 }
 
 #[cfg(test)]
@@ -177,7 +176,10 @@ mod tests {
             &[("SLURM_ARRAY_TASK_ID", "0"), ("SLURM_ARRAY_TASK_MIN", "1")],
             None,
         );
-        check(&[("HQ_TASK_ID", "3")], Some(3));
+        check(
+            &[("HQ_TASK_ID", "3"), ("SLURM_ARRAY_TASK_ID", "5")],
+            Some(3),
+        );
         check(&[("JOB_COMPLETION_INDEX", "2")], Some(2));
         check(&[("HQ_TASK_ID", "x")], None);
         check(&[], None);

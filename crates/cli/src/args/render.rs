@@ -147,7 +147,7 @@ pub(crate) struct BudgetArgs {
     pub(crate) spp: Option<u64>,
     /// The time for rendering: 90, 90s, 10m, 1h30m.
     ///
-    /// Reading the scene and writing the image do not count. A pass that would overrun is not begun,
+    /// Reading the scene and writing the image do not count, film files do. A pass that would overrun is not begun,
     /// but the first one always is.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,

@@ -63,6 +63,16 @@ fn what_is_missing_is_told() {
         .json();
     assert_eq!(json["passes"][1], "5..8");
     place.run("missing a.film --spp 2").expect(0);
+    // A file that is not there has no passes; one that cannot be merged is refused.
+    place
+        .run("missing a.film none.film --spp 2")
+        .expect(0)
+        .says("none.film");
+    place.render_share("2..4 --seed 5", "seed.film");
+    place
+        .run("missing a.film seed.film --spp 4")
+        .expect(5)
+        .says("seed is 5");
 }
 
 #[test]
@@ -118,6 +128,60 @@ fn damaged_files_are_told_and_the_one_before_is_named() {
         .expect(0)
         .says("passes 0..2");
     place.run("film develop a.film -o b.exr").expect(4);
+}
+
+#[test]
+fn a_film_of_passes_that_are_not_asked_for_is_not_gone_on_from() {
+    let place = Workplace::new();
+    place.render_share("0..4", "a.film");
+    let before = fs::read(place.path("a.film")).unwrap();
+    let resume = "render room.pbrt -q --checkpoint a.film --resume";
+    for fewer in ["--spp 2", "--passes 4..6", "--part 1/2 --spp 8"] {
+        let ran = place.run(&format!("{resume} {fewer}")).expect(5);
+        ran.says("which are not asked for");
+    }
+    // Where nothing is left to do the file stays as it is.
+    place.run(&format!("{resume} --spp 4")).expect(0);
+    assert_eq!(fs::read(place.path("a.film")).unwrap(), before);
+}
+
+#[test]
+fn files_that_are_no_films_are_not_replaced_by_one() {
+    let place = Workplace::new();
+    let scene = place.read("room.pbrt");
+    let render = "render room.pbrt -q --spp 1 --restart --checkpoint";
+    place
+        .run(&format!("{render} room.pbrt"))
+        .expect(2)
+        .says("two files of this name");
+    place.run(&format!("{render} a.exr -o a.exr")).expect(2);
+    fs::write(place.path("copy.pbrt"), &scene).unwrap();
+    place
+        .run(&format!("{render} copy.pbrt"))
+        .expect(2)
+        .says("not a film file");
+    assert_eq!(place.read("copy.pbrt"), scene);
+    assert_eq!(place.read("room.pbrt"), scene);
+}
+
+#[test]
+fn the_file_before_is_never_pushed_out_by_a_damaged_one() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --resume")
+        .expect(0);
+    let previous = fs::read(place.path("a.film.previous")).unwrap();
+    fs::write(place.path("a.film"), b"BIDIRFLM and then nothing").unwrap();
+    place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --restart")
+        .expect(0);
+    assert_eq!(fs::read(place.path("a.film.previous")).unwrap(), previous);
+    fs::remove_file(place.path("a.film")).unwrap();
+    let ran = place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --resume")
+        .expect(2);
+    ran.says("rename a.film.previous").says("--restart");
 }
 
 #[test]
@@ -198,7 +262,13 @@ fn a_killed_render_goes_on_to_the_same_bits() {
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    place.run(&resumed).expect(0);
+    // The last run renders what the killed ones did not, and no more.
+    let info = place.run("film info a.film --json").expect(0).json();
+    let before = info["counts"]["samples"].as_u64().unwrap();
+    assert!(before > 0 && before < 150 * 96 * 64, "{before} samples");
+    place.run(&format!("{resumed} --stats a.json")).expect(0);
+    let stats: serde_json::Value = serde_json::from_str(&place.read("a.json")).unwrap();
+    assert_eq!(stats["samples"].as_u64().unwrap() + before, 150 * 96 * 64);
     place.expect_same("a.exr", "whole.exr");
 }
 
@@ -238,12 +308,20 @@ fn a_full_disk_loses_nothing() {
         eprintln!("skipped: a small disk cannot be mounted here");
         return;
     };
-    place.render_share("0..2", "disk/a.film");
+    place.render_share("0..1", "disk/a.film");
+    place
+        .run("render room.pbrt -q --spp 2 --checkpoint disk/a.film --resume")
+        .expect(0);
     let before = fs::read(place.path("disk/a.film")).unwrap();
     fs::write(place.path("disk/filler"), vec![1; 60 << 10]).unwrap_err();
+    let previous = fs::read(place.path("disk/a.film.previous")).unwrap();
     let resume = "render room.pbrt -q --spp 4 --checkpoint disk/a.film --resume";
     place.run(resume).expect(4).says("disk/a.film");
     assert_eq!(fs::read(place.path("disk/a.film")).unwrap(), before);
+    assert_eq!(
+        fs::read(place.path("disk/a.film.previous")).unwrap(),
+        previous
+    );
     fs::remove_file(place.path("disk/filler")).unwrap();
     place.run(resume).expect(0);
 }

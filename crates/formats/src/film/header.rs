@@ -121,10 +121,11 @@ impl FilmHeader {
             .map_err(|error| broken(format!("damaged: the header is wrong: {error}")))?;
         let [left, top, right, bottom] = header.crop;
         let [width, height] = header.resolution;
-        if left < right && top < bottom && right <= width && bottom <= height {
+        let fits = left < right && top < bottom && right <= width && bottom <= height;
+        if fits && header.exposure.is_finite() {
             Ok(header)
         } else {
-            Err(broken("damaged: the crop is not a part of the film"))
+            Err(broken("damaged: the crop or the exposure makes no film"))
         }
     }
 
@@ -166,7 +167,7 @@ impl FilmHeader {
                 return Some(format!("{name} is {a} here and {b} there"));
             }
         }
-        Some("the versions of the program differ".to_owned())
+        Some("their identities differ".to_owned())
     }
 }
 

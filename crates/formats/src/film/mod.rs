@@ -31,7 +31,10 @@ pub use header::{FilmHeader, Stopping};
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
+use bidir::driver::Resources;
 use bidir::film::{Film, PixelSums};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"BIDIRFLM";
@@ -39,6 +42,8 @@ const END: &[u8; 8] = b"BIDIREND";
 const VERSION: u32 = 1;
 /// Bytes of a file.
 const LARGEST_FILE: u64 = 1 << 36;
+/// Of a film: what the memory of a render has room for.
+const MOST_PIXELS: u64 = Resources::DEFAULT_FILM_MEMORY / Film::BYTES_PER_PIXEL;
 /// Bytes before the header.
 const PREAMBLE: usize = 16;
 
@@ -59,6 +64,18 @@ pub struct FilmFile {
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
     file::replace(path, &encode(&header.of(film), film.pixels()))
+}
+
+/// The same, and the file that was there is called `previous` afterwards.
+pub fn write_keeping(path: &Path, previous: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
+    file::replace_keeping(path, previous, &encode(&header.of(film), film.pixels()))
+}
+
+/// True where a file begins as film files do, damaged or not.
+pub fn is_film(path: &Path) -> bool {
+    let mut first = [0; MAGIC.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut first));
+    read.is_ok() && first == *MAGIC
 }
 
 /// Reads a film file.
@@ -102,6 +119,13 @@ fn decode(bytes: &[u8]) -> Result<FilmFile> {
         return Err(broken("damaged: the header's checksum is wrong"));
     }
     let header = FilmHeader::from_json(json)?;
+    if header.area() > MOST_PIXELS {
+        let message = format!(
+            "a film of {} pixels, more than {MOST_PIXELS}",
+            header.area()
+        );
+        return Err(Error::new(ErrorKind::Limit, message));
+    }
     let pixels = take_pixels(&mut rest, header.area())?;
     if rest != END {
         return Err(broken("damaged: the end is missing"));
