@@ -143,7 +143,9 @@ fn parts_in_any_order_are_the_whole() {
         // A session that goes on renders what is missing.
         let mut session =
             Session::new(&scene, settings.clone(), &with_threads(1)).expect("the film is small");
-        session.add_film(&merged).expect("nothing was rendered");
+        session
+            .add_film(merged.clone())
+            .expect("nothing was rendered");
         assert_eq!(session.next_pass(), 0);
         session.step(&());
         assert_eq!(session.next_pass(), 7);
@@ -164,7 +166,7 @@ fn a_replayed_sample_is_the_sample() {
     let film = scene.film();
     let mut again = Film::new(film.clone(), u64::MAX).expect("the film is small");
     for pass in 0..2 {
-        let buffer = PassBuffer::new(film);
+        let buffer = PassBuffer::new(film, again.layers());
         for i in 0..film.crop.area() as usize {
             let replay = session
                 .replay(film.crop.pixel(i), pass)
@@ -172,7 +174,9 @@ fn a_replayed_sample_is_the_sample() {
             let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
             buffer.set_camera_sample(i, rgb(replay.workspace.value));
             for splat in &replay.workspace.splats {
-                buffer.splat(film, splat.raster, rgb(splat.value), splat.u);
+                let place = (splat.raster, splat.u);
+                let value = rgb(splat.contribution.value);
+                buffer.splat(film, place, value, std::iter::empty());
             }
         }
         again.add_pass(pass, &buffer);

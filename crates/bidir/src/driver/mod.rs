@@ -7,6 +7,7 @@
 //!
 //! A host that wants a time budget looks at its own clock between passes: there is none here.
 
+mod features;
 mod replay;
 mod session;
 mod training;
@@ -15,7 +16,7 @@ pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::Session;
 pub use training::Training;
 
-use crate::film::{Film, FilmError};
+use crate::film::{Film, FilmError, Layers};
 use crate::integrator::IntegratorKind;
 use crate::path::PathSettings;
 use crate::sampler::SamplerKind;
@@ -37,6 +38,8 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Other seeds give unrelated images.
     pub seed: u64,
+    /// What the film keeps beside the picture, whose bits do not depend on it.
+    pub layers: Layers,
 }
 
 /// What a render may use; nothing here changes an image.
@@ -70,6 +73,12 @@ pub trait Progress: Sync {
     /// True to give up the running pass, which is then forgotten.
     fn should_stop(&self) -> bool {
         false
+    }
+
+    /// The host's clock, which is looked at only where a film keeps
+    /// [`Aov::Time`](crate::film::Aov::Time). Unit: nanoseconds since any moment.
+    fn nanoseconds(&self) -> u64 {
+        0
     }
 }
 

@@ -2,9 +2,10 @@
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
 //! trace. Nothing here looks at a clock.
 
+use super::features::{Features, Meter};
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
-use crate::integrator::{Integrator, Sample, Workspace};
+use crate::integrator::{Contribution, Integrator, Sample, Workspace};
 use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
@@ -79,8 +80,9 @@ impl<'a> Session<'a> {
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
-        let film = Film::new(scene.film().clone(), resources.film_memory)?;
-        let buffer = PassBuffer::new(scene.film());
+        let layers = settings.layers.clone();
+        let film = Film::with_layers(scene.film().clone(), layers, resources.film_memory)?;
+        let buffer = PassBuffer::new(scene.film(), film.layers());
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
         let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
@@ -107,9 +109,9 @@ impl<'a> Session<'a> {
     /// Goes on from what was rendered before, with the same scene and settings: its passes will not
     /// be rendered again, and the film is the one that a session without a break would have.
     ///
-    /// Errors: the film is of another size, or holds passes that are here already.
-    pub fn add_film(&mut self, film: &Film) -> Result<(), MergeError> {
-        self.film.merge(film)
+    /// Errors: the film is of another size, has other layers, or holds passes that are here already.
+    pub fn add_film(&mut self, film: Film) -> Result<(), MergeError> {
+        self.film.adopt(film)
     }
 
     /// Leaves the passes before `first` to others.
@@ -176,12 +178,32 @@ impl<'a> Session<'a> {
             }
             let end = (begin + RUN).min(pixels);
             for pixel in begin..end {
-                let sample = self.sample(pixel, pass);
-                let context = path_context(self.scene, &self.settings, &sample);
-                self.integrator.sample(&context, &sample, workspace);
-                self.deposit(pixel as usize, workspace, &context.wavelengths);
+                self.render_sample(pixel, pass, workspace, progress);
             }
             progress.advance(end - begin);
+        }
+    }
+
+    /// Takes a sample, and keeps what it found.
+    fn render_sample(
+        &self,
+        pixel: u64,
+        pass: u64,
+        workspace: &mut Workspace,
+        progress: &dyn Progress,
+    ) {
+        let sample = self.sample(pixel, pass);
+        let context = path_context(self.scene, &self.settings, &sample);
+        let layers = self.film.layers();
+        let before = Meter::read(layers, workspace, progress);
+        self.integrator.sample(&context, &sample, workspace);
+        self.deposit(pixel as usize, workspace, &context.wavelengths);
+        if layers.features() > 0 {
+            let after = Meter::read(layers, workspace, progress);
+            let taken = (&sample, workspace);
+            let features = Features::new(&context, layers, taken, [&before, &after]);
+            let values = features.values(layers);
+            self.buffer.set_features(pixel as usize, values);
         }
     }
 
@@ -206,14 +228,28 @@ impl<'a> Session<'a> {
 
     /// Moves the contributions of the last sample to the film.
     fn deposit(&self, pixel: usize, workspace: &Workspace, wavelengths: &Wavelengths) {
-        let color = self.scene.color();
-        self.buffer
-            .set_camera_sample(pixel, color.to_rgb(workspace.value, wavelengths));
-        for splat in &workspace.splats {
-            let rgb = color.to_rgb(splat.value, wavelengths);
-            self.buffer
-                .splat(self.scene.film(), splat.raster, rgb, splat.u);
+        let rgb = |value| self.scene.color().to_rgb(value, wavelengths);
+        self.buffer.set_camera_sample(pixel, rgb(workspace.value));
+        if self.film.layers().parts() > 0 {
+            for contribution in &workspace.contributions {
+                for part in self.parts_of(contribution) {
+                    self.buffer
+                        .add_to_part(pixel, part, rgb(contribution.value));
+                }
+            }
         }
+        for splat in &workspace.splats {
+            let contribution = &splat.contribution;
+            let (place, parts) = ((splat.raster, splat.u), self.parts_of(contribution));
+            self.buffer
+                .splat(self.scene.film(), place, rgb(contribution.value), parts);
+        }
+    }
+
+    /// The parts of the picture that a contribution is in.
+    fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
+        let group = self.scene.light_group(contribution.light);
+        self.film.layers().parts_of(contribution.strategy, group)
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.

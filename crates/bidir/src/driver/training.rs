@@ -66,6 +66,10 @@ fn sample(
     let context = path_context(scene, settings, &sample);
     integrator.sample(&context, &sample, workspace);
     let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
-    let splats: f64 = workspace.splats.iter().map(|splat| y(splat.value)).sum();
+    let splats: f64 = workspace
+        .splats
+        .iter()
+        .map(|splat| y(splat.contribution.value))
+        .sum();
     y(workspace.value) + splats / crop.area() as f64
 }

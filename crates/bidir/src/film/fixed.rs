@@ -54,9 +54,8 @@ impl FixedSum {
     }
 
     #[inline]
-    pub(super) fn clear(&self) {
-        self.low.store(0, Ordering::Relaxed);
-        self.high.store(0, Ordering::Relaxed);
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
     }
 }
 
@@ -75,7 +74,7 @@ mod tests {
             i128::from(u64::MAX),
             -(1 << 90),
         ];
-        let sum = FixedSum::default();
+        let mut sum = FixedSum::default();
         let mut expected = 0;
         for value in values {
             sum.add(value);

@@ -13,67 +13,36 @@
 //! A [`Film`] collects whole passes and knows which ([`PassSet`]), so that films of different passes
 //! can be merged; the running one is in a [`PassBuffer`], shared by all threads without locks.
 //! Squares of each pass's pixel totals, both layers together, give the variance.
+//!
+//! Beside the picture a film keeps [`Layers`] where they are asked for.
 
+mod develop;
 mod filter;
 pub mod fixed;
+mod layers;
 mod pass;
 mod passes;
 mod settings;
 
+pub use develop::{LayerImage, Picture};
 pub use filter::{Filter, FilterKind};
+pub use layers::{Aov, AovKind, Channels, Layers};
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
 pub use settings::{FilmError, FilmSettings, PixelRect};
 
-use crate::spectrum::{Rgb, luminance};
 use fixed::{MOMENT_SCALE, VALUE_SCALE};
-use rayon::prelude::{IndexedParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+use layers::PICTURE_SUMS;
+use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
+use std::slice::ChunksExact;
 use thiserror::Error;
 
-/// The exact sums of one pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PixelSums {
-    /// Camera samples, in [`fixed::VALUE_SCALE`].
-    pub camera: [i128; 3],
-    /// Splats, in [`fixed::VALUE_SCALE`].
-    pub light: [i128; 3],
-    /// Squares of pass totals, in [`fixed::MOMENT_SCALE`].
-    pub moment: [i128; 3],
-}
-
-impl PixelSums {
-    /// How many sums a pixel has.
-    pub const NUMBERS: usize = 9;
-
-    /// All sums: camera, light, moment; red, green, blue.
-    pub fn to_array(self) -> [i128; Self::NUMBERS] {
-        let [a, b, c] = self.camera;
-        let [d, e, f] = self.light;
-        let [g, h, i] = self.moment;
-        [a, b, c, d, e, f, g, h, i]
-    }
-
-    /// The inverse of [`Self::to_array`].
-    pub fn from_array([a, b, c, d, e, f, g, h, i]: [i128; Self::NUMBERS]) -> Self {
-        Self {
-            camera: [a, b, c],
-            light: [d, e, f],
-            moment: [g, h, i],
-        }
-    }
-}
-
-/// Adds what other passes summed. Squares are positive, so that stopping at the top depends on no
-/// order.
-impl std::ops::AddAssign for PixelSums {
-    fn add_assign(&mut self, other: Self) {
-        for channel in 0..3 {
-            self.camera[channel] += other.camera[channel];
-            self.light[channel] += other.light[channel];
-            self.moment[channel] = self.moment[channel].saturating_add(other.moment[channel]);
-        }
-    }
-}
+/// Where the sums of a pixel begin: camera samples in [`fixed::VALUE_SCALE`].
+const CAMERA: usize = 0;
+/// Splats, in [`fixed::VALUE_SCALE`].
+const LIGHT: usize = 3;
+/// Squares of pass totals, in [`fixed::MOMENT_SCALE`].
+const MOMENT: usize = 6;
 
 /// Why two films cannot become one.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
@@ -84,98 +53,87 @@ pub enum MergeError {
     /// They show different pixels.
     #[error("their resolutions or crops differ")]
     Geometry,
+    /// They keep different images.
+    #[error("their layers differ")]
+    Layers,
 }
 
 /// The sums of all passes so far.
 #[derive(Clone, Debug)]
 pub struct Film {
     settings: FilmSettings,
+    layers: Layers,
     passes: PassSet,
-    pixels: Vec<PixelSums>,
-}
-
-/// A developed film: one colour and its variance per pixel, row by row from the top left of the
-/// crop.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    /// Pixels per row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// Linear Rec. 709. Shape: `width · height`.
-    pub pixels: Vec<Rgb>,
-    /// The estimated variance of each pixel's mean; zero after a single pass.
-    /// Shape: `width · height`.
-    pub variance: Vec<Rgb>,
-}
-
-impl Picture {
-    /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
-    /// mean of the picture, both of luminance. Infinite for a black picture.
-    ///
-    /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
-    /// independent, so it is rather too large than too small.
-    pub fn relative_error(&self) -> f64 {
-        let n = self.pixels.len().max(1) as f64;
-        let mean = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
-        let mean = mean.sum::<f64>() / n;
-        let squares = self.variance.iter().map(|variance| {
-            let error = f64::from(luminance(variance.map(f32::sqrt)));
-            error * error
-        });
-        let error = libm::sqrt(squares.sum::<f64>() / n);
-        if mean > 0.0 {
-            error / mean
-        } else {
-            f64::INFINITY
-        }
-    }
+    /// Pixel by pixel: the picture's sums, those of features, those of parts ([`Layers`]).
+    sums: Vec<i128>,
 }
 
 impl Film {
-    /// An empty film.
+    /// An empty film of a picture alone.
+    ///
+    /// Errors: as [`Self::with_layers`].
+    pub fn new(settings: FilmSettings, memory_limit: u64) -> Result<Self, FilmError> {
+        Self::with_layers(settings, Layers::default(), memory_limit)
+    }
+
+    /// An empty film of a picture with `layers`.
     ///
     /// Errors: the film would need more memory than `memory_limit` bytes.
-    pub fn new(settings: FilmSettings, memory_limit: u64) -> Result<Self, FilmError> {
-        let needed = u128::from(settings.crop.area()) * u128::from(Self::BYTES_PER_PIXEL);
+    pub fn with_layers(
+        settings: FilmSettings,
+        layers: Layers,
+        memory_limit: u64,
+    ) -> Result<Self, FilmError> {
+        let needed = Self::memory(&settings, &layers);
         if needed > u128::from(memory_limit) {
             return Err(FilmError::TooLarge {
                 needed,
                 limit: memory_limit,
             });
         }
-        let pixels = vec![PixelSums::default(); settings.crop.area() as usize];
+        let sums = vec![0; settings.crop.area() as usize * layers.sums()];
         Ok(Self {
             settings,
+            layers,
             passes: PassSet::default(),
-            pixels,
+            sums,
         })
     }
 
-    /// A film as it was stored.
+    /// A film as it was stored: `sums` as [`Self::sums`] tells them.
     ///
-    /// Errors: there are not as many `pixels` as the crop has.
+    /// Errors: there are not as many of them as the crop's pixels have.
     pub fn restore(
         settings: FilmSettings,
+        layers: Layers,
         passes: PassSet,
-        pixels: Vec<PixelSums>,
+        sums: Vec<i128>,
     ) -> Result<Self, MergeError> {
-        if pixels.len() as u64 != settings.crop.area() {
+        if sums.len() as u64 != settings.crop.area() * layers.sums() as u64 {
             return Err(MergeError::Geometry);
         }
         Ok(Self {
             settings,
+            layers,
             passes,
-            pixels,
+            sums,
         })
     }
 
-    /// What one pixel costs, the running pass included.
-    pub const BYTES_PER_PIXEL: u64 = (size_of::<PixelSums>() + PassBuffer::BYTES_PER_PIXEL) as u64;
+    /// What a film costs, the running pass included. Unit: bytes.
+    pub fn memory(settings: &FilmSettings, layers: &Layers) -> u128 {
+        let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);
+        u128::from(settings.crop.area()) * of_pixel as u128
+    }
 
     /// The film's geometry and filter.
     pub fn settings(&self) -> &FilmSettings {
         &self.settings
+    }
+
+    /// What is kept beside the picture.
+    pub fn layers(&self) -> &Layers {
+        &self.layers
     }
 
     /// The passes that were added.
@@ -183,28 +141,56 @@ impl Film {
         &self.passes
     }
 
-    /// The exact sums, row by row from the top left of the crop.
-    pub fn pixels(&self) -> &[PixelSums] {
-        &self.pixels
+    /// The exact sums, row by row from the top left of the crop. Of each pixel there are, each for
+    /// red, green and blue: camera samples, splats, and squares of pass totals; then the sums of
+    /// [`Layers::aovs`]; then, for each part, camera samples and splats.
+    pub fn sums(&self) -> &[i128] {
+        &self.sums
+    }
+
+    /// The sums of each pixel.
+    fn pixels(&self) -> ChunksExact<'_, i128> {
+        self.sums.chunks_exact(self.layers.sums())
     }
 
     /// Adds the passes of another film of the same render.
     ///
     /// Errors: some passes are in both, or the geometries differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), MergeError> {
+        self.check_mergeable(other)?;
+        self.passes = self.passes.union(&other.passes);
+        for (sum, &added) in self.sums.iter_mut().zip(&other.sums) {
+            // Squares alone come to the top. They are positive, so that stopping there depends on
+            // no order.
+            *sum = sum.saturating_add(added);
+        }
+        Ok(())
+    }
+
+    /// The same, where no pass was added yet, without a second set of sums.
+    pub fn adopt(&mut self, other: Self) -> Result<(), MergeError> {
+        if !self.passes.is_empty() {
+            return self.merge(&other);
+        }
+        self.check_mergeable(&other)?;
+        (self.passes, self.sums) = (other.passes, other.sums);
+        Ok(())
+    }
+
+    fn check_mergeable(&self, other: &Self) -> Result<(), MergeError> {
         let (a, b) = (&self.settings, &other.settings);
         if a.resolution != b.resolution || a.crop != b.crop {
             return Err(MergeError::Geometry);
         }
+        if self.layers != other.layers {
+            return Err(MergeError::Layers);
+        }
         let both = self.passes.intersection(&other.passes);
-        if !both.is_empty() {
-            return Err(MergeError::Overlap(both));
+        if both.is_empty() {
+            Ok(())
+        } else {
+            Err(MergeError::Overlap(both))
         }
-        self.passes = self.passes.union(&other.passes);
-        for (sums, added) in self.pixels.iter_mut().zip(&other.pixels) {
-            *sums += *added;
-        }
-        Ok(())
     }
 
     /// Adds finished pass number `index`, which must not be there yet.
@@ -214,52 +200,25 @@ impl Film {
             "pass {index} was added before"
         );
         let per_light_path = 1.0 / self.settings.light_paths().max(1) as f64;
-        self.pixels
-            .par_iter_mut()
+        self.sums
+            .par_chunks_exact_mut(self.layers.sums())
             .enumerate()
             .with_min_len(4096)
             .for_each(|(i, sums)| {
+                let (picture, layers) = sums.split_at_mut(PICTURE_SUMS);
                 let (camera, light) = pass.pixel(i);
-                let moment = std::array::from_fn(|channel| {
+                for channel in 0..3 {
+                    picture[CAMERA + channel] += camera[channel];
+                    picture[LIGHT + channel] += light[channel];
                     let total = fixed::to_f64(camera[channel], VALUE_SCALE)
                         + fixed::to_f64(light[channel], VALUE_SCALE) * per_light_path;
-                    fixed::from_f64(total * total, MOMENT_SCALE)
-                });
-                *sums += PixelSums {
-                    camera,
-                    light,
-                    moment,
-                };
+                    let square = fixed::from_f64(total * total, MOMENT_SCALE);
+                    let moment = &mut picture[MOMENT + channel];
+                    *moment = moment.saturating_add(square);
+                }
+                pass.add_layers(i, layers);
             });
         self.passes.insert(index..index + 1);
-    }
-
-    /// The mean of all passes with the variance of that mean, exposed.
-    pub fn develop(&self) -> Picture {
-        let developed = self.pixels.iter().map(|sums| self.develop_pixel(sums));
-        let (pixels, variance) = developed.unzip();
-        Picture {
-            width: self.settings.crop.width() as usize,
-            height: self.settings.crop.height() as usize,
-            pixels,
-            variance,
-        }
-    }
-
-    fn develop_pixel(&self, sums: &PixelSums) -> (Rgb, Rgb) {
-        let passes = self.passes.len().max(1) as f64;
-        let light_paths = passes * self.settings.light_paths().max(1) as f64;
-        let exposure = f64::from(self.settings.exposure);
-        let (mut value, mut variance) = ([0.0; 3], [0.0; 3]);
-        for channel in 0..3 {
-            let mean = fixed::to_f64(sums.camera[channel], VALUE_SCALE) / passes
-                + fixed::to_f64(sums.light[channel], VALUE_SCALE) / light_paths;
-            let square = fixed::to_f64(sums.moment[channel], MOMENT_SCALE) / passes;
-            value[channel] = (mean * exposure) as f32;
-            let of_mean = (square - mean * mean).max(0.0) / (passes - 1.0).max(1.0);
-            variance[channel] = (of_mean * exposure * exposure) as f32;
-        }
-        (value, variance)
     }
 }
 
@@ -269,7 +228,8 @@ impl PartialEq for Film {
         self.passes == other.passes
             && self.settings.resolution == other.settings.resolution
             && self.settings.crop == other.settings.crop
-            && self.pixels == other.pixels
+            && self.layers == other.layers
+            && self.sums == other.sums
     }
 }
 
@@ -277,6 +237,8 @@ impl PartialEq for Film {
 mod tests {
     use super::*;
     use crate::math::Vec2;
+    use crate::spectrum::Rgb;
+    use std::iter;
 
     fn film(width: u32, height: u32, filter: Filter) -> Film {
         let settings = FilmSettings::new([width, height], filter);
@@ -287,14 +249,10 @@ mod tests {
     fn both_layers_add_up_with_their_own_counts() {
         let mut film = film(2, 2, Filter::default());
         for pass in 0..2u8 {
-            let buffer = PassBuffer::new(film.settings());
+            let buffer = PassBuffer::new(film.settings(), film.layers());
             buffer.set_camera_sample(3, [1.0, f32::from(pass), 0.0]);
-            buffer.splat(
-                film.settings(),
-                Vec2::new(1.5, 1.5),
-                [4.0, 0.0, 8.0],
-                Vec2::splat(0.5),
-            );
+            let place = (Vec2::new(1.5, 1.5), Vec2::splat(0.5));
+            buffer.splat(film.settings(), place, [4.0, 0.0, 8.0], iter::empty());
             film.add_pass(pass.into(), &buffer);
         }
         let picture = film.develop();
@@ -320,14 +278,10 @@ mod tests {
         let values = [[1e-7, 3.0, 1e9], [0.1, 1e-9, 5.0], [7e5, 0.3, 2e-5]];
         let add = |order: [usize; 3]| {
             let mut film = film(1, 1, Filter::default());
-            let buffer = PassBuffer::new(film.settings());
+            let buffer = PassBuffer::new(film.settings(), film.layers());
+            let place = (Vec2::splat(0.5), Vec2::splat(0.5));
             for i in order {
-                buffer.splat(
-                    film.settings(),
-                    Vec2::splat(0.5),
-                    values[i],
-                    Vec2::splat(0.5),
-                );
+                buffer.splat(film.settings(), place, values[i], iter::empty());
             }
             film.add_pass(0, &buffer);
             film

@@ -1,11 +1,12 @@
 //! The running pass: written by all threads at once, without locks, and added to the film when it
 //! is whole.
 //!
-//! Each pixel's camera sample is stored by the one thread that renders it; splats are summed in
-//! fixed point, whose order cannot matter. Nothing is normalised here.
+//! Each pixel's camera sample is stored by the one thread that renders it, and so are its features
+//! and parts; splats are summed in fixed point, whose order cannot matter. Nothing is normalised here.
 
-use super::FilmSettings;
-use super::fixed::{self, FixedSum, VALUE_SCALE};
+use super::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
+use super::layers::PART_SUMS;
+use super::{FilmSettings, Layers};
 use crate::math::Vec2;
 use crate::spectrum::Rgb;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -18,34 +19,72 @@ pub struct PassBuffer {
     camera: Vec<[AtomicU32; 3]>,
     /// The sum of splats in each pixel.
     light: Vec<[FixedSum; 3]>,
+    /// The images of camera samples: the bits of as many `f32` per pixel as there are features.
+    features: Vec<AtomicU32>,
+    /// The camera sample of each part: the bits of three `f32` for each part of each pixel.
+    part_camera: Vec<[AtomicU32; 3]>,
+    /// The sum of splats of each part of each pixel.
+    part_light: Vec<[FixedSum; 3]>,
+    /// The numbers of features and parts of a pixel.
+    layers: [usize; 2],
+}
+
+/// A value that a sum has room for, whatever a scene's size.
+fn bounded(value: f32) -> f32 {
+    if value.is_nan() {
+        0.0
+    } else {
+        value.clamp(-LARGEST_CONTRIBUTION, LARGEST_CONTRIBUTION)
+    }
+}
+
+/// `count` cells of zero.
+fn zeros<T: Default>(count: usize) -> Vec<T> {
+    std::iter::repeat_with(T::default).take(count).collect()
+}
+
+fn store(cells: &[AtomicU32; 3], value: Rgb) {
+    for (cell, channel) in cells.iter().zip(value) {
+        cell.store(channel.to_bits(), Ordering::Relaxed);
+    }
+}
+
+fn load(cell: &AtomicU32) -> f32 {
+    f32::from_bits(cell.load(Ordering::Relaxed))
+}
+
+fn to_fixed(value: f32) -> i128 {
+    fixed::from_f64(f64::from(value), VALUE_SCALE)
 }
 
 impl PassBuffer {
-    pub(super) const BYTES_PER_PIXEL: usize =
-        size_of::<[AtomicU32; 3]>() + size_of::<[FixedSum; 3]>();
+    pub(super) fn bytes_per_pixel(layers: &Layers) -> usize {
+        let of_picture = size_of::<[AtomicU32; 3]>() + size_of::<[FixedSum; 3]>();
+        of_picture * (1 + layers.parts()) + size_of::<AtomicU32>() * layers.features()
+    }
 
     /// An empty pass of a film.
-    pub fn new(settings: &FilmSettings) -> Self {
+    pub fn new(settings: &FilmSettings, layers: &Layers) -> Self {
         let pixels = settings.crop.area() as usize;
+        let [features, parts] = [layers.features(), layers.parts()];
         Self {
-            camera: std::iter::repeat_with(Default::default)
-                .take(pixels)
-                .collect(),
-            light: std::iter::repeat_with(Default::default)
-                .take(pixels)
-                .collect(),
+            camera: zeros(pixels),
+            light: zeros(pixels),
+            features: zeros(pixels * features),
+            part_camera: zeros(pixels * parts),
+            part_light: zeros(pixels * parts),
+            layers: [features, parts],
         }
     }
 
     /// Empties the buffer for the next pass.
-    pub fn clear(&self) {
-        for (camera, light) in self.camera.iter().zip(&self.light) {
-            for bits in camera {
-                bits.store(0, Ordering::Relaxed);
-            }
-            for sum in light {
-                sum.clear();
-            }
+    pub fn clear(&mut self) {
+        let cameras = self.camera.iter_mut().chain(&mut self.part_camera);
+        for bits in cameras.flatten().chain(&mut self.features) {
+            *bits.get_mut() = 0;
+        }
+        for sum in self.light.iter_mut().chain(&mut self.part_light).flatten() {
+            sum.clear();
         }
     }
 
@@ -53,36 +92,76 @@ impl PassBuffer {
     /// [`fixed::LARGEST_CONTRIBUTION`] times the number of strategies.
     #[inline]
     pub fn set_camera_sample(&self, i: usize, value: Rgb) {
-        for (cell, channel) in self.camera[i].iter().zip(value) {
-            cell.store(channel.to_bits(), Ordering::Relaxed);
+        store(&self.camera[i], value);
+    }
+
+    /// Stores the features of the camera sample of pixel `i`, in the order of
+    /// [`Layers::aovs`]. What is beyond [`fixed::LARGEST_CONTRIBUTION`] is cut there; NaN becomes 0.
+    pub fn set_features(&self, i: usize, values: impl Iterator<Item = f32>) {
+        let features = self.layers[0];
+        let cells = &self.features[i * features..(i + 1) * features];
+        for (cell, value) in cells.iter().zip(values) {
+            cell.store(bounded(value).to_bits(), Ordering::Relaxed);
         }
     }
 
-    /// Adds a light-image contribution at `raster`, to one pixel drawn by the filter with `u`.
-    /// Nothing happens where that pixel is outside the crop.
+    /// Adds to the camera sample of a part of pixel `i`.
+    pub fn add_to_part(&self, i: usize, part: usize, value: Rgb) {
+        let cells = &self.part_camera[i * self.layers[1] + part];
+        // One thread renders a pixel: between load and store nobody else comes.
+        let sum = std::array::from_fn(|channel| load(&cells[channel]) + value[channel]);
+        store(cells, sum);
+    }
+
+    /// Adds a light-image contribution at `raster`, to one pixel drawn by the filter with `u`, and
+    /// to `parts` of that pixel. Nothing happens where it is outside the crop.
     #[inline]
-    pub fn splat(&self, settings: &FilmSettings, raster: Vec2, value: Rgb, u: Vec2) {
+    pub fn splat(
+        &self,
+        settings: &FilmSettings,
+        (raster, u): (Vec2, Vec2),
+        value: Rgb,
+        parts: impl Iterator<Item = usize>,
+    ) {
         let Some((i, weight)) = settings.pick_pixel(raster, u) else {
             return;
         };
-        for (cell, channel) in self.light[i].iter().zip(value) {
-            cell.add(fixed::from_f64(
-                f64::from(channel) * f64::from(weight),
-                VALUE_SCALE,
-            ));
+        let value = value.map(|channel| {
+            let weighted = f64::from(channel) * f64::from(weight);
+            fixed::from_f64(weighted, VALUE_SCALE)
+        });
+        let parts = parts.map(|part| &self.part_light[i * self.layers[1] + part]);
+        for cells in std::iter::once(&self.light[i]).chain(parts) {
+            for (cell, channel) in cells.iter().zip(value) {
+                cell.add(channel);
+            }
         }
     }
 
     /// The camera sample and the sum of splats of pixel `i`, in [`fixed::VALUE_SCALE`].
     #[inline]
     pub(super) fn pixel(&self, i: usize) -> ([i128; 3], [i128; 3]) {
-        let camera = std::array::from_fn(|channel| {
-            let bits = self.camera[i][channel].load(Ordering::Relaxed);
-            fixed::from_f64(f64::from(f32::from_bits(bits)), VALUE_SCALE)
-        });
         (
-            camera,
+            std::array::from_fn(|channel| to_fixed(load(&self.camera[i][channel]))),
             std::array::from_fn(|channel| self.light[i][channel].get()),
         )
+    }
+
+    /// Adds the features and parts of pixel `i` to their sums.
+    #[inline]
+    pub(super) fn add_layers(&self, i: usize, sums: &mut [i128]) {
+        let [features, parts] = self.layers;
+        let (feature_sums, part_sums) = sums.split_at_mut(features);
+        let values = self.features.iter().skip(i * features);
+        for (sum, value) in feature_sums.iter_mut().zip(values) {
+            *sum += to_fixed(load(value));
+        }
+        for (part, sums) in part_sums.chunks_exact_mut(PART_SUMS).enumerate() {
+            let at = i * parts + part;
+            for channel in 0..3 {
+                sums[channel] += to_fixed(load(&self.part_camera[at][channel]));
+                sums[3 + channel] += self.part_light[at][channel].get();
+            }
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::light::light_image;
 use super::workspace::light_vertices;
-use super::{Integrator, Link, Sample, Term, Workspace};
+use super::{Contribution, Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::path::{
@@ -79,14 +79,16 @@ fn hit(
     if contribution == Spectrum::ZERO {
         return;
     }
+    let Some(light) = x0.light else { return };
     let Workspace {
         camera, densities, ..
     } = workspace;
-    let (light, camera) = (slice::from_ref(x0), &camera.vertices[..i]);
+    let (x0, camera) = (slice::from_ref(x0), &camera.vertices[..i]);
     let term = Term {
         strategy: Strategy::new(0, i + 1),
+        light,
         contribution,
-        weight: weight(context, densities, light, camera, Junction::Hit),
+        weight: weight(context, densities, x0, camera, Junction::Hit),
     };
     workspace.add_hit(sample, term);
 }
@@ -158,7 +160,7 @@ fn candidate(
         let luminance = color.luminance(value.map(f32::abs), &context.wavelengths);
         workspace
             .candidates
-            .push(Candidate::new(strategy, value, luminance));
+            .push(Candidate::new(strategy, term.light, value, luminance));
     }
 }
 
@@ -181,9 +183,11 @@ fn connection(
     } = workspace;
     let camera = &camera.vertices[..t];
     let light = light_vertices(light, next_events, strategy);
+    let start = light[0].light?;
     let contribution = connect(context, light, camera);
     (contribution != Spectrum::ZERO).then(|| Term {
         strategy,
+        light: start,
         contribution,
         weight: weight(context, densities, light, camera, Junction::Connection),
     })
@@ -194,10 +198,14 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];
+        let contribution = Contribution {
+            strategy: candidate.strategy,
+            light: candidate.light,
+            value: candidate.contribution(chosen.prob),
+        };
         let ends = workspace.ends(candidate.strategy);
         if workspace.trace(context.scene, candidate.strategy, &ends) {
-            let value = candidate.contribution(chosen.prob);
-            workspace.add(sample, candidate.strategy, value);
+            workspace.add(sample, contribution);
         }
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! A render drops them as it goes; a replayed sample keeps a journal of what became of each.
 
-use super::Splat;
+use super::{Contribution, Splat};
 use crate::path::Strategy;
 use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
@@ -13,6 +13,8 @@ use crate::spectrum::Spectrum;
 pub struct Term {
     /// The strategy.
     pub strategy: Strategy,
+    /// The light that the path begins on, by index.
+    pub light: u32,
     /// The unweighted contribution C = f / p. For t = 1 that of one light path among many.
     pub contribution: Spectrum,
     /// The strategy's share of the path.
@@ -24,6 +26,16 @@ impl Term {
     #[inline]
     pub fn value(&self) -> Spectrum {
         self.contribution * self.weight
+    }
+
+    /// What it adds where it is certain to be traced.
+    #[inline]
+    pub(super) fn whole(&self) -> Contribution {
+        Contribution {
+            strategy: self.strategy,
+            light: self.light,
+            value: self.value(),
+        }
     }
 }
 

@@ -31,6 +31,7 @@ impl Integrator for LightTracer {
 /// A light vertex as a lens point of its own sees it, before weight and visibility.
 pub(super) struct LightImage {
     strategy: Strategy,
+    light: u32,
     pub(super) lens: Vertex,
     raster: Vec2,
     contribution: Spectrum,
@@ -49,6 +50,7 @@ pub(super) fn light_image(
     if end.kind == VertexKind::Light && end.light.is_none_or(|i| scene.light(i).is_delta()) {
         return None;
     }
+    let start = light[0].light?;
     let u_lens = sample
         .light
         .get_2d(Dimension::at(s, Purpose::LightImageLens));
@@ -60,6 +62,7 @@ pub(super) fn light_image(
     let contribution = connect(context, light, &[lens]);
     (contribution != Spectrum::ZERO).then_some(LightImage {
         strategy: Strategy::new(s, 1),
+        light: start,
         lens,
         raster,
         contribution,
@@ -91,12 +94,13 @@ impl Workspace {
         let s = usize::from(strategy.s);
         let term = Term {
             strategy,
+            light: image.light,
             contribution: image.contribution,
             weight,
         };
         let splat = Splat {
+            contribution: term.whole(),
             raster: image.raster,
-            value: term.value(),
             u: sample
                 .light
                 .get_2d(Dimension::at(s, Purpose::LightImagePixel)),
@@ -104,9 +108,9 @@ impl Workspace {
         let end = self.light.vertices[s - 1].segment_end();
         let ends = [end, image.lens.segment_end()];
         self.count(term, |_| Link::LightImage(ends, splat));
-        let is_fine = self.accepts(sample, strategy, splat.value);
+        let is_fine = self.accepts(sample, strategy, term.value());
         if is_fine && self.trace(context.scene, strategy, &ends) {
-            self.add_splat(strategy, splat);
+            self.add_splat(splat);
         }
     }
 }

@@ -16,7 +16,8 @@ pub use bdpt::Bdpt;
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use path::PathTracer;
-pub use workspace::{Sample, Splat, Workspace};
+pub(crate) use workspace::camera_ray;
+pub use workspace::{Contribution, Sample, Splat, Workspace};
 
 use crate::path::PathContext;
 use crate::select::Selector;

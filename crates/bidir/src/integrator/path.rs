@@ -75,6 +75,7 @@ fn hit(
         };
         let term = Term {
             strategy: Strategy::new(0, i + 1),
+            light: arrival.light,
             contribution,
             weight,
         };
@@ -105,6 +106,7 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     };
     let term = Term {
         strategy: Strategy::new(1, i + 1),
+        light,
         contribution,
         weight: context.settings.mis.weight_of_two(q, p),
     };
@@ -113,7 +115,7 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     let (strategy, value) = (term.strategy, term.value());
     if workspace.accepts(sample, strategy, value) && workspace.trace(context.scene, strategy, &ends)
     {
-        workspace.add(sample, strategy, value);
+        workspace.add(sample, term.whole());
     }
 }
 

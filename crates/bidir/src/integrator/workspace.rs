@@ -2,6 +2,7 @@
 //! that the next sample uses again. A value that no film can sum is dropped and counted here.
 
 use super::{Fate, Journal, Link, Term};
+use crate::camera::CameraRay;
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
@@ -26,13 +27,25 @@ pub struct Sample {
     pub light: SampleStream,
 }
 
+/// What one path adds to an image: the weighted contribution, divided by the probability of
+/// tracing it.
+#[derive(Clone, Copy, Debug)]
+pub struct Contribution {
+    /// How the path was made.
+    pub strategy: Strategy,
+    /// The light that it begins on, by index.
+    pub light: u32,
+    /// Its value.
+    pub value: Spectrum,
+}
+
 /// A contribution to the light image.
 #[derive(Clone, Copy, Debug)]
 pub struct Splat {
+    /// What is added.
+    pub contribution: Contribution,
     /// Where it lands on the film.
     pub raster: Vec2,
-    /// Its value.
-    pub value: Spectrum,
     /// The numbers that draw the pixel.
     pub u: Vec2,
 }
@@ -51,7 +64,9 @@ pub struct Workspace {
     pub candidates: Vec<Candidate>,
     /// The connections that were traced.
     pub chosen: Vec<Chosen>,
-    /// The contribution to the sample's own pixel.
+    /// The contributions to the sample's own pixel.
+    pub contributions: Vec<Contribution>,
+    /// Their sum.
     pub value: Spectrum,
     /// The contributions to the light image.
     pub splats: Vec<Splat>,
@@ -79,6 +94,7 @@ impl Workspace {
         self.next_events.clear();
         self.candidates.clear();
         self.chosen.clear();
+        self.contributions.clear();
         self.splats.clear();
         self.value = Spectrum::ZERO;
         if let Some(journal) = &mut self.journal {
@@ -89,10 +105,7 @@ impl Workspace {
     /// Walks the camera subpath of `sample`.
     pub(super) fn walk_camera(&mut self, context: &PathContext<'_>, sample: &Sample) {
         self.stats.samples += 1;
-        let at = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
-        let (offset, weight) = context.scene.film().filter.sample(at(Purpose::Film));
-        let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
-        let ray = context.scene.camera().sample_ray(raster, at(Purpose::Lens));
+        let (ray, weight) = camera_ray(context, sample);
         let (camera, stats) = (&mut self.camera, &mut self.stats);
         camera_subpath(context, &sample.camera, &ray, weight, camera, stats);
     }
@@ -139,8 +152,12 @@ impl Workspace {
     }
 
     /// Adds a contribution to the sample's own pixel, if it can be summed.
-    pub(super) fn add(&mut self, sample: &Sample, strategy: Strategy, value: Spectrum) {
+    pub(super) fn add(&mut self, sample: &Sample, contribution: Contribution) {
+        let Contribution {
+            strategy, value, ..
+        } = contribution;
         if self.accepts(sample, strategy, value) {
+            self.contributions.push(contribution);
             self.value += value;
             self.note(strategy, Fate::Added, value);
         }
@@ -149,13 +166,16 @@ impl Workspace {
     /// Adds the light that a camera walk found by itself: s = 0.
     pub(super) fn add_hit(&mut self, sample: &Sample, term: Term) {
         self.count(term, |_| Link::Walk);
-        self.add(sample, term.strategy, term.value());
+        self.add(sample, term.whole());
     }
 
     /// Adds a contribution to the light image.
-    pub(super) fn add_splat(&mut self, strategy: Strategy, splat: Splat) {
+    pub(super) fn add_splat(&mut self, splat: Splat) {
         self.splats.push(splat);
-        self.note(strategy, Fate::Added, splat.value);
+        let Contribution {
+            strategy, value, ..
+        } = splat.contribution;
+        self.note(strategy, Fate::Added, value);
     }
 
     /// Traces the shadow ray of a strategy: true where nothing is in its way.
@@ -181,6 +201,15 @@ impl Workspace {
             journal.end(strategy, fate, added);
         }
     }
+}
+
+/// The ray of a camera sample, and the weight of its film position.
+pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
+    let at = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
+    let (offset, weight) = context.scene.film().filter.sample(at(Purpose::Film));
+    let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
+    let ray = context.scene.camera().sample_ray(raster, at(Purpose::Lens));
+    (ray, weight)
 }
 
 /// The light vertices that a connection uses: s = 1 may have a light point of its own.

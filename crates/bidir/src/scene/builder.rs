@@ -24,6 +24,11 @@ pub struct Emission {
     pub sides: EmissionSides,
 }
 
+/// The group of lights at infinity that are in no other.
+pub const ENVIRONMENT_GROUP: &str = "environment";
+/// The group of other lights that are in no other.
+pub const DEFAULT_GROUP: &str = "default";
+
 /// Why a scene cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
@@ -90,6 +95,11 @@ pub struct SceneBuilder {
     surfaces: Vec<Surface>,
     materials: Vec<Material>,
     lights: Vec<Light>,
+    /// The group of each light, by index into the names.
+    light_groups: Vec<u32>,
+    group_names: Vec<String>,
+    /// The name of the group that lights are added to. None: that of their kind.
+    group: Option<String>,
     isa: accel::Isa,
 }
 
@@ -104,6 +114,9 @@ impl SceneBuilder {
             surfaces: Vec::new(),
             materials: Vec::new(),
             lights: Vec::new(),
+            light_groups: Vec::new(),
+            group_names: Vec::new(),
+            group: None,
             isa: accel::Isa::detect(),
         }
     }
@@ -148,8 +161,33 @@ impl SceneBuilder {
         index
     }
 
+    /// Names the group of the lights that are added from here on, shapes that emit included. None,
+    /// as at first: lights at infinity are in [`ENVIRONMENT_GROUP`], all others in
+    /// [`DEFAULT_GROUP`].
+    pub fn light_group(&mut self, name: Option<&str>) -> &mut Self {
+        self.group = name.map(str::to_owned);
+        self
+    }
+
+    /// The index of the group that a light is added to.
+    fn group_of(&mut self, light: &Light) -> u32 {
+        let name = match &self.group {
+            Some(name) => name,
+            None if light.is_infinite() => ENVIRONMENT_GROUP,
+            None => DEFAULT_GROUP,
+        };
+        let known = self.group_names.iter().position(|known| known == name);
+        let index = known.unwrap_or(self.group_names.len());
+        if known.is_none() {
+            self.group_names.push(name.to_owned());
+        }
+        index as u32
+    }
+
     /// Adds a light that is no shape. Returns its number.
     pub fn light(&mut self, light: Light) -> u32 {
+        let group = self.group_of(&light);
+        self.light_groups.push(group);
         self.lights.push(light);
         self.lights.len() as u32 - 1
     }
@@ -177,6 +215,8 @@ impl SceneBuilder {
             film: self.film,
             color: self.color,
             environment: environment.collect(),
+            light_groups: self.light_groups,
+            group_names: self.group_names,
             shapes: self.shapes,
             surfaces: self.surfaces,
             primitives,

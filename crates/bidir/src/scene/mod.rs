@@ -7,7 +7,9 @@ mod builder;
 mod visibility;
 
 pub use accel::Isa;
-pub use builder::{Emission, MaterialId, SceneBuilder, SceneError};
+pub use builder::{
+    DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
+};
 pub use visibility::{SegmentEnd, offset_origin};
 
 use crate::camera::Camera;
@@ -56,6 +58,9 @@ pub struct Scene {
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
+    /// The group of each light, by index into the names.
+    light_groups: Vec<u32>,
+    group_names: Vec<String>,
     /// The lights that escaping rays hit, by index.
     environment: Vec<u32>,
     bvh: accel::Bvh,
@@ -92,6 +97,18 @@ impl Scene {
     #[inline]
     pub fn light(&self, i: u32) -> &Light {
         &self.lights[i as usize]
+    }
+
+    /// The names of the groups of lights, in the order in which lights were added. Every light is
+    /// in one.
+    pub fn group_names(&self) -> &[String] {
+        &self.group_names
+    }
+
+    /// The group of light number `i`, by index into [`Self::group_names`].
+    #[inline]
+    pub fn light_group(&self, i: u32) -> u32 {
+        self.light_groups[i as usize]
     }
 
     /// The choice of a light.

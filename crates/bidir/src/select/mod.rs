@@ -35,18 +35,21 @@ pub struct Candidate {
     pub score: f32,
     /// How it was made; s ≥ 1 and t ≥ 2.
     pub strategy: Strategy,
+    /// The light that the path begins on, by index.
+    pub light: u32,
 }
 
 impl Candidate {
     /// A candidate for `value`, which is not black and has the luminance `luminance` without regard
     /// to signs.
     #[inline]
-    pub fn new(strategy: Strategy, value: Spectrum, luminance: f32) -> Self {
+    pub fn new(strategy: Strategy, light: u32, value: Spectrum, luminance: f32) -> Self {
         Self {
             value,
             // What underflows must keep a chance.
             score: luminance.max(f32::MIN_POSITIVE),
             strategy,
+            light,
         }
     }
 

@@ -6,6 +6,7 @@ fn candidate(s: usize, t: usize, score: f32) -> Candidate {
         value: Spectrum::splat(score),
         score,
         strategy: Strategy::new(s, t),
+        light: 0,
     }
 }
 

@@ -1,13 +1,12 @@
 //! Blocks of pixels: sums as planes of bytes, packed.
 
-use bidir::film::PixelSums;
 use flate2::{Compression, Crc, read::DeflateDecoder, write::DeflateEncoder};
 use std::io::{Read, Write};
 
 /// Pixels of a block.
 pub(super) const PIXELS: usize = 4096;
-/// Bytes of a pixel.
-const BYTES: usize = PixelSums::NUMBERS * 16;
+/// Bytes of a sum.
+const BYTES: usize = size_of::<i128>();
 
 /// CRC-32.
 pub(super) fn checksum(bytes: &[u8]) -> u32 {
@@ -16,9 +15,9 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
     crc.sum()
 }
 
-/// Appends a block.
-pub(super) fn write(pixels: &[PixelSums], bytes: &mut Vec<u8>) {
-    let planes = to_planes(pixels);
+/// Appends a block of pixels with `numbers` sums each.
+pub(super) fn write(sums: &[i128], numbers: usize, bytes: &mut Vec<u8>) {
+    let planes = to_planes(sums, numbers);
     let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
     let packed = encoder.write_all(&planes).and_then(|()| encoder.finish());
     let packed = packed.expect("writing to memory cannot fail");
@@ -27,12 +26,12 @@ pub(super) fn write(pixels: &[PixelSums], bytes: &mut Vec<u8>) {
     bytes.extend_from_slice(&packed);
 }
 
-/// Appends the `count` pixels of a block. None: it is damaged.
+/// Appends the `count` sums of a block, `numbers` for each pixel. None: it is damaged.
 pub(super) fn read(
     packed: &[u8],
     expected: u32,
-    count: usize,
-    pixels: &mut Vec<PixelSums>,
+    [count, numbers]: [usize; 2],
+    sums: &mut Vec<i128>,
 ) -> Option<()> {
     let mut planes = Vec::new();
     let length = count * BYTES;
@@ -40,26 +39,28 @@ pub(super) fn read(
         .take(length as u64 + 1)
         .read_to_end(&mut planes);
     let fine = unpacked.ok()? == length && checksum(&planes) == expected;
-    fine.then(|| pixels.extend((0..count).map(|i| from_planes(&planes, count, i))))
+    fine.then(|| from_planes(&planes, [count, numbers], sums))
 }
 
-/// Byte k of all pixels stands together.
-fn to_planes(pixels: &[PixelSums]) -> Vec<u8> {
-    let mut planes = vec![0; pixels.len() * BYTES];
-    for (i, pixel) in pixels.iter().enumerate() {
-        let bytes = pixel.to_array().into_iter().flat_map(i128::to_le_bytes);
-        for (k, byte) in bytes.enumerate() {
-            planes[k * pixels.len() + i] = byte;
+/// Byte b of sum k of every pixel is in plane k · [`BYTES`] + b.
+fn to_planes(sums: &[i128], numbers: usize) -> Vec<u8> {
+    let pixels = sums.len() / numbers;
+    let mut planes = vec![0; sums.len() * BYTES];
+    for (i, &sum) in sums.iter().enumerate() {
+        let (pixel, first) = (i / numbers, i % numbers * BYTES);
+        for (b, byte) in sum.to_le_bytes().into_iter().enumerate() {
+            planes[(first + b) * pixels + pixel] = byte;
         }
     }
     planes
 }
 
-/// Pixel `i` of `count`.
-fn from_planes(planes: &[u8], count: usize, i: usize) -> PixelSums {
-    let number = |n: usize| {
-        let byte = |k: usize| planes[(n * 16 + k) * count + i];
-        i128::from_le_bytes(std::array::from_fn(byte))
-    };
-    PixelSums::from_array(std::array::from_fn(number))
+/// The inverse of [`to_planes`].
+fn from_planes(planes: &[u8], [count, numbers]: [usize; 2], sums: &mut Vec<i128>) {
+    let pixels = count / numbers;
+    sums.extend((0..count).map(|i| {
+        let (pixel, first) = (i / numbers, i % numbers * BYTES);
+        let bytes = std::array::from_fn(|b| planes[(first + b) * pixels + pixel]);
+        i128::from_le_bytes(bytes)
+    }));
 }

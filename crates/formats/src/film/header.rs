@@ -1,8 +1,9 @@
 //! What a film file says about its film: whose render it is, and which part.
 
 use super::broken;
+use super::layers::LayerNames;
 use crate::error::Result;
-use bidir::film::{Film, FilmSettings, Filter, PassSet, PixelRect};
+use bidir::film::{Film, FilmSettings, Filter, Layers, PassSet, PixelRect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -50,6 +51,9 @@ pub struct FilmHeader {
     pub crop: [u32; 4],
     /// What developed values are multiplied by.
     pub exposure: f32,
+    /// What is kept beside the picture.
+    #[serde(default, skip_serializing_if = "LayerNames::is_empty")]
+    pub layers: LayerNames,
     /// The passes that are summed.
     #[serde(with = "passes")]
     pub passes: PassSet,
@@ -80,6 +84,7 @@ impl FilmHeader {
             resolution: [1; 2],
             crop: [0, 0, 1, 1],
             exposure: 1.0,
+            layers: LayerNames::default(),
             passes: PassSet::default(),
             stopping: Stopping::Fixed,
             seconds: 0.0,
@@ -107,6 +112,7 @@ impl FilmHeader {
             resolution: settings.resolution,
             crop: [min[0], min[1], max[0], max[1]],
             exposure: settings.exposure,
+            layers: film.layers().into(),
             passes: film.passes().clone(),
             ..self.clone()
         }
@@ -129,9 +135,10 @@ impl FilmHeader {
         }
     }
 
-    /// Pixels that are stored.
-    pub(super) fn area(&self) -> u64 {
-        self.film_settings().crop.area()
+    /// What is kept beside the picture.
+    pub(super) fn layers(&self) -> Result<Layers> {
+        let message = "the film has layers that this program does not know";
+        self.layers.layers().ok_or_else(|| broken(message))
     }
 
     /// The film's geometry, with a filter that nobody asks for.

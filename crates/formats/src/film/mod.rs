@@ -5,7 +5,7 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `BIDIRFLM` |
-//! | 4 | version of the format, 1 |
+//! | 4 | version of the format, 2 |
 //! | 4 | length of the header |
 //! | … | the header, JSON ([`FilmHeader`]) |
 //! | 4 | checksum of all bytes before it |
@@ -14,36 +14,38 @@
 //!
 //! Numbers are little-endian, checksums CRC-32. A block unpacks (DEFLATE) to planes of bytes: first
 //! the lowest byte of the first sum of every pixel, then the second byte, and so on to the highest
-//! byte of the last sum. Sums are 128-bit two's complements, in the order of
-//! [`PixelSums::to_array`]; most of their bytes are the same in all pixels, which is why planes pack
-//! well.
+//! byte of the last sum. Sums are 128-bit two's complements, in the order of [`Film::sums`]; how many
+//! a pixel has follows from the header's layers. Most of their bytes are the same in all pixels,
+//! which is why planes pack well.
 //!
 //! Nothing is normalised: equal films are equal files but for the header, and adding the sums of two
 //! files of different passes is the file of both.
 
 mod block;
 mod header;
+mod layers;
 #[cfg(test)]
 mod tests;
 
 pub use header::{FilmHeader, Stopping};
+pub use layers::LayerNames;
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use bidir::driver::Resources;
-use bidir::film::{Film, PixelSums};
+use bidir::film::{Film, Layers};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"BIDIRFLM";
 const END: &[u8; 8] = b"BIDIREND";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes of a file.
 const LARGEST_FILE: u64 = 1 << 36;
-/// Of a film: what the memory of a render has room for.
-const MOST_PIXELS: u64 = Resources::DEFAULT_FILM_MEMORY / Film::BYTES_PER_PIXEL;
+/// Bytes of a film: what the memory of a render has room for.
+const LARGEST_FILM: u64 = Resources::DEFAULT_FILM_MEMORY;
 /// Bytes before the header.
 const PREAMBLE: usize = 16;
 
@@ -63,12 +65,12 @@ pub struct FilmFile {
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
-    file::replace(path, &encode(&header.of(film), film.pixels()))
+    file::replace(path, &encode(header, film))
 }
 
 /// The same, and the file that was there is called `previous` afterwards.
 pub fn write_keeping(path: &Path, previous: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
-    file::replace_keeping(path, previous, &encode(&header.of(film), film.pixels()))
+    file::replace_keeping(path, previous, &encode(header, film))
 }
 
 /// True where a file begins as film files do, damaged or not.
@@ -86,17 +88,18 @@ pub fn read(path: &Path) -> Result<FilmFile> {
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 
-fn encode(header: &FilmHeader, pixels: &[PixelSums]) -> Vec<u8> {
-    let json = header.to_json();
-    let mut bytes = Vec::with_capacity(PREAMBLE + json.len() + 64 * pixels.len());
+fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
+    let json = header.of(film).to_json();
+    let numbers = film.layers().sums();
+    let mut bytes = Vec::with_capacity(PREAMBLE + json.len() + 7 * film.sums().len());
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&VERSION.to_le_bytes());
     bytes.extend_from_slice(&(json.len() as u32).to_le_bytes());
     bytes.extend_from_slice(json.as_bytes());
     let checksum = block::checksum(&bytes);
     bytes.extend_from_slice(&checksum.to_le_bytes());
-    for pixels in pixels.chunks(block::PIXELS) {
-        block::write(pixels, &mut bytes);
+    for sums in film.sums().chunks(block::PIXELS * numbers) {
+        block::write(sums, numbers, &mut bytes);
     }
     bytes.extend_from_slice(END);
     bytes
@@ -119,40 +122,40 @@ fn decode(bytes: &[u8]) -> Result<FilmFile> {
         return Err(broken("damaged: the header's checksum is wrong"));
     }
     let header = FilmHeader::from_json(json)?;
-    if header.area() > MOST_PIXELS {
-        let message = format!(
-            "a film of {} pixels, more than {MOST_PIXELS}",
-            header.area()
-        );
+    let (settings, layers) = (header.film_settings(), header.layers()?);
+    if Film::memory(&settings, &layers) > u128::from(LARGEST_FILM) {
+        let area = settings.crop.area();
+        let message = format!("a film of {area} pixels with its layers needs too much memory");
         return Err(Error::new(ErrorKind::Limit, message));
     }
-    let pixels = take_pixels(&mut rest, header.area())?;
+    let sums = take_sums(&mut rest, settings.crop.area(), &layers)?;
     if rest != END {
         return Err(broken("damaged: the end is missing"));
     }
-    let film = Film::restore(header.film_settings(), header.passes.clone(), pixels)
+    let film = Film::restore(settings, layers, header.passes.clone(), sums)
         .map_err(|error| broken(error.to_string()))?;
     Ok(FilmFile { header, film })
 }
 
 /// Unpacks the blocks of `area` pixels.
-fn take_pixels(rest: &mut &[u8], area: u64) -> Result<Vec<PixelSums>> {
+fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> {
     // A block that is not there fails before memory is taken for it.
-    let mut pixels = Vec::new();
-    while (pixels.len() as u64) < area {
-        let left = area - pixels.len() as u64;
+    let mut sums = Vec::new();
+    let mut first = 0;
+    while first < area {
         let packed = take_u32(rest)? as usize;
         let checksum = take_u32(rest)?;
         let bytes = take(rest, packed)?;
-        let count = left.min(block::PIXELS as u64) as usize;
-        let first = pixels.len();
-        block::read(bytes, checksum, count, &mut pixels).ok_or_else(|| {
+        let pixels = (area - first).min(block::PIXELS as u64);
+        let count = pixels as usize * layers.sums();
+        block::read(bytes, checksum, [count, layers.sums()], &mut sums).ok_or_else(|| {
             broken(format!(
                 "damaged: the checksum of the pixels from {first} on is wrong"
             ))
         })?;
+        first += pixels;
     }
-    Ok(pixels)
+    Ok(sums)
 }
 
 /// The next `count` bytes.

@@ -18,8 +18,10 @@
 mod maps;
 
 use bidir::driver::{Resources, Settings, render};
+use bidir::film::Film;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
+use bidir::spectrum::Rgb;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Replicates of each estimator.
@@ -41,8 +43,18 @@ pub(crate) struct Replicates {
 
 /// Renders the replicates of an estimator, which share `passes`.
 pub(crate) fn replicates(scene: &Scene, settings: &Settings, passes: u64) -> Replicates {
+    replicates_of(scene, settings, passes, |film| film.develop().pixels)
+}
+
+/// The same, of an image that `develop` makes of a film, pixel by pixel.
+pub(crate) fn replicates_of(
+    scene: &Scene,
+    settings: &Settings,
+    passes: u64,
+    develop: impl Fn(&Film) -> Vec<Rgb>,
+) -> Replicates {
     let passes = (passes * effort()).div_ceil(REPLICATES as u64);
-    let mut size = [0; 2];
+    let crop = scene.film().crop;
     let pictures = (0..REPLICATES as u64).map(|replicate| {
         let settings = Settings {
             seed: first_seed().wrapping_mul(1000) + replicate,
@@ -50,17 +62,13 @@ pub(crate) fn replicates(scene: &Scene, settings: &Settings, passes: u64) -> Rep
             ..settings.clone()
         };
         let film = render(scene, &settings, passes, &Resources::default());
-        let picture = film.expect("the film is small").develop();
-        size = [picture.width, picture.height];
-        let pixels = picture.pixels.iter();
-        pixels.map(|pixel| pixel.map(f64::from)).collect()
+        let pixels = develop(&film.expect("the film is small"));
+        pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
     });
-    let pictures = pictures.collect();
-    let [width, height] = size;
     Replicates {
-        width,
-        height,
-        pictures,
+        width: crop.width() as usize,
+        height: crop.height() as usize,
+        pictures: pictures.collect(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::color::{self, Purpose};
 use super::context::Context;
+use super::group;
 use super::reader::Reader;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::Entity;
@@ -12,12 +13,14 @@ use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
 
 /// What an area light says about emission.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct AreaEmission {
     radiance: [f32; 3],
     sides: EmissionSides,
     /// What each primitive emits in all. None: the radiance is as given.
     power: Option<f32>,
+    /// The name of its group of lights.
+    pub(super) group: Option<String>,
     span: Span,
 }
 
@@ -34,12 +37,14 @@ impl AreaEmission {
         };
         let image = (ParameterType::String, "filename");
         reader.unsupported(context, image, "the light is even")?;
+        let group = group::read(&mut reader)?;
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
         Ok(Self {
             radiance,
             sides,
             power,
+            group,
             span: entity.span,
         })
     }

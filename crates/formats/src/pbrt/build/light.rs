@@ -2,6 +2,7 @@
 
 use super::color::{self, Purpose};
 use super::context::Context;
+use super::group;
 use super::reader::Reader;
 use super::shape;
 use crate::pbrt::parameters::ParameterType;
@@ -13,11 +14,12 @@ use bidir::spectrum::{Rgb, luminance};
 use bidir::texture::Image;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Builds a light. None: something else stands in for it, namely nothing.
+/// Builds a light, with the name of its group if it has one. None: something else stands in for it,
+/// namely nothing.
 pub(super) fn build(
     context: &mut Context<'_>,
     light: &LightDescription,
-) -> Result<Option<Light>, Fault> {
+) -> Result<Option<(Light, Option<String>)>, Fault> {
     let span = light.entity.span;
     if light.transforms.is_animated() {
         context.warn(
@@ -44,8 +46,9 @@ pub(super) fn build(
             return Ok(None);
         }
     };
+    let group = group::read(&mut reader)?;
     reader.finish()?;
-    Ok(Some(built))
+    Ok(Some((built, group)))
 }
 
 /// The colour `name` times `scale`, and times `power` / `per_unit` where there is power.

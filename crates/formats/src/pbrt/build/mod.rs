@@ -13,6 +13,7 @@ mod context;
 mod emission;
 mod film;
 mod filter;
+mod group;
 mod imagemap;
 mod light;
 mod material;
@@ -240,6 +241,8 @@ impl Assembly {
             Some(emission) => emission.parts(shape),
             None => vec![shape],
         };
+        let group = emission.and_then(|emission| emission.group.as_deref());
+        self.builder.light_group(group);
         for part in parts {
             let emitted = emission.map(|emission| emission.of(&part)).transpose()?;
             self.summary.shapes += 1;
@@ -288,9 +291,9 @@ impl Assembly {
 
     fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         for light in &context.description.lights {
-            if let Some(light) = light::build(context, light)? {
+            if let Some((light, group)) = light::build(context, light)? {
                 self.summary.other_lights += 1;
-                self.builder.light(light);
+                self.builder.light_group(group.as_deref()).light(light);
             }
         }
         Ok(())

@@ -1,4 +1,5 @@
-use super::{STRICT, world};
+use super::{STRICT, refusal, world};
+use crate::error::ErrorKind;
 use crate::pbrt::load;
 use bidir::light::{Light, LightPoint};
 use bidir::math::Vec3;
@@ -88,4 +89,38 @@ fn environments_are_square_and_their_numbers_checked() {
     let radiance = Vec3::from(loaded.scene.lights()[0].emitted(&at, -Vec3::X));
     assert_eq!(radiance, Vec3::new(2.0, 0.0, 0.0));
     assert!(loaded.warnings[0].ends_with("2 numbers of the image are no radiance and taken as 0"));
+}
+
+#[test]
+fn lights_are_grouped_by_name() {
+    let scene = world(
+        "Attribute \"light\" \"string lightgroup\" \"lamps\"\n\
+         LightSource \"point\"\n\
+         AttributeBegin AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd\n\
+         LightSource \"infinite\" \"string lightgroup\" \"sky-1\"\n\
+         LightSource \"distant\" \"string lightgroup\" \"lamps\"",
+    );
+    assert_eq!(scene.group_names(), ["lamps", "sky-1"]);
+    // Shapes come first.
+    let groups: Vec<_> = (0..4).map(|light| scene.light_group(light)).collect();
+    assert_eq!(groups, [0, 0, 1, 0]);
+}
+
+#[test]
+fn lights_without_a_group_are_grouped_by_kind() {
+    let scene = world("LightSource \"distant\" LightSource \"point\" LightSource \"infinite\"");
+    assert_eq!(scene.group_names(), ["environment", "default"]);
+}
+
+#[test]
+fn a_group_that_cannot_name_a_layer_is_refused() {
+    let light = "LightSource \"point\" \"string lightgroup\"";
+    for name in ["", "a.b", "a\tb", &"x".repeat(65)] {
+        let error = refusal(&format!("WorldBegin\n{light} \"{name}\""), &STRICT);
+        assert_eq!(
+            (error.line(), error.kind()),
+            (Some(2), ErrorKind::Scene),
+            "{name}"
+        );
+    }
 }

@@ -1,0 +1,116 @@
+//! Images of camera samples: what the first surface is like, and what the sample cost.
+//!
+//! All are plain numbers of one sample; the film makes means or sums of them. The camera subpath
+//! tells the surface; an estimator that walks none is given one ray for it.
+
+use super::Progress;
+use crate::film::{Aov, AovKind, Layers};
+use crate::integrator::{Sample, Workspace, camera_ray};
+use crate::math::Vec3;
+use crate::path::{PathContext, Vertex};
+
+/// What a sample has cost so far in its thread: looked at before and after.
+pub(super) struct Meter {
+    rays: u64,
+    nanoseconds: u64,
+}
+
+impl Meter {
+    /// Looks at the counters, and at the host's clock where `layers` ask for it.
+    #[inline]
+    pub(super) fn read(layers: &Layers, workspace: &Workspace, progress: &dyn Progress) -> Self {
+        let is_timed = layers.feature(Aov::Time).is_some();
+        Self {
+            rays: workspace.stats.rays.total(),
+            nanoseconds: if is_timed { progress.nanoseconds() } else { 0 },
+        }
+    }
+}
+
+/// The features of one camera sample.
+pub(super) struct Features {
+    surface: Option<FirstSurface>,
+    rays: f32,
+    seconds: f32,
+}
+
+/// The first surface along a camera ray.
+struct FirstSurface {
+    albedo: [f32; 3],
+    point: Vec3,
+    n_g: Vec3,
+    n_s: Vec3,
+    depth: f32,
+}
+
+impl Features {
+    /// The features of a sample that was just taken, between two looks at what it cost.
+    pub(super) fn new(
+        context: &PathContext<'_>,
+        layers: &Layers,
+        (sample, workspace): (&Sample, &mut Workspace),
+        [before, after]: [&Meter; 2],
+    ) -> Self {
+        let kinds = [AovKind::Surface, AovKind::Sample];
+        let sees = layers.aovs().iter().any(|aov| kinds.contains(&aov.kind()));
+        let surface = sees.then(|| FirstSurface::find(context, sample, workspace));
+        Self {
+            surface: surface.flatten(),
+            rays: (after.rays - before.rays) as f32,
+            seconds: after.nanoseconds.saturating_sub(before.nanoseconds) as f32 * 1e-9,
+        }
+    }
+
+    /// The numbers of all images, in the order of [`Layers::aovs`].
+    pub(super) fn values<'a>(&'a self, layers: &'a Layers) -> impl Iterator<Item = f32> + 'a {
+        let aovs = layers.aovs().iter();
+        aovs.flat_map(|&aov| self.value(aov).into_iter().take(aov.sums()))
+    }
+
+    /// The numbers of an image: as many of them as it has sums.
+    fn value(&self, aov: Aov) -> [f32; 3] {
+        let of = |get: fn(&FirstSurface) -> [f32; 3]| self.surface.as_ref().map_or([0.0; 3], get);
+        match aov {
+            Aov::Albedo => of(|surface| surface.albedo),
+            Aov::Position => of(|surface| surface.point.to_array()),
+            Aov::Normal => of(|surface| surface.n_g.to_array()),
+            Aov::ShadingNormal => of(|surface| surface.n_s.to_array()),
+            Aov::Depth => of(|surface| [surface.depth; 3]),
+            Aov::Coverage => of(|_| [1.0; 3]),
+            Aov::Rays => [self.rays; 3],
+            Aov::Time => [self.seconds; 3],
+            Aov::Samples | Aov::Variance => [0.0; 3],
+        }
+    }
+}
+
+impl FirstSurface {
+    /// None: the ray escapes.
+    fn find(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) -> Option<Self> {
+        match workspace.camera.vertices.as_slice() {
+            [lens, surface, ..] => Some(Self::new(context, lens, surface)),
+            [_] => None,
+            [] => {
+                let (ray, _) = camera_ray(context, sample);
+                workspace.stats.rays.camera += 1;
+                let hit = context.scene.intersect(ray.lens.point, ray.direction)?;
+                let beta = crate::spectrum::Spectrum::ONE;
+                let surface = Vertex::surface(context, &hit, -ray.direction, beta);
+                Some(Self::new(context, &Vertex::camera(&ray.lens), &surface))
+            }
+        }
+    }
+
+    fn new(context: &PathContext<'_>, lens: &Vertex, surface: &Vertex) -> Self {
+        let (wo, n_s) = (surface.wo, surface.shading.z);
+        let albedo = surface.bsdf.albedo(surface.shading.to_local(wo));
+        let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
+        Self {
+            albedo: context.scene.color().to_rgb(albedo, &context.wavelengths),
+            point: surface.point,
+            n_g: toward_camera(surface.n_g),
+            n_s: toward_camera(n_s),
+            depth: (surface.point - lens.point).dot(lens.n_g),
+        }
+    }
+}

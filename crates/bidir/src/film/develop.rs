@@ -1,0 +1,179 @@
+//! From sums to values: mean = camera / passes + light / (passes · light paths), exposed.
+
+use super::layers::{Aov, AovKind, PART_SUMS, PICTURE_SUMS};
+use super::{CAMERA, Film, LIGHT, MOMENT, fixed};
+use crate::spectrum::{Rgb, luminance};
+use fixed::{MOMENT_SCALE, VALUE_SCALE};
+
+/// A developed film: one colour and its variance per pixel, row by row from the top left of the
+/// crop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels per row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Linear Rec. 709. Shape: `width · height`.
+    pub pixels: Vec<Rgb>,
+    /// The estimated variance of each pixel's mean; zero after a single pass.
+    /// Shape: `width · height`.
+    pub variance: Vec<Rgb>,
+}
+
+impl Picture {
+    /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
+    /// mean of the picture, both of luminance. Infinite for a black picture.
+    ///
+    /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
+    /// independent, so it is rather too large than too small.
+    pub fn relative_error(&self) -> f64 {
+        let n = self.pixels.len().max(1) as f64;
+        let mean = self.pixels.iter().map(|rgb| f64::from(luminance(*rgb)));
+        let mean = mean.sum::<f64>() / n;
+        let squares = self.variance.iter().map(|variance| {
+            let error = f64::from(luminance(variance.map(f32::sqrt)));
+            error * error
+        });
+        let error = libm::sqrt(squares.sum::<f64>() / n);
+        if mean > 0.0 {
+            error / mean
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+/// A developed image beside the picture, of its size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerImage {
+    /// Its name; empty for channels that stand alone.
+    pub name: String,
+    /// The channels' names.
+    pub channels: &'static [&'static str],
+    /// Row by row from the top left of the crop, the channels side by side.
+    /// Shape: `width · height · channels`.
+    pub data: Vec<f32>,
+}
+
+impl Film {
+    /// The mean of all passes with the variance of that mean, exposed.
+    pub fn develop(&self) -> Picture {
+        let developed = self.pixels().map(|sums| self.develop_pixel(sums));
+        let (pixels, variance) = developed.unzip();
+        Picture {
+            width: self.settings.crop.width() as usize,
+            height: self.settings.crop.height() as usize,
+            pixels,
+            variance,
+        }
+    }
+
+    /// The images beside the picture: those of [`Layers::aovs`](super::Layers::aovs) in that order,
+    /// then the parts of the picture.
+    ///
+    /// Parts are exposed as the picture is; of the others [`AovKind`] tells what is divided by what.
+    pub fn develop_layers(&self) -> Vec<LayerImage> {
+        let aovs = self.layers.aovs().iter().flat_map(|&aov| self.aov(aov));
+        let names = self.layers.part_names().enumerate();
+        let parts = names.map(|(part, name)| LayerImage {
+            name,
+            channels: &["R", "G", "B"],
+            data: self
+                .pixels()
+                .flat_map(|sums| self.part(sums, part))
+                .collect(),
+        });
+        aovs.chain(parts).collect()
+    }
+
+    /// Camera samples of a pixel.
+    fn samples(&self) -> f64 {
+        self.passes.len().max(1) as f64
+    }
+
+    /// The mean of both layers, not exposed.
+    fn mean(&self, camera: i128, light: i128) -> f64 {
+        let light_paths = self.samples() * self.settings.light_paths().max(1) as f64;
+        fixed::to_f64(camera, VALUE_SCALE) / self.samples()
+            + fixed::to_f64(light, VALUE_SCALE) / light_paths
+    }
+
+    fn develop_pixel(&self, sums: &[i128]) -> (Rgb, Rgb) {
+        let passes = self.samples();
+        let exposure = f64::from(self.settings.exposure);
+        let (mut value, mut variance) = ([0.0; 3], [0.0; 3]);
+        for channel in 0..3 {
+            let mean = self.mean(sums[CAMERA + channel], sums[LIGHT + channel]);
+            let square = fixed::to_f64(sums[MOMENT + channel], MOMENT_SCALE) / passes;
+            value[channel] = (mean * exposure) as f32;
+            let of_mean = (square - mean * mean).max(0.0) / (passes - 1.0).max(1.0);
+            variance[channel] = (of_mean * exposure * exposure) as f32;
+        }
+        (value, variance)
+    }
+
+    /// A pixel of part number `part`.
+    fn part(&self, sums: &[i128], part: usize) -> Rgb {
+        let begin = PICTURE_SUMS + self.layers.features() + PART_SUMS * part;
+        let exposure = f64::from(self.settings.exposure);
+        std::array::from_fn(|channel| {
+            let (camera, light) = (sums[begin + channel], sums[begin + 3 + channel]);
+            (self.mean(camera, light) * exposure) as f32
+        })
+    }
+
+    /// The images that `aov` becomes.
+    fn aov(&self, aov: Aov) -> Vec<LayerImage> {
+        let channels = aov.channels();
+        let data = match aov {
+            Aov::Variance => self.variances().into(),
+            Aov::Samples => vec![vec![self.passes.len() as f32; self.pixels().len()]],
+            _ => vec![self.feature(aov)],
+        };
+        let images = channels.iter().zip(data);
+        let images = images.map(|(channels, data)| LayerImage {
+            name: channels.layer.to_owned(),
+            channels: channels.names,
+            data,
+        });
+        images.collect()
+    }
+
+    /// The variance of every channel's mean, and the same relative to the square of the mean, 0
+    /// where that is 0.
+    fn variances(&self) -> [Vec<f32>; 2] {
+        let Picture {
+            pixels, variance, ..
+        } = self.develop();
+        let absolute: Vec<_> = variance.into_iter().flatten().collect();
+        let relative = pixels.into_iter().flatten().zip(&absolute);
+        let relative = relative.map(|(mean, variance)| {
+            let square = mean * mean;
+            if square > 0.0 { variance / square } else { 0.0 }
+        });
+        let relative = relative.collect();
+        [absolute, relative]
+    }
+
+    /// The values of an image of camera samples.
+    fn feature(&self, aov: Aov) -> Vec<f32> {
+        let of = |aov| Some(PICTURE_SUMS + self.layers.feature(aov)?);
+        let Some(begin) = of(aov) else {
+            return Vec::new();
+        };
+        let coverage = of(Aov::Coverage).filter(|_| aov.kind() == AovKind::Surface);
+        let count = |sums: &[i128]| match (aov.kind(), coverage) {
+            (AovKind::Cost, _) => 1.0,
+            (_, Some(coverage)) => fixed::to_f64(sums[coverage], VALUE_SCALE),
+            (_, None) => self.samples(),
+        };
+        let values = self.pixels().flat_map(|sums| {
+            let count = count(sums);
+            let scale = if count > 0.0 { 1.0 / count } else { 0.0 };
+            let sums = &sums[begin..begin + aov.sums()];
+            sums.iter()
+                .map(move |&sum| (fixed::to_f64(sum, VALUE_SCALE) * scale) as f32)
+        });
+        values.collect()
+    }
+}

@@ -1,0 +1,275 @@
+//! Images that a film keeps beside the picture, when asked: what the camera sees ([`Aov`]), and the
+//! picture in parts, by light and by strategy. All are sums over passes, so films with layers merge
+//! as any other.
+//!
+//! A contribution goes into the part of its light's group and into that of its strategy; the groups
+//! add up to the picture, and so do the strategies.
+
+use crate::path::Strategy;
+
+/// The sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of
+/// red, green and blue.
+pub(super) const PICTURE_SUMS: usize = 9;
+/// The sums of a pixel of a part: camera samples and splats.
+pub(super) const PART_SUMS: usize = 6;
+
+/// An image beside the picture: what the first surface is like that camera samples meet, how
+/// certain the picture is, and what it cost. In film files and on the command line by
+/// [`NAMES`](Self::NAMES).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Aov {
+    /// About which part of the light the surface scatters: 1 for glass, 0 where there is none.
+    Albedo,
+    /// The point. Space: world.
+    Position,
+    /// The geometric normal, towards the camera. Space: world.
+    Normal,
+    /// The shading normal, towards the camera. Space: world.
+    ShadingNormal,
+    /// The distance along the viewing direction, from the camera's place.
+    Depth,
+    /// The part of the camera samples that meet a surface. Kept wherever an image is a mean over
+    /// those alone.
+    Coverage,
+    /// Camera samples.
+    Samples,
+    /// The variance of the pixel's mean, and the same divided by the square of the mean.
+    Variance,
+    /// The time of all samples. Unit: seconds. The one image whose bits no run repeats.
+    Time,
+    /// The rays of all samples, with those of the light subpaths that go with them.
+    Rays,
+}
+
+/// What makes the values of an [`Aov`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AovKind {
+    /// A mean over the camera samples that meet a surface; 0 where none does.
+    Surface,
+    /// A mean over all camera samples.
+    Sample,
+    /// A sum over all camera samples.
+    Cost,
+    /// The sums of the picture tell it.
+    Film,
+}
+
+/// What an [`Aov`] becomes in an image file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channels {
+    /// The layer's name; empty for channels that stand alone.
+    pub layer: &'static str,
+    /// The channels' names.
+    pub names: &'static [&'static str],
+}
+
+const RGB: &[&str] = &["R", "G", "B"];
+const XYZ: &[&str] = &["X", "Y", "Z"];
+
+impl Aov {
+    /// Every image with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 10] = [
+        ("albedo", Self::Albedo),
+        ("position", Self::Position),
+        ("normal", Self::Normal),
+        ("shading-normal", Self::ShadingNormal),
+        ("depth", Self::Depth),
+        ("coverage", Self::Coverage),
+        ("samples", Self::Samples),
+        ("variance", Self::Variance),
+        ("time", Self::Time),
+        ("rays", Self::Rays),
+    ];
+
+    /// The names in image files: those of pbrt-v4's film `gbuffer` where it has them.
+    pub fn channels(self) -> &'static [Channels] {
+        const fn of(layer: &'static str, names: &'static [&'static str]) -> Channels {
+            Channels { layer, names }
+        }
+        match self {
+            Self::Albedo => const { &[of("Albedo", RGB)] },
+            Self::Position => const { &[of("P", XYZ)] },
+            Self::Normal => const { &[of("N", XYZ)] },
+            Self::ShadingNormal => const { &[of("Ns", XYZ)] },
+            Self::Depth => const { &[of("", &["Z"])] },
+            Self::Coverage => const { &[of("", &["Coverage"])] },
+            Self::Samples => const { &[of("", &["Samples"])] },
+            Self::Variance => const { &[of("Variance", RGB), of("RelativeVariance", RGB)] },
+            Self::Time => const { &[of("", &["Time"])] },
+            Self::Rays => const { &[of("", &["Rays"])] },
+        }
+    }
+
+    /// How many sums a pixel has for it; none where other sums tell it already.
+    pub fn sums(self) -> usize {
+        match self {
+            Self::Albedo | Self::Position | Self::Normal | Self::ShadingNormal => 3,
+            Self::Depth | Self::Coverage | Self::Time | Self::Rays => 1,
+            Self::Samples | Self::Variance => 0,
+        }
+    }
+
+    /// What makes its values.
+    pub fn kind(self) -> AovKind {
+        match self {
+            Self::Position | Self::Normal | Self::ShadingNormal | Self::Depth => AovKind::Surface,
+            Self::Albedo | Self::Coverage => AovKind::Sample,
+            Self::Time | Self::Rays => AovKind::Cost,
+            Self::Samples | Self::Variance => AovKind::Film,
+        }
+    }
+}
+
+/// What a film keeps beside the picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layers {
+    aovs: Vec<Aov>,
+    light_groups: Vec<String>,
+    strategy_vertices: usize,
+}
+
+impl Layers {
+    /// The most vertices of paths whose strategies have images of their own.
+    pub const MOST_STRATEGY_VERTICES: usize = 16;
+
+    /// Layers of `aovs`, in any order, of all `light_groups` of the scene by name (none: no such
+    /// layers), and of each strategy of paths with at most `strategy_vertices` vertices (0: no such
+    /// layers; at most [`Self::MOST_STRATEGY_VERTICES`]).
+    pub fn new(aovs: &[Aov], light_groups: &[String], strategy_vertices: usize) -> Self {
+        let mut aovs = aovs.to_vec();
+        if aovs.iter().any(|aov| aov.kind() == AovKind::Surface) {
+            aovs.push(Aov::Coverage);
+        }
+        aovs.sort_unstable();
+        aovs.dedup();
+        Self {
+            aovs,
+            light_groups: light_groups.to_vec(),
+            strategy_vertices: strategy_vertices.min(Self::MOST_STRATEGY_VERTICES),
+        }
+    }
+
+    /// The images beside the picture, sorted.
+    pub fn aovs(&self) -> &[Aov] {
+        &self.aovs
+    }
+
+    /// The names of the groups of lights that have images, in the order of the scene's.
+    pub fn light_groups(&self) -> &[String] {
+        &self.light_groups
+    }
+
+    /// The most vertices of paths whose strategies have images.
+    pub fn strategy_vertices(&self) -> usize {
+        self.strategy_vertices
+    }
+
+    /// True where nothing but the picture is kept.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The sums of a pixel: the picture's, the features', and both layers of the parts.
+    pub fn sums(&self) -> usize {
+        PICTURE_SUMS + self.features() + PART_SUMS * self.parts()
+    }
+
+    /// The sums of a pixel for all images of camera samples.
+    pub fn features(&self) -> usize {
+        self.aovs.iter().map(|aov| aov.sums()).sum()
+    }
+
+    /// Where the sums of `aov` begin among [`Self::features`]. None: it is not kept.
+    pub fn feature(&self, aov: Aov) -> Option<usize> {
+        let at = self.aovs.iter().position(|&kept| kept == aov)?;
+        Some(self.aovs[..at].iter().map(|aov| aov.sums()).sum())
+    }
+
+    /// The number of parts: one for each group of lights, then one for each strategy, shorter paths
+    /// first, and the last one for all longer paths.
+    pub fn parts(&self) -> usize {
+        let strategies = match self.strategy_vertices {
+            0 => 0,
+            n => strategies_below(n + 1) + 1,
+        };
+        self.light_groups.len() + strategies
+    }
+
+    /// The parts that a contribution of `strategy` and of lights in `group` belongs to.
+    #[inline]
+    pub fn parts_of(&self, strategy: Strategy, group: u32) -> impl Iterator<Item = usize> {
+        let groups = self.light_groups.len();
+        let of_group = (groups > 0).then_some(group as usize);
+        let (s, n) = (strategy.s, usize::from(strategy.s + strategy.t));
+        let of_strategy = (self.strategy_vertices > 0).then(|| {
+            if n > self.strategy_vertices {
+                groups + strategies_below(self.strategy_vertices + 1)
+            } else {
+                groups + strategies_below(n) + usize::from(s)
+            }
+        });
+        of_group.into_iter().chain(of_strategy)
+    }
+
+    /// The layers' names of all parts: `lightgroup.NAME`, `sStT`, and `longer`.
+    pub fn part_names(&self) -> impl Iterator<Item = String> + '_ {
+        let groups = self.light_groups.iter();
+        let groups = groups.map(|name| format!("lightgroup.{name}"));
+        let n = self.strategy_vertices;
+        let strategies = (2..=n).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
+        let longer = (n > 0).then(|| "longer".to_owned());
+        let strategies = strategies.map(|strategy| strategy.to_string());
+        groups.chain(strategies).chain(longer)
+    }
+}
+
+/// Strategies of paths with fewer than `n` vertices: Σ_{m=2}^{n-1} m, as a path of m vertices has
+/// s = 0 … m-1.
+fn strategies_below(n: usize) -> usize {
+    (n * n.saturating_sub(1) / 2).saturating_sub(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layers() -> Layers {
+        let groups = ["lamp", "environment"].map(str::to_owned);
+        Layers::new(&[Aov::Rays, Aov::Depth, Aov::Albedo], &groups, 4)
+    }
+
+    #[test]
+    fn images_of_surfaces_bring_their_coverage() {
+        let layers = layers();
+        let expected = [Aov::Albedo, Aov::Depth, Aov::Coverage, Aov::Rays];
+        assert_eq!(layers.aovs(), expected);
+        assert_eq!(layers.features(), 6);
+        let places = expected.map(|aov| layers.feature(aov));
+        assert_eq!(places, [Some(0), Some(3), Some(4), Some(5)]);
+        assert_eq!(layers.feature(Aov::Time), None);
+    }
+
+    #[test]
+    fn every_part_has_a_name_and_a_place() {
+        let layers = layers();
+        let names: Vec<_> = layers.part_names().collect();
+        assert_eq!(names.len(), layers.parts());
+        for (s, t) in [(0, 2), (1, 1), (0, 3), (2, 1), (3, 1), (0, 4), (1, 3)] {
+            let strategy = Strategy::new(s, t);
+            let parts: Vec<_> = layers.parts_of(strategy, 1).collect();
+            assert_eq!(names[parts[0]], "lightgroup.environment");
+            assert_eq!(names[parts[1]], strategy.to_string());
+        }
+        let longer: Vec<_> = layers.parts_of(Strategy::new(2, 3), 0).collect();
+        assert_eq!(longer, [0, layers.parts() - 1]);
+        assert_eq!(names[longer[1]], "longer");
+    }
+
+    #[test]
+    fn nothing_is_kept_by_default() {
+        let layers = Layers::default();
+        assert_eq!((layers.features(), layers.parts()), (0, 0));
+        assert_eq!(layers.parts_of(Strategy::new(0, 2), 0).count(), 0);
+        assert!(layers.is_empty() && layers.part_names().next().is_none());
+    }
+}
