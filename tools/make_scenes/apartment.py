@@ -170,8 +170,9 @@ def _study_and_store(out):
     out.place(lamps.ceiling_panel(0.5), (7.76, HEIGHT, 7.6))
 
 
-def _disk_down(out, centre, radius, rgb):
+def _disk_down(out, group, centre, radius, rgb):
     out.begin()
+    out.group(group)
     out.emit(rgb)
     out.line("Translate %g %g %g" % centre)
     out.line("Rotate 90 1 0 0  # the disk's normal, +z, now points down")
@@ -185,20 +186,23 @@ def _lamps(out, strength):
         return tuple(strength * v for v in rgb)
 
     out.note("The lamps of all rooms but the living room")
-    _disk_down(out, (6.75, HEIGHT - 0.86, 2.45), 0.09, times((230, 205, 165)))
+    _disk_down(out, "kitchen", (6.75, HEIGHT - 0.86, 2.45), 0.09, times((230, 205, 165)))
     x, dy = lamps.DESK_DISK
     # the lamp is turned by 20 degrees about its foot
     centre = (1.72 + 0.9397 * x, 0.7395 + dy, 9.08 - 0.3420 * x)
-    _disk_down(out, centre, 0.04, times((700, 640, 540)))
-    globes = [((3.5, HEIGHT - 0.31, 4.95), 0.10, (42, 38, 32))]
-    globes += [((bx, 0.4995 + 0.40, 9.15), 0.045, (190, 150, 100)) for bx in (4.30, 6.40)]
-    for centre, radius, rgb in globes:
+    _disk_down(out, "study", centre, 0.04, times((700, 640, 540)))
+    globes = [("hall", (3.5, HEIGHT - 0.31, 4.95), 0.10, (42, 38, 32))]
+    globes += [("bedroom", (bx, 0.4995 + 0.40, 9.15), 0.045, (190, 150, 100))
+               for bx in (4.30, 6.40)]
+    for group, centre, radius, rgb in globes:
         out.begin()
+        out.group(group)
         out.emit(times(rgb))
         out.line("Translate %g %g %g" % centre)
         out.line('Shape "sphere" "float radius" %g' % radius)
         out.end()
     out.begin()
+    out.group("store")
     out.emit(times((30, 30, 30)))
     out.line("Translate %g %g %g" % (7.76, HEIGHT, 7.6))
     out.mesh(lamps.panel_emitter(0.44))
@@ -228,6 +232,7 @@ def write_scene(project, path, comment, panel, strength):
     out.note("The living room's ceiling light: " + ("on" if panel else "off"))
     out.begin()
     if panel:
+        out.group("living")
         out.emit(panel)
     out.use("white")
     out.line("Translate %g %g %g" % LIVING_PANEL)

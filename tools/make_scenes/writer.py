@@ -111,6 +111,10 @@ class SceneText:
     def use(self, material):
         self.line('NamedMaterial "%s"' % material)
 
+    def group(self, name):
+        """Names the group of the lights of this block; others than bidir ignore it."""
+        self.line('Attribute "light" "string lightgroup" "%s"' % name)
+
     def emit(self, rgb, extra=""):
         self.line('AreaLightSource "diffuse" "rgb L" [%s]%s' % (nums(rgb), extra))
 

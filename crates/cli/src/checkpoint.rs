@@ -120,16 +120,17 @@ impl Keeper {
         asked: Range<u64>,
     ) -> Result<Self, Failure> {
         let (checkpoint, file) = Checkpoint::open(args, &header, asked)?.unzip();
-        let file = file.flatten();
-        if let Some(file) = &file {
+        let mut earlier = None;
+        if let Some(FilmFile { header, film }) = file.flatten() {
             session
-                .add_film(&file.film)
+                .add_film(film)
                 .map_err(|error| Failure::new(Exit::FilmMismatch, error.to_string()))?;
+            earlier = Some(header);
         }
         Ok(Self {
             checkpoint,
             header,
-            earlier: file.map(|file| file.header),
+            earlier,
             start: Instant::now(),
         })
     }

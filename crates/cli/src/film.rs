@@ -3,7 +3,7 @@
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, FilmFile, FilmHeader, MetadataValue};
+use crate::scene_io::{self, Developed, FilmFile, FilmHeader, MetadataValue};
 use bidir::film::PassSet;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -66,7 +66,8 @@ fn write_image(
     header: &FilmHeader,
     film: &bidir::film::Film,
 ) -> Result<(), Failure> {
-    scene_io::write_picture(output, film.settings(), &film.develop(), &metadata(header))
+    let developed = Developed::new(film);
+    scene_io::write_picture(output, film.settings(), &developed, &metadata(header))
 }
 
 /// The attributes of a developed image.

@@ -5,7 +5,7 @@ use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
 use crate::settings::SettingsText;
-use bidir::film::Film;
+use bidir::film::{Film, Layers};
 use bidir::light::Light;
 use bidir::material::Material;
 use bidir::scene::Scene;
@@ -164,7 +164,7 @@ impl FilmInfo {
             filter_radius: film.filter.radius().to_array(),
             exposure: film.exposure,
             output: output.map(|output| output.display().to_string()),
-            bytes: film.crop.area() * Film::BYTES_PER_PIXEL,
+            bytes: Film::memory(film, &Layers::default()),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, MetadataValue};
-use bidir::film::{FilmSettings, Picture};
+use crate::scene_io::{self, Developed, MetadataValue};
+use bidir::film::FilmSettings;
 use std::path::{Path, PathBuf};
 
 /// The files that a render writes.
@@ -63,14 +63,14 @@ impl Outputs {
     pub(crate) fn write_image(
         &self,
         film: &FilmSettings,
-        picture: &Picture,
+        developed: &Developed,
         metadata: &[(String, MetadataValue)],
     ) -> Result<(), Failure> {
         if let Some(exr) = &self.exr {
-            scene_io::write_exr(exr, film, picture, metadata)?;
+            scene_io::write_exr(exr, film, developed, metadata)?;
         }
         let png = self.png.as_ref();
-        png.map_or(Ok(()), |png| scene_io::write_png(png, picture))
+        png.map_or(Ok(()), |png| scene_io::write_png(png, &developed.picture))
     }
 
     /// The names of the files.

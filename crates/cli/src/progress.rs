@@ -185,6 +185,10 @@ impl Progress for Reporter<'_> {
             }
         }
     }
+
+    fn nanoseconds(&self) -> u64 {
+        u64::try_from(self.clock.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
 }
 
 fn bar() -> ProgressBar {

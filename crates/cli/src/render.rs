@@ -8,7 +8,7 @@ use crate::film_header;
 use crate::output::Outputs;
 use crate::progress::{Clock, Reporter};
 use crate::replay;
-use crate::scene_io::{self, LoadedScene, MetadataValue, Stopping};
+use crate::scene_io::{self, Developed, LoadedScene, MetadataValue, Stopping};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
@@ -25,7 +25,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let start = Instant::now();
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let load = start.elapsed();
-    let settings = settings::resolve(&args.estimator, loaded.settings.clone());
+    let mut settings = settings::resolve(&args.estimator, loaded.settings.clone());
+    settings.layers = args.layers.layers(loaded.scene.group_names());
     let unused = settings::warn_unused(&args.estimator, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {
@@ -72,7 +73,8 @@ fn new_session<'a>(
         let [width, height] = loaded.scene.film().resolution;
         let scene = args.scene.scene.display();
         let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");
-        let hint = "make it smaller with --size, or render a part of it with --crop";
+        let hint =
+            "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
         Failure::new(Exit::Scene, message).with_hint(hint)
     })
 }
@@ -189,7 +191,7 @@ impl Job<'_> {
     ) -> Result<(), Failure> {
         let film = session.film();
         self.outputs
-            .write_image(film.settings(), &film.develop(), metadata)
+            .write_image(film.settings(), &Developed::new(film), metadata)
     }
 
     fn write(&self, session: &Session<'_>, report: &Report) -> Result<(), Failure> {

@@ -5,7 +5,7 @@ use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use crate::metrics::Pixels;
 use bidir::driver::Settings;
-use bidir::film::{Film, FilmSettings, Picture};
+use bidir::film::{Film, FilmSettings, LayerImage, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
@@ -126,11 +126,40 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     })
 }
 
-/// Writes a picture as EXR with attributes.
+/// A developed film: the picture with the images beside it.
+pub(crate) struct Developed {
+    pub(crate) picture: Picture,
+    pub(crate) layers: Vec<LayerImage>,
+}
+
+impl Developed {
+    pub(crate) fn new(film: &Film) -> Self {
+        Self {
+            picture: film.develop(),
+            layers: film.develop_layers(),
+        }
+    }
+
+    fn exr_layers(&self) -> Vec<ExrLayer<'_>> {
+        let picture = ExrLayer {
+            name: "",
+            channels: &["R", "G", "B"],
+            data: self.picture.pixels.as_flattened(),
+        };
+        let others = self.layers.iter().map(|layer| ExrLayer {
+            name: &layer.name,
+            channels: layer.channels,
+            data: &layer.data,
+        });
+        std::iter::once(picture).chain(others).collect()
+    }
+}
+
+/// Writes a picture with its layers as EXR with attributes.
 pub(crate) fn write_exr(
     path: &Path,
     film: &FilmSettings,
-    picture: &Picture,
+    developed: &Developed,
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
     let crop = [
@@ -139,15 +168,10 @@ pub(crate) fn write_exr(
         film.crop.max[0],
         film.crop.max[1],
     ];
-    let layer = ExrLayer {
-        name: "",
-        channels: &["R", "G", "B"],
-        data: picture.pixels.as_flattened(),
-    };
     let image = ExrImage {
         resolution: film.resolution.map(|side| side as usize),
         crop: crop.map(|edge| edge as usize),
-        layers: &[layer],
+        layers: &developed.exr_layers(),
         metadata,
     };
     formats::image::write_exr(path, &image)
@@ -168,16 +192,16 @@ pub(crate) fn write_screen(path: &Path, pixels: &Pixels) -> Result<(), Failure> 
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
 }
 
-/// Writes a picture to an image of the kind that its name says.
+/// Writes a developed film to an image of the kind that its name says; layers to EXR alone.
 pub(crate) fn write_picture(
     path: &Path,
     film: &FilmSettings,
-    picture: &Picture,
+    developed: &Developed,
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
     match Format::of(path) {
-        Some(Format::Exr) => write_exr(path, film, picture, metadata),
-        Some(Format::Png) => write_png(path, picture),
+        Some(Format::Exr) => write_exr(path, film, developed, metadata),
+        Some(Format::Png) => write_png(path, &developed.picture),
         _ => check_image_name(path),
     }
 }

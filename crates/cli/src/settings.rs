@@ -5,6 +5,7 @@ use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part};
 use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
+use bidir::film::Aov;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
@@ -153,6 +154,20 @@ pub(crate) struct SettingsText {
     pub(crate) max_depth: Option<u32>,
     pub(crate) sampler: &'static str,
     pub(crate) seed: u64,
+    /// The images beside the picture.
+    pub(crate) aov: String,
+    pub(crate) light_groups: String,
+    pub(crate) strategy_layers: usize,
+}
+
+/// Names with commas between them.
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<_> = names.collect();
+    if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(",")
+    }
 }
 
 impl From<&Settings> for SettingsText {
@@ -164,6 +179,7 @@ impl From<&Settings> for SettingsText {
             path,
             sampler,
             seed,
+            layers,
         } = settings;
         let PathSettings {
             max_depth,
@@ -182,6 +198,9 @@ impl From<&Settings> for SettingsText {
             max_depth: *max_depth,
             sampler: name_of(&SamplerKind::NAMES, *sampler),
             seed: *seed,
+            aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),
+            light_groups: list(layers.light_groups().iter().map(String::as_str)),
+            strategy_layers: layers.strategy_vertices(),
         }
     }
 }

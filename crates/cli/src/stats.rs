@@ -115,7 +115,7 @@ impl Report {
             training: TrainingReport::new(session),
             dropped: stats.dropped,
             dropped_list: stats.dropped_list.iter().map(DroppedReport::from).collect(),
-            film_bytes: film.crop.area() * Film::BYTES_PER_PIXEL,
+            film_bytes: Film::memory(film, &session.settings().layers),
             bvh_bytes: bvh.memory_bytes(),
         }
     }

@@ -85,7 +85,7 @@ impl Film {
         memory_limit: u64,
     ) -> Result<Self, FilmError> {
         let needed = Self::memory(&settings, &layers);
-        if needed > u128::from(memory_limit) {
+        if needed > memory_limit {
             return Err(FilmError::TooLarge {
                 needed,
                 limit: memory_limit,
@@ -121,9 +121,9 @@ impl Film {
     }
 
     /// What a film costs, the running pass included. Unit: bytes.
-    pub fn memory(settings: &FilmSettings, layers: &Layers) -> u128 {
+    pub fn memory(settings: &FilmSettings, layers: &Layers) -> u64 {
         let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);
-        u128::from(settings.crop.area()) * of_pixel as u128
+        settings.crop.area().saturating_mul(of_pixel as u64)
     }
 
     /// The film's geometry and filter.

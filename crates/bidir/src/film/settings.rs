@@ -100,7 +100,7 @@ pub enum FilmError {
     #[error("the film needs {} GiB of memory, more than the limit of {} GiB", needed >> 30, limit >> 30)]
     TooLarge {
         /// Bytes needed.
-        needed: u128,
+        needed: u64,
         /// Bytes allowed.
         limit: u64,
     },

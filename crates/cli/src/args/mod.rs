@@ -2,6 +2,7 @@
 
 mod farm;
 mod film;
+mod layers;
 mod long;
 mod render;
 mod sources;

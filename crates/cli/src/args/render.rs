@@ -1,5 +1,6 @@
 //! The flags of `bidir render`.
 
+use super::layers::LayerArgs;
 use super::long::LongArgs;
 use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
@@ -35,6 +36,9 @@ pub(crate) struct RenderArgs {
     /// Where results go.
     #[command(flatten)]
     pub(crate) output: OutputArgs,
+    /// What is written beside the picture.
+    #[command(flatten)]
+    pub(crate) layers: LayerArgs,
     /// How light is estimated.
     #[command(flatten)]
     pub(crate) estimator: EstimatorArgs,

@@ -123,7 +123,7 @@ fn decode(bytes: &[u8]) -> Result<FilmFile> {
     }
     let header = FilmHeader::from_json(json)?;
     let (settings, layers) = (header.film_settings(), header.layers()?);
-    if Film::memory(&settings, &layers) > u128::from(LARGEST_FILM) {
+    if Film::memory(&settings, &layers) > LARGEST_FILM {
         let area = settings.crop.area();
         let message = format!("a film of {area} pixels with its layers needs too much memory");
         return Err(Error::new(ErrorKind::Limit, message));

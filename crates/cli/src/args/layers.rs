@@ -1,0 +1,58 @@
+//! The flags that ask for images beside the picture.
+
+use super::values::named;
+use bidir::film::{Aov, Layers};
+use clap::Args;
+
+/// Images beside the picture, as layers of the EXR and of film files.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Layers")]
+pub(crate) struct LayerArgs {
+    /// Images to write beside the picture, separated by commas.
+    ///
+    /// What the first surface is like: albedo (Albedo.R, G, B), position (P.X, Y, Z), normal (N.X, Y,
+    /// Z), shading-normal (Ns.X, Y, Z), in world space, depth along the view (Z), coverage (Coverage).
+    /// How certain the picture is: samples (Samples), variance (Variance.R, G, B of a pixel's mean, and
+    /// RelativeVariance). What it cost: time in seconds (Time), rays (Rays). Images of time differ
+    /// from run to run.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = named(aov_names()))]
+    pub(crate) aov: Vec<AovName>,
+    /// Write an image of each group of lights: lightgroup.NAME.R, G, B. They add up to the picture.
+    ///
+    /// Scenes name groups by `Attribute "light" "string lightgroup" "NAME"`. Lights at infinity that
+    /// are in no group are in `environment`, all others in `default`.
+    #[arg(long)]
+    pub(crate) light_groups: bool,
+    /// Write an image of what each strategy adds, weighted, to paths of at most N vertices: sStT.R, G,
+    /// B; and one of all longer paths, longer.R, G, B. They add up to the picture.
+    #[arg(long, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u16).range(2..=Layers::MOST_STRATEGY_VERTICES as i64))]
+    pub(crate) strategy_layers: Option<u16>,
+}
+
+/// An image to write, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AovName {
+    All,
+    One(Aov),
+}
+
+fn aov_names() -> [(&'static str, AovName); Aov::NAMES.len() + 1] {
+    std::array::from_fn(|i| match Aov::NAMES.get(i) {
+        Some((name, aov)) => (*name, AovName::One(*aov)),
+        None => ("all", AovName::All),
+    })
+}
+
+impl LayerArgs {
+    /// The layers that are asked for, in a scene with these groups of lights.
+    pub(crate) fn layers(&self, light_groups: &[String]) -> Layers {
+        let aovs = self.aov.iter().flat_map(|name| match name {
+            AovName::All => Aov::NAMES.map(|(_, aov)| aov).to_vec(),
+            AovName::One(aov) => vec![*aov],
+        });
+        let light_groups = if self.light_groups { light_groups } else { &[] };
+        let vertices = self.strategy_layers.unwrap_or(0).into();
+        Layers::new(&aovs.collect::<Vec<_>>(), light_groups, vertices)
+    }
+}
