@@ -18,13 +18,21 @@ fn power_of_two(exponent: i32) -> f64 {
 /// `value`·2^scale, rounded towards zero, which is the same on every machine.
 #[inline]
 pub fn from_f64(value: f64, scale: i32) -> i128 {
-    (value * power_of_two(scale)) as i128
+    let scaled = value * power_of_two(scale);
+    // One instruction converts to 64 bits, a hundred to 128; most values are small.
+    if scaled.abs() < power_of_two(63) {
+        i128::from(scaled as i64)
+    } else {
+        scaled as i128
+    }
 }
 
 /// `fixed`·2^-scale.
 #[inline]
 pub fn to_f64(fixed: i128, scale: i32) -> f64 {
-    fixed as f64 * power_of_two(-scale)
+    // Both round to nearest.
+    let value = i64::try_from(fixed).map_or(fixed as f64, |small| small as f64);
+    value * power_of_two(-scale)
 }
 
 /// A sum that threads add to without a lock: the low limb carries into the high one. It may be
@@ -97,6 +105,23 @@ mod tests {
             sum.get(),
             4 * (0..10_000i128).map(|i| (i << 50) - 7).sum::<i128>()
         );
+    }
+
+    #[test]
+    fn small_and_large_values_are_converted_alike() {
+        for value in [
+            0.0, -0.0, 7.999999, 8.0, 8.000001, -7.3, -8.0, -9.1, 1e-19, -1e12, 1e30,
+        ] {
+            let fixed = (value * power_of_two(VALUE_SCALE)) as i128;
+            assert_eq!(from_f64(value, VALUE_SCALE), fixed, "{value}");
+            let back = fixed as f64 * power_of_two(-VALUE_SCALE);
+            assert_eq!(
+                to_f64(fixed, VALUE_SCALE).to_bits(),
+                back.to_bits(),
+                "{value}"
+            );
+        }
+        assert_eq!(from_f64(f64::NAN, VALUE_SCALE), 0);
     }
 
     #[test]

@@ -1,0 +1,186 @@
+//! What the exact film costs: the same contributions into a [`PassBuffer`] and [`Film`], and into
+//! plain `f32` pixels (camera samples added, splats by compare-and-swap, no variance), as a part of
+//! the time that rendering takes.
+//!
+//! `cargo bench -p bidir-formats --bench film`, or `just bench-film`. Everything is measured in turn
+//! in every round; the table shows medians over rounds.
+
+use bidir::driver::{Progress, Resources, Session, Settings};
+use bidir::film::{Film, FilmSettings, PassBuffer};
+use bidir::integrator::IntegratorKind;
+use bidir::math::Vec2;
+use bidir::scene::Scene;
+use bidir::spectrum::Rgb;
+use bidir_formats::pbrt::{LoadOptions, load};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::iter;
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::time::Instant;
+
+const ROUNDS: usize = 9;
+/// Passes that are recorded, and played in turn.
+const RECORDED: u64 = 4;
+/// How often the recorded passes are played in one measurement.
+const PLAYED: usize = 16;
+const RUN: usize = 256;
+
+/// What a sample leaves: its own pixel's value, and splats with place and the pixel's numbers.
+struct Contributions {
+    camera: Rgb,
+    splats: Vec<(Vec2, Vec2, Rgb)>,
+}
+
+/// Records the contributions of a pass, pixel by pixel.
+fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
+    let crop = session.scene().film().crop;
+    let color = session.scene().color();
+    let pixels = 0..crop.area() as usize;
+    let of = |pixel| {
+        let replay = session.replay(crop.pixel(pixel), pass)?;
+        let rgb = |value| color.to_rgb(value, &replay.wavelengths);
+        let splats = replay.workspace.splats.iter();
+        let splats = splats.map(|splat| (splat.raster, splat.u, rgb(splat.contribution.value)));
+        Some(Contributions {
+            camera: rgb(replay.workspace.value),
+            splats: splats.collect(),
+        })
+    };
+    pixels.filter_map(of).collect()
+}
+
+/// Calls `deposit` for every pixel, runs of pixels in turn on all threads of `pool`.
+fn on_all_threads(pool: &ThreadPool, pixels: usize, deposit: impl Fn(usize) + Sync) {
+    let next = AtomicUsize::new(0);
+    pool.broadcast(|_| {
+        loop {
+            let begin = next.fetch_add(RUN, Ordering::Relaxed);
+            if begin >= pixels {
+                return;
+            }
+            (begin..(begin + RUN).min(pixels)).for_each(&deposit);
+        }
+    });
+}
+
+/// Pixels as simple renderers keep them.
+struct PlainFilm {
+    pixels: Vec<[AtomicU32; 3]>,
+}
+
+impl PlainFilm {
+    fn new(pixels: usize) -> Self {
+        let pixels = iter::repeat_with(Default::default).take(pixels).collect();
+        Self { pixels }
+    }
+
+    fn add(&self, i: usize, value: Rgb) {
+        for (cell, channel) in self.pixels[i].iter().zip(value) {
+            let add = |bits| Some((f32::from_bits(bits) + channel).to_bits());
+            // The closure always gives a value, so this cannot fail.
+            let _ = cell.fetch_update(Ordering::Relaxed, Ordering::Relaxed, add);
+        }
+    }
+}
+
+/// Seconds to put recorded passes into plain pixels.
+fn plain(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions>]) -> f64 {
+    let film = PlainFilm::new(passes[0].len());
+    let start = Instant::now();
+    for pass in iter::repeat_n(passes, PLAYED).flatten() {
+        on_all_threads(pool, pass.len(), |i| {
+            film.add(i, pass[i].camera);
+            for &(raster, u, value) in &pass[i].splats {
+                if let Some((pixel, weight)) = settings.pick_pixel(raster, u) {
+                    film.add(pixel, value.map(|channel| channel * weight));
+                }
+            }
+        });
+    }
+    start.elapsed().as_secs_f64() / (PLAYED * passes.len()) as f64
+}
+
+/// Seconds to put recorded passes into an exact film.
+fn exact(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions>]) -> f64 {
+    let mut film = Film::new(settings.clone(), u64::MAX).expect("the scene's film");
+    let mut buffer = PassBuffer::new(settings, film.layers());
+    let start = Instant::now();
+    for (index, pass) in (0..).zip(iter::repeat_n(passes, PLAYED).flatten()) {
+        on_all_threads(pool, pass.len(), |i| {
+            buffer.set_camera_sample(i, pass[i].camera);
+            for &(raster, u, value) in &pass[i].splats {
+                buffer.splat(settings, (raster, u), value, iter::empty());
+            }
+        });
+        pool.install(|| film.add_pass(index, &buffer));
+        buffer.clear();
+    }
+    start.elapsed().as_secs_f64() / (PLAYED * passes.len()) as f64
+}
+
+/// Seconds to render a pass.
+fn render(session: &mut Session<'_>, progress: &dyn Progress) -> f64 {
+    let start = Instant::now();
+    for _ in 0..RECORDED {
+        session.step(progress);
+    }
+    start.elapsed().as_secs_f64() / RECORDED as f64
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Measures one estimator with some threads, and prints a row.
+fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) {
+    let resources = Resources {
+        threads,
+        ..Resources::default()
+    };
+    let mut session = Session::new(scene, settings.clone(), &resources).expect("the scene's film");
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.expect("threads can be started");
+    let passes: Vec<_> = (0..RECORDED).map(|pass| record(&session, pass)).collect();
+    let rounds = (0..ROUNDS).map(|_| {
+        let rendered = render(&mut session, &());
+        [
+            rendered,
+            plain(&pool, scene.film(), &passes),
+            exact(&pool, scene.film(), &passes),
+        ]
+    });
+    let rounds: Vec<_> = rounds.collect();
+    let of = |i: usize| median(rounds.iter().map(|round| round[i]).collect());
+    let share = median(
+        rounds
+            .iter()
+            .map(|[all, plain, exact]| (exact - plain) / all)
+            .collect(),
+    );
+    let milliseconds = [of(0), of(1), of(2)].map(|seconds| seconds * 1e3);
+    let [all, plain, exact] = milliseconds;
+    let share = share * 100.0;
+    println!("{name:10} {threads:7} {all:14.2} {plain:10.3} {exact:10.3} {share:9.2} %");
+}
+
+#[expect(clippy::print_stdout, reason = "this is what the bench is for")]
+fn main() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/room-indirect.pbrt");
+    let options = LoadOptions {
+        resolution: Some([320, 240]),
+        ..LoadOptions::default()
+    };
+    let scene = load(&file, &options).expect("the project's scene").scene;
+    println!("room-indirect, 320x240, milliseconds for each pass, medians of {ROUNDS} rounds");
+    println!("estimator  threads  render (exact)      plain      exact      cost");
+    for (name, integrator) in IntegratorKind::NAMES {
+        for threads in [1, 2] {
+            let settings = Settings {
+                integrator,
+                ..Settings::default()
+            };
+            measure(&scene, name, &settings, threads);
+        }
+    }
+}
