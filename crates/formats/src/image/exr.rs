@@ -52,6 +52,16 @@ pub fn write_exr(path: &Path, image: &ExrImage<'_>) -> Result<()> {
     file::replace(path, &encoded)
 }
 
+/// A file with one part, all of whose channels are kept.
+pub(super) type OnePart = Image<Layer<AnyChannels<FlatSamples>>>;
+
+/// How every file is written.
+pub(super) const ENCODING: Encoding = Encoding {
+    compression: Compression::ZIP16,
+    blocks: Blocks::ScanLines,
+    line_order: LineOrder::Increasing,
+};
+
 fn encode(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     let [left, top, right, bottom] = image.crop;
     let size = (right.saturating_sub(left), bottom.saturating_sub(top));
@@ -69,17 +79,17 @@ fn encode(image: &ExrImage<'_>) -> Result<Vec<u8>> {
         };
         attributes.other.insert(text(name)?, value);
     }
-    let encoding = Encoding {
-        compression: Compression::ZIP16,
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let layer = Layer::new(size, attributes, encoding, channels);
+    let layer = Layer::new(size, attributes, ENCODING, channels);
     let [width, height] = image.resolution;
     let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions((width, height)));
     attributes.chromaticities = Some(REC709);
+    to_bytes(&Image::new(attributes, layer))
+}
+
+/// The bytes of a file with one part.
+pub(super) fn to_bytes(image: &OnePart) -> Result<Vec<u8>> {
     let mut encoded = Vec::new();
-    Image::new(attributes, layer)
+    image
         .write()
         .to_buffered(Cursor::new(&mut encoded))
         .map_err(not_written)?;
@@ -87,11 +97,11 @@ fn encode(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     Ok(encoded)
 }
 
-fn not_written(message: impl std::fmt::Display) -> Error {
+pub(super) fn not_written(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("cannot write: {message}"))
 }
 
-fn text(text: &str) -> Result<Text> {
+pub(super) fn text(text: &str) -> Result<Text> {
     Text::new_or_none(text).ok_or_else(|| not_written(format!("`{text}` is not writable as text")))
 }
 
@@ -155,7 +165,9 @@ fn attribute_length(bytes: &[u8]) -> Option<usize> {
     (length <= bytes.len()).then_some(length)
 }
 
-pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
+/// Refuses sizes that are zero or too large, before memory is taken for them; else what the headers
+/// say.
+pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
     for header in &meta.headers {
         let Vec2(width, height) = header.layer_size;
@@ -165,8 +177,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
             header.channels.list.len() as u64,
         )?;
     }
+    Ok(meta)
+}
+
+/// All channels of the first part that can be read.
+pub(super) fn read_part(bytes: &[u8]) -> Result<OnePart> {
     // Not in parallel: a panic in a thread of the crate's own would end the process.
-    let image = exr::prelude::read()
+    exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
@@ -174,8 +191,12 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(broken)?;
-    let layer = image.layer_data;
+        .map_err(broken)
+}
+
+pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
+    check_headers(bytes)?;
+    let layer = read_part(bytes)?.layer_data;
     let picked = pick_channels(&layer.channel_data.list)
         .ok_or_else(|| broken("it has neither the channels R, G, B nor Y"))?;
     let Vec2(width, height) = layer.size;
@@ -184,7 +205,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
     let mut data = vec![0.0; pixels * channels];
     for (offset, channel) in picked.into_iter().enumerate() {
         if channel.sample_data.len() != pixels {
-            return Err(broken("it has subsampled channels"));
+            return Err(subsampled());
         }
         let places = data.iter_mut().skip(offset).step_by(channels);
         for (place, value) in places.zip(channel.sample_data.values_as_f32()) {
@@ -197,6 +218,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
         channels,
         data,
     })
+}
+
+/// Channels that have fewer numbers than the image has pixels.
+pub(super) fn subsampled() -> Error {
+    broken("it has subsampled channels")
 }
 
 /// R, G, B and, where there is one, A; else Y. Where no such channel stands alone, those of the

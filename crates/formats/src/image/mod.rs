@@ -9,12 +9,14 @@
 
 mod catch;
 mod exr;
+mod layers;
 mod pfm;
 mod png;
 mod raster;
 mod transfer;
 
 pub use exr::{ExrImage, ExrLayer, MetadataValue, write_exr};
+pub use layers::{Layers, read_layers, write_layers};
 pub use png::write_png;
 pub use transfer::Encoding;
 
