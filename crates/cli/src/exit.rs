@@ -40,7 +40,7 @@ impl Exit {
         (Self::Scene, "the scene is wrong, or too large"),
         (
             Self::InputOutput,
-            "a file cannot be read or written, or images differ in size",
+            "a file cannot be read or written, images differ in size, or a library is missing",
         ),
         (
             Self::FilmMismatch,

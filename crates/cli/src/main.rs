@@ -7,6 +7,7 @@ mod args;
 mod checkpoint;
 mod compare;
 mod console;
+mod denoise;
 mod exit;
 mod farm;
 mod film;
@@ -60,6 +61,7 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Merge(args) => film::merge(args),
         Command::Missing(args) => film::missing(args, console),
         Command::Tonemap(args) => tonemap::run(args),
+        Command::Denoise(args) => denoise::run(args),
         Command::Farm(command) => farm::run(command),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 pub(crate) use formats::file::{folder_of, target_of};
 pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping, is_film};
-pub(crate) use formats::image::MetadataValue;
+pub(crate) use formats::image::{Layers, MetadataValue};
 
 /// A scene that was read, with what else its file says.
 pub(crate) struct LoadedScene {
@@ -204,6 +204,33 @@ pub(crate) fn write_picture(
         Some(Format::Png) => write_png(path, &developed.picture),
         _ => check_image_name(path),
     }
+}
+
+/// Reads all channels of an EXR.
+pub(crate) fn read_layers(path: &Path) -> Result<Layers, Failure> {
+    formats::image::read_layers(path).map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Writes all channels of an EXR, with these and this text among them.
+pub(crate) fn write_layers(
+    path: &Path,
+    layers: &mut Layers,
+    triples: &[([&str; 3], &[[f32; 3]])],
+    (attribute, value): (&str, &str),
+) -> Result<(), Failure> {
+    let mut write = || {
+        for (names, data) in triples {
+            layers.set_triples(*names, data)?;
+        }
+        layers.set_text(attribute, value)?;
+        formats::image::write_layers(path, layers)
+    };
+    write().map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// True where a name says a picture for the screen.
+pub(crate) fn is_png(path: &Path) -> bool {
+    Format::of(path) == Some(Format::Png)
 }
 
 /// Fails where a name says no kind of image that is written.

@@ -19,8 +19,8 @@
 //! The filter `RT` with `hdr` removes the noise of the picture. Guides, which are the albedo and the
 //! normal of what each pixel sees, tell it what is texture or edge, and what is noise. Guides of a
 //! render are noisy themselves, through depth of field, motion or the pixel filter; so each is
-//! denoised by itself first, and the filter is told that its guides are clean (`cleanAux`), as the
-//! section on the RT filter in the documentation of Open Image Denoise recommends for final frames.
+//! denoised by itself first, and the filter is told that its guides are clean (`cleanAux`), as is
+//! recommended for final frames [Afra25, documentation, RT filter].
 //!
 //! # What is promised
 //!

@@ -1,5 +1,6 @@
 //! The command line: what can be asked, and the help text that documents it.
 
+mod denoise;
 mod farm;
 mod film;
 mod layers;
@@ -9,6 +10,7 @@ mod sources;
 mod tonemap;
 mod values;
 
+pub(crate) use denoise::DenoiseArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use long::{LongArgs, Part};
@@ -102,6 +104,15 @@ pub(crate) enum Command {
     /// The image that `bidir render` writes has light of any strength; this makes it brighter or
     /// darker, and fits it to the screen. The image itself is not changed.
     Tonemap(TonemapArgs),
+    /// Take the noise out of an image, by Open Image Denoise.
+    ///
+    /// The layers `Albedo` and `Ns` (or else `N`) of the image guide the filter where it has them: they
+    /// tell texture and edges from noise. They are denoised first themselves. The picture in R, G and B
+    /// is replaced; the noisy one stays as the layer `Noisy`. Denoised pixels are biased.
+    ///
+    /// Open Image Denoise is a library of its own, of version 2. `pip install pyoidn` brings it, as do
+    /// the archives of its project and many systems.
+    Denoise(DenoiseArgs),
     /// Print a job file that renders a scene in shares on many machines.
     ///
     /// Each share is a part of the passes, with a film file NAME-I.film from which it goes on where it

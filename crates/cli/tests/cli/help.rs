@@ -47,6 +47,7 @@ fn every_flag_is_described() {
         "tonemap",
         "--exposure --help --no-color --operator --output --version",
     );
+    check_flags("denoise", "--help --no-color --output --threads --version");
     for farm in ["slurm", "hyperqueue", "k8s", "shell"] {
         let flags = "--help --no-color --output --parts --spp --version";
         check_flags(&format!("farm {farm}"), flags);

@@ -4,6 +4,7 @@
 
 mod common;
 mod compare;
+mod denoise;
 mod failures;
 mod farm;
 mod film;

@@ -1,0 +1,144 @@
+//! `bidir denoise`: a picture loses its noise, and what guides the filter are its own layers.
+//!
+//! The filter is Open Image Denoise, which the `denoise` crate looks for. The noisy picture stays in
+//! the file, so that it can be denoised again.
+
+use crate::args::DenoiseArgs;
+use crate::console::say;
+use crate::exit::{Exit, Failure};
+use crate::metrics::Pixels;
+use crate::scene_io::{self, Layers};
+use denoise::{DenoiseError, Denoiser, Input};
+use std::path::Path;
+
+const COLOR: [&str; 3] = ["R", "G", "B"];
+const NOISY: [&str; 3] = ["Noisy.R", "Noisy.G", "Noisy.B"];
+const ALBEDO: [&str; 3] = ["Albedo.R", "Albedo.G", "Albedo.B"];
+/// Shading normals, then geometric ones.
+const NORMALS: [(&str, [&str; 3]); 2] = [
+    ("Ns", ["Ns.X", "Ns.Y", "Ns.Z"]),
+    ("N", ["N.X", "N.Y", "N.Z"]),
+];
+
+/// A picture without its noise.
+pub(crate) struct Denoised {
+    /// Shape: that of the noisy picture.
+    pub(crate) pixels: Vec<[f32; 3]>,
+    /// What did it, with its version.
+    pub(crate) denoiser: String,
+}
+
+/// Denoises a picture of `size[0]` x `size[1]` pixels, row by row, with guides of the same shape.
+///
+/// Albedo is clamped to `[0, 1]`; normals are used with albedo alone. `threads` is the most that are
+/// used, 0 leaves that to the library.
+pub(crate) fn denoise(
+    size: [usize; 2],
+    color: &[[f32; 3]],
+    albedo: Option<&[[f32; 3]]>,
+    normal: Option<&[[f32; 3]]>,
+    threads: usize,
+) -> Result<Denoised, Failure> {
+    let input = Input {
+        size,
+        color,
+        albedo,
+        normal: normal.filter(|_| albedo.is_some()),
+    };
+    let denoiser = Denoiser::load(threads).map_err(|error| failure(&error))?;
+    let pixels = denoiser.denoise(&input).map_err(|error| failure(&error))?;
+    let denoiser = format!("Open Image Denoise {}", denoiser.version());
+    Ok(Denoised { pixels, denoiser })
+}
+
+/// A library that is not there is a file that cannot be read.
+fn failure(error: &DenoiseError) -> Failure {
+    let exit = if error.is_missing() {
+        Exit::InputOutput
+    } else {
+        Exit::RenderFailed
+    };
+    let failure = Failure::new(exit, error.to_string());
+    match error.hint() {
+        Some(hint) => failure.with_hint(hint),
+        None => failure,
+    }
+}
+
+/// The layers that guide the filter.
+struct Guides {
+    albedo: Option<Vec<[f32; 3]>>,
+    /// The name of the layer, and the normals.
+    normal: Option<(&'static str, Vec<[f32; 3]>)>,
+}
+
+impl Guides {
+    fn of(layers: &Layers) -> Self {
+        let mut normals = NORMALS
+            .iter()
+            .filter_map(|(name, channels)| Some((*name, layers.triples(*channels)?)));
+        let albedo = layers.triples(ALBEDO);
+        let normal = normals.next().filter(|_| albedo.is_some());
+        Self { albedo, normal }
+    }
+
+    /// The names of the layers, for people.
+    fn names(&self) -> String {
+        let albedo = self.albedo.as_ref().map(|_| "Albedo");
+        let normal = self.normal.as_ref().map(|(name, _)| *name);
+        let names: Vec<_> = albedo.into_iter().chain(normal).collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    }
+
+    fn is_complete(&self) -> bool {
+        self.albedo.is_some() && self.normal.is_some()
+    }
+}
+
+/// Writes an image without its noise.
+pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
+    scene_io::check_image_name(&args.output)?;
+    let mut layers = scene_io::read_layers(&args.image)?;
+    let noisy = noisy(&layers, &args.image)?;
+    let guides = Guides::of(&layers);
+    let names = guides.names();
+    if !guides.is_complete() {
+        say(format_args!(
+            "note: `bidir render --aov albedo,normal` gives an image the layers Albedo and Ns, which \
+             keep textures and edges sharp"
+        ));
+    }
+    let denoised = denoise(
+        layers.size(),
+        &noisy,
+        guides.albedo.as_deref(),
+        guides.normal.as_ref().map(|(_, normal)| normal.as_slice()),
+        args.threads.into(),
+    )?;
+    let by = format!("{}, guides: {names}", denoised.denoiser);
+    if scene_io::is_png(&args.output) {
+        let picture = Pixels {
+            size: layers.size(),
+            data: denoised.pixels,
+        };
+        scene_io::write_screen(&args.output, &picture)?;
+    } else {
+        let triples = [(COLOR, &denoised.pixels[..]), (NOISY, &noisy)];
+        scene_io::write_layers(&args.output, &mut layers, &triples, ("bidir/denoiser", &by))?;
+    }
+    say(format_args!("{by}; wrote {}", args.output.display()));
+    Ok(Exit::Done)
+}
+
+/// The picture with its noise, also of an image that was denoised before.
+fn noisy(layers: &Layers, path: &Path) -> Result<Vec<[f32; 3]>, Failure> {
+    let noisy = layers.triples(NOISY).or_else(|| layers.triples(COLOR));
+    noisy.ok_or_else(|| {
+        let message = format!("{}: it has no channels R, G, B", path.display());
+        Failure::new(Exit::InputOutput, message)
+    })
+}
