@@ -41,7 +41,9 @@ impl PassSet {
 
     /// Is `pass` held?
     pub fn contains(&self, pass: u64) -> bool {
-        self.ranges.iter().any(|range| range.contains(&pass))
+        self.ranges[self.first_ending_after(pass)..]
+            .first()
+            .is_some_and(|range| range.start <= pass)
     }
 
     /// Adds passes, those that were there included.
@@ -49,66 +51,97 @@ impl PassSet {
         if range.is_empty() {
             return;
         }
-        let (touching, mut rest): (Vec<_>, Vec<_>) = std::mem::take(&mut self.ranges)
-            .into_iter()
-            .partition(|old| old.start <= range.end && range.start <= old.end);
-        let joined = touching.iter().fold(range, |joined, old| {
-            joined.start.min(old.start)..joined.end.max(old.end)
-        });
-        rest.push(joined);
-        rest.sort_by_key(|range| range.start);
-        self.ranges = rest;
+        let begin = self.ranges.partition_point(|old| old.end < range.start);
+        let end = self.ranges.partition_point(|old| old.start <= range.end);
+        let touching = &self.ranges[begin..end];
+        let start = touching.first().map_or(range.start, |old| old.start);
+        let stop = touching.last().map_or(range.end, |old| old.end);
+        let joined = start.min(range.start)..stop.max(range.end);
+        self.ranges.splice(begin..end, [joined]);
     }
 
     /// Both sets.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        let mut union = self.clone();
-        for range in &other.ranges {
-            union.insert(range.clone());
-        }
-        union
+        let ranges = self.ranges.iter().chain(&other.ranges);
+        ranges.cloned().collect()
     }
 
     /// The passes that both hold.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
-        let mut both = Self::default();
-        for a in &self.ranges {
-            for b in &other.ranges {
-                both.insert(a.start.max(b.start)..a.end.min(b.end));
+        let mut ranges = Vec::new();
+        let (mut a, mut b) = (
+            self.ranges.iter().peekable(),
+            other.ranges.iter().peekable(),
+        );
+        while let (Some(x), Some(y)) = (a.peek(), b.peek()) {
+            let both = x.start.max(y.start)..x.end.min(y.end);
+            // What ends first meets nothing more of the other.
+            if x.end < y.end {
+                a.next();
+            } else {
+                b.next();
+            }
+            if !both.is_empty() {
+                ranges.push(both);
             }
         }
-        both
+        Self { ranges }
     }
 
     /// The passes of `self` that `other` lacks.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
-        let mut rest = Self::default();
+        let mut ranges = Vec::new();
         for range in &self.ranges {
             let mut begin = range.start;
-            for held in &other.ranges {
-                rest.insert(begin..held.start.min(range.end));
-                begin = begin.max(held.end);
+            let held = &other.ranges[other.first_ending_after(range.start)..];
+            for held in held.iter().take_while(|held| held.start < range.end) {
+                if begin < held.start {
+                    ranges.push(begin..held.start);
+                }
+                begin = held.end;
             }
-            rest.insert(begin..range.end);
+            if begin < range.end {
+                ranges.push(begin..range.end);
+            }
         }
-        rest
+        Self { ranges }
     }
 
     /// The first pass at or after `from` that is not held.
     pub fn first_missing(&self, from: u64) -> u64 {
-        let held = self.ranges.iter().find(|range| range.contains(&from));
+        let range = self.ranges.get(self.first_ending_after(from));
+        let held = range.filter(|range| range.start <= from);
         held.map_or(from, |range| range.end)
+    }
+
+    /// The number of the first range that ends after `pass`.
+    fn first_ending_after(&self, pass: u64) -> usize {
+        self.ranges.partition_point(|range| range.end <= pass)
+    }
+}
+
+/// In any order; they may overlap and be empty.
+impl FromIterator<Range<u64>> for PassSet {
+    fn from_iter<I: IntoIterator<Item = Range<u64>>>(ranges: I) -> Self {
+        let mut sorted: Vec<_> = ranges.into_iter().filter(|r| !r.is_empty()).collect();
+        sorted.sort_unstable_by_key(|range| range.start);
+        sorted.dedup_by(|next, last| {
+            let touches = next.start <= last.end;
+            if touches {
+                last.end = last.end.max(next.end);
+            }
+            touches
+        });
+        Self { ranges: sorted }
     }
 }
 
 impl From<Range<u64>> for PassSet {
     fn from(range: Range<u64>) -> Self {
-        let mut set = Self::default();
-        set.insert(range);
-        set
+        [range].into_iter().collect()
     }
 }
 
@@ -130,20 +163,19 @@ impl FromStr for PassSet {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let error = || ParsePassSetError(text.to_owned());
-        let mut set = Self::default();
         if text.trim() == "none" {
-            return Ok(set);
+            return Ok(Self::default());
         }
-        for part in text.split(',') {
+        let ranges = text.split(',').map(|part| {
             let (begin, end) = part.split_once("..").ok_or_else(error)?;
             let number = |text: &str| text.trim().parse::<u64>().map_err(|_| error());
             let range = number(begin)?..number(end)?;
             if range.is_empty() {
                 return Err(error());
             }
-            set.insert(range);
-        }
-        Ok(set)
+            Ok(range)
+        });
+        ranges.collect()
     }
 }
 
@@ -188,6 +220,32 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_last_numbers_are_passes_too() {
+        let all = PassSet::from(0..u64::MAX);
+        assert_eq!(all.union(&set("5..9")), all);
+        assert_eq!(all.difference(&all), PassSet::default());
+        assert_eq!(all.len(), u64::MAX);
+        assert_eq!(all.first_missing(7), u64::MAX);
+    }
+
+    #[test]
+    fn many_ranges_take_no_time() {
+        let text = |begin: u64| {
+            let ranges = (begin..begin + 100_000).map(|i| format!("{}..{}", 4 * i, 4 * i + 1));
+            ranges.rev().collect::<Vec<_>>().join(",")
+        };
+        let (a, b) = (set(&text(0)), set(&text(50_000)));
+        assert_eq!(a.union(&b).ranges().len(), 150_000);
+        assert_eq!(a.intersection(&b).len(), 50_000);
+        assert_eq!(a.difference(&b).len(), 50_000);
+        let mut filled = a.clone();
+        for pass in (0..400_000).step_by(4) {
+            filled.insert(pass + 1..pass + 2);
+        }
+        assert_eq!((filled.len(), filled.ranges().len()), (200_000, 100_000));
+    }
+
     proptest! {
         #[test]
         fn it_is_a_set(a in any_set(), b in any_set()) {
@@ -198,8 +256,20 @@ mod tests {
             prop_assert_eq!(a.len() as usize, x.len());
             prop_assert_eq!(a.union(&b), b.union(&a));
             prop_assert_eq!(a.to_string().parse::<PassSet>().unwrap(), a.clone());
-            let first = (0..1000).find(|pass| !x.contains(pass)).unwrap();
-            prop_assert_eq!(a.first_missing(0), first);
+            let inserted = b.ranges().iter().fold(a.clone(), |mut set, range| {
+                set.insert(range.clone());
+                set
+            });
+            prop_assert_eq!(inserted, a.union(&b));
+            for from in 0..50 {
+                prop_assert_eq!(a.contains(from), x.contains(&from));
+                let first = (from..1000).find(|pass| !x.contains(pass)).unwrap();
+                prop_assert_eq!(a.first_missing(from), first);
+            }
+            for set in [a.union(&b), a.intersection(&b), a.difference(&b)] {
+                let apart = |pair: &[Range<u64>]| pair[0].end < pair[1].start;
+                prop_assert!(set.ranges().windows(2).all(apart), "{set}");
+            }
         }
     }
 }
