@@ -19,7 +19,7 @@ pub(super) struct CameraSettings {
     screen_window: Option<[f32; 4]>,
     lens_radius: f32,
     focal_distance: f32,
-    span: Span,
+    pub(super) span: Span,
 }
 
 /// Reads the camera; without one it is the format's default.

@@ -1,5 +1,6 @@
 //! The film.
 
+use super::camera::CameraSettings;
 use super::context::Context;
 use super::filter;
 use super::reader::Reader;
@@ -51,8 +52,11 @@ pub(super) struct BuiltFilm {
     pub(super) output: Option<String>,
 }
 
-/// Builds the film. `exposure_time` is that of the camera.
-pub(super) fn build(context: &mut Context<'_>, exposure_time: f32) -> Result<BuiltFilm, Fault> {
+/// Builds the film that is exposed by `camera`.
+pub(super) fn build(
+    context: &mut Context<'_>,
+    camera: &CameraSettings,
+) -> Result<BuiltFilm, Fault> {
     let filter = filter::build(context)?;
     let default = default_film();
     let film = context.description.film.as_ref().unwrap_or(&default);
@@ -72,7 +76,7 @@ pub(super) fn build(context: &mut Context<'_>, exposure_time: f32) -> Result<Bui
     let resolution = resolution(context, span, own)?;
     let mut settings = FilmSettings::new(resolution, filter);
     settings.crop = crop(context, &mut reader, own, resolution)?;
-    settings.exposure = exposure_time * reader.float_within("iso", 100.0, [0.0, f32::MAX])? / 100.0;
+    settings.exposure = exposure(&mut reader, camera)?;
     let output = reader.string("filename")?.map(|(name, _)| name.to_owned());
     film_details(context, &mut reader)?;
     reader.finish()?;
@@ -105,6 +109,20 @@ fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 
     }
     let message = format!("a film of {width} × {height} pixels is empty or too large");
     Err(Fault::new(ErrorKind::Limit, span, message))
+}
+
+/// What light is multiplied by.
+fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fault> {
+    let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
+    let exposure = camera.exposure_time * iso / 100.0;
+    if exposure.is_finite() {
+        return Ok(exposure);
+    }
+    let given = reader.find(ParameterType::Float, "iso");
+    let span = given.map_or(camera.span, |parameter| parameter.value_span);
+    let time = camera.exposure_time;
+    let message = format!("the exposure is no finite number: {time:e} seconds · iso {iso:e} / 100");
+    Err(Fault::scene(span, message))
 }
 
 /// The pixels that are rendered: those that the caller asks for, else the file's.

@@ -132,7 +132,7 @@ impl Assembly {
     fn build(context: &mut Context<'_>) -> Result<(Scene, SceneSettings, Summary), Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
-        let film = film::build(context, lens.exposure_time)?;
+        let film = film::build(context, &lens)?;
         let settings = settings::build(context, film.output)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);

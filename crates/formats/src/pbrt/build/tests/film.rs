@@ -1,4 +1,4 @@
-use super::{LoadOptions, STRICT, load_text, refusal};
+use super::{LoadOptions, STRICT, check, load_text, refusal};
 use crate::error::ErrorKind;
 use crate::pbrt::Crop;
 
@@ -96,4 +96,18 @@ fn filters_much_narrower_than_a_pixel_are_warned_of() {
     check_narrow("\"triangle\" \"float xradius\" 0.4", Some("0.200"));
     // A wide filter may have a narrow peak.
     check_narrow("\"gaussian\" \"float sigma\" 0.05", Some("0.063"));
+}
+
+#[test]
+fn an_exposure_beyond_all_numbers_is_refused_where_it_stands() {
+    check(
+        "Camera \"perspective\" \"float shutterclose\" 1e30\nFilm \"rgb\" \"float iso\" 1e10\nWorldBegin",
+        "s.pbrt:2:24: the exposure is no finite number: 1e30 seconds · iso 1e10 / 100",
+    );
+    check(
+        "Camera \"perspective\" \"float shutteropen\" -3e38 \"float shutterclose\" 3e38\nWorldBegin",
+        "s.pbrt:1:8: the exposure is no finite number: inf seconds · iso 1e2 / 100",
+    );
+    let text = "Film \"rgb\" \"float iso\" 3e38 WorldBegin";
+    assert!(load_text(text, &STRICT).scene.film().exposure.is_finite());
 }
