@@ -50,26 +50,6 @@ scenes:
 mutants *FLAGS:
     python3 tools/mutants {{FLAGS}}
 
-# Fresh random numbers, long property tests and mutants, with a summary.
-nightly SEED=`date +%s`:
-    #!/usr/bin/env bash
-    set -uo pipefail
-    summary=()
-    run() {
-      local name=$1 start=$SECONDS verdict=passed
-      shift
-      "$@" || verdict=FAILED
-      summary+=("$(printf '%-8s %-24s %6d s' "$verdict" "$name" $((SECONDS - start)))")
-    }
-    export BIDIR_TEST_SEED={{SEED}}
-    run "large scenes" cargo test --release -p bidir-formats --test real_scenes -- --ignored
-    run "a million passes" cargo test --release -p bidir --test reproducibility -- --ignored
-    export BIDIR_TEST_EFFORT=4
-    run "statistics" {{just_executable()}} stat {{SEED}}
-    run "properties" env PROPTEST_CASES=20000 BIDIR_TEST_EFFORT=1 cargo test --release --workspace
-    unset BIDIR_TEST_SEED BIDIR_TEST_EFFORT
-    run "kills" env BIDIR_TEST_KILLS=100 cargo test --release -p bidir-cli --test cli -- film::a_killed
-    run "mutants" python3 tools/mutants
-    echo "seed {{SEED}}"
-    printf '%s\n' "${summary[@]}"
-    ! printf '%s\n' "${summary[@]}" | grep -q FAILED
+# Fresh random numbers, long property tests and mutants, with a summary; or some stages of it.
+nightly SEED="" *STAGES:
+    tools/nightly "{{SEED}}" {{STAGES}}
