@@ -7,7 +7,7 @@ use crate::args::DenoiseArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::metrics::Pixels;
-use crate::scene_io::{self, Layers};
+use crate::scene_io::{self, IMAGES, ImageFormat, Layers};
 use denoise::{DenoiseError, Denoiser, Input};
 use std::path::Path;
 
@@ -101,14 +101,14 @@ impl Guides {
 
 /// Writes an image without its noise.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
-    scene_io::check_image_name(&args.output)?;
+    let format = scene_io::image_format(&args.output, IMAGES)?;
     let mut layers = scene_io::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;
     let guides = Guides::of(&layers);
     let names = guides.names();
     if !guides.is_complete() {
         say(format_args!(
-            "note: `bidir render --aov albedo,normal` gives an image the layers Albedo and Ns, which \
+            "note: `bidir render --aov albedo,shading-normal` gives an image the layers Albedo and Ns, which \
              keep textures and edges sharp"
         ));
     }
@@ -120,7 +120,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
         args.threads.into(),
     )?;
     let by = format!("{}, guides: {names}", denoised.denoiser);
-    if scene_io::is_png(&args.output) {
+    if format == ImageFormat::Png {
         let picture = Pixels {
             size: layers.size(),
             data: denoised.pixels,

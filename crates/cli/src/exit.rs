@@ -187,6 +187,7 @@ mod tests {
                 .iter()
                 .all(|code| help.contains(&format!("{code:>3}  ")))
         );
+        codes.sort_unstable();
         codes.dedup();
         assert_eq!(codes.len(), Exit::ALL.len());
     }

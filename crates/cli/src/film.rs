@@ -3,7 +3,7 @@
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, Developed, FilmFile, FilmHeader, MetadataValue};
+use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES, MetadataValue};
 use bidir::film::PassSet;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ fn verify(files: &[PathBuf], console: Console) -> Exit {
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     scene_io::check_writable(&args.output)?;
     if let Some(image) = &args.image {
-        scene_io::check_image_name(image)?;
+        scene_io::image_format(image, IMAGES)?;
     }
     let mut films = args.files.iter();
     let first = films.next().expect("clap asks for a file");

@@ -2,7 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, Developed, MetadataValue};
+use crate::scene_io::{self, Developed, IMAGES, ImageFormat, MetadataValue};
 use bidir::film::FilmSettings;
 use std::path::{Path, PathBuf};
 
@@ -16,18 +16,24 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// The files of a render; `film` is the name that the scene file gives its image. A share of a
-    /// render has no image but one that is asked for, as all shares would write the same.
-    pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
-        let is_share = args.long.passes.is_some() || args.long.part.is_some();
-        let image = match &args.output.output {
-            None if is_share => None,
-            None => Some(default_image(&args.scene.scene, film)),
-            asked => asked.clone(),
-        };
+    /// The files that flags name: what is known before the scene is read.
+    pub(crate) fn named(args: &RenderArgs) -> Result<Self, Failure> {
+        let image = args.output.output.clone();
         let [exr, png] = image.map_or(Ok([None, None]), images)?;
         let stats = args.output.stats.clone();
         Ok(Self { exr, png, stats })
+    }
+
+    /// The files of a render; `film` is the name that the scene file gives its image. A share of a
+    /// render has no image but one that is asked for, as all shares would write the same.
+    pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
+        let named = Self::named(args)?;
+        let is_share = args.long.passes.is_some() || args.long.part.is_some();
+        if is_share || args.output.output.is_some() {
+            return Ok(named);
+        }
+        let [exr, png] = images(default_image(&args.scene.scene, film))?;
+        Ok(Self { exr, png, ..named })
     }
 
     fn files(&self) -> impl Iterator<Item = &Path> {
@@ -81,18 +87,13 @@ impl Outputs {
 
 /// The EXR, if any, and the PNG that go by the name of an image.
 fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
-    let extension = image.extension().and_then(|extension| extension.to_str());
-    match extension.map(str::to_ascii_lowercase).as_deref() {
-        Some("exr") => {
+    Ok(match scene_io::image_format(&image, IMAGES)? {
+        ImageFormat::Exr => {
             let png = image.with_extension("png");
-            Ok([Some(image), Some(png)])
+            [Some(image), Some(png)]
         }
-        Some("png") => Ok([None, Some(image)]),
-        _ => {
-            let message = format!("{}: not the name of an image", image.display());
-            Err(Failure::usage(message).with_hint("end it with .exr or .png"))
-        }
-    }
+        ImageFormat::Png => [None, Some(image)],
+    })
 }
 
 /// The image that the scene names, as EXR; else one with the name of the scene.

@@ -199,10 +199,9 @@ pub(crate) fn write_picture(
     developed: &Developed,
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
-    match Format::of(path) {
-        Some(Format::Exr) => write_exr(path, film, developed, metadata),
-        Some(Format::Png) => write_png(path, &developed.picture),
-        _ => check_image_name(path),
+    match image_format(path, IMAGES)? {
+        ImageFormat::Exr => write_exr(path, film, developed, metadata),
+        ImageFormat::Png => write_png(path, &developed.picture),
     }
 }
 
@@ -228,18 +227,36 @@ pub(crate) fn write_layers(
     write().map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
 }
 
-/// True where a name says a picture for the screen.
-pub(crate) fn is_png(path: &Path) -> bool {
-    Format::of(path) == Some(Format::Png)
+/// A format that images are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ImageFormat {
+    /// Linear light.
+    Exr,
+    /// What the screen shows.
+    Png,
 }
 
-/// Fails where a name says no kind of image that is written.
-pub(crate) fn check_image_name(path: &Path) -> Result<(), Failure> {
-    if matches!(Format::of(path), Some(Format::Exr | Format::Png)) {
-        return Ok(());
-    }
-    let message = format!("{}: not the name of an image", path.display());
-    Err(Failure::usage(message).with_hint("end it with .exr or .png"))
+/// All that are written.
+pub(crate) const IMAGES: &[ImageFormat] = &[ImageFormat::Exr, ImageFormat::Png];
+
+/// The format that the name of an image says.
+///
+/// Errors: it says none of those in `written`.
+pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<ImageFormat, Failure> {
+    let said = match Format::of(path) {
+        Some(Format::Exr) => Some(ImageFormat::Exr),
+        Some(Format::Png) => Some(ImageFormat::Png),
+        _ => None,
+    };
+    said.filter(|said| written.contains(said)).ok_or_else(|| {
+        let endings = written.iter().map(|format| match format {
+            ImageFormat::Exr => ".exr",
+            ImageFormat::Png => ".png",
+        });
+        let endings = endings.collect::<Vec<_>>().join(" or ");
+        let message = format!("{}: not the name of an image", path.display());
+        Failure::usage(message).with_hint(format!("end it with {endings}"))
+    })
 }
 
 /// Reads a film file.

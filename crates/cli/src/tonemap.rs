@@ -11,8 +11,7 @@ mod neutral;
 use crate::args::TonemapArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
-use crate::scene_io;
-use std::path::Path;
+use crate::scene_io::{self, ImageFormat};
 
 /// How light of any strength is brought into [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +46,9 @@ impl Operator {
 
 /// Writes an image for the screen.
 pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
-    check_name(&args.output)?;
+    // A picture for the screen is a PNG.
+    scene_io::image_format(&args.output, &[ImageFormat::Png])?;
+    scene_io::check_writable(&args.output)?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);
     for color in &mut image.data {
@@ -58,19 +59,6 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     scene_io::write_screen(&args.output, &image)?;
     say(format_args!("wrote {}", args.output.display()));
     Ok(Exit::Done)
-}
-
-/// A picture for the screen is a PNG.
-fn check_name(path: &Path) -> Result<(), Failure> {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    if extension.is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return Ok(());
-    }
-    let message = format!(
-        "{}: not the name of a picture for the screen",
-        path.display()
-    );
-    Err(Failure::usage(message).with_hint("end it with .png"))
 }
 
 /// What an operator gets of a channel. Range: finite and not negative.

@@ -1,6 +1,7 @@
 //! The flags of long renders: film files, and shares of the passes.
 
 use super::values::Duration;
+use bidir::film::PassSet;
 use clap::{Args, ValueHint};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -57,14 +58,11 @@ impl FromStr for PassRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let ends = text.split_once("..").and_then(|(begin, end)| {
-            let number = |text: &str| text.trim().parse::<u64>().ok();
-            Some(number(begin)?..number(end)?)
-        });
-        let range = ends.filter(|range| !range.is_empty());
-        range
-            .map(Self)
-            .ok_or_else(|| "expected A..B with A < B, such as 0..64".into())
+        let passes = text.parse::<PassSet>();
+        match passes.as_ref().map(PassSet::ranges) {
+            Ok([range]) => Ok(Self(range.clone())),
+            _ => Err("expected A..B with A < B, such as 0..64".into()),
+        }
     }
 }
 
@@ -151,7 +149,17 @@ mod tests {
         for text in ["", "3", "3/3", "-1/3", "a/b", "0/0", "1/"] {
             assert!(text.parse::<Part>().is_err(), "{text}");
         }
-        for text in ["", "4", "4..4", "5..4", "..4", "4..", "a..b"] {
+        for text in [
+            "",
+            "4",
+            "4..4",
+            "5..4",
+            "..4",
+            "4..",
+            "a..b",
+            "0..4, 8..9",
+            "none",
+        ] {
             assert!(text.parse::<PassRange>().is_err(), "{text}");
         }
         assert_eq!("2/3".parse(), Ok(Part { index: 2, of: 3 }));
