@@ -1,8 +1,11 @@
 //! `bidir farm`: a job file for a scheduler, from which shares of a render are started.
 //!
-//! Every share renders its part of the passes and keeps a film file NAME-I.film, from which it goes
-//! on where it is started again; the last step merges them and develops the image. There is no
-//! protocol and no server of our own: the job file is text, made to be read and changed.
+//! Share I of N renders its part of the passes and keeps a film file NAME.part-I-of-N.film, from which
+//! it goes on where it is started again; the last step merges them and develops the image. There is
+//! no protocol and no server of our own: the job file is text, made to be read and changed.
+//!
+//! The last step finds the shares by a pattern. No other job's files fit it, as no job has a name with
+//! `.part-` and a digit in it.
 
 mod hyperqueue;
 mod kubernetes;
@@ -13,8 +16,11 @@ mod slurm;
 use crate::args::{Cli, Command, FarmArgs, FarmCommand};
 use crate::console::print;
 use crate::exit::{Exit, Failure};
-use clap::Parser;
+use crate::scene_io::{self, ImageFormat};
+use clap::parser::ValueSource;
+use clap::{CommandFactory, Parser};
 use quote::quote;
+use std::ffi::OsStr;
 use std::path::Path;
 
 /// Prints a job file.
@@ -59,10 +65,13 @@ impl<'a> Plan<'a> {
             Some(image) => image.clone(),
             None => format!("{}.exr", stem(&args.scene)),
         };
-        let Some(name) = image.strip_suffix(".exr") else {
-            let message = format!("{image}: not the name of an image that is developed");
-            return Err(Failure::usage(message).with_hint("end it with .exr"));
-        };
+        scene_io::image_format(Path::new(&image), &[ImageFormat::Exr])?;
+        let name = &image[..image.len() - ".exr".len()];
+        if Path::new(name).file_name().is_some_and(is_share) {
+            let message = format!("{image}: named like a share of another job");
+            let hint = "give it a name without `.part-` and a digit with --output";
+            return Err(Failure::usage(message).with_hint(hint));
+        }
         if let Some(spp) = args.spp.filter(|spp| *spp < args.parts) {
             let message = format!(
                 "{} shares of {spp} passes: some would have none",
@@ -88,7 +97,8 @@ impl<'a> Plan<'a> {
             words.extend(fixed(&["--spp", &spp.to_string()]));
         }
         words.extend(fixed(&["--checkpoint"]));
-        words.push(Word::Share(format!("{}-", self.name), ".film".into()));
+        let [before, after] = self.share();
+        words.push(Word::Share(before, after));
         words.extend(fixed(&["--resume"]));
         words.extend(self.flags.iter().cloned().map(Word::Fixed));
         words
@@ -99,13 +109,19 @@ impl<'a> Plan<'a> {
         self.render(Word::Fixed(format!("env/{}", self.parts)))
     }
 
+    /// The name of a share's film file, before and after its number.
+    fn share(&self) -> [String; 2] {
+        let Self { name, parts, .. } = self;
+        [format!("{name}.part-"), format!("-of-{parts}.film")]
+    }
+
     /// The last step: the commands that make the image, for a shell.
     fn last_step(&self) -> [String; 2] {
-        let shares = quote(&format!("{}-", self.name));
+        let [before, after] = self.share();
+        let shares = quote(&before);
         let [all, image] = [&format!("{}.film", self.name), &self.image].map(|file| quote(file));
         [
-            // The pattern leaves out film files of other names that begin alike.
-            format!("bidir merge {shares}[0-9]*.film -o {all}"),
+            format!("bidir merge {shares}[0-9]*{after} -o {all}"),
             format!("bidir film develop {all} -o {image}"),
         ]
     }
@@ -135,6 +151,7 @@ impl<'a> Plan<'a> {
 
     /// Fails here, rather than on every machine, where `bidir render` would not take the flags.
     fn check(&self) -> Result<(), Failure> {
+        self.check_flags()?;
         let words = self.render(Word::Fixed(format!("0/{}", self.parts)));
         let words = words.into_iter().map(|word| match word {
             Word::Fixed(text) => text,
@@ -147,22 +164,33 @@ impl<'a> Plan<'a> {
             Failure::usage(text[..end].trim_start_matches("error: "))
                 .with_hint("see `bidir render --help` for what can be given after `--`")
         })?;
-        let Command::Render(args) = &cli.command else {
-            return Err(Failure::usage(
+        match cli.command {
+            Command::Render(_) => Ok(()),
+            _ => Err(Failure::usage(
                 "the flags after `--` are not those of `bidir render`",
-            ));
+            )),
+        }
+    }
+
+    /// Fails where a flag after `--` would take the shares apart. What variables of this machine say
+    /// does not count: the job is for others.
+    fn check_flags(&self) -> Result<(), Failure> {
+        let words = ["bidir", "render", &self.scene];
+        let words = words
+            .into_iter()
+            .chain(self.flags.iter().map(String::as_str));
+        // What else is wrong with them is told of the whole command.
+        let parsed = Cli::command()
+            .ignore_errors(true)
+            .try_get_matches_from(words);
+        let Some(("render", given)) = parsed.as_ref().ok().and_then(|all| all.subcommand()) else {
+            return Ok(());
         };
-        let taken = [
-            ("--output", args.output.output.is_some(), SHARED),
-            ("--stats", args.output.stats.is_some(), SHARED),
-            ("--replay", args.replay.is_some(), SHARED),
-            ("--time", args.budget.time.is_some(), INCOMPLETE),
-            ("--noise", args.budget.noise.is_some(), INCOMPLETE),
-        ];
-        match taken.iter().find(|(_, is_given, _)| *is_given) {
+        let is_given = |flag: &str| given.value_source(flag) == Some(ValueSource::CommandLine);
+        match REFUSED.iter().find(|(flag, _)| is_given(flag)) {
             None => Ok(()),
-            Some((flag, _, reason)) => {
-                let message = format!("{flag} cannot be given after `--`: {reason}");
+            Some((flag, reason)) => {
+                let message = format!("--{flag} cannot be given after `--`: {reason}");
                 Err(Failure::usage(message))
             }
         }
@@ -173,6 +201,33 @@ impl<'a> Plan<'a> {
 const SHARED: &str = "all shares would share it";
 /// Why flags that end a share early are refused.
 const INCOMPLETE: &str = "shares would end with passes missing";
+/// Why flags that say what a share is are refused.
+const OWN: &str = "the job sets what each share renders and keeps";
+/// The flags that are refused after `--`, and why.
+const REFUSED: [(&str, &str); 11] = [
+    ("output", SHARED),
+    ("stats", SHARED),
+    ("replay", SHARED),
+    ("time", INCOMPLETE),
+    ("noise", INCOMPLETE),
+    (
+        "spp",
+        "give it before `--`, where it is checked against --parts",
+    ),
+    ("passes", OWN),
+    ("part", OWN),
+    ("checkpoint", OWN),
+    ("resume", OWN),
+    ("restart", OWN),
+];
+
+/// Does a name without .exr have what makes a film file a share?
+fn is_share(name: &OsStr) -> bool {
+    let name = name.to_string_lossy();
+    let after = name.split(".part-").skip(1);
+    let mut first = after.filter_map(|after| after.chars().next());
+    first.any(|letter| letter.is_ascii_digit())
+}
 
 fn fixed(words: &[&str]) -> Vec<Word> {
     words
@@ -249,7 +304,22 @@ mod tests {
         );
         check_names("r.pbrt", Some("-x.exr"), ["./-x", "./-x.exr", "x"]);
         check_names("r.pbrt", Some("é.exr"), ["é", "é.exr", "bidir"]);
-        assert!(Plan::new(&args("r.pbrt", Some("room.png"))).is_err());
+        for image in [
+            "room.png",
+            ".exr",
+            "room.part-2.exr",
+            "a.part-x.part-0-of-8.exr",
+        ] {
+            assert!(Plan::new(&args("r.pbrt", Some(image))).is_err(), "{image}");
+        }
+        for image in [
+            "room-2.exr",
+            "room.part.exr",
+            "room.part-.exr",
+            "a.part-b.exr",
+        ] {
+            assert!(Plan::new(&args("r.pbrt", Some(image))).is_ok(), "{image}");
+        }
         assert!(Plan::new(&args("-", None)).is_err());
     }
 
@@ -262,7 +332,7 @@ mod tests {
             "part",
         );
         let expected = "bidir render 'my scene.pbrt' --part \"$part\"/4 \
-                        --checkpoint 'my scene-'\"$part\".film --resume";
+                        --checkpoint 'my scene.part-'\"$part\"-of-4.film --resume";
         assert_eq!(command, expected);
     }
 }

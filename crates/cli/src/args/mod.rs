@@ -115,8 +115,8 @@ pub(crate) enum Command {
     Denoise(DenoiseArgs),
     /// Print a job file that renders a scene in shares on many machines.
     ///
-    /// Each share is a part of the passes, with a film file NAME-I.film from which it goes on where it
-    /// was stopped; the last step merges them to NAME.film and develops NAME.exr, which has the bits
+    /// Each share is a part of the passes, with a film file NAME.part-I-of-N.film from which it goes on
+    /// where it was stopped; the last step merges them to NAME.film and develops NAME.exr, which has the bits
     /// of a render in one piece. The job file is a beginning: read it, and add what your machines ask
     /// for.
     ///

@@ -34,12 +34,12 @@ fn job_files_say_what_is_started() {
     let place = Workplace::new();
     let print = |farm: &str| place.run(&format!("farm {farm} {FLAGS}")).expect(0).stdout;
     let last = [
-        "bidir merge out/room-[0-9]*.film -o out/room.film",
+        "bidir merge out/room.part-[0-9]*-of-8.film -o out/room.film",
         "bidir film develop out/room.film -o out/room.exr",
     ];
 
     let slurm = print("slurm");
-    let render = format!("{ENV_RENDER}out/room-\"$part\".film --resume --mis power &");
+    let render = format!("{ENV_RENDER}out/room.part-\"$part\"-of-8.film --resume --mis power &");
     let wrap = format!("    --wrap='{} && {}'", last[0], last[1]);
     check_lines(&slurm, &[&render, &wrap]);
     for directive in [
@@ -59,7 +59,8 @@ fn job_files_say_what_is_started() {
     assert_eq!(head.filter(is_directive).count(), all, "{slurm}");
 
     let hyperqueue = print("hyperqueue");
-    let render = format!("exec {ENV_RENDER}out/room-\"$HQ_TASK_ID\".film --resume --mis power");
+    let render =
+        format!("exec {ENV_RENDER}out/room.part-\"$HQ_TASK_ID\"-of-8.film --resume --mis power");
     let submit = "  job=$(hq --output-mode=quiet submit --name=room --array=0-7 -- sh \"$0\")";
     let [merge, develop] = last.map(|command| format!("  {command}"));
     check_lines(&hyperqueue, &[&render, submit, &merge, &develop]);
@@ -82,12 +83,12 @@ fn job_files_say_what_is_started() {
     );
     check_lines(
         &kubernetes,
-        &["            - \"out/room-$(JOB_COMPLETION_INDEX).film\""],
+        &["            - \"out/room.part-$(JOB_COMPLETION_INDEX)-of-8.film\""],
     );
 
     let shell = print("shell");
     let render = "  bidir render scenes/room.pbrt --part \"$part\"/8 --spp 64 \
-                  --checkpoint out/room-\"$part\".film --resume --mis power";
+                  --checkpoint out/room.part-\"$part\"-of-8.film --resume --mis power";
     let [merge, develop] = last.map(|command| format!("  {command}"));
     check_lines(
         &shell,
@@ -111,12 +112,32 @@ fn faults_are_told_before_anything_is_printed() {
             "[possible values: path, light, bdpt]",
         ),
         (
+            "shell room.pbrt --parts 8 -o room.part-2.exr",
+            "named like a share",
+        ),
+        (
+            "shell room.pbrt --parts 8 -- --spp 4",
+            "--spp cannot be given after `--`: give it before",
+        ),
+        (
+            "shell room.pbrt --parts 8 --spp 64 -- --mis power --spp=4",
+            "--spp cannot be given",
+        ),
+        (
             "shell room.pbrt --parts 8 -- --passes 0..4",
-            "cannot be used with",
+            "--passes cannot be given",
         ),
         (
             "shell room.pbrt --parts 8 -- --part 0/4",
-            "cannot be used multiple times",
+            "--part cannot be given",
+        ),
+        (
+            "shell room.pbrt --parts 8 -- --checkpoint a.film",
+            "--checkpoint cannot be given",
+        ),
+        (
+            "shell room.pbrt --parts 8 -- --restart",
+            "--restart cannot be given",
         ),
         (
             "shell room.pbrt --parts 8 -- -o a.exr",
@@ -137,6 +158,16 @@ fn faults_are_told_before_anything_is_printed() {
 }
 
 #[test]
+fn variables_here_are_no_flags_of_the_job() {
+    let place = Workplace::new();
+    let mut command =
+        place.command("farm shell room.pbrt --parts 8 -- --mis power --checkpoint-every 1m");
+    command.env("BIDIR_SPP", "4").env("BIDIR_TIME", "1h");
+    let text = Ran::of(&mut command).expect(0).stdout;
+    assert!(text.contains("--mis power --checkpoint-every 1m") && !text.contains("--spp"));
+}
+
+#[test]
 fn strings_of_yaml_are_quoted() {
     let place = Workplace::new();
     let text = job(&place, "k8s", "--parts 5");
@@ -146,7 +177,7 @@ fn strings_of_yaml_are_quoted() {
             "  completions: 5",
             "  name: it-s--my----home--room",
             r#"            - "it's \"my\" $$(HOME) room.pbrt""#,
-            r#"            - "it's \"my\" $$(HOME) room-$(JOB_COMPLETION_INDEX).film""#,
+            r#"            - "it's \"my\" $$(HOME) room.part-$(JOB_COMPLETION_INDEX)-of-5.film""#,
         ],
     );
 }
@@ -223,9 +254,11 @@ mod started {
         let place = Workplace::new();
         job(&place, "shell", "--parts 3 --spp 8");
         Ran::of(&mut shell(&place, &["job", "2", "0"])).expect(0);
-        assert!(!place.path(&format!("{NAME}-1.film")).exists());
-        // A film file whose name only begins alike is no share.
-        place.write(&format!("{NAME}-old.film"), "");
+        assert!(!place.path(&format!("{NAME}.part-1-of-3.film")).exists());
+        // Film files of other jobs, or of other shares, whose names begin alike.
+        for other in ["-2.part-0-of-3", "-2", ".part-old", ".part-0-of-2", "-old"] {
+            place.write(&format!("{NAME}{other}.film"), "");
+        }
         Ran::of(&mut shell(&place, &["job", "1", "merge"])).expect(0);
         check_image(&place);
         Ran::of(&mut shell(&place, &["job", "9"]))
@@ -360,7 +393,7 @@ esac
         let place = Workplace::new();
         job(&place, "hyperqueue", "--parts 3 --spp 8");
         install(&place, "hq", HQ);
-        place.write(&format!("{NAME}-1.film"), "this is no film");
+        place.write(&format!("{NAME}.part-1-of-3.film"), "this is no film");
         let ran = Ran::of(&mut shell(&place, &["job"])).expect(1);
         ran.says("shares 1 of job 7 are not done");
         assert!(!place.path(&format!("{NAME}.exr")).exists());
