@@ -27,7 +27,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let load = start.elapsed();
     let mut settings = settings::resolve(&args.estimator, loaded.settings.clone());
     settings.layers = args.layers.layers(loaded.scene.group_names());
-    let unused = settings::warn_unused(&args.estimator, &settings, console);
+    let unused = settings::warn_unused(args, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {
         let session = new_session(args, &loaded, &settings)?;

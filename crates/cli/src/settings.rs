@@ -1,7 +1,7 @@
 //! From flags, environment and scene to what is rendered. `clap` puts flags before the environment;
 //! here both come before the scene.
 
-use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part};
+use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
@@ -33,28 +33,27 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     settings
 }
 
-/// Tells which flags and variables have no influence on this integrator. Returns how many there are.
-pub(crate) fn warn_unused(args: &EstimatorArgs, settings: &Settings, console: Console) -> usize {
-    if settings.integrator == IntegratorKind::Bdpt {
-        return 0;
-    }
-    let given = [
-        ("--strategies", args.strategies.is_some()),
-        ("--light-point", args.light_point.is_some()),
-        ("--shadow-rays", args.shadow_rays.is_some()),
-        (
-            "--mis",
-            args.mis.is_some() && settings.integrator == IntegratorKind::Light,
-        ),
-    ];
+/// Tells which flags and variables have no influence on this render. Returns how many there are.
+pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
+    let estimator = &args.estimator;
+    let is_bdpt = settings.integrator == IntegratorKind::Bdpt;
+    let is_light = settings.integrator == IntegratorKind::Light;
     let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
-    let unused = given.iter().filter(|(_, is_given)| *is_given);
+    let integrator = format!("on the integrator `{integrator}`");
+    let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
+    let unused = [
+        ("--strategies", estimator.strategies.is_some() && !is_bdpt),
+        ("--light-point", estimator.light_point.is_some() && !is_bdpt),
+        ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
+        ("--mis", estimator.mis.is_some() && is_light),
+    ];
+    let unused = unused.iter().filter(|(_, is_unused)| *is_unused);
+    let unused = unused.map(|(flag, _)| (*flag, &*integrator));
+    let unused = unused.chain(spp.map(|_| ("--spp", "where --passes is given")));
     unused
-        .map(|(flag, _)| {
-            let name = args.sources.name(flag);
-            console.warning(format_args!(
-                "{name} has no influence on the integrator `{integrator}`"
-            ));
+        .map(|(flag, on)| {
+            let name = estimator.sources.name(flag);
+            console.warning(format_args!("{name} has no influence {on}"));
         })
         .count()
 }

@@ -36,8 +36,9 @@ pub(crate) struct LongArgs {
     /// Begin anew where there is a film file, and replace it.
     #[arg(long, requires = "checkpoint")]
     pub(crate) restart: bool,
-    /// Render only these passes, from A up to but not including B, counted from 0; --spp is not asked.
+    /// Render only these passes, from A up to but not including B, counted from 0.
     ///
+    /// They are all that is rendered: --spp and BIDIR_SPP have no influence, and a warning says so.
     /// Ranges that begin and end at multiples of powers of two are the best stratified ones. The
     /// image of a share is written only where --output names it.
     #[arg(long, value_name = "A..B", conflicts_with = "part")]

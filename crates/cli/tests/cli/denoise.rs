@@ -67,7 +67,7 @@ fn a_render_loses_its_noise_and_keeps_what_it_says() {
         return;
     };
     ran.expect(0)
-        .says("note: `bidir render --aov albedo,normal`")
+        .says("note: `bidir render --aov albedo,shading-normal`")
         .says("Open Image Denoise 2.")
         .says("guides: none; wrote clean.exr");
     let [noisy, clean] = ["noisy.exr", "clean.exr"].map(|name| place.layers(name));

@@ -192,6 +192,22 @@ fn the_image_says_how_it_was_made() {
 }
 
 #[test]
+fn samples_that_do_not_count_are_told() {
+    let place = Workplace::new();
+    let mut command = place.command("render room.pbrt --passes 1..2 --checkpoint a.film");
+    Ran::of(command.env("BIDIR_SPP", "9"))
+        .expect(0)
+        .says("BIDIR_SPP has no influence where --passes is given");
+    place
+        .run("render room.pbrt --passes 1..2 --spp 9 --strict")
+        .expect(6)
+        .says("--spp has no influence");
+    place
+        .run("render room.pbrt --part 0/2 --spp 9 --strict")
+        .expect(0);
+}
+
+#[test]
 fn a_scene_may_come_from_standard_input() {
     let place = Workplace::new();
     let mut command = place.command("render - -o stdin.exr");
