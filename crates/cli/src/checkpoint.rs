@@ -3,10 +3,10 @@
 use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
+use crate::lock::{self, FilmLock};
 use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
 use bidir::driver::Session;
 use bidir::film::{Film, PassSet};
-use std::fs::{File, TryLockError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -19,8 +19,7 @@ struct Checkpoint {
     written: Instant,
     /// True where the file is there and can be read.
     is_whole: bool,
-    /// Locked as long as it lives; the system unlocks it where the process is killed.
-    _lock: File,
+    _lock: FilmLock,
 }
 
 impl Checkpoint {
@@ -37,9 +36,8 @@ impl Checkpoint {
             return Ok(None);
         };
         scene_io::check_writable(path)?;
-        // The lock is that of the file itself, whatever link leads to it.
         let path = scene_io::target_of(path);
-        let lock = lock(&path)?;
+        let lock = FilmLock::take(&path)?;
         check_existing(&path, args)?;
         let film = if path.exists() && args.resume {
             Some(load(&path, header, asked)?)
@@ -62,7 +60,7 @@ impl Checkpoint {
         // A disk that is full shall not be asked again after every pass.
         self.written = Instant::now();
         if self.is_whole {
-            let previous = beside(&self.path, ".previous");
+            let previous = lock::previous(&self.path);
             return scene_io::write_film_keeping(&self.path, &previous, header, film);
         }
         scene_io::write_film(&self.path, header, film)?;
@@ -73,7 +71,7 @@ impl Checkpoint {
 
 /// Refuses to replace what is there unasked, and what is no film file at all.
 fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
-    let previous = beside(path, ".previous");
+    let previous = lock::previous(path);
     let name = path.display();
     let failure = |message: String, hint: String| Err(Failure::usage(message).with_hint(hint));
     if !path.exists() {
@@ -175,7 +173,7 @@ impl Keeper {
 
 /// Reads the film file of a render that goes on.
 fn load(path: &Path, header: &FilmHeader, asked: Range<u64>) -> Result<FilmFile, Failure> {
-    let previous = beside(path, ".previous");
+    let previous = lock::previous(path);
     let file = scene_io::read_film(path).map_err(|failure| {
         if previous.exists() {
             with_previous(failure, &previous)
@@ -202,27 +200,4 @@ fn load(path: &Path, header: &FilmHeader, asked: Range<u64>) -> Result<FilmFile,
 fn with_previous(failure: Failure, previous: &Path) -> Failure {
     let hint = format!("the one before it is {}", previous.display());
     failure.with_hint(hint)
-}
-
-/// A name beside `path`.
-fn beside(path: &Path, ending: &str) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(ending);
-    name.into()
-}
-
-/// Keeps other processes from writing the same film file.
-fn lock(path: &Path) -> Result<File, Failure> {
-    let name = beside(path, ".lock");
-    let file = File::create(&name).map_err(|error| Failure::io(&name, "write", &error))?;
-    // Some file systems cannot lock; names of temporary files keep writers apart even there.
-    if !matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
-        return Ok(file);
-    }
-    let message = format!(
-        "{}: another process is writing this film file",
-        path.display()
-    );
-    let hint = "let each process have its own --checkpoint, and merge them";
-    Err(Failure::new(Exit::InputOutput, message).with_hint(hint))
 }

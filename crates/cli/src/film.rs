@@ -3,6 +3,7 @@
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
+use crate::lock::FilmLock;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES, MetadataValue};
 use bidir::film::PassSet;
 use serde::Serialize;
@@ -121,6 +122,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     if let Some(image) = &args.image {
         scene_io::image_format(image, IMAGES)?;
     }
+    let _lock = FilmLock::take(&args.output)?;
     let mut films = args.files.iter();
     let first = films.next().expect("clap asks for a file");
     let mut all = scene_io::read_film(first)?;

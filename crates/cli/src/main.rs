@@ -13,6 +13,7 @@ mod farm;
 mod film;
 mod film_header;
 mod info;
+mod lock;
 mod metrics;
 mod output;
 mod progress;

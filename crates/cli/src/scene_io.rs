@@ -12,7 +12,7 @@ use formats::image::{ExrImage, ExrLayer, Format};
 use formats::pbrt::{Crop, LoadOptions, Summary};
 use std::path::{Path, PathBuf};
 
-pub(crate) use formats::file::{folder_of, target_of};
+pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
 pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping, is_film};
 pub(crate) use formats::image::{Layers, MetadataValue};
 

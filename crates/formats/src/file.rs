@@ -5,14 +5,22 @@
 //! copy and not one step. They are on the disk before the rename, else a power cut could leave an
 //! empty file under the name; then the folder is, so that the rename itself lasts.
 //!
-//! The temporary file is called `.bidir-HOST-PROCESS-RANDOM.tmp`, so that the machines that write to
-//! a shared folder stay apart, and so that what a killed process left behind says whose it was.
+//! The temporary file of `NAME` is called `.NAME.bidir-HOST-PROCESS-RANDOM.tmp`, so that the machines
+//! that write to a shared folder stay apart, and so that what a killed process left behind says what
+//! it was to be and whose it was: who alone writes `NAME` can [`remove_leftovers`].
 
 use crate::error::{Error, Result};
+use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use tempfile::NamedTempFile;
+
+/// No write takes as long: what is older was left behind, on whatever machine.
+const OLD: Duration = Duration::from_secs(24 * 60 * 60);
+/// The longest name that is part of a temporary file's name. Unit: bytes; file systems take 255.
+const LONGEST_NAME: usize = 128;
 
 /// Replaces a file, or makes it where there is none. Readers that have it open keep the old bytes.
 /// What a link stands for is replaced, not the link; what is no plain file is written to.
@@ -28,7 +36,7 @@ pub fn replace_keeping(path: &Path, previous: &Path, bytes: &[u8]) -> Result<()>
             return Ok(());
         }
         // A second name for the old file, which stays when the first is given to the new bytes.
-        let name = temporary_in(folder_of(previous))?.into_temp_path();
+        let name = temporary_for(previous)?.into_temp_path();
         std::fs::remove_file(&name)?;
         std::fs::hard_link(target, &name).or_else(|_| std::fs::copy(target, &name).map(drop))?;
         name.persist(previous)?;
@@ -47,13 +55,12 @@ fn replace_with(
         if is_special(target) {
             return std::fs::write(target, bytes);
         }
-        let folder = folder_of(target);
-        let mut file = temporary_in(folder)?;
+        let mut file = temporary_for(target)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         before(target)?;
         file.persist(target)?;
-        sync_folder(folder)
+        sync_folder(folder_of(target))
     };
     written().map_err(|error| Error::io(path, "write", &error))
 }
@@ -75,7 +82,7 @@ pub fn check_replaceable(path: &Path) -> Result<()> {
     if is_special(&target) {
         return Ok(());
     }
-    let made = temporary_in(folder_of(&target));
+    let made = temporary_for(&target);
     made.map(drop)
         .map_err(|error| Error::io(path, "write", &error))
 }
@@ -88,9 +95,59 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// An empty file that is removed when it is dropped.
-fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
-    let prefix = format!(".bidir-{}-{}-", host(), std::process::id());
+/// Removes the temporary files of `path` that killed writers left behind: those of this machine, and
+/// those of others that are older than a day, as locks may not reach other machines. What cannot be
+/// removed stays.
+///
+/// The caller alone writes `path`: a temporary file of a living writer would be taken away.
+pub fn remove_leftovers(path: &Path) {
+    let target = target_of(path);
+    let Some(prefix) = target.file_name().and_then(prefix) else {
+        return;
+    };
+    let Ok(entries) = std::fs::read_dir(folder_of(&target)) else {
+        return;
+    };
+    let host = host();
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let Some(writer) = writer_of(&name, &prefix) else {
+            continue;
+        };
+        let changed = entry.metadata().and_then(|metadata| metadata.modified());
+        let age = changed.ok().and_then(|changed| changed.elapsed().ok());
+        if writer == host || age.is_some_and(|age| age > OLD) {
+            // Whoever else removes it wants the same.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// What names of temporary files of `name` begin with. None: the name is too long for it.
+fn prefix(name: &OsStr) -> Option<OsString> {
+    let mut prefix = OsString::from(".");
+    prefix.push(name);
+    prefix.push(".bidir-");
+    (name.len() <= LONGEST_NAME).then_some(prefix)
+}
+
+/// The machine that wrote a temporary file. None: the name is no temporary file's with this prefix.
+fn writer_of<'a>(name: &'a OsStr, prefix: &OsStr) -> Option<&'a str> {
+    let rest = name.to_str()?.strip_prefix(prefix.to_str()?)?;
+    let (owner, random) = rest.strip_suffix(".tmp")?.rsplit_once('-')?;
+    let (host, process) = owner.rsplit_once('-')?;
+    let is_ours = host.chars().all(is_plain)
+        && !process.is_empty()
+        && process.chars().all(|digit| digit.is_ascii_digit())
+        && random.chars().all(|letter| letter.is_ascii_alphanumeric());
+    is_ours.then_some(host)
+}
+
+/// An empty file beside `target` that is removed when it is dropped.
+fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
+    let named = target.file_name().and_then(prefix);
+    let mut prefix = named.unwrap_or_else(|| ".bidir-".into());
+    prefix.push(format!("{}-{}-", host(), std::process::id()));
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");
     // A temporary file is private unless told otherwise; an image is as public as any new file.
@@ -98,7 +155,7 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let public = std::os::unix::fs::PermissionsExt::from_mode(0o666);
     #[cfg(unix)]
     builder.permissions(public);
-    builder.tempfile_in(folder)
+    builder.tempfile_in(folder_of(target))
 }
 
 /// The name of this machine, as part of a file's name; `host` where it cannot be told.
@@ -107,13 +164,17 @@ fn host() -> String {
         .or_else(|_| std::env::var("COMPUTERNAME"))
         .or_else(|_| std::env::var("HOSTNAME"))
         .unwrap_or_default();
-    let is_plain = |letter: &char| letter.is_ascii_alphanumeric() || "-_".contains(*letter);
-    let plain: String = name.chars().filter(is_plain).take(64).collect();
+    let plain: String = name.chars().filter(|&c| is_plain(c)).take(64).collect();
     if plain.is_empty() {
         "host".into()
     } else {
         plain
     }
+}
+
+/// May this letter be in a machine's name? No dot is, so that names of files cannot be taken for it.
+fn is_plain(letter: char) -> bool {
+    letter.is_ascii_alphanumeric() || "-_".contains(letter)
 }
 
 /// Brings a folder's names to the disk, where its file system and its permissions let it be done.
@@ -195,17 +256,76 @@ mod tests {
     }
 
     #[test]
-    fn temporary_names_say_whose_they_are() {
+    fn temporary_names_say_what_and_whose_they_are() {
         let folder = tempfile::tempdir().unwrap();
-        let files = [(); 2].map(|()| temporary_in(folder.path()).unwrap());
+        let target = folder.path().join("a.film");
+        let files = [(); 2].map(|()| temporary_for(&target).unwrap());
         let names = files.each_ref().map(|file| file.path().to_owned());
         assert_ne!(names[0], names[1]);
-        let owner = format!(".bidir-{}-{}-", host(), std::process::id());
+        let owner = format!(".a.film.bidir-{}-{}-", host(), std::process::id());
         for name in &names {
-            let name = name.file_name().unwrap().to_str().unwrap();
-            let random = name.strip_prefix(&owner).unwrap().strip_suffix(".tmp");
-            assert!(random.is_some_and(|random| random.len() == 6), "{name}");
+            let name = name.file_name().unwrap();
+            let text = name.to_str().unwrap();
+            let random = text.strip_prefix(&owner).unwrap().strip_suffix(".tmp");
+            assert!(random.is_some_and(|random| random.len() == 6), "{text}");
+            let prefix = prefix(OsStr::new("a.film")).unwrap();
+            assert_eq!(writer_of(name, &prefix), Some(&*host()));
         }
+    }
+
+    #[test]
+    fn names_of_any_length_have_temporary_files() {
+        let folder = tempfile::tempdir().unwrap();
+        for length in [LONGEST_NAME, LONGEST_NAME + 1, 250] {
+            let path = folder.path().join("n".repeat(length));
+            replace(&path, b"new").unwrap();
+            remove_leftovers(&path);
+            assert!(path.exists());
+        }
+    }
+
+    #[test]
+    fn leftovers_of_the_file_are_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let make = |name: String| {
+            let path = folder.path().join(name);
+            File::create(&path).unwrap()
+        };
+        let here = host();
+        let old = format!(".a.film.bidir-{here}-x-17-aB3dE6.tmp");
+        for name in [
+            ".a.film.bidir-HERE-17-aB3dE6.tmp",
+            ".a.film.bidir-HERE-1-Z.tmp",
+        ] {
+            make(name.replace("HERE", &here));
+        }
+        let day = std::time::SystemTime::now() - OLD - Duration::from_secs(60);
+        make(old).set_modified(day).unwrap();
+        let others = [
+            // Another machine's, which may still be written to.
+            ".a.film.bidir-HERE-x-17-aB3dE6.tmp.",
+            ".a.film.bidir-HERE-y-17-aB3dE6.tmp",
+            // Of other files.
+            ".a.bidir-HERE-17-aB3dE6.tmp",
+            ".b.film.bidir-HERE-17-aB3dE6.tmp",
+            ".a.film.previous.bidir-HERE-17-aB3dE6.tmp",
+            ".a.film.bidir-b.bidir-HERE-17-aB3dE6.tmp",
+            // No temporary files.
+            "a.film",
+            ".a.film.bidir-HERE-17-aB3dE6",
+            ".a.film.bidir-HERE-x-aB3dE6.tmp",
+        ];
+        let mut others = others.map(|name| name.replace("HERE", &here));
+        for name in &others {
+            make(name.clone());
+        }
+        remove_leftovers(&folder.path().join("a.film"));
+        let entries = std::fs::read_dir(folder.path()).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        others.sort();
+        assert_eq!(names, others);
     }
 
     #[cfg(unix)]

@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -48,6 +49,39 @@ impl Workplace {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
+    /// The names of all files, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    }
+
+    /// The attributes of an image by name: texts as they are, numbers written out.
+    pub(crate) fn attributes(&self, image: &str) -> BTreeMap<String, String> {
+        let bytes = fs::read(self.path(image)).unwrap();
+        let mut rest = &bytes[8..];
+        let mut attributes = BTreeMap::new();
+        loop {
+            let name = take_text(&mut rest);
+            if name.is_empty() {
+                return attributes;
+            }
+            let kind = take_text(&mut rest);
+            let (length, after) = rest.split_first_chunk().unwrap();
+            let (value, after) = after.split_at(u32::from_le_bytes(*length) as usize);
+            rest = after;
+            let number = || value.try_into().unwrap();
+            let value = match &*kind {
+                "int" => i32::from_le_bytes(number()).to_string(),
+                "float" => f32::from_le_bytes(number()).to_string(),
+                _ => String::from_utf8_lossy(value).into_owned(),
+            };
+            attributes.insert(name, value);
+        }
+    }
+
     /// The command with these arguments, in this folder, without settings from outside.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bidir"));
@@ -65,6 +99,14 @@ impl Workplace {
     pub(crate) fn run(&self, arguments: &str) -> Ran {
         Ran::of(&mut self.command(arguments))
     }
+}
+
+/// The text up to a zero, which is taken too.
+fn take_text(bytes: &mut &[u8]) -> String {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap();
+    let text = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    *bytes = &bytes[end + 1..];
+    text
 }
 
 /// How a command ended and what it said.

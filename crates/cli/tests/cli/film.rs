@@ -199,6 +199,25 @@ fn a_film_file_is_not_replaced_unasked() {
     place.expect_same("a.exr", "room.exr");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn what_killed_writers_left_behind_is_removed() {
+    let place = Workplace::new();
+    let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
+    let host = host
+        .trim()
+        .replace(|c: char| !c.is_ascii_alphanumeric() && c != '-', "");
+    for name in ["a.film", "a.film.previous", "b.film"] {
+        place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
+    }
+    place.write("a.film.lock", "");
+    place.render_share("0..1", "a.film");
+    place.run("merge a.film -o c.film").expect(0);
+    place.run("merge a.film -o /dev/null").expect(0);
+    let other = format!(".b.film.bidir-{host}-1-aB3dE6.tmp");
+    assert_eq!(place.names(), [&*other, "a.film", "c.film", "room.pbrt"]);
+}
+
 #[test]
 fn two_writers_of_one_film_are_kept_apart() {
     let place = Workplace::new();
@@ -212,6 +231,11 @@ fn two_writers_of_one_film_are_kept_apart() {
     std::thread::sleep(Duration::from_millis(200));
     place
         .run(render)
+        .expect(4)
+        .says("another process is writing this film file");
+    place.render_share("0..1", "b.film");
+    place
+        .run("merge b.film -o a.film")
         .expect(4)
         .says("another process is writing this film file");
     first.kill().unwrap();
@@ -275,6 +299,9 @@ fn a_killed_render_goes_on_to_the_same_bits() {
         passes * 96 * 64
     );
     place.expect_same("a.exr", "whole.exr");
+    // What was killed while it wrote left files behind; the last run removed them.
+    let names = "a.exr a.film a.film.previous a.json a.png room.pbrt whole.exr whole.png";
+    assert_eq!(place.names().join(" "), names);
 }
 
 /// A disk of so many KiB, taken away at the end. None: this process may not make one.

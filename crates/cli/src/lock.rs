@@ -1,0 +1,161 @@
+//! Locks that keep processes from writing the same film file at once.
+//!
+//! The lock is that of the file FILE.lock beside it. The system gives it back where the process is
+//! killed; the file then stays, empty and harmless, until the next writer is done. Who is done
+//! removes the file *while it holds the lock*; who gets a lock looks whether the name still stands
+//! for the file that was locked, and begins anew where it does not. So two that hold a lock hold it
+//! of the same file, which cannot be.
+
+use crate::exit::{Exit, Failure};
+use crate::scene_io;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// How often a lock file may be removed by others while it is being locked.
+const ATTEMPTS: u32 = 100;
+
+/// The right to write a film file, as long as it lives.
+#[derive(Debug)]
+pub(crate) struct FilmLock {
+    name: PathBuf,
+    /// None: there is nothing to lock, or the file system cannot. Names of temporary files keep
+    /// writers apart even there.
+    held: Option<File>,
+}
+
+impl FilmLock {
+    /// Takes the lock of a film file, and removes what killed writers of it left behind.
+    ///
+    /// Errors: another process has it; no file can be made beside the film file.
+    pub(crate) fn take(film: &Path) -> Result<Self, Failure> {
+        // The lock is that of the file itself, whatever link leads to it.
+        let film = scene_io::target_of(film);
+        let name = beside(&film, ".lock");
+        // What is no plain file, such as a device, is written to and not replaced.
+        if film.exists() && !film.is_file() {
+            return Ok(Self { name, held: None });
+        }
+        let unwritable = |error| Failure::io(&name, "write", &error);
+        for _ in 0..ATTEMPTS {
+            let file = open(&name).map_err(unwritable)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(taken(&film)),
+                Err(TryLockError::Error(_)) => return Ok(Self { name, held: None }),
+            }
+            if is_still(&file, &name).map_err(unwritable)? {
+                for written in [&film, &previous(&film)] {
+                    scene_io::remove_leftovers(written);
+                }
+                let held = Some(file);
+                return Ok(Self { name, held });
+            }
+        }
+        Err(taken(&film))
+    }
+}
+
+impl Drop for FilmLock {
+    fn drop(&mut self) {
+        if cfg!(unix) && self.held.is_some() {
+            // A file that stays is in nobody's way.
+            let _ = std::fs::remove_file(&self.name);
+        }
+    }
+}
+
+/// The name of the film file before this one.
+pub(crate) fn previous(film: &Path) -> PathBuf {
+    beside(film, ".previous")
+}
+
+/// A name beside `path`.
+fn beside(path: &Path, ending: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(ending);
+    name.into()
+}
+
+/// Another process has the lock of this film file.
+fn taken(film: &Path) -> Failure {
+    let message = format!(
+        "{}: another process is writing this film file",
+        film.display()
+    );
+    let hint = "let each process have its own --checkpoint, and merge them";
+    Failure::new(Exit::InputOutput, message).with_hint(hint)
+}
+
+/// Opens a lock file, or makes it.
+fn open(name: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(false).open(name)
+}
+
+/// Does the name still stand for the file? It is opened for that, as network file systems look
+/// afresh only then.
+#[cfg(unix)]
+fn is_still(file: &File, name: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |file: &File| {
+        let metadata = file.metadata()?;
+        Ok::<_, io::Error>((metadata.dev(), metadata.ino()))
+    };
+    match File::open(name) {
+        Ok(now) => Ok(identity(&now)? == identity(file)?),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Lock files are not removed here, as open files cannot be.
+#[cfg(not(unix))]
+fn is_still(_file: &File, _name: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+    #[test]
+    fn a_lock_is_taken_once_and_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("a.film");
+        let lock = FilmLock::take(&film).unwrap();
+        let failure = FilmLock::take(&film).unwrap_err();
+        assert_eq!(failure.exit(), Exit::InputOutput);
+        drop(lock);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        // What a killed process leaves.
+        File::create(beside(&film, ".lock")).unwrap();
+        drop(FilmLock::take(&film).unwrap());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn never_have_two_the_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let film = folder.path().join("a.film");
+        let (is_held, taken) = (AtomicBool::new(false), AtomicU64::new(0));
+        let threads = || {
+            while taken.load(Ordering::Relaxed) < 500 {
+                let Ok(lock) = FilmLock::take(&film) else {
+                    continue;
+                };
+                assert!(!is_held.swap(true, Ordering::SeqCst), "held twice");
+                taken.fetch_add(1, Ordering::Relaxed);
+                std::thread::yield_now();
+                is_held.store(false, Ordering::SeqCst);
+                drop(lock);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(threads);
+            }
+        });
+    }
+}
