@@ -83,3 +83,10 @@ pub mod texture;
 
 #[cfg(test)]
 pub(crate) mod testing;
+
+/// Which estimates the program makes: films of different numbers are never added.
+///
+/// Raise it with every change after which the same scene, settings and passes have other bits, be it
+/// in an estimator, in random numbers, in the intersector, or in what readers make of a scene. The
+/// version of the program is not enough: people build what is between two of them.
+pub const ESTIMATOR_VERSION: u32 = 1;

@@ -13,25 +13,24 @@ use std::time::{Duration, Instant};
 
 /// A film file that this process alone writes.
 #[derive(Debug)]
-struct Checkpoint {
+pub(crate) struct Checkpoint {
     path: PathBuf,
     every: Duration,
     written: Instant,
     /// True where the file is there and can be read.
     is_whole: bool,
+    /// What is gone on from, until the session has it.
+    film: Option<FilmFile>,
     _lock: FilmLock,
 }
 
 impl Checkpoint {
-    /// The film file that the flags ask for, if any, and the film in it that is gone on from.
+    /// The film file that the flags ask for, if any. It needs no scene: what is wrong is told before
+    /// one is read.
     ///
     /// Errors: another process writes the same file; it is there and nothing was said of it; it is
-    /// damaged; it is not of the render that `header` describes, or has other passes than `asked`.
-    fn open(
-        args: &LongArgs,
-        header: &FilmHeader,
-        asked: Range<u64>,
-    ) -> Result<Option<(Self, Option<FilmFile>)>, Failure> {
+    /// damaged.
+    pub(crate) fn open(args: &LongArgs) -> Result<Option<Self>, Failure> {
         let Some(path) = &args.checkpoint else {
             return Ok(None);
         };
@@ -40,19 +39,47 @@ impl Checkpoint {
         let lock = FilmLock::take(&path)?;
         check_existing(&path, args)?;
         let film = if path.exists() && args.resume {
-            Some(load(&path, header, asked)?)
+            Some(load(&path)?)
         } else {
             None
         };
-        let checkpoint = Self {
+        Ok(Some(Self {
             // What is damaged shall not push out the whole file before it.
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
             path,
             every: args.checkpoint_every.0,
             written: Instant::now(),
+            film,
             _lock: lock,
+        }))
+    }
+
+    /// Checks before training whether the film that is gone on from, if any, can be that of the
+    /// render that `header` describes, and has none but the passes `asked`.
+    pub(crate) fn check(&self, header: &FilmHeader, asked: Range<u64>) -> Result<(), Failure> {
+        let Some(file) = &self.film else {
+            return Ok(());
         };
-        Ok(Some((checkpoint, film)))
+        self.check_render(header, &film_header::untrained(&file.header))?;
+        let others = file.header.passes.difference(&PassSet::from(asked));
+        if others.is_empty() {
+            return Ok(());
+        }
+        let name = self.path.display();
+        let message = format!("{name}: it has the passes {others}, which are not asked for");
+        let hint = "ask for at least the passes that it has, or write to another file";
+        Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
+    }
+
+    /// Fails where `found` is the header of another render than `expected`.
+    fn check_render(&self, expected: &FilmHeader, found: &FilmHeader) -> Result<(), Failure> {
+        let Some(difference) = expected.difference(found) else {
+            return Ok(());
+        };
+        let name = self.path.display();
+        let message = format!("{name}: the film of another render: {difference}");
+        let hint = "render as before, or begin anew with --restart";
+        Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 
     /// Writes the film, and keeps the file before as FILE.previous.
@@ -107,19 +134,22 @@ pub(crate) struct Keeper {
 }
 
 impl Keeper {
-    /// Opens the film file that the flags ask for, and gives its film to `session`, which is to
-    /// render the passes `asked`.
+    /// Gives the film that is gone on from to `session`, which is that of `header` and began, with
+    /// its training, at `start`.
     ///
-    /// Errors: as [`Checkpoint::open`].
-    pub(crate) fn open(
-        args: &LongArgs,
+    /// Errors: the film is of another render.
+    pub(crate) fn new(
+        mut checkpoint: Option<Checkpoint>,
         header: FilmHeader,
         session: &mut Session<'_>,
-        asked: Range<u64>,
+        start: Instant,
     ) -> Result<Self, Failure> {
-        let (checkpoint, file) = Checkpoint::open(args, &header, asked)?.unzip();
         let mut earlier = None;
-        if let Some(FilmFile { header, film }) = file.flatten() {
+        if let Some(checkpoint) = &mut checkpoint
+            && let Some(file) = checkpoint.film.take()
+        {
+            checkpoint.check_render(&header, &file.header)?;
+            let FilmFile { header, film } = file;
             session
                 .add_film(film)
                 .map_err(|error| Failure::new(Exit::FilmMismatch, error.to_string()))?;
@@ -129,7 +159,7 @@ impl Keeper {
             checkpoint,
             header,
             earlier,
-            start: Instant::now(),
+            start,
         })
     }
 
@@ -144,60 +174,49 @@ impl Keeper {
         self.checkpoint.as_ref().is_some_and(is_due)
     }
 
-    /// Writes what `session` has.
+    /// The header of what `session` has, for its film file and for its image: time and counts are
+    /// those of all runs, but how the number of passes was decided is what the last run says.
+    pub(crate) fn header(&self, session: &Session<'_>, stopping: Stopping) -> FilmHeader {
+        if let Some(earlier) = self.unchanged(session) {
+            return earlier.clone();
+        }
+        let now = film_header::of_run(&self.header, session, self.start.elapsed());
+        let earlier = self.earlier.as_ref();
+        let all = earlier.map_or(now.clone(), |earlier| now.joined(earlier));
+        FilmHeader { stopping, ..all }.of(session.film())
+    }
+
+    /// The header of the film that was gone on from, where nothing was added to it: what its file
+    /// says stays true.
+    fn unchanged(&self, session: &Session<'_>) -> Option<&FilmHeader> {
+        let passes = session.film().passes();
+        let earlier = self.earlier.as_ref();
+        earlier.filter(|earlier| earlier.passes == *passes)
+    }
+
+    /// Writes what `session` has, with this header.
     pub(crate) fn keep(
         &mut self,
         session: &Session<'_>,
-        stopping: Stopping,
+        header: &FilmHeader,
     ) -> Result<(), Failure> {
-        let Some(checkpoint) = &mut self.checkpoint else {
-            return Ok(());
-        };
-        // Nothing was added: what the file says of its passes stays true.
-        let passes = session.film().passes();
-        if self
-            .earlier
-            .as_ref()
-            .is_some_and(|earlier| earlier.passes == *passes)
-        {
+        if self.unchanged(session).is_some() {
             return Ok(());
         }
-        let now = film_header::of_run(&self.header, session, self.start.elapsed());
-        let all = self
-            .earlier
-            .as_ref()
-            .map_or(now.clone(), |earlier| now.joined(earlier));
-        checkpoint.write(&FilmHeader { stopping, ..all }, session.film())
+        let checkpoint = self.checkpoint.as_mut();
+        checkpoint.map_or(Ok(()), |file| file.write(header, session.film()))
     }
 }
 
 /// Reads the film file of a render that goes on.
-fn load(path: &Path, header: &FilmHeader, asked: Range<u64>) -> Result<FilmFile, Failure> {
+fn load(path: &Path) -> Result<FilmFile, Failure> {
     let previous = lock::previous(path);
-    let file = scene_io::read_film(path).map_err(|failure| {
+    scene_io::read_film(path).map_err(|failure| {
         if previous.exists() {
-            with_previous(failure, &previous)
+            // Says which film file was written before the one that cannot be read.
+            failure.with_hint(format!("the one before it is {}", previous.display()))
         } else {
             failure
         }
-    })?;
-    let name = path.display();
-    if let Some(difference) = header.difference(&file.header) {
-        let message = format!("{name}: the film of another render: {difference}");
-        let hint = "render as before, or begin anew with --restart";
-        return Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint));
-    }
-    let others = file.header.passes.difference(&PassSet::from(asked));
-    if !others.is_empty() {
-        let message = format!("{name}: it has the passes {others}, which are not asked for");
-        let hint = "ask for at least the passes that it has, or write to another file";
-        return Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint));
-    }
-    Ok(file)
-}
-
-/// Says which film file was written before the one that cannot be read.
-fn with_previous(failure: Failure, previous: &Path) -> Failure {
-    let hint = format!("the one before it is {}", previous.display());
-    failure.with_hint(hint)
+    })
 }

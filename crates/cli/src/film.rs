@@ -3,8 +3,9 @@
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
+use crate::film_header;
 use crate::lock::FilmLock;
-use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES, MetadataValue};
+use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -25,8 +26,9 @@ fn info(file: &Path, as_json: bool) -> Result<Exit, Failure> {
     }
     let [left, top, right, bottom] = header.crop;
     let [width, height] = header.resolution;
-    let settings = header.settings.iter();
-    let settings = settings.map(|(name, value)| format!("  {name:16}{value}\n"));
+    let settings = header.settings.clone().into_iter();
+    let texts = settings.chain(film_header::counts_by_name(&header));
+    let texts = texts.map(|(name, value)| format!("  {name:21}{value}\n"));
     print(&format!(
         "passes    {} ({})\nfilm      {width} x {height} pixels, {left},{top} to {right},{bottom}\n\
          scene     {}\nprogram   {}\nidentity  {}\nstopped   {}\ntime      {:.1} s\n{}",
@@ -37,17 +39,13 @@ fn info(file: &Path, as_json: bool) -> Result<Exit, Failure> {
         header.identity,
         header.stopping.name(),
         header.seconds,
-        settings.chain(counts(&header)).collect::<String>(),
+        texts.collect::<String>(),
     ))
 }
 
-/// What was counted, line by line.
-fn counts(header: &FilmHeader) -> impl Iterator<Item = String> {
-    let counts = header.counts.as_object().into_iter().flatten();
-    counts.map(|(name, count)| format!("  {name:20}{count}\n"))
-}
-
 fn develop(file: &Path, output: &Path) -> Result<Exit, Failure> {
+    scene_io::image_format(output, IMAGES)?;
+    scene_io::check_writable(output)?;
     let FilmFile { header, film } = scene_io::read_film(file)?;
     if film.passes().is_empty() {
         let message = format!("{}: the film has no passes", file.display());
@@ -67,34 +65,8 @@ fn write_image(
     header: &FilmHeader,
     film: &bidir::film::Film,
 ) -> Result<(), Failure> {
-    let developed = Developed::new(film);
-    scene_io::write_picture(output, film.settings(), &developed, &metadata(header))
-}
-
-/// The attributes of a developed image.
-fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
-    let passes = i32::try_from(header.passes.len()).unwrap_or(i32::MAX);
-    let own = [
-        ("program", header.program.clone()),
-        ("scene", header.scene.clone()),
-        ("identity", header.identity.clone()),
-        ("passes", header.passes.to_string()),
-        ("stopping", header.stopping.name().to_owned()),
-    ];
-    let settings = header
-        .settings
-        .iter()
-        .map(|(name, value)| (name.as_str(), value.clone()));
-    let texts = settings.chain(own);
-    let texts = texts.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text)));
-    let pbrt = [
-        ("samplesPerPixel".to_owned(), MetadataValue::Integer(passes)),
-        (
-            "renderTimeSeconds".to_owned(),
-            MetadataValue::Float(header.seconds as f32),
-        ),
-    ];
-    pbrt.into_iter().chain(texts).collect()
+    let (developed, metadata) = (Developed::new(film), film_header::metadata(header));
+    scene_io::write_picture(output, film.settings(), &developed, &metadata)
 }
 
 /// Reads every file to its end; checksums are compared by the way.
@@ -121,6 +93,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     scene_io::check_writable(&args.output)?;
     if let Some(image) = &args.image {
         scene_io::image_format(image, IMAGES)?;
+        scene_io::check_writable(image)?;
     }
     let _lock = FilmLock::take(&args.output)?;
     let mut films = args.files.iter();

@@ -1,14 +1,14 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::RenderArgs;
-use crate::checkpoint::Keeper;
+use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, json, say};
 use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::output::Outputs;
 use crate::progress::{Clock, Reporter};
 use crate::replay;
-use crate::scene_io::{self, Developed, LoadedScene, MetadataValue, Stopping};
+use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, Stopping};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
@@ -22,6 +22,13 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     // First of all: a signal during loading shall not kill what asks to be told of it.
     let signals = Signals::watch()?;
     set_threads(args.budget.threads)?;
+    // What is wrong without a scene is told before hours may have gone into one.
+    let checkpoint = if args.replay.is_none() {
+        Outputs::named(args)?.check(args)?;
+        Checkpoint::open(&args.long)?
+    } else {
+        None
+    };
     let start = Instant::now();
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let load = start.elapsed();
@@ -43,7 +50,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         outputs: &outputs,
         signals: &signals,
     }
-    .run(load)
+    .run(checkpoint, load)
 }
 
 /// The threads that build the scene; the session has its own.
@@ -90,14 +97,18 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run(&self, load: Duration) -> Result<Exit, Failure> {
+    fn run(&self, checkpoint: Option<Checkpoint>, load: Duration) -> Result<Exit, Failure> {
         let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
+        let name = self.args.scene.scene.display().to_string();
+        let header = |training| film_header::header(&name, self.loaded, self.settings, training);
+        if let Some(checkpoint) = &checkpoint {
+            checkpoint.check(&header(None), budget.range())?;
+        }
         let start = Instant::now();
         let mut session = new_session(self.args, self.loaded, self.settings)?;
         session.start_at(budget.first);
-        let name = self.args.scene.scene.display().to_string();
-        let header = film_header::header(name.clone(), self.loaded, &session);
-        let mut keeper = Keeper::open(&self.args.long, header, &mut session, budget.range())?;
+        let header = header(session.training());
+        let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
         let clock = Clock {
             budget,
             samples_per_pass: self.loaded.scene.film().crop.area(),
@@ -117,9 +128,10 @@ impl Job<'_> {
                 _ => Exit::RenderFailed,
             });
         }
-        let kept = keeper.keep(&session, course.stopping);
+        let header = keeper.header(&session, course.stopping);
+        let kept = keeper.keep(&session, &header);
         let report = Report::new(name, &session, budget, course);
-        let written = self.write(&session, &report);
+        let written = self.write(&session, &header, &report);
         kept?;
         written?;
         self.tell(&report, &keeper);
@@ -169,13 +181,13 @@ impl Job<'_> {
     /// cannot be written now may be later: the render goes on.
     fn keep_now_and_then(&self, session: &Session<'_>, signals: &Signals, keeper: &mut Keeper) {
         let is_asked = signals.take_write_request();
-        let kept = if is_asked || keeper.is_due() {
-            keeper.keep(session, Stopping::Time)
-        } else {
-            Ok(())
-        };
+        if !is_asked && !keeper.is_due() {
+            return;
+        }
+        let header = keeper.header(session, Stopping::Time);
+        let kept = keeper.keep(session, &header);
         let written = if is_asked {
-            self.write_image(session, &[])
+            self.write_image(session, &header)
         } else {
             Ok(())
         };
@@ -184,18 +196,20 @@ impl Job<'_> {
         }
     }
 
-    fn write_image(
-        &self,
-        session: &Session<'_>,
-        metadata: &[(String, MetadataValue)],
-    ) -> Result<(), Failure> {
+    fn write_image(&self, session: &Session<'_>, header: &FilmHeader) -> Result<(), Failure> {
         let film = session.film();
+        let metadata = film_header::metadata(header);
         self.outputs
-            .write_image(film.settings(), &Developed::new(film), metadata)
+            .write_image(film.settings(), &Developed::new(film), &metadata)
     }
 
-    fn write(&self, session: &Session<'_>, report: &Report) -> Result<(), Failure> {
-        self.write_image(session, &report.metadata())?;
+    fn write(
+        &self,
+        session: &Session<'_>,
+        header: &FilmHeader,
+        report: &Report,
+    ) -> Result<(), Failure> {
+        self.write_image(session, header)?;
         let Some(path) = &self.outputs.stats else {
             return Ok(());
         };

@@ -1,18 +1,17 @@
-//! What a render counted and measured: as JSON, as attributes of the image, and as a line to read.
+//! What a render counted and measured: as JSON, and as a line to read.
 
 mod parts;
 
 pub(crate) use parts::TrainingReport;
 
 use crate::args;
-use crate::scene_io::{MetadataValue, Stopping};
+use crate::scene_io::Stopping;
 use crate::settings::{Budget, SettingsText};
 use bidir::driver::Session;
 use bidir::film::Film;
 use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StrategyReport};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Duration;
 
 /// The version of the program.
@@ -120,47 +119,6 @@ impl Report {
         }
     }
 
-    /// The attributes of the image: pbrt's where it has such, else our own.
-    pub(crate) fn metadata(&self) -> Vec<(String, MetadataValue)> {
-        let number = |number: u64| i32::try_from(number).unwrap_or(i32::MAX);
-        let settings = &self.settings;
-        let own = [
-            ("version", self.version.to_owned()),
-            ("scene", file_name(&self.scene)),
-            ("integrator", settings.integrator.to_owned()),
-            ("shadow-rays", settings.shadow_rays.clone()),
-            ("mis", settings.mis.to_owned()),
-            ("strategies", settings.strategies.clone()),
-            ("light-point", settings.light_point.to_owned()),
-            ("path-roulette", settings.path_roulette.clone()),
-            ("max-depth", {
-                let none = || "none".to_owned();
-                settings
-                    .max_depth
-                    .map_or_else(none, |depth| depth.to_string())
-            }),
-            ("sampler", settings.sampler.to_owned()),
-            ("seed", settings.seed.to_string()),
-            ("passes", self.passes.clone()),
-            ("stopping", self.stopping.to_owned()),
-            ("rays", self.rays.of_image.total.to_string()),
-            ("rays.connection", self.rays.of_image.connection.to_string()),
-            ("dropped", self.dropped.to_string()),
-        ];
-        let pbrt = [
-            (
-                "samplesPerPixel".to_owned(),
-                MetadataValue::Integer(number(self.spp)),
-            ),
-            (
-                "renderTimeSeconds".to_owned(),
-                MetadataValue::Float(self.seconds as f32),
-            ),
-        ];
-        let own = own.map(|(name, value)| (format!("bidir/{name}"), MetadataValue::Text(value)));
-        pbrt.into_iter().chain(own).collect()
-    }
-
     /// A line to read at the end.
     pub(crate) fn summary(&self) -> String {
         let ray = |count| per_sample(count, self.samples);
@@ -192,15 +150,6 @@ impl Report {
             self.dropped, first.strategy, first.pass
         ))
     }
-}
-
-/// The name of a file without its folders, which are of no interest to others.
-fn file_name(path: &str) -> String {
-    let name = Path::new(path).file_name();
-    name.map_or_else(
-        || path.to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
 }
 
 fn per_sample(count: u64, samples: u64) -> f64 {

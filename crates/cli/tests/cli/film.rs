@@ -92,7 +92,7 @@ fn films_that_do_not_belong_together_are_refused() {
         ("overlap", "both have the passes 1..2"),
         ("seed", "seed is 5 here and 0 there"),
         ("crop", "crop is 0,0,8,8 here and 0,0,24,16 there"),
-        ("scene", "scene is "),
+        ("scene", "scene-digest is "),
     ] {
         place
             .run(&format!("merge a.film {film}.film -o all.film"))
@@ -197,6 +197,77 @@ fn a_film_file_is_not_replaced_unasked() {
     assert_eq!(info["counts"]["samples"], 2 * 24 * 16);
     place.run("film develop a.film -o a.exr").expect(0);
     place.expect_same("a.exr", "room.exr");
+}
+
+#[test]
+fn an_image_says_the_same_of_all_runs_whoever_writes_it() {
+    let place = Workplace::new();
+    let render = "render room.pbrt -q --shadow-rays ray-roulette --checkpoint a.film --resume";
+    let seconds = || {
+        let info = place.run("film info a.film --json").expect(0).json();
+        info["seconds"].as_f64().unwrap()
+    };
+    place.run(&format!("{render} --spp 2 -o a.exr")).expect(0);
+    let first = (place.attributes("a.exr"), seconds());
+    place.run(&format!("{render} --spp 5 -o a.exr")).expect(0);
+    let attributes = place.attributes("a.exr");
+    assert!(seconds() > first.1);
+    assert_eq!(
+        attributes["renderTimeSeconds"],
+        (seconds() as f32).to_string()
+    );
+    let number = |name: &str| attributes[name].parse::<u64>().unwrap();
+    assert_eq!(number("bidir/samples"), 5 * 24 * 16);
+    // Both runs were trained.
+    let training: u64 = first.0["bidir/rays.training"].parse().unwrap();
+    assert_eq!(number("bidir/rays.training"), 2 * training);
+    assert!(attributes.contains_key("bidir/trained-mean"));
+
+    let image = fs::read(place.path("a.exr")).unwrap();
+    place.run("film develop a.film -o b.exr").expect(0);
+    assert!(fs::read(place.path("b.exr")).unwrap() == image);
+    place.run("merge a.film -o c.film --image c.exr").expect(0);
+    assert!(fs::read(place.path("c.exr")).unwrap() == image);
+    // Where nothing is left to do the image is that of the film file, too.
+    place.run(&format!("{render} --spp 5 -o d.exr")).expect(0);
+    assert!(fs::read(place.path("d.exr")).unwrap() == image);
+}
+
+#[test]
+fn a_film_says_which_estimates_it_has() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    let version = bidir::ESTIMATOR_VERSION.to_string();
+    let info = place.run("film info a.film --json").expect(0).json();
+    assert_eq!(info["settings"]["estimator-version"], *version);
+    place
+        .run("film info a.film")
+        .expect(0)
+        .prints(&format!("  estimator-version    {version}\n"))
+        .prints("  rays.connection      ");
+}
+
+#[test]
+fn what_needs_no_scene_is_told_before_one_is_read() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    let render = "render no-such-scene.pbrt --checkpoint";
+    place
+        .run(&format!("{render} a.film"))
+        .expect(2)
+        .says("there is a film file already");
+    place.write("b.film", "BIDIRFLM and then nothing");
+    place
+        .run(&format!("{render} b.film --resume"))
+        .expect(4)
+        .says("b.film");
+    place.run(&format!("{render} c.film -o a.jpg")).expect(2);
+    place
+        .run(&format!("{render} c.film -o no/such/folder.exr"))
+        .expect(4)
+        .says("folder");
+    place.run(&format!("{render} c.film")).expect(4);
+    assert_eq!(place.names(), ["a.film", "b.film", "room.pbrt"]);
 }
 
 #[cfg(target_os = "linux")]

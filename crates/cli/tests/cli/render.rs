@@ -173,21 +173,33 @@ fn statistics_tell_what_became_of_each_strategy() {
 #[test]
 fn the_image_says_how_it_was_made() {
     let place = Workplace::new();
-    place.run("render room.pbrt --seed 1234567").expect(0);
-    let bytes = std::fs::read(place.path("room.exr")).unwrap();
-    for part in [
-        "samplesPerPixel",
-        "renderTimeSeconds",
-        "bidir/version",
-        "bidir/rays",
-        "1234567",
+    std::fs::create_dir(place.path("scenes")).unwrap();
+    place.write("scenes/room.pbrt", crate::common::SCENE);
+    let render = "render scenes/room.pbrt --seed 1234567 --shadow-rays per-pair";
+    place.run(render).expect(0);
+    let attributes = place.attributes("room.exr");
+    for (name, value) in [
+        ("samplesPerPixel", "2"),
+        ("bidir/version", env!("CARGO_PKG_VERSION")),
+        ("bidir/scene", "room.pbrt"),
+        ("bidir/integrator", "bdpt"),
+        ("bidir/shadow-rays", "per-pair"),
+        ("bidir/max-depth", "4"),
+        ("bidir/seed", "1234567"),
+        ("bidir/size", "24 x 16"),
+        ("bidir/crop", "0,0,24,16"),
+        ("bidir/passes", "0..2"),
+        ("bidir/stopping", "fixed"),
+        ("bidir/samples", "768"),
+        ("bidir/dropped", "0"),
     ] {
-        assert!(
-            bytes
-                .windows(part.len())
-                .any(|window| window == part.as_bytes()),
-            "{part}"
-        );
+        assert_eq!(attributes[name], value, "{name}");
+    }
+    let number = |name: &str| attributes[name].parse::<f64>().unwrap();
+    assert!(number("renderTimeSeconds") > 0.0 && number("bidir/rays.connection") > 0.0);
+    let own = attributes.keys().filter(|name| name.starts_with("bidir/"));
+    for name in own {
+        assert!(!name.contains(['_', ' ']), "{name}");
     }
 }
 

@@ -103,5 +103,10 @@ fn a_signal_writes_now() {
         std::thread::sleep(Duration::from_millis(5));
     }
     place.run("film verify a.film").expect(0);
+    let now = place.attributes("a.exr");
+    assert_eq!(now["bidir/stopping"], "time");
+    assert!(now["bidir/samples"].parse::<u64>().unwrap() > 0);
     assert_eq!(child.wait().unwrap().code(), Some(0));
+    let end = place.attributes("a.exr");
+    assert!(now.keys().eq(end.keys()) && now["bidir/samples"] != end["bidir/samples"]);
 }

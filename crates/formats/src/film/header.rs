@@ -105,7 +105,8 @@ impl FilmHeader {
     }
 
     /// The same with the passes and geometry of `film`.
-    pub(super) fn of(&self, film: &Film) -> Self {
+    #[must_use]
+    pub fn of(&self, film: &Film) -> Self {
         let settings = film.settings();
         let PixelRect { min, max } = settings.crop;
         Self {
