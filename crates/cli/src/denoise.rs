@@ -1,4 +1,5 @@
-//! `bidir denoise`: a picture loses its noise, and what guides the filter are its own layers.
+//! `bidir denoise` and `bidir render --denoise`: a picture loses its noise, and what guides the
+//! filter are its own layers.
 //!
 //! The filter is Open Image Denoise, which the `denoise` crate looks for. The noisy picture stays in
 //! the file, so that it can be denoised again.
@@ -7,7 +8,8 @@ use crate::args::DenoiseArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::metrics::Pixels;
-use crate::scene_io::{self, IMAGES, ImageFormat, Layers};
+use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
+use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
 use std::path::Path;
 
@@ -20,35 +22,56 @@ const NORMALS: [(&str, [&str; 3]); 2] = [
     ("N", ["N.X", "N.Y", "N.Z"]),
 ];
 
-/// A picture without its noise.
-pub(crate) struct Denoised {
-    /// Shape: that of the noisy picture.
-    pub(crate) pixels: Vec<[f32; 3]>,
-    /// What did it, with its version.
-    pub(crate) denoiser: String,
-}
+/// The filter, ready to be used.
+pub(crate) struct Filter(Denoiser);
 
-/// Denoises a picture of `size[0]` x `size[1]` pixels, row by row, with guides of the same shape.
-///
-/// Albedo is clamped to `[0, 1]`; normals are used with albedo alone. `threads` is the most that are
-/// used, 0 leaves that to the library.
-pub(crate) fn denoise(
-    size: [usize; 2],
-    color: &[[f32; 3]],
-    albedo: Option<&[[f32; 3]]>,
-    normal: Option<&[[f32; 3]]>,
-    threads: usize,
-) -> Result<Denoised, Failure> {
-    let input = Input {
-        size,
-        color,
-        albedo,
-        normal: normal.filter(|_| albedo.is_some()),
-    };
-    let denoiser = Denoiser::load(threads).map_err(|error| failure(&error))?;
-    let pixels = denoiser.denoise(&input).map_err(|error| failure(&error))?;
-    let denoiser = format!("Open Image Denoise {}", denoiser.version());
-    Ok(Denoised { pixels, denoiser })
+impl Filter {
+    /// Finds the library; `threads` is the most that are used, 0 leaves that to the library.
+    pub(crate) fn load(threads: u16) -> Result<Self, Failure> {
+        let denoiser = Denoiser::load(threads.into());
+        denoiser.map(Self).map_err(|error| failure(&error))
+    }
+
+    /// Denoises a picture by guides of the same shape, albedo and normals; the latter are used with
+    /// albedo alone.
+    fn apply(
+        &self,
+        size: [usize; 2],
+        color: &[[f32; 3]],
+        [albedo, normal]: [Option<&[[f32; 3]]>; 2],
+    ) -> Result<Vec<[f32; 3]>, Failure> {
+        let input = Input {
+            size,
+            color,
+            albedo,
+            normal: normal.filter(|_| albedo.is_some()),
+        };
+        self.0.denoise(&input).map_err(|error| failure(&error))
+    }
+
+    /// What denoises, with its version and these guides.
+    fn told(&self, guides: &str) -> String {
+        format!("Open Image Denoise {}, guides: {guides}", self.0.version())
+    }
+
+    /// Takes the noise from a developed film, whose noisy picture becomes a layer. Returns what did
+    /// it.
+    pub(crate) fn clean(&self, developed: &mut Developed) -> Result<String, Failure> {
+        let guide = |name| {
+            let layer = developed.layers.iter().find(|layer| layer.name == name)?;
+            Some(layer.data.as_chunks::<3>().0)
+        };
+        let guides = [guide("Albedo"), guide("Ns")];
+        let size = [developed.picture.width, developed.picture.height];
+        let clean = self.apply(size, &developed.picture.pixels, guides)?;
+        let noisy = std::mem::replace(&mut developed.picture.pixels, clean);
+        developed.layers.push(LayerImage {
+            name: "Noisy".to_owned(),
+            channels: &COLOR,
+            data: noisy.into_flattened(),
+        });
+        Ok(self.told("Albedo, Ns"))
+    }
 }
 
 /// A library that is not there is a file that cannot be read.
@@ -112,22 +135,18 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
              keep textures and edges sharp"
         ));
     }
-    let denoised = denoise(
-        layers.size(),
-        &noisy,
-        guides.albedo.as_deref(),
-        guides.normal.as_ref().map(|(_, normal)| normal.as_slice()),
-        args.threads.into(),
-    )?;
-    let by = format!("{}, guides: {names}", denoised.denoiser);
+    let filter = Filter::load(args.threads)?;
+    let normal = guides.normal.as_ref().map(|(_, normal)| normal.as_slice());
+    let clean = filter.apply(layers.size(), &noisy, [guides.albedo.as_deref(), normal])?;
+    let by = filter.told(&names);
     if format == ImageFormat::Png {
         let picture = Pixels {
             size: layers.size(),
-            data: denoised.pixels,
+            data: clean,
         };
         scene_io::write_screen(&args.output, &picture)?;
     } else {
-        let triples = [(COLOR, &denoised.pixels[..]), (NOISY, &noisy)];
+        let triples = [(COLOR, &clean[..]), (NOISY, &noisy)];
         scene_io::write_layers(&args.output, &mut layers, &triples, ("bidir/denoiser", &by))?;
     }
     say(format_args!("{by}; wrote {}", args.output.display()));

@@ -46,6 +46,12 @@ impl Outputs {
 
     /// Fails now rather than after hours where a file could not be written.
     pub(crate) fn check(&self, args: &RenderArgs) -> Result<(), Failure> {
+        let is_kept = self.exr.is_some() || args.long.checkpoint.is_some();
+        if args.layers.need_exr() && self.png.is_some() && !is_kept {
+            let message = "a PNG has no room for layers";
+            let hint = "write NAME.exr with --output, or keep a film file with --checkpoint";
+            return Err(Failure::usage(message).with_hint(hint));
+        }
         let mut taken = vec![scene_io::target_of(&args.scene.scene)];
         for file in self.files().chain(args.long.checkpoint.as_deref()) {
             let target = scene_io::target_of(file);

@@ -3,12 +3,13 @@
 use crate::args::RenderArgs;
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, json, say};
+use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::output::Outputs;
 use crate::progress::{Clock, Reporter};
 use crate::replay;
-use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, Stopping};
+use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, Stopping};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
@@ -23,6 +24,11 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let signals = Signals::watch()?;
     set_threads(args.budget.threads)?;
     // What is wrong without a scene is told before hours may have gone into one.
+    let filter = args
+        .layers
+        .denoise
+        .then(|| Filter::load(args.budget.threads));
+    let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
         Outputs::named(args)?.check(args)?;
         Checkpoint::open(&args.long)?
@@ -48,6 +54,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         loaded: &loaded,
         settings: &settings,
         outputs: &outputs,
+        filter: filter.as_ref(),
         signals: &signals,
     }
     .run(checkpoint, load)
@@ -93,6 +100,8 @@ struct Job<'a> {
     loaded: &'a LoadedScene,
     settings: &'a Settings,
     outputs: &'a Outputs,
+    /// What takes the noise out of images.
+    filter: Option<&'a Filter>,
     signals: &'a Signals,
 }
 
@@ -198,9 +207,16 @@ impl Job<'_> {
 
     fn write_image(&self, session: &Session<'_>, header: &FilmHeader) -> Result<(), Failure> {
         let film = session.film();
-        let metadata = film_header::metadata(header);
+        let (mut developed, mut metadata) = (Developed::new(film), film_header::metadata(header));
+        // What cannot be denoised is written with its noise.
+        let cleaned = self.filter.map_or(Ok(()), |filter| {
+            let text = MetadataValue::Text(filter.clean(&mut developed)?);
+            metadata.push(("bidir/denoiser".to_owned(), text));
+            Ok(())
+        });
         self.outputs
-            .write_image(film.settings(), &Developed::new(film), &metadata)
+            .write_image(film.settings(), &developed, &metadata)?;
+        cleaned
     }
 
     fn write(

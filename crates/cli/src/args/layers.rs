@@ -17,6 +17,12 @@ pub(crate) struct LayerArgs {
     /// from run to run.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = named(aov_names()))]
     pub(crate) aov: Vec<AovName>,
+    /// Take the noise out of the picture with Open Image Denoise, guided by albedo and shading normals.
+    ///
+    /// The picture as it was rendered is kept as Noisy.R, G, B, and in film files. The library is
+    /// looked for when the program runs: BIDIR_OIDN names it, or a folder that has it.
+    #[arg(long)]
+    pub(crate) denoise: bool,
     /// Write an image of each group of lights: lightgroup.NAME.R, G, B. They add up to the picture.
     ///
     /// Scenes name groups by `Attribute "light" "string lightgroup" "NAME"`. Lights at infinity that
@@ -45,12 +51,19 @@ fn aov_names() -> [(&'static str, AovName); Aov::NAMES.len() + 1] {
 }
 
 impl LayerArgs {
+    /// True where images are asked for that no picture for the screen has room for.
+    pub(crate) fn need_exr(&self) -> bool {
+        !self.aov.is_empty() || self.light_groups || self.strategy_layers.is_some()
+    }
+
     /// The layers that are asked for, in a scene with these groups of lights.
     pub(crate) fn layers(&self, light_groups: &[String]) -> Layers {
         let aovs = self.aov.iter().flat_map(|name| match name {
             AovName::All => Aov::NAMES.map(|(_, aov)| aov).to_vec(),
             AovName::One(aov) => vec![*aov],
         });
+        let guides = [Aov::Albedo, Aov::ShadingNormal];
+        let aovs = aovs.chain(guides.into_iter().filter(|_| self.denoise));
         let light_groups = if self.light_groups { light_groups } else { &[] };
         let vertices = self.strategy_layers.unwrap_or(0).into();
         Layers::new(&aovs.collect::<Vec<_>>(), light_groups, vertices)

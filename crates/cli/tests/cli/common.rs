@@ -1,3 +1,4 @@
+use formats::image::{Layers, read_layers};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -98,6 +99,28 @@ impl Workplace {
 
     pub(crate) fn run(&self, arguments: &str) -> Ran {
         Ran::of(&mut self.command(arguments))
+    }
+
+    /// Runs a command that denoises, with the library that the system or `BIDIR_OIDN` has. None:
+    /// there is none, and the test is skipped.
+    #[allow(clippy::print_stderr, reason = "a skipped test says so")]
+    pub(crate) fn denoising(&self, arguments: &str) -> Option<Ran> {
+        let mut command = self.command(arguments);
+        if let Some(library) = std::env::var_os("BIDIR_OIDN") {
+            command.env("BIDIR_OIDN", library);
+        }
+        let ran = Ran::of(&mut command);
+        if ran.stderr.contains("was not found by the names") {
+            eprintln!("skipped: Open Image Denoise is not installed");
+            ran.expect(4).says("hint: `pip install pyoidn`");
+            return None;
+        }
+        Some(ran)
+    }
+
+    /// All channels of an image.
+    pub(crate) fn layers(&self, name: &str) -> Layers {
+        read_layers(&self.path(name)).unwrap()
     }
 }
 

@@ -1,32 +1,11 @@
 use crate::common::{Ran, Workplace};
-use formats::image::{ExrImage, ExrLayer, Layers, MetadataValue, read_layers, write_exr};
+use formats::image::{ExrImage, ExrLayer, MetadataValue, write_exr};
 
 const RGB: [&str; 3] = ["R", "G", "B"];
 const NOISY: [&str; 3] = ["Noisy.R", "Noisy.G", "Noisy.B"];
 const SIZE: [usize; 2] = [40, 30];
 
 impl Workplace {
-    /// Runs `bidir denoise` with the library that the system or `BIDIR_OIDN` has. None: there is
-    /// none, and the test is skipped.
-    #[allow(clippy::print_stderr, reason = "a skipped test says so")]
-    fn denoise(&self, arguments: &str) -> Option<Ran> {
-        let mut command = self.command(&format!("denoise {arguments}"));
-        if let Some(library) = std::env::var_os("BIDIR_OIDN") {
-            command.env("BIDIR_OIDN", library);
-        }
-        let ran = Ran::of(&mut command);
-        if ran.stderr.contains("was not found by the names") {
-            eprintln!("skipped: Open Image Denoise is not installed");
-            ran.expect(4).says("hint: `pip install pyoidn`");
-            return None;
-        }
-        Some(ran)
-    }
-
-    fn layers(&self, name: &str) -> Layers {
-        read_layers(&self.path(name)).unwrap()
-    }
-
     /// Writes an image of noise with these guides: a name, and what its channels are called.
     fn write_noise(&self, name: &str, guides: &[(&str, [&str; 3])]) {
         let noise: Vec<f32> = (0..SIZE[0] * SIZE[1] * 3)
@@ -63,7 +42,7 @@ fn roughness(pixels: &[[f32; 3]]) -> f32 {
 fn a_render_loses_its_noise_and_keeps_what_it_says() {
     let place = Workplace::new();
     place.run("render room.pbrt -q -o noisy.exr").expect(0);
-    let Some(ran) = place.denoise("noisy.exr -o clean.exr") else {
+    let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr") else {
         return;
     };
     ran.expect(0)
@@ -87,16 +66,25 @@ fn a_render_loses_its_noise_and_keeps_what_it_says() {
 fn a_denoised_image_is_denoised_again_from_its_noise() {
     let place = Workplace::new();
     place.write_noise("noisy.exr", &[]);
-    let Some(ran) = place.denoise("noisy.exr -o clean.exr --threads 1") else {
+    let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr --threads 1") else {
         return;
     };
     ran.expect(0);
-    place.denoise("clean.exr -o again.exr").unwrap().expect(0);
+    place
+        .denoising("denoise clean.exr -o again.exr")
+        .unwrap()
+        .expect(0);
     let read = |name| std::fs::read(place.path(name)).unwrap();
     assert_eq!(read("clean.exr"), read("again.exr"));
-    place.denoise("again.exr -o again.exr").unwrap().expect(0);
+    place
+        .denoising("denoise again.exr -o again.exr")
+        .unwrap()
+        .expect(0);
     assert_eq!(read("clean.exr"), read("again.exr"));
-    place.denoise("noisy.exr -o clean.png").unwrap().expect(0);
+    place
+        .denoising("denoise noisy.exr -o clean.png")
+        .unwrap()
+        .expect(0);
     place.run("tonemap clean.exr -o same.png").expect(0);
     place.run("compare clean.png same.png --exact").expect(0);
 }
@@ -114,7 +102,7 @@ fn layers_guide_where_they_are_complete() {
         (vec![("Albedo", ["R", "G", "Z"])], "guides: none;", true),
     ] {
         place.write_noise("noisy.exr", &guides);
-        let Some(ran) = place.denoise("noisy.exr -o clean.exr") else {
+        let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr") else {
             return;
         };
         let ran = ran.expect(0).says(told);

@@ -30,10 +30,11 @@ fn every_flag_is_described() {
     check_flags("", "--help --no-color --version");
     check_flags(
         "render",
-        "--checkpoint --checkpoint-every --crop --cropwindow --help --integrator --isa --json \
-         --lenient --light-point --max-depth --mis --no-color --noise --output --part --passes \
-         --path-roulette --pixelbounds --progress --quiet --replay --restart --resume --sampler --seed \
-         --shadow-rays --size --spp --stats --strategies --strict --threads --time --version",
+        "--aov --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
+         --isa --json --lenient --light-groups --light-point --max-depth --mis --no-color --noise \
+         --output --part --passes --path-roulette --pixelbounds --progress --quiet --replay --restart \
+         --resume --sampler --seed --shadow-rays --size --spp --stats --strategies --strategy-layers \
+         --strict --threads --time --version",
     );
     check_flags(
         "info",

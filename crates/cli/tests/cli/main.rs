@@ -10,6 +10,7 @@ mod farm;
 mod film;
 mod help;
 mod info;
+mod layers;
 mod progress;
 mod render;
 mod replay;
