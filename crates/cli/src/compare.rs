@@ -1,126 +1,151 @@
-//! `bidir compare`: two images, in numbers.
+//! `bidir compare`: images and a reference, in numbers.
 
-use crate::args::CompareArgs;
-use crate::console::{print, print_json};
+mod report;
+
+use crate::args::{CompareArgs, MetricArgs};
+use crate::console::{print, print_json, say};
 use crate::exit::{Exit, Failure};
-use crate::metrics::{self, Pixels};
-use crate::resample::resample;
-use crate::scene_io::read_image;
-use serde::Serialize;
-use std::fmt::Write;
+use crate::scene_io::{self, IMAGES, MetadataValue, read_image};
+use lab::image::{Pair, Pixels, identical, resample};
+use lab::metric::{ErrorMap, Metric, mean_ratio};
+use report::{Comparison, Number, Replicates};
+use std::path::{Path, PathBuf};
 
-/// What is found. As JSON has no other numbers, those that are not finite become null in it.
-#[derive(Debug, Serialize)]
-struct Comparison {
-    /// None: the sizes differ; so below.
-    rmse: Option<f64>,
-    relmse: Option<f64>,
-    mean_ratio: Option<f64>,
-    identical: bool,
-    /// Width and height of what was compared.
-    size: Option<[usize; 2]>,
-    /// Which image was brought to the size of the other.
-    resampled: Option<&'static str>,
-}
-
-/// Compares two images.
+/// Compares images with a reference.
 pub(crate) fn run(args: &CompareArgs) -> Result<Exit, Failure> {
-    let (a, b) = (read_image(&args.a)?, read_image(&args.b)?);
-    let comparison = compare(args, a, b)?;
-    if args.json {
-        print_json(&comparison)?;
-    } else {
-        print(&comparison.text())?;
+    let (images, reference) = files(args)?;
+    if let Some(path) = &args.metrics.error_map {
+        scene_io::image_format(path, IMAGES)?;
     }
-    if args.exact && !comparison.identical {
+    let reference = read_image(reference)?;
+    let comparisons: Vec<Comparison> = images
+        .iter()
+        .map(|image| compare(args, read_image(image)?, &reference))
+        .collect::<Result<_, _>>()?;
+    let all_identical = comparisons.iter().all(|comparison| comparison.identical);
+    match &comparisons[..] {
+        [one] if args.json => print_json(one)?,
+        [one] => print(&one.text())?,
+        several => {
+            let replicates = Replicates::of(several)?;
+            if args.json {
+                print_json(&replicates)?
+            } else {
+                print(&replicates.text())?
+            }
+        }
+    };
+    if args.exact && !all_identical {
         return Ok(Exit::Validation);
     }
     Ok(Exit::Done)
 }
 
-fn compare(args: &CompareArgs, mut a: Pixels, mut b: Pixels) -> Result<Comparison, Failure> {
-    let identical = metrics::identical(&a, &b);
-    let mut resampled = None;
-    if a.size != b.size && args.resample {
-        let larger_a = a.data.len() > b.data.len();
-        resampled = Some(if larger_a { "A" } else { "B" });
-        if larger_a {
-            a = resample(&a, b.size);
-        } else {
-            b = resample(&b, a.size);
+/// The images, and the file they are compared with.
+fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
+    let (images, reference) = match (&args.reference, &args.images[..]) {
+        (Some(reference), images) => (images, reference),
+        (None, [image, reference]) => (std::slice::from_ref(image), reference),
+        (None, images) => {
+            let message = format!("{} images, but no reference", images.len());
+            let hint = "compare two images, or any number with --reference B";
+            return Err(Failure::usage(message).with_hint(hint));
         }
+    };
+    if args.metrics.error_map.is_some() && images.len() != 1 {
+        return Err(Failure::usage("--error-map is of one image"));
     }
-    if a.size == b.size {
-        return Ok(Comparison {
-            rmse: Some(metrics::rmse(&a, &b)),
-            relmse: Some(metrics::relmse(&a, &b)),
-            mean_ratio: Some(metrics::mean_ratio(&a, &b)),
-            identical,
-            size: Some(a.size),
-            resampled,
-        });
-    }
-    if args.exact {
-        let (rmse, relmse, mean_ratio) = (None, None, None);
-        return Ok(Comparison {
-            rmse,
-            relmse,
-            mean_ratio,
-            identical,
-            size: None,
-            resampled,
-        });
-    }
-    let ([aw, ah], [bw, bh]) = (a.size, b.size);
-    let message = format!("the images differ in size: A is {aw}x{ah}, B is {bw}x{bh}");
-    Err(Failure::new(Exit::InputOutput, message)
-        .with_hint("average the larger one with --resample"))
+    Ok((images, reference))
 }
 
-impl Comparison {
-    /// One value per line.
-    fn text(&self) -> String {
-        let number = |value: Option<f64>| {
-            value.map_or_else(
-                || "none: the sizes differ".to_owned(),
-                |value| format!("{value:.6e}"),
-            )
-        };
-        let identical = if self.identical { "yes" } else { "no" };
-        let mut text = format!(
-            "rmse        {}\nrelmse      {}\nmean_ratio  {}\nidentical   {identical}\n",
-            number(self.rmse),
-            number(self.relmse),
-            self.mean_ratio
-                .map_or_else(|| number(None), |ratio| format!("{ratio:.6}")),
-        );
-        if let (Some(which), Some([width, height])) = (self.resampled, self.size) {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "resampled   {which} to {width}x{height}");
-        }
-        text
-    }
+/// Compares one image.
+fn compare(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Result<Comparison, Failure> {
+    let identical = identical(&image, reference);
+    let fitted = Fitted::new(args, image, reference);
+    let (numbers, size) = match fitted.pair(reference) {
+        Some(pair) => (numbers(&args.metrics, &pair)?, Some(pair.size())),
+        None if args.exact => (
+            metrics(&args.metrics)
+                .map(|(name, _)| (name, None))
+                .collect(),
+            None,
+        ),
+        None => return Err(sizes_differ(fitted.image.size, reference.size)),
+    };
+    Ok(Comparison {
+        numbers,
+        identical,
+        size,
+        resampled: fitted.resampled,
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::console::json;
+/// An image and a reference that were brought to one size, where that was asked for.
+struct Fitted {
+    image: Pixels,
+    /// None: as it was read.
+    reference: Option<Pixels>,
+    /// Which of them was brought to the size of the other.
+    resampled: Option<&'static str>,
+}
 
-    #[test]
-    fn numbers_that_json_does_not_have_are_null() {
-        let comparison = Comparison {
-            rmse: Some(f64::NAN),
-            relmse: Some(f64::INFINITY),
-            mean_ratio: None,
-            identical: false,
-            size: Some([1, 1]),
+impl Fitted {
+    fn new(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Self {
+        let mut fitted = Self {
+            image,
+            reference: None,
             resampled: None,
         };
-        let json: serde_json::Value = serde_json::from_str(&json(&comparison).unwrap()).unwrap();
-        for key in ["rmse", "relmse", "mean_ratio"] {
-            assert!(json[key].is_null(), "{key}");
+        if args.resample && fitted.image.size != reference.size {
+            if fitted.image.data.len() > reference.data.len() {
+                fitted.image = resample(&fitted.image, reference.size);
+                fitted.resampled = Some("A");
+            } else {
+                fitted.reference = Some(resample(reference, fitted.image.size));
+                fitted.resampled = Some("B");
+            }
         }
-        assert_eq!(json["size"], serde_json::json!([1, 1]));
+        fitted
     }
+
+    fn pair<'a>(&'a self, reference: &'a Pixels) -> Option<Pair<'a>> {
+        Pair::new(&self.image, self.reference.as_ref().unwrap_or(reference))
+    }
+}
+
+fn sizes_differ([aw, ah]: [usize; 2], [bw, bh]: [usize; 2]) -> Failure {
+    let message = format!("the images differ in size: A is {aw}x{ah}, B is {bw}x{bh}");
+    Failure::new(Exit::InputOutput, message).with_hint("average the larger one with --resample")
+}
+
+/// The metrics that are asked for: the fast ones always, and FLIP where it is wanted.
+fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
+    let mapped = args.error_map.as_ref().map(|_| args.metric);
+    let wanted = move |metric: Metric| metric.is_fast() || args.flip || mapped == Some(metric);
+    let metrics = Metric::NAMES.into_iter();
+    metrics.filter(move |(_, metric)| wanted(*metric))
+}
+
+/// All numbers of a pair; the errors of one metric go to their file.
+fn numbers(args: &MetricArgs, pair: &Pair<'_>) -> Result<Vec<Number>, Failure> {
+    let mut numbers = Vec::new();
+    for (name, metric) in metrics(args) {
+        let errors = metric.errors(pair);
+        numbers.push((name, Some(metric.pool(&errors))));
+        if let Some(path) = args.error_map.as_deref().filter(|_| args.metric == metric) {
+            write_map(path, name, &errors, args.error_max)?;
+        }
+    }
+    numbers.push(("mean_ratio", Some(mean_ratio(pair))));
+    Ok(numbers)
+}
+
+fn write_map(path: &Path, metric: &str, errors: &ErrorMap, full: f64) -> Result<(), Failure> {
+    let metadata = [(
+        "bidir/metric".to_owned(),
+        MetadataValue::Text(metric.to_owned()),
+    )];
+    scene_io::write_error_map(path, errors, full, &metadata)?;
+    say(format_args!("wrote {}", path.display()));
+    Ok(())
 }

@@ -7,10 +7,10 @@
 use crate::args::DenoiseArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
-use crate::metrics::Pixels;
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
+use lab::image::Pixels;
 use std::path::Path;
 
 const COLOR: [&str; 3] = ["R", "G", "B"];

@@ -3,13 +3,14 @@
 use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
-use crate::metrics::Pixels;
 use bidir::driver::Settings;
 use bidir::film::{Film, FilmSettings, LayerImage, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
 use formats::pbrt::{Crop, LoadOptions, Summary};
+use lab::image::Pixels;
+use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
 
 pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
@@ -120,10 +121,7 @@ fn exit_of_scene(error: &formats::Error) -> Exit {
 pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     let image = formats::image::read(path, None)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))?;
-    Ok(Pixels {
-        size: [image.width, image.height],
-        data: image.rgb().collect(),
-    })
+    Ok(Pixels::from(&image))
 }
 
 /// A developed film: the picture with the images beside it.
@@ -189,6 +187,33 @@ pub(crate) fn write_png(path: &Path, picture: &Picture) -> Result<(), Failure> {
 pub(crate) fn write_screen(path: &Path, pixels: &Pixels) -> Result<(), Failure> {
     let size = pixels.size.map(|side| side as u32);
     formats::image::write_png(path, size, &pixels.data)
+        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Writes errors as they are to an EXR with the channel Y, or as colours up to `full` to a PNG.
+pub(crate) fn write_error_map(
+    path: &Path,
+    errors: &ErrorMap,
+    full: f64,
+    metadata: &[(String, MetadataValue)],
+) -> Result<(), Failure> {
+    if Format::of(path) != Some(Format::Exr) {
+        return write_screen(path, &errors.false_color(full));
+    }
+    let [width, height] = errors.size;
+    let data: Vec<f32> = errors.data.iter().map(|&error| error as f32).collect();
+    let layer = ExrLayer {
+        name: "",
+        channels: &["Y"],
+        data: &data,
+    };
+    let image = ExrImage {
+        resolution: errors.size,
+        crop: [0, 0, width, height],
+        layers: &[layer],
+        metadata,
+    };
+    formats::image::write_exr(path, &image)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
 }
 

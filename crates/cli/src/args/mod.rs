@@ -1,5 +1,6 @@
 //! The command line: what can be asked, and the help text that documents it.
 
+mod compare;
 mod denoise;
 mod farm;
 mod film;
@@ -10,6 +11,7 @@ mod sources;
 mod tonemap;
 mod values;
 
+pub(crate) use compare::{CompareArgs, MetricArgs};
 pub(crate) use denoise::DenoiseArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
@@ -80,11 +82,17 @@ pub(crate) enum Command {
     /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and
     /// textures, its extent, and the memory that rendering takes.
     Info(InfoArgs),
-    /// Compare image A with the reference B.
+    /// Compare image A with the reference B, or images of several seeds with one reference.
     ///
-    /// Prints, over red, green and blue of all pixels, the root of the mean square error (rmse), the
-    /// mean of (a-b)²/(b²+0.01) (relmse), the mean of A divided by the mean of B (`mean_ratio`), and
-    /// whether both have the same size and the same bits (identical).
+    /// Prints, over red, green and blue of all pixels: the root of the mean square error (rmse), the
+    /// mean of (a-b)²/(b²+0.01) (relmse), both without the worst 0.1 % of pixels (`rmse_trim`,
+    /// `relmse_trim`), the mean of |a-b|/(|b|+0.01) (mape), the mean of A divided by the mean of B
+    /// (`mean_ratio`), and whether both have the same size and the same bits (identical); with --flip,
+    /// the mean difference that is seen (flip, `flip_hdr`).
+    ///
+    /// With several images and --reference, each number is the mean over the images, between the
+    /// bounds of its 95 % interval, by Student's t distribution: the images have to be renders of
+    /// independent seeds.
     Compare(CompareArgs),
     /// Tell what is in film files, develop them to images, or check them.
     #[command(subcommand)]
@@ -160,33 +168,6 @@ pub(crate) struct InfoArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
     /// Print JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
-
-/// The flags of `bidir compare`.
-#[derive(Args, Debug)]
-#[command(after_help = "Examples:\n  bidir compare out.exr reference.exr\n  \
-    bidir compare a.exr b.exr --exact --json")]
-pub(crate) struct CompareArgs {
-    /// The image.
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub(crate) a: PathBuf,
-    /// The reference.
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub(crate) b: PathBuf,
-    /// Exit with 6 unless every pixel of both has the same bits.
-    #[arg(long, conflicts_with = "resample")]
-    pub(crate) exact: bool,
-    /// Where sizes differ, average the image of more pixels down to the size of the other.
-    ///
-    /// Each pixel is the mean of what it covers, weighted by area. Without this, different sizes are
-    /// an error.
-    #[arg(long)]
-    pub(crate) resample: bool,
-    /// Print JSON with the keys rmse, relmse, `mean_ratio`, identical, size and resampled.
-    ///
-    /// Numbers that are not finite are null, as are all numbers where sizes differ.
     #[arg(long)]
     pub(crate) json: bool,
 }

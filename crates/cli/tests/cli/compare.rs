@@ -66,3 +66,119 @@ fn other_sizes_are_an_error_unless_averaged() {
     );
     assert!((json["mean_ratio"].as_f64().unwrap() - 1.0).abs() < 0.5);
 }
+
+#[test]
+fn all_numbers_have_their_keys_and_flip_comes_when_asked_for() {
+    let place = Workplace::new();
+    image(&place, "a.exr", "");
+    image(&place, "b.exr", "--seed 1");
+    let fast = [
+        "rmse",
+        "relmse",
+        "rmse_trim",
+        "relmse_trim",
+        "mape",
+        "mean_ratio",
+    ];
+    let json = place.run("compare a.exr b.exr --json").expect(0).json();
+    for key in fast {
+        assert!(json[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    assert!(json["rmse_trim"].as_f64() < json["rmse"].as_f64());
+    assert!(json.get("flip").is_none() && json.get("flip_hdr").is_none());
+    let json = place
+        .run("compare a.exr b.exr --json --flip")
+        .expect(0)
+        .json();
+    for key in ["flip", "flip_hdr"] {
+        let value = json[key].as_f64().unwrap();
+        assert!(value > 0.0 && value < 1.0, "{key} {value}");
+    }
+    place
+        .run("compare a.exr b.exr --flip")
+        .expect(0)
+        .prints("relmse_trim ")
+        .prints("flip_hdr    ");
+}
+
+#[test]
+fn several_seeds_have_intervals() {
+    let place = Workplace::new();
+    for seed in 0..4 {
+        image(&place, &format!("{seed}.exr"), &format!("--seed {seed}"));
+    }
+    let json = place
+        .run("compare 1.exr 2.exr 3.exr --reference 0.exr --json")
+        .expect(0)
+        .json();
+    let number = |key: &str| json["rmse"][key].as_f64().unwrap();
+    assert!(number("low") < number("mean") && number("mean") < number("high"));
+    let one = place.run("compare 2.exr 0.exr --json").expect(0).json();
+    assert_eq!(json["rmse"]["values"][1], one["rmse"]);
+    assert_eq!(
+        (&json["images"], &json["confidence"]),
+        (&3.into(), &0.95.into())
+    );
+    place
+        .run("compare 1.exr 2.exr --reference 0.exr")
+        .expect(0)
+        .prints("images      2, with intervals of 95 %");
+    // One image has none.
+    let same = place
+        .run("compare 2.exr --reference 0.exr --json")
+        .expect(0);
+    assert_eq!(same.json(), one);
+    place
+        .run("compare 0.exr 0.exr --reference 0.exr --exact")
+        .expect(0);
+    place
+        .run("compare 0.exr 1.exr --reference 0.exr --exact")
+        .expect(6);
+    place
+        .run("compare 0.exr 1.exr 2.exr")
+        .expect(2)
+        .says("3 images, but no reference")
+        .says("--reference");
+}
+
+#[test]
+fn errors_are_written_as_numbers_and_as_colours() {
+    let place = Workplace::new();
+    image(&place, "a.exr", "");
+    image(&place, "b.exr", "--seed 1");
+    place
+        .run("compare a.exr b.exr --error-map map.exr --metric mape")
+        .expect(0)
+        .says("wrote map.exr");
+    let map = formats::image::read(&place.path("map.exr"), None).unwrap();
+    assert_eq!((map.width, map.height, map.channels), (24, 16, 1));
+    let mean = map.data.iter().map(|&e| f64::from(e)).sum::<f64>() / (24.0 * 16.0);
+    let json = place.run("compare a.exr b.exr --json").expect(0).json();
+    assert!((mean / json["mape"].as_f64().unwrap() - 1.0).abs() < 1e-6);
+    place
+        .run("compare a.exr b.exr --error-map map.png --metric flip --error-max 0.5")
+        .expect(0)
+        .prints("flip        ");
+    let map = formats::image::read(&place.path("map.png"), None).unwrap();
+    assert_eq!((map.width, map.height, map.channels), (24, 16, 3));
+    for (arguments, says) in [
+        (
+            "a.exr b.exr --error-map map.txt",
+            "not the name of an image",
+        ),
+        ("a.exr b.exr --metric flip", "--error-map"),
+        (
+            "a.exr b.exr --error-map map.png --metric ssim",
+            "relmse_trim",
+        ),
+        (
+            "a.exr b.exr --reference b.exr --error-map map.png",
+            "one image",
+        ),
+    ] {
+        place
+            .run(&format!("compare {arguments}"))
+            .expect(2)
+            .says(says);
+    }
+}

@@ -42,7 +42,8 @@ fn every_flag_is_described() {
     );
     check_flags(
         "compare",
-        "--exact --help --json --no-color --resample --version",
+        "--error-map --error-max --exact --flip --help --json --metric --no-color --reference --resample \
+         --version",
     );
     check_flags(
         "tonemap",

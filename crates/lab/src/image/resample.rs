@@ -1,9 +1,9 @@
 //! Images brought to another size by a box filter.
 
-use crate::metrics::Pixels;
+use super::Pixels;
 
 /// The image at another size: each pixel is the mean of the area that it covers in `image`.
-pub(crate) fn resample(image: &Pixels, size: [usize; 2]) -> Pixels {
+pub fn resample(image: &Pixels, size: [usize; 2]) -> Pixels {
     let [width, height] = image.size;
     let columns = overlaps(width, size[0]);
     let rows = overlaps(height, size[1]);

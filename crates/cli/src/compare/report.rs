@@ -1,0 +1,225 @@
+//! What a comparison found, as text and as JSON.
+
+use crate::exit::{Exit, Failure};
+use lab::statistics::{Interval, mean_interval};
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use std::fmt::Write;
+
+/// A number by name. None: the sizes differ.
+pub(super) type Number = (&'static str, Option<f64>);
+
+/// The probability that an interval holds what infinitely many seeds would give.
+const CONFIDENCE: f64 = 0.95;
+
+/// What is found of one image. As JSON has no other numbers, those that are not finite become null
+/// in it.
+#[derive(Debug, Serialize)]
+pub(super) struct Comparison {
+    #[serde(flatten, serialize_with = "as_map")]
+    pub(super) numbers: Vec<Number>,
+    /// The same size, and the same bits.
+    pub(super) identical: bool,
+    /// Width and height of what was compared. None: the sizes differ.
+    pub(super) size: Option<[usize; 2]>,
+    /// Which image was brought to the size of the other.
+    pub(super) resampled: Option<&'static str>,
+}
+
+/// What is found of images of independent seeds.
+#[derive(Debug, Serialize)]
+pub(super) struct Replicates {
+    #[serde(flatten, serialize_with = "as_map")]
+    numbers: Vec<(&'static str, Option<Spread>)>,
+    /// All images and the reference have the same bits.
+    identical: bool,
+    size: Option<[usize; 2]>,
+    resampled: Option<&'static str>,
+    /// How many there are.
+    images: usize,
+    /// That of the intervals.
+    confidence: f64,
+}
+
+/// A number over several images.
+#[derive(Debug, Serialize)]
+struct Spread {
+    mean: f64,
+    low: f64,
+    high: f64,
+    /// In the order of the images.
+    values: Vec<f64>,
+}
+
+/// Names and values in their order.
+fn as_map<T: Serialize, S: Serializer>(
+    entries: &[(&'static str, T)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(entries.len()))?;
+    for (name, value) in entries {
+        map.serialize_entry(name, value)?;
+    }
+    map.end()
+}
+
+impl Replicates {
+    /// Joins what was found of each image.
+    pub(super) fn of(comparisons: &[Comparison]) -> Result<Self, Failure> {
+        let first = &comparisons[0];
+        if comparisons.iter().any(|other| other.size != first.size) {
+            let message = "the images differ in size: they are not renders of one film";
+            return Err(Failure::new(Exit::InputOutput, message));
+        }
+        let spread = |i: usize| {
+            let values = comparisons.iter().map(|comparison| comparison.numbers[i].1);
+            let values: Vec<f64> = values.collect::<Option<_>>()?;
+            let Interval { value, low, high } = mean_interval(&values, CONFIDENCE)?;
+            Some(Spread {
+                mean: value,
+                low,
+                high,
+                values,
+            })
+        };
+        let names = first.numbers.iter().enumerate();
+        Ok(Self {
+            numbers: names.map(|(i, (name, _))| (*name, spread(i))).collect(),
+            identical: comparisons.iter().all(|comparison| comparison.identical),
+            size: first.size,
+            resampled: first.resampled,
+            images: comparisons.len(),
+            confidence: CONFIDENCE,
+        })
+    }
+
+    /// One number per line, with its interval.
+    pub(super) fn text(&self) -> String {
+        let mut lines = Lines::default();
+        for (name, spread) in &self.numbers {
+            let number = |value| number_text(name, Some(value));
+            let value = spread.as_ref().map_or_else(
+                || number_text(name, None),
+                |Spread {
+                     mean, low, high, ..
+                 }| {
+                    format!("{}  {} to {}", number(*mean), number(*low), number(*high))
+                },
+            );
+            lines.add(name, &value);
+        }
+        lines.add_identical(self.identical);
+        let percent = self.confidence * 100.0;
+        let images = format!("{}, with intervals of {percent} %", self.images);
+        lines.add("images", &images);
+        lines.add_resampled(self.resampled, self.size);
+        lines.text
+    }
+}
+
+impl Comparison {
+    /// One value per line.
+    pub(super) fn text(&self) -> String {
+        let mut lines = Lines::default();
+        for (name, value) in &self.numbers {
+            lines.add(name, &number_text(name, *value));
+        }
+        lines.add_identical(self.identical);
+        lines.add_resampled(self.resampled, self.size);
+        lines.text
+    }
+}
+
+/// Errors have any magnitude; a ratio is near 1.
+fn number_text(name: &str, value: Option<f64>) -> String {
+    match value {
+        None => "none: the sizes differ".to_owned(),
+        Some(value) if name == "mean_ratio" => format!("{value:.6}"),
+        Some(value) => format!("{value:.6e}"),
+    }
+}
+
+/// Names and values in two columns.
+#[derive(Default)]
+struct Lines {
+    text: String,
+}
+
+impl Lines {
+    fn add(&mut self, name: &str, value: &str) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.text, "{name:<11} {value}");
+    }
+
+    fn add_identical(&mut self, identical: bool) {
+        self.add("identical", if identical { "yes" } else { "no" });
+    }
+
+    fn add_resampled(&mut self, which: Option<&str>, size: Option<[usize; 2]>) {
+        if let (Some(which), Some([width, height])) = (which, size) {
+            self.add("resampled", &format!("{which} to {width}x{height}"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::console::json;
+
+    fn comparison(numbers: &[Number]) -> Comparison {
+        Comparison {
+            numbers: numbers.to_vec(),
+            identical: false,
+            size: Some([1, 1]),
+            resampled: None,
+        }
+    }
+
+    fn parsed(value: &impl Serialize) -> serde_json::Value {
+        serde_json::from_str(&json(value).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn numbers_that_json_does_not_have_are_null() {
+        let json = parsed(&comparison(&[
+            ("rmse", Some(f64::NAN)),
+            ("relmse", Some(f64::INFINITY)),
+            ("mean_ratio", None),
+        ]));
+        for key in ["rmse", "relmse", "mean_ratio"] {
+            assert!(json[key].is_null(), "{key}");
+        }
+        assert_eq!(json["size"], serde_json::json!([1, 1]));
+    }
+
+    #[test]
+    fn several_images_have_a_mean_between_bounds() {
+        let comparisons =
+            [1.0, 2.0, 3.0, 4.0, 5.0].map(|value| comparison(&[("rmse", Some(value))]));
+        let replicates = Replicates::of(&comparisons).unwrap();
+        let json = parsed(&replicates);
+        assert_eq!(json["rmse"]["mean"], 3.0);
+        // 2.776 · √(2.5 / 5)
+        let high = json["rmse"]["high"].as_f64().unwrap();
+        assert!((high - 4.963).abs() < 1e-3, "{high}");
+        assert_eq!(json["rmse"]["values"][4], 5.0);
+        assert_eq!(json["images"], 5);
+        let text = replicates.text();
+        assert!(
+            text.contains("images      5, with intervals of 95 %"),
+            "{text}"
+        );
+        assert!(
+            text.contains("rmse        3.000000e0  1.036757e0 to 4.963243e0"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn images_of_several_sizes_have_no_mean() {
+        let mut comparisons = [1.0, 2.0].map(|value| comparison(&[("rmse", Some(value))]));
+        comparisons[1].size = Some([2, 2]);
+        assert!(Replicates::of(&comparisons).is_err());
+    }
+}

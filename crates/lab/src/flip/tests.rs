@@ -1,0 +1,168 @@
+//! Against the authors' program: `tools/flip_check.py` prints the numbers.
+
+use super::*;
+use crate::metric::Metric;
+
+/// What `flip-evaluator` 1.7 says: the mean, and pixels by place.
+struct Expected {
+    mean: f64,
+    pixels: [f64; 5],
+}
+
+const SIZE: [usize; 2] = [40, 24];
+const PLACES: [[usize; 2]; 5] = [[0, 0], [39, 0], [5, 17], [20, 12], [33, 23]];
+
+/// An image from the formula of a channel; every value is exact.
+fn image(value: impl Fn(i32, i32, i32) -> f64) -> Pixels {
+    let [width, height] = SIZE.map(|side| side as i32);
+    let pixel = |i: i32| [0, 1, 2].map(|c| value(i % width, i / width, c) as f32);
+    Pixels {
+        size: SIZE,
+        data: (0..width * height).map(pixel).collect(),
+    }
+}
+
+/// Stripes of other slopes in every channel, a quarter as bright in every other block.
+fn stripes(x: i32, y: i32, c: i32) -> f64 {
+    let value = f64::from((x * (c + 2) + y * (5 - c)) % 32) / 32.0;
+    let dark = (x / 8 + y / 6) % 2 == 0;
+    if dark { value / 4.0 } else { value }
+}
+
+/// Range: -8 to 7.
+fn noise(x: i32, y: i32, c: i32) -> f64 {
+    f64::from((x * x + 3 * y * y + 7 * c + x * y) % 16 - 8)
+}
+
+fn on_screen() -> [Pixels; 2] {
+    let noisy = |x, y, c| (stripes(x, y, c) + noise(x, y, c) / 64.0).clamp(0.0, 1.0);
+    [image(noisy), image(stripes)]
+}
+
+fn light() -> [Pixels; 2] {
+    let bright = |x: i32, y, c| stripes(x, y, c) * libm::exp2(f64::from((x / 5 + y / 4) % 9 - 3));
+    let firefly = |x: i32, y: i32| {
+        if (x * 7 + y * 13) % 97 == 0 {
+            64.0
+        } else {
+            0.0
+        }
+    };
+    let noisy = |x, y, c| bright(x, y, c) * (1.0 + noise(x, y, c) / 16.0) + firefly(x, y);
+    [image(noisy), image(bright)]
+}
+
+#[track_caller]
+fn check(errors: &ErrorMap, expected: &Expected) {
+    let mean = Metric::Flip.pool(errors);
+    let far = (mean - expected.mean).abs();
+    assert!(far < 1e-5, "mean {mean}, not {}", expected.mean);
+    for ([x, y], expected) in PLACES.into_iter().zip(expected.pixels) {
+        let error = errors.data[y * SIZE[0] + x];
+        assert!(
+            (error - expected).abs() < 1e-4,
+            "{error} at {x} {y}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn images_on_a_screen_differ_as_the_authors_say() {
+    let [a, b] = on_screen();
+    let pair = Pair::new(&a, &b).unwrap();
+    let expected = Expected {
+        mean: 0.155453533,
+        pixels: [
+            0.272668481,
+            0.291453898,
+            0.160882339,
+            0.074584991,
+            0.094954483,
+        ],
+    };
+    check(&ldr(&pair, PIXELS_PER_DEGREE), &expected);
+    let expected = Expected {
+        mean: 0.292924941,
+        pixels: [
+            0.328295738,
+            0.287729830,
+            0.230428696,
+            0.138711214,
+            0.247382805,
+        ],
+    };
+    check(&ldr(&pair, 30.0), &expected);
+}
+
+#[test]
+fn light_differs_as_the_authors_say() {
+    let [a, b] = light();
+    let pair = Pair::new(&a, &b).unwrap();
+    let exposures = Exposures::of(&b);
+    assert!((exposures.start - -3.6718469).abs() < 1e-4, "{exposures:?}");
+    assert!((exposures.stop - 1.9707638).abs() < 1e-4, "{exposures:?}");
+    assert_eq!(exposures.count, 6);
+    let expected = Expected {
+        mean: 0.227117330,
+        pixels: [
+            0.989506602,
+            0.292835295,
+            0.179752678,
+            0.116724893,
+            0.284990937,
+        ],
+    };
+    check(&hdr(&pair, PIXELS_PER_DEGREE, exposures), &expected);
+    let expected = Expected {
+        mean: 0.345471472,
+        pixels: [
+            0.993389010,
+            0.314421177,
+            0.289743096,
+            0.276839554,
+            0.472045451,
+        ],
+    };
+    check(&hdr(&pair, 30.0, exposures), &expected);
+    let exposures = Exposures {
+        start: -3.0,
+        stop: 2.0,
+        count: 4,
+    };
+    let expected = Expected {
+        mean: 0.219632670,
+        pixels: [
+            0.989420235,
+            0.291570008,
+            0.176504657,
+            0.115234993,
+            0.275460869,
+        ],
+    };
+    check(&hdr(&pair, PIXELS_PER_DEGREE, exposures), &expected);
+}
+
+#[test]
+fn black_and_white_are_far_apart_and_a_shift_of_nothing_is_nothing() {
+    let (black, white) = (image(|_, _, _| 0.0), image(|_, _, _| 1.0));
+    let pair = Pair::new(&white, &black).unwrap();
+    assert!(Metric::Flip.value(&pair) > 0.95);
+    let [a, _] = on_screen();
+    assert!(Metric::Flip.value(&Pair::new(&a, &a).unwrap()) <= 0.0);
+}
+
+/// A NaN, an infinity and a negative pixel: no panic, and a NaN tells of itself.
+#[test]
+fn what_is_not_finite_is_told() {
+    let [mut a, b] = light();
+    a.data[100] = [f32::NAN; 3];
+    assert!(Metric::FlipHdr.value(&Pair::new(&a, &b).unwrap()).is_nan());
+    a.data[100] = [f32::INFINITY, -1.0, 0.0];
+    let value = Metric::FlipHdr.value(&Pair::new(&a, &b).unwrap());
+    assert!(value > 0.0 && value <= 1.0, "{value}");
+    assert!(
+        Metric::FlipHdr
+            .value(&Pair::new(&b, &a).unwrap())
+            .is_finite()
+    );
+}

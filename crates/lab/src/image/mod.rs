@@ -1,0 +1,107 @@
+//! Linear pictures in memory.
+//!
+//! [`Pixels`] is what everything here works on: linear Rec. 709, of any range. A [`Pair`] is an image
+//! and a reference of the same size, so that no metric has to ask.
+
+mod resample;
+
+pub use resample::resample;
+
+use formats::image::ImageData;
+
+/// Linear colours, row by row from the top left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pixels {
+    /// Width and height.
+    pub size: [usize; 2],
+    /// Red, green and blue. Shape: `width · height`.
+    pub data: Vec<[f32; 3]>,
+}
+
+impl Pixels {
+    /// All channels of all pixels.
+    pub fn channels(&self) -> impl Iterator<Item = f64> + '_ {
+        let channels = self.data.iter().flatten();
+        channels.map(|&channel| f64::from(channel))
+    }
+
+    /// The mean channel. None: there are no pixels.
+    pub fn mean(&self) -> Option<f64> {
+        let count = 3 * self.data.len();
+        (count > 0).then(|| self.channels().sum::<f64>() / count as f64)
+    }
+}
+
+impl From<&ImageData> for Pixels {
+    fn from(image: &ImageData) -> Self {
+        Self {
+            size: [image.width, image.height],
+            data: image.rgb().collect(),
+        }
+    }
+}
+
+/// An image and what it should be, of the same size.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a> {
+    image: &'a Pixels,
+    reference: &'a Pixels,
+}
+
+impl<'a> Pair<'a> {
+    /// Puts an image beside its reference. None: their sizes differ.
+    pub fn new(image: &'a Pixels, reference: &'a Pixels) -> Option<Self> {
+        let same = image.size == reference.size && image.data.len() == reference.data.len();
+        same.then_some(Self { image, reference })
+    }
+
+    /// The image.
+    pub fn image(&self) -> &'a Pixels {
+        self.image
+    }
+
+    /// What the image is compared with.
+    pub fn reference(&self) -> &'a Pixels {
+        self.reference
+    }
+
+    /// Width and height of both.
+    pub fn size(&self) -> [usize; 2] {
+        self.reference.size
+    }
+}
+
+/// True where both have the same size, and the same bits in every channel.
+pub fn identical(a: &Pixels, b: &Pixels) -> bool {
+    let bits = |pixel: &[f32; 3]| pixel.map(f32::to_bits);
+    a.size == b.size && a.data.iter().map(bits).eq(b.data.iter().map(bits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(data: &[[f32; 3]]) -> Pixels {
+        Pixels {
+            size: [data.len(), 1],
+            data: data.to_vec(),
+        }
+    }
+
+    #[test]
+    fn identity_is_of_bits() {
+        let nan = image(&[[f32::NAN, 0.0, 1.0]]);
+        assert!(identical(&nan, &nan));
+        assert!(!identical(&image(&[[0.0; 3]]), &image(&[[-0.0, 0.0, 0.0]])));
+        let mut turned = image(&[[0.0; 3], [0.0; 3]]);
+        turned.size = [1, 2];
+        assert!(!identical(&turned, &image(&[[0.0; 3], [0.0; 3]])));
+    }
+
+    #[test]
+    fn pairs_have_one_size() {
+        let (one, two) = (image(&[[1.0; 3]]), image(&[[1.0; 3]; 2]));
+        assert!(Pair::new(&one, &two).is_none());
+        assert_eq!(Pair::new(&two, &two).unwrap().size(), [2, 1]);
+    }
+}

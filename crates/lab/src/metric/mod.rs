@@ -1,0 +1,191 @@
+//! How far an image is from a reference: for every pixel, and as one number.
+//!
+//! A pixel q has channels a of the image and b of the reference; ε = 0.01 throughout.
+//!
+//! | metric | error e_q of a pixel | number |
+//! |---|---|---|
+//! | `rmse` | √mean_c (a - b)² | √mean_q e_q² |
+//! | `relmse` | mean_c (a - b)² / (b² + ε) | mean_q e_q |
+//! | `mape` | mean_c \|a - b\| / (\|b\| + ε) | mean_q e_q |
+//! | `flip`, `flip_hdr` | see [`crate::flip`] | mean_q e_q |
+//!
+//! `rmse_trim` and `relmse_trim` are the same numbers *without the worst pixels*: of n pixels, the
+//! ⌈0.001 n⌉ of the largest error of that metric are left out. A single very bright pixel decides a
+//! mean square; these tell what all the others are like. They are biased downwards, and stand beside
+//! the full numbers, never instead of them.
+//!
+//! What is not finite makes every number that it enters not finite; it is the worst of errors, so
+//! that trimming leaves it out. A number over no pixels is NaN.
+
+mod map;
+
+pub use map::ErrorMap;
+
+use crate::flip;
+use crate::image::Pair;
+
+/// The ε of all relative metrics.
+const EPSILON: f64 = 0.01;
+
+/// A way to tell how far an image is from its reference; 0 where they are equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Metric {
+    /// The root of the mean square error.
+    Rmse,
+    /// The same without the worst pixels.
+    RmseTrimmed,
+    /// The mean relative square error.
+    Relmse,
+    /// The same without the worst pixels.
+    RelmseTrimmed,
+    /// The mean absolute relative error.
+    Mape,
+    /// What is seen on a screen that shows [0, 1].
+    Flip,
+    /// What is seen at the best of all exposures.
+    FlipHdr,
+}
+
+/// Which pixels make the number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kept {
+    All,
+    WithoutWorst,
+}
+
+impl Metric {
+    /// Every metric with its name.
+    pub const NAMES: [(&'static str, Self); 7] = [
+        ("rmse", Self::Rmse),
+        ("relmse", Self::Relmse),
+        ("rmse_trim", Self::RmseTrimmed),
+        ("relmse_trim", Self::RelmseTrimmed),
+        ("mape", Self::Mape),
+        ("flip", Self::Flip),
+        ("flip_hdr", Self::FlipHdr),
+    ];
+
+    /// True where it is a matter of moments: all but FLIP, which filters images.
+    pub fn is_fast(self) -> bool {
+        !matches!(self, Self::Flip | Self::FlipHdr)
+    }
+
+    /// The error of every pixel; for trimmed metrics, also of those that they leave out.
+    pub fn errors(self, pair: &Pair<'_>) -> ErrorMap {
+        let of = |error: fn(f64, f64) -> f64| ErrorMap::of_channels(pair, error);
+        match self {
+            Self::Rmse | Self::RmseTrimmed => of(|a, b| (a - b) * (a - b)).map(f64::sqrt),
+            Self::Relmse | Self::RelmseTrimmed => of(|a, b| (a - b) * (a - b) / (b * b + EPSILON)),
+            Self::Mape => of(|a, b| (a - b).abs() / (b.abs() + EPSILON)),
+            Self::Flip => flip::ldr(pair, flip::PIXELS_PER_DEGREE),
+            Self::FlipHdr => {
+                let exposures = flip::Exposures::of(pair.reference());
+                flip::hdr(pair, flip::PIXELS_PER_DEGREE, exposures)
+            }
+        }
+    }
+
+    /// The one number of the errors that [`Self::errors`] gave.
+    pub fn pool(self, errors: &ErrorMap) -> f64 {
+        let kept = match self {
+            Self::RmseTrimmed | Self::RelmseTrimmed => Kept::WithoutWorst,
+            _ => Kept::All,
+        };
+        match self {
+            Self::Rmse | Self::RmseTrimmed => errors.mean_of(kept, |error| error * error).sqrt(),
+            _ => errors.mean_of(kept, |error| error),
+        }
+    }
+
+    /// The number of an image and its reference.
+    pub fn value(self, pair: &Pair<'_>) -> f64 {
+        self.pool(&self.errors(pair))
+    }
+}
+
+/// The mean of the image divided by the mean of the reference; 1 where both are black.
+///
+/// The expectation of the first is that of the second where an estimator is unbiased.
+pub fn mean_ratio(pair: &Pair<'_>) -> f64 {
+    let mean = |pixels: &crate::image::Pixels| pixels.mean().unwrap_or(f64::NAN);
+    let (a, b) = (mean(pair.image()), mean(pair.reference()));
+    if a == 0.0 && b == 0.0 { 1.0 } else { a / b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Pixels;
+
+    fn image(data: &[[f32; 3]]) -> Pixels {
+        Pixels {
+            size: [data.len(), 1],
+            data: data.to_vec(),
+        }
+    }
+
+    #[track_caller]
+    fn check(computed: f64, expected: f64) {
+        assert!(
+            (computed - expected).abs() < 1e-9,
+            "{computed} is not {expected}"
+        );
+    }
+
+    #[test]
+    fn errors_are_as_defined() {
+        let a = image(&[[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]]);
+        let b = image(&[[1.0, 1.0, 1.0], [0.0, 0.0, 0.0]]);
+        let pair = Pair::new(&a, &b).unwrap();
+        check(Metric::Rmse.value(&pair), (5.0f64 / 6.0).sqrt());
+        check(Metric::Relmse.value(&pair), 5.0 / 1.01 / 6.0);
+        check(Metric::Mape.value(&pair), 3.0 / 1.01 / 6.0);
+        check(Metric::Rmse.errors(&pair).data[0], (5.0f64 / 3.0).sqrt());
+        check(mean_ratio(&pair), 2.0);
+        let black = image(&[[0.0; 3]]);
+        check(mean_ratio(&Pair::new(&black, &black).unwrap()), 1.0);
+    }
+
+    #[test]
+    fn equal_images_have_no_error() {
+        let a = image(&[[0.1, 0.5, 9.0], [0.0, 1e9, 0.3]]);
+        for (name, metric) in Metric::NAMES {
+            let value = metric.value(&Pair::new(&a, &a).unwrap());
+            assert_eq!(value.to_bits(), 0, "{name} {value}");
+        }
+    }
+
+    /// 1001 pixels of error 1, of which two are worse.
+    #[test]
+    fn the_worst_thousandth_rounded_up_is_left_out() {
+        let b = image(&[[1.0; 3]; 1001]);
+        let mut a = image(&[[2.0; 3]; 1001]);
+        a.data[17] = [101.0; 3];
+        a.data[900] = [f32::NAN; 3];
+        let value = |metric: Metric, a: &Pixels| metric.value(&Pair::new(a, &b).unwrap());
+        check(value(Metric::RmseTrimmed, &a), 1.0);
+        check(value(Metric::RelmseTrimmed, &a), 1.0 / 1.01);
+        assert!(value(Metric::Rmse, &a).is_nan() && value(Metric::Relmse, &a).is_nan());
+        a.data[3] = [31.0; 3];
+        check(
+            value(Metric::RmseTrimmed, &a),
+            ((998.0 + 900.0) / 999.0f64).sqrt(),
+        );
+    }
+
+    #[test]
+    fn nothing_has_no_number() {
+        let one = image(&[[1.0; 3]]);
+        let none = image(&[]);
+        assert!(
+            Metric::RmseTrimmed
+                .value(&Pair::new(&one, &one).unwrap())
+                .is_nan()
+        );
+        assert!(
+            Metric::Rmse
+                .value(&Pair::new(&none, &none).unwrap())
+                .is_nan()
+        );
+    }
+}

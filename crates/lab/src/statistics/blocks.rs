@@ -1,0 +1,84 @@
+//! Means over blocks of pixels.
+
+use crate::image::Pixels;
+
+/// Images cut into squares; those at the right and lower border may be smaller.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Blocks {
+    size: [usize; 2],
+    block: usize,
+}
+
+/// The values of a channel in a block, added up.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tally {
+    pub(super) count: f64,
+    pub(super) sum: f64,
+    pub(super) squares: f64,
+}
+
+impl Tally {
+    pub(super) fn mean(self) -> f64 {
+        self.sum / self.count
+    }
+}
+
+impl Blocks {
+    /// Blocks of `block` × `block` pixels, at least of one.
+    pub(super) fn new(size: [usize; 2], block: usize) -> Self {
+        let largest = size[0].max(size[1]);
+        let block = block.clamp(1, largest.max(1));
+        Self { size, block }
+    }
+
+    fn columns(self) -> usize {
+        self.size[0].div_ceil(self.block)
+    }
+
+    /// The sums of every block, row by row. Shape: `blocks · 3`, channels side by side.
+    pub(super) fn sums(self, pixels: &Pixels) -> Vec<Tally> {
+        let [width, height] = self.size;
+        let mut sums = vec![Tally::default(); self.columns() * height.div_ceil(self.block) * 3];
+        for (i, pixel) in pixels.data.iter().enumerate() {
+            let (x, y) = (i % width / self.block, i / width / self.block);
+            for (channel, &value) in pixel.iter().enumerate() {
+                let sum = &mut sums[(y * self.columns() + x) * 3 + channel];
+                let value = f64::from(value);
+                sum.count += 1.0;
+                sum.sum += value;
+                sum.squares += value * value;
+            }
+        }
+        sums
+    }
+
+    /// Left, top, right and bottom (exclusive) of the block that sum `index` is of. Unit: pixels.
+    pub(super) fn place(self, index: usize) -> [usize; 4] {
+        let (x, y) = (index / 3 % self.columns(), index / 3 / self.columns());
+        let [left, top] = [x * self.block, y * self.block];
+        let right = (left + self.block).min(self.size[0]);
+        let bottom = (top + self.block).min(self.size[1]);
+        [left, top, right, bottom]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_at_the_border_are_smaller() {
+        let pixels = Pixels {
+            size: [3, 2],
+            data: (0..6).map(|i| [i as f32, 1.0, 0.0]).collect(),
+        };
+        let blocks = Blocks::new(pixels.size, 2);
+        let sums = blocks.sums(&pixels);
+        assert_eq!(sums.len(), 6);
+        assert!((sums[0].mean() - 2.0).abs() < 1e-12 && (sums[0].squares - 26.0).abs() < 1e-12);
+        assert!((sums[3].mean() - 3.5).abs() < 1e-12 && (sums[3].count - 2.0).abs() < 1e-12);
+        assert_eq!(blocks.place(1), [0, 0, 2, 2]);
+        assert_eq!(blocks.place(5), [2, 0, 3, 2]);
+        assert_eq!(Blocks::new([3, 2], usize::MAX).place(2), [0, 0, 3, 2]);
+    }
+}

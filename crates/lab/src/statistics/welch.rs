@@ -1,0 +1,185 @@
+//! Do two renders have the same expectation? Welch's t-test of means over blocks of pixels.
+//!
+//! With the means m, their variances v and the degrees of freedom ν of those variances
+//! \[Press07, §14.2.1\]:
+//!
+//!   t = (m_a - m_b) / √(v_a + v_b),   ν = (v_a + v_b)² / (v_a² / ν_a + v_b² / ν_b).
+//!
+//! The smallest p-value of n tests is corrected to 1 - (1 - p)ⁿ \[Sidak67\], which is right for
+//! independent tests, and careful for the channels of one block, which are not. Larger blocks see
+//! smaller differences, and are closer to normal where pixels have heavy tails; small ones see what
+//! is local. Who asks at several sizes has to share the level among them.
+//!
+//! Variances come from replicates ([`welch_test`]), or with the images themselves ([`z_test`]). The
+//! latter adds the variances of a block's pixels, so pixels have to be uncorrelated, as those of the
+//! independent sampler are. The variance of few samples with heavy tails is too small where their
+//! mean is too small; then replicates are the better test.
+
+use super::blocks::{Blocks, Tally};
+use super::interval::mean_and_variance;
+use super::students_t;
+use crate::image::Pixels;
+use rayon::prelude::*;
+use statrs::distribution::ContinuousCDF;
+
+/// A block as large as any image.
+pub const WHOLE: usize = usize::MAX;
+
+/// Above so many degrees of freedom Student's t is taken to be normal.
+const NORMAL_FREEDOM: f64 = 1e5;
+
+/// An image that knows how sure it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimated<'a> {
+    /// The estimates.
+    pub mean: &'a Pixels,
+    /// The variance of every one of them: of the mean, not of single samples.
+    pub variance: &'a Pixels,
+    /// The degrees of freedom of each variance: passes - 1, or infinite where it is known exactly.
+    pub freedom: f64,
+}
+
+/// What a test found where two images differ most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// Corrected for the number of tests.
+    pub p: f64,
+    /// How many tests there were: three channels of every block.
+    pub tests: usize,
+    /// Left, top, right and bottom (exclusive) of the block. Unit: pixels.
+    pub block: [usize; 4],
+    /// Red, green or blue: 0, 1 or 2.
+    pub channel: usize,
+    /// The means of both images over it.
+    pub means: [f64; 2],
+    /// Their difference. Unit: standard errors.
+    pub deviations: f64,
+}
+
+/// Compares images that know their variances, in blocks of `block` × `block` pixels.
+///
+/// None: the four sizes are not the same, there are no pixels, or a variance has no freedom.
+pub fn z_test(a: &Estimated<'_>, b: &Estimated<'_>, block: usize) -> Option<Difference> {
+    let size = a.mean.size;
+    let all = [a.mean, a.variance, b.mean, b.variance];
+    let sizes_differ = all.iter().any(|pixels| pixels.size != size);
+    if sizes_differ || a.freedom <= 0.0 || b.freedom <= 0.0 {
+        return None;
+    }
+    let blocks = Blocks::new(size, block);
+    worst(blocks, &a.moments(blocks), &b.moments(blocks))
+}
+
+/// Compares the replicates of two estimators: independent renders, each with the same effort.
+///
+/// None: there are fewer than two of either, their sizes are not the same, or there are no pixels.
+pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference> {
+    let size = a.first()?.size;
+    let differ = a.iter().chain(b).any(|pixels| pixels.size != size);
+    if differ || a.len() < 2 || b.len() < 2 {
+        return None;
+    }
+    let blocks = Blocks::new(size, block);
+    let moments = |replicates| moments_of_replicates(blocks, replicates);
+    worst(blocks, &moments(a), &moments(b))
+}
+
+/// An estimate of the mean over a block.
+#[derive(Clone, Copy, Debug)]
+struct Moments {
+    mean: f64,
+    /// Of the mean.
+    variance: f64,
+    /// Of the variance.
+    freedom: f64,
+}
+
+impl Estimated<'_> {
+    fn moments(&self, blocks: Blocks) -> Vec<Moments> {
+        let means = blocks.sums(self.mean).into_iter();
+        let of = |(mean, variance): (Tally, Tally)| Moments {
+            mean: mean.mean(),
+            variance: variance.sum / (variance.count * variance.count),
+            // A sum of variances of ν degrees of freedom each has ν (Σ v)² / Σ v².
+            freedom: self.freedom * variance.sum * variance.sum / variance.squares,
+        };
+        means.zip(blocks.sums(self.variance)).map(of).collect()
+    }
+}
+
+fn moments_of_replicates(blocks: Blocks, replicates: &[Pixels]) -> Vec<Moments> {
+    let sums: Vec<_> = replicates
+        .iter()
+        .map(|pixels| blocks.sums(pixels))
+        .collect();
+    let count = replicates.len() as f64;
+    let of = |i: usize| {
+        let (mean, variance) = mean_and_variance(sums.iter().map(|sums| sums[i].mean()));
+        Moments {
+            mean,
+            variance: variance / count,
+            freedom: count - 1.0,
+        }
+    };
+    (0..sums[0].len()).map(of).collect()
+}
+
+/// Where two images differ most.
+fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
+    let tests = a.par_iter().zip(b).map(|(a, b)| welch(*a, *b));
+    let tests: Vec<(f64, f64)> = tests.collect();
+    let smallest = tests.iter().enumerate();
+    let (index, &(p, deviations)) = smallest.min_by(|x, y| x.1.0.total_cmp(&y.1.0))?;
+    Some(Difference {
+        p: corrected(p, tests.len()),
+        tests: tests.len(),
+        block: blocks.place(index),
+        channel: index % 3,
+        means: [a[index].mean, b[index].mean],
+        deviations,
+    })
+}
+
+/// The two-sided p-value of Welch's test, and the difference in standard errors.
+///
+/// What is not finite differs from everything.
+fn welch(a: Moments, b: Moments) -> (f64, f64) {
+    let variance = a.variance + b.variance;
+    let difference = a.mean - b.mean;
+    let scale = a.mean.abs() + b.mean.abs();
+    // Estimates without variance must agree to rounding.
+    if variance.sqrt() <= 1e-6 * scale || variance <= 0.0 {
+        let agree = difference.abs() <= 1e-5 * scale;
+        return (f64::from(agree), if agree { 0.0 } else { f64::INFINITY });
+    }
+    let t = difference / variance.sqrt();
+    let share = |moments: Moments| moments.variance * moments.variance / moments.freedom;
+    // An estimate without variance has no degrees of freedom to give.
+    let shares: f64 = [a, b]
+        .into_iter()
+        .filter(|m| m.variance > 0.0)
+        .map(share)
+        .sum();
+    let freedom = variance * variance / shares;
+    let p = tail(t.abs(), freedom);
+    if p.is_finite() { (p, t) } else { (0.0, t) }
+}
+
+/// The probability that Student's t is beyond ±`t`; NaN where there is none.
+fn tail(t: f64, freedom: f64) -> f64 {
+    if t.is_nan() || freedom.is_nan() {
+        return f64::NAN;
+    }
+    if freedom > NORMAL_FREEDOM {
+        return libm::erfc(t * std::f64::consts::FRAC_1_SQRT_2);
+    }
+    students_t(freedom).map_or(f64::NAN, |distribution| 2.0 * distribution.cdf(-t))
+}
+
+/// 1 - (1 - p)ⁿ, exact for small p too \[Sidak67\].
+fn corrected(p: f64, n: usize) -> f64 {
+    -libm::expm1(n as f64 * libm::log1p(-p))
+}
+
+#[cfg(test)]
+mod tests;
