@@ -19,6 +19,11 @@ def analytic(filter_):
     return ("bidir", ANALYTIC, filter_)
 
 
+def lab(filter_):
+    """The unit tests of the `lab` crate whose names contain `filter_`."""
+    return ("bidir-lab", "--lib", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)
@@ -328,5 +333,41 @@ MUTATIONS = [
         "self.t < other.t || (self.t <= other.t && id(self) < id(other))",
         "self.t < other.t || (self.t <= other.t && id(self) > id(other))",
         ("bidir-accel", "", ""),
+    ),
+    # --- numbers ----------------------------------------------------------------------------
+    (
+        "FLIP without features",
+        "crates/lab/src/flip/mod.rs",
+        "libm::powf(color, 1.0 - feature)",
+        "libm::powf(color, 1.0 - 0.0 * feature)",
+        lab("flip::tests"),
+    ),
+    (
+        "the worst pixels rounded down",
+        "crates/lab/src/metric/map.rs",
+        "errors.len().div_ceil(1000)",
+        "errors.len() / 1000",
+        lab("metric"),
+    ),
+    (
+        "the variance of a block as if it had one pixel",
+        "crates/lab/src/statistics/welch.rs",
+        "variance.sum / (variance.count * variance.count)",
+        "variance.sum / variance.count",
+        lab("statistics::welch"),
+    ),
+    (
+        "bootstrap by plain percentiles",
+        "crates/lab/src/statistics/bootstrap.rs",
+        "normal_cdf(-(n / (n - 1.0)).sqrt() * t)",
+        "(0.5 - 0.5 * confidence) * (t / t)",
+        lab("statistics::bootstrap"),
+    ),
+    (
+        "p-values without Sidak's correction",
+        "crates/lab/src/statistics/welch.rs",
+        "p: corrected(p, tests.len())",
+        "p: corrected(p, 1)",
+        lab("statistics::welch"),
     ),
 ]

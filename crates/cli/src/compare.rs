@@ -8,7 +8,7 @@ use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, IMAGES, MetadataValue, read_image};
 use lab::image::{Pair, Pixels, identical, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
-use report::{Comparison, Number, Replicates};
+use report::{Comparison, MEAN_RATIO, Number, Replicates};
 use std::path::{Path, PathBuf};
 
 /// Compares images with a reference.
@@ -64,12 +64,7 @@ fn compare(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Result<Comp
     let fitted = Fitted::new(args, image, reference);
     let (numbers, size) = match fitted.pair(reference) {
         Some(pair) => (numbers(&args.metrics, &pair)?, Some(pair.size())),
-        None if args.exact => (
-            metrics(&args.metrics)
-                .map(|(name, _)| (name, None))
-                .collect(),
-            None,
-        ),
+        None if args.exact => (no_numbers(&args.metrics), None),
         None => return Err(sizes_differ(fitted.image.size, reference.size)),
     };
     Ok(Comparison {
@@ -126,6 +121,12 @@ fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
     metrics.filter(move |(_, metric)| wanted(*metric))
 }
 
+/// The names of the numbers, where images have none.
+fn no_numbers(args: &MetricArgs) -> Vec<Number> {
+    let names = metrics(args).map(|(name, _)| name);
+    names.chain([MEAN_RATIO]).map(|name| (name, None)).collect()
+}
+
 /// All numbers of a pair; the errors of one metric go to their file.
 fn numbers(args: &MetricArgs, pair: &Pair<'_>) -> Result<Vec<Number>, Failure> {
     let mut numbers = Vec::new();
@@ -136,7 +137,7 @@ fn numbers(args: &MetricArgs, pair: &Pair<'_>) -> Result<Vec<Number>, Failure> {
             write_map(path, name, &errors, args.error_max)?;
         }
     }
-    numbers.push(("mean_ratio", Some(mean_ratio(pair))));
+    numbers.push((MEAN_RATIO, Some(mean_ratio(pair))));
     Ok(numbers)
 }
 

@@ -9,6 +9,9 @@ use std::fmt::Write;
 /// A number by name. None: the sizes differ.
 pub(super) type Number = (&'static str, Option<f64>);
 
+/// The name of the number that is near 1.
+pub(super) const MEAN_RATIO: &str = "mean_ratio";
+
 /// The probability that an interval holds what infinitely many seeds would give.
 const CONFIDENCE: f64 = 0.95;
 
@@ -66,8 +69,8 @@ fn as_map<T: Serialize, S: Serializer>(
 impl Replicates {
     /// Joins what was found of each image.
     pub(super) fn of(comparisons: &[Comparison]) -> Result<Self, Failure> {
-        let first = &comparisons[0];
-        if comparisons.iter().any(|other| other.size != first.size) {
+        let sizes: Vec<_> = comparisons.iter().filter_map(|one| one.size).collect();
+        if sizes.windows(2).any(|pair| pair[0] != pair[1]) {
             let message = "the images differ in size: they are not renders of one film";
             return Err(Failure::new(Exit::InputOutput, message));
         }
@@ -82,12 +85,14 @@ impl Replicates {
                 values,
             })
         };
-        let names = first.numbers.iter().enumerate();
+        let all_have_one = sizes.len() == comparisons.len();
+        let names = comparisons.first().map_or(&[][..], |one| &one.numbers);
+        let names = names.iter().enumerate();
         Ok(Self {
             numbers: names.map(|(i, (name, _))| (*name, spread(i))).collect(),
             identical: comparisons.iter().all(|comparison| comparison.identical),
-            size: first.size,
-            resampled: first.resampled,
+            size: sizes.first().copied().filter(|_| all_have_one),
+            resampled: comparisons.iter().find_map(|one| one.resampled),
             images: comparisons.len(),
             confidence: CONFIDENCE,
         })
@@ -134,7 +139,7 @@ impl Comparison {
 fn number_text(name: &str, value: Option<f64>) -> String {
     match value {
         None => "none: the sizes differ".to_owned(),
-        Some(value) if name == "mean_ratio" => format!("{value:.6}"),
+        Some(value) if name == MEAN_RATIO => format!("{value:.6}"),
         Some(value) => format!("{value:.6e}"),
     }
 }

@@ -39,7 +39,15 @@ fn exactness_is_told_by_the_exit_code() {
         .run("compare a.exr b.exr --exact")
         .expect(6)
         .prints("identical   no");
-    place.run("compare a.exr c.exr --exact").expect(6);
+    let other = place
+        .run("compare a.exr c.exr --exact --json")
+        .expect(6)
+        .json();
+    assert!(other["size"].is_null() && other["mean_ratio"].is_null());
+    place
+        .run("compare a.exr c.exr --reference a.exr --exact")
+        .expect(6)
+        .prints("rmse        none: the sizes differ");
 }
 
 #[test]

@@ -2,15 +2,15 @@
 //!
 //! For images on a screen \[Andersson20\], with linear channels in [0, 1]:
 //!
-//! 1. *Colour* ([`color`], [`contrast`]): both images, in opponent colours, are blurred as the eye
+//! 1. *Colour* (`color`, `contrast`): both images, in opponent colours, are blurred as the eye
 //!    blurs them at a given number of pixels per degree; ΔE_c in [0, 1] is a distance in L\*a\*b\*,
 //!    compressed (§4.1).
-//! 2. *Features* ([`feature`]): edges and points of the luminance give ΔE_f in [0, 1] (§4.2).
+//! 2. *Features* (`feature`): edges and points of the luminance give ΔE_f in [0, 1] (§4.2).
 //! 3. ΔE = ΔE_c^(1 - ΔE_f) (§4.3): a feature that only one image has makes a difference of colour
 //!    more visible.
 //!
 //! For light of any strength \[Andersson21\] both images are brought to the screen at several exposures
-//! ([`exposure`]), and a pixel's error is the largest that it has at any of them.
+//! (`exposure`), and a pixel's error is the largest that it has at any of them.
 //!
 //! Channels outside [0, 1], or below 0 for light of any strength, are clamped first. Pixels beyond
 //! the border are those of the border. NaN spreads as far as a filter reaches. Errors are in [0, 1];
