@@ -1,0 +1,267 @@
+//! What an experiment found: everything that a report shows and that somebody else may want to
+//! compute with, as it stands in `results.json`.
+//!
+//! A [`Record`] is one render. What is concluded from records is a [`Claim`], with its tables and
+//! plots. Names are unique within their list, and records refer to them.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The version of the format of `results.json`.
+pub const FORMAT: u32 = 1;
+
+/// All that an experiment found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results {
+    /// [`FORMAT`].
+    pub format: u32,
+    /// What the experiment is about.
+    pub title: String,
+    /// A few sentences on what is compared and why.
+    pub description: String,
+    /// The program with its version.
+    pub program: String,
+    /// What it ran on.
+    pub machine: Machine,
+    /// The scenes.
+    pub scenes: Vec<SceneInfo>,
+    /// The methods; ratios are relative to the first.
+    pub methods: Vec<MethodInfo>,
+    /// The budgets.
+    pub budgets: Vec<BudgetInfo>,
+    /// One for each render.
+    pub records: Vec<Record>,
+    /// What was concluded.
+    pub claims: Vec<Claim>,
+}
+
+/// What an experiment ran on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Machine {
+    /// The processor.
+    pub processor: String,
+    /// Threads of each render.
+    pub threads: usize,
+    /// The instruction set of the intersector.
+    pub isa: String,
+    /// Operating system and architecture.
+    pub system: String,
+}
+
+/// A scene of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneInfo {
+    /// Its name in this experiment.
+    pub name: String,
+    /// The file, as it was named.
+    pub file: String,
+    /// Hash of everything that was read for it.
+    pub digest: String,
+    /// Width and height. Unit: pixels.
+    pub size: [usize; 2],
+    /// How the reference was made, in words: estimators, samples per pixel, their agreement.
+    pub reference: String,
+    /// The reference image, relative to the folder of the results.
+    pub reference_image: Option<String>,
+}
+
+/// A method: how scenes are rendered.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MethodInfo {
+    /// Its name in this experiment.
+    pub name: String,
+    /// All settings, as flags are called and write them.
+    pub settings: BTreeMap<String, String>,
+}
+
+/// What is equal for all methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BudgetKind {
+    /// Samples per pixel.
+    Samples,
+    /// Rays of all kinds per pixel, those of training included.
+    Rays,
+    /// Time of rendering and training, without reading and writing. Unit: seconds.
+    Seconds,
+}
+
+/// A budget, that a render uses up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BudgetInfo {
+    /// Its name in this experiment, such as `64 spp`.
+    pub name: String,
+    /// What is counted.
+    pub kind: BudgetKind,
+    /// How much of it.
+    pub amount: f64,
+}
+
+/// Rays by kind, over all pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rays {
+    /// Of camera walks.
+    pub camera: u64,
+    /// Of light walks.
+    pub light: u64,
+    /// Shadow rays that join s ≥ 1 with t ≥ 2.
+    pub connection: u64,
+    /// Shadow rays of the light image, t = 1.
+    pub light_image: u64,
+    /// Of training, of all kinds.
+    pub training: u64,
+}
+
+impl Rays {
+    /// All rays.
+    pub fn total(&self) -> u64 {
+        self.camera + self.light + self.connection + self.light_image + self.training
+    }
+}
+
+/// One render.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The name of the scene.
+    pub scene: String,
+    /// The name of the method.
+    pub method: String,
+    /// The name of the budget.
+    pub budget: String,
+    /// The seed.
+    pub seed: u64,
+    /// Samples per pixel.
+    pub spp: u64,
+    /// Time of rendering and training. Unit: seconds.
+    pub seconds: f64,
+    /// Rays by kind.
+    pub rays: Rays,
+    /// Connection rays that something blocked.
+    pub connections_blocked: u64,
+    /// Distances from the reference, by the names of [`Metric::NAMES`](crate::metric::Metric::NAMES).
+    pub metrics: BTreeMap<String, f64>,
+    /// 1 / (MSE · rays).
+    pub efficiency_rays: f64,
+    /// 1 / (MSE · seconds).
+    pub efficiency_seconds: f64,
+    /// The image, relative to the folder of the results, where it was kept.
+    pub image: Option<String>,
+}
+
+/// Whether what others said is what was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// It is, and the intervals leave no doubt.
+    Reproduced,
+    /// It is not, and the intervals leave no doubt.
+    NotReproduced,
+    /// Intervals overlap.
+    Undecided,
+}
+
+/// A statement, and what was found about it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    /// A short name, such as `table-1-b-uniform`.
+    pub id: String,
+    /// What is claimed, in a sentence.
+    pub claim: String,
+    /// Where it is claimed.
+    pub source: String,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// What was found, in a sentence with figures.
+    pub found: String,
+    /// How sure that is: test, level, seeds.
+    pub method: String,
+    /// The figures.
+    pub tables: Vec<Table>,
+    /// The curves.
+    pub plots: Vec<Plot>,
+}
+
+/// A table of texts and numbers.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// The heads of the columns.
+    pub columns: Vec<String>,
+    /// Rows of as many cells.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A cell of a table.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Cell {
+    /// Words.
+    Text(String),
+    /// A number.
+    Number(f64),
+    /// A number with its interval of confidence.
+    Interval {
+        /// The best guess.
+        value: f64,
+        /// The lower end.
+        low: f64,
+        /// The upper end.
+        high: f64,
+    },
+}
+
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By factors.
+    Log,
+}
+
+/// An axis of a plot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// What it shows, with its unit.
+    pub label: String,
+    /// How it is divided.
+    pub scale: Scale,
+}
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlotKind {
+    /// Points joined by lines.
+    Lines,
+    /// Steps: each point is the left edge of a bin and its height.
+    Histogram,
+}
+
+/// A plot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plot {
+    /// What it shows.
+    pub caption: String,
+    /// How its series are drawn.
+    pub kind: PlotKind,
+    /// To the right.
+    pub x: Axis,
+    /// Upwards.
+    pub y: Axis,
+    /// What is drawn.
+    pub series: Vec<Series>,
+}
+
+/// A curve, with its intervals of confidence where they are known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Series {
+    /// Its name.
+    pub name: String,
+    /// x and y.
+    pub points: Vec<[f64; 2]>,
+    /// Lower and upper end of y for each point; empty where they are not known.
+    pub intervals: Vec<[f64; 2]>,
+}
