@@ -114,3 +114,111 @@ impl Deposit<'_> {
         Some((part, self.rgb(value)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Perspective, PerspectiveSettings};
+    use crate::film::{Film, FilmSettings, Filter};
+    use crate::light::{InfiniteLight, Light};
+    use crate::math::{Affine3A, Vec2};
+    use crate::path::{PathSettings, Strategy};
+    use crate::scene::{Scene, SceneBuilder};
+    use crate::spectrum::Wavelengths;
+
+    /// A sky over one pixel.
+    fn scene() -> Scene {
+        let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
+        let camera = Perspective::new(&PerspectiveSettings {
+            world_from_camera: Affine3A::IDENTITY,
+            resolution: Vec2::ONE,
+            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+            lens_radius: 0.0,
+            focal_distance: 1.0,
+        });
+        builder.camera(Camera::Perspective(camera.unwrap()));
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        builder.build().unwrap()
+    }
+
+    fn contribution((s, t): (usize, usize), value: f32, weight: f32) -> Contribution {
+        Contribution {
+            strategy: Strategy::new(s, t),
+            light: 0,
+            value: Spectrum::splat(value),
+            weight,
+        }
+    }
+
+    /// The film and the counters after one sample that leaves these behind, the last as a splat.
+    fn deposit(contributions: &[Contribution], splat: Contribution) -> (Film, Stats) {
+        let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
+        let mut film = Film::with_layers(scene.film().clone(), layers, u64::MAX).unwrap();
+        let buffer = PassBuffer::new(film.settings(), film.layers());
+        let mut workspace = Workspace::default();
+        workspace.contributions.extend(contributions);
+        workspace.splats.push(Splat {
+            contribution: splat,
+            raster: Vec2::splat(0.5),
+            u: Vec2::splat(0.5),
+        });
+        let context = PathContext {
+            scene: &scene,
+            settings: &PathSettings::default(),
+            wavelengths: Wavelengths::default(),
+        };
+        Deposit {
+            context: &context,
+            layers: film.layers(),
+            buffer: &buffer,
+            pixel: 0,
+        }
+        .take(&mut workspace);
+        film.add_pass(0, &buffer);
+        (film, workspace.stats)
+    }
+
+    #[track_caller]
+    fn check_image(film: &Film, part: Option<usize>, value: f32) {
+        let pixel = film.part_pixels(part.unwrap()).next().unwrap();
+        assert!((pixel[0] - value).abs() <= 1e-6 * value, "{pixel:?}");
+    }
+
+    #[test]
+    fn raw_values_that_are_too_large_are_counted_and_harm_nothing() {
+        let fine = contribution((1, 2), 0.5, 0.25);
+        let large = contribution((0, 3), 3.0, 1e-30);
+        let splat = contribution((2, 1), 7.0, 1e-30);
+        let (film, stats) = deposit(&[fine, large], splat);
+        let layers = film.layers();
+        check_image(&film, layers.raw_part(fine.strategy), 2.0);
+        for (contribution, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
+            check_image(&film, layers.weighted_part(contribution.strategy), weighted);
+        }
+        for contribution in [large, splat] {
+            check_image(&film, layers.raw_part(contribution.strategy), 0.0);
+            let counts = stats.strategy_images.get(contribution.strategy);
+            assert_eq!(counts.raw_dropped, 1);
+        }
+        assert_eq!(stats.strategy_images.get(fine.strategy).raw_dropped, 0);
+    }
+
+    #[test]
+    fn environments_of_one_escape_are_one_square() {
+        let two = [2.0, 3.0].map(|value| contribution((0, 3), value, 1.0));
+        let other = contribution((1, 2), 4.0, 1.0);
+        let (_, stats) = deposit(&[two[0], two[1], other], contribution((2, 1), 5.0, 1.0));
+        for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
+            let counts = stats
+                .strategy_images
+                .get(Strategy::new(strategy.0, strategy.1));
+            assert!((counts.squares() - square).abs() < 1e-5, "{strategy:?}");
+        }
+    }
+
+    #[test]
+    fn a_weight_of_zero_leaves_nothing() {
+        let nothing = contribution((1, 2), 0.0, 0.0);
+        assert_eq!(nothing.unweighted(), Some(Spectrum::ZERO));
+    }
+}

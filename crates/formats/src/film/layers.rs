@@ -28,10 +28,7 @@ pub enum StrategyImagesName {
     WeightedAndRaw,
 }
 
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde asks by reference"
-)]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
 fn is_weighted(images: &StrategyImagesName) -> bool {
     *images == StrategyImagesName::Weighted
 }
