@@ -143,14 +143,13 @@ MUTATIONS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "            workspace.add(sample, candidate.strategy, value);",
+        "            workspace.add(sample, contribution);",
         "            // Right in every grey image, wrong in colour.\n"
         "            let candidates = &workspace.candidates;\n"
-        "            let score = |i: usize| candidates[i].score;\n"
-        "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
+        "            let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
         "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
-        "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
-        "            workspace.add(sample, candidate.strategy, sum * part);",
+        "            let value = sum * (candidate.score / chosen.prob as f32 / all);\n"
+        "            workspace.add(sample, Contribution { value, ..contribution });",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
@@ -213,10 +212,31 @@ MUTATIONS = [
     # --- film and camera --------------------------------------------------------------------
     (
         "splats divided by passes",
-        "crates/bidir/src/film/mod.rs",
-        "fixed::to_f64(sums.light[channel], VALUE_SCALE) / light_paths;",
-        "fixed::to_f64(sums.light[channel], VALUE_SCALE) / passes;",
+        "crates/bidir/src/film/develop.rs",
+        "fixed::to_f64(light, VALUE_SCALE) / light_paths",
+        "fixed::to_f64(light, VALUE_SCALE) / light_paths.min(self.samples())",
         unit("film::"),
+    ),
+    (
+        "raw images with the weight",
+        "crates/bidir/src/integrator/workspace.rs",
+        "lane / self.weight",
+        "lane",
+        ("bidir", "--test layers", "a_raw_image"),
+    ),
+    (
+        "environments of one escape varying one by one",
+        "crates/bidir/src/driver/deposit.rs",
+        "contributions.chunk_by(|a, b| a.strategy == b.strategy)",
+        "contributions.chunks(1)",
+        unit("driver::deposit"),
+    ),
+    (
+        "variance of the light image as if light paths had pixels",
+        "crates/bidir/src/driver/variance.rs",
+        "1 => film.light_paths().max(1) as f64,",
+        "1 => 1.0,",
+        ("bidir", "--test layers", "strategies_vary"),
     ),
     (
         "negative lobes splatted as positive",

@@ -82,11 +82,11 @@ impl Kind {
         };
         [
             format!("{scene}: {name}, {passes} spp"),
-            "A path of s + t vertices has s of them from the light, t from the camera. Paths of one length are in \
-             one row: left t grows, right s."
+            "A path of s + t vertices has s from the light and t from the camera. A row has all paths of one length: \
+             to the right s grows, to the left t."
                 .to_owned(),
             meaning.to_owned(),
-            "x8: shown 8 times as bright as it is, equally in all of a row. mean: luminance, as it is."
+            "x8, /8: shown 8 times as bright or as dark as it is, all of a row alike. mean: luminance as it is."
                 .to_owned(),
         ]
     }
@@ -134,7 +134,6 @@ fn rows(film: &Film, kind: Kind) -> Vec<Row> {
 
 fn row_name(n: usize) -> Vec<String> {
     let bounces = match n - 2 {
-        0 => "light seen".to_owned(),
         1 => "1 bounce".to_owned(),
         bounces => format!("{bounces} bounces"),
     };

@@ -74,7 +74,9 @@ impl Deposit<'_> {
                 }
             }
         }
-        splats.iter().for_each(|splat| self.splat(splat, stats));
+        for splat in splats.iter() {
+            self.splat(splat, stats);
+        }
     }
 
     /// The same for a splat, where it reaches the film.

@@ -39,12 +39,12 @@ impl Tile {
         }
     }
 
-    /// The luminance that one pixel in twenty exceeds.
-    fn bright(&self) -> f32 {
-        let pixels = self.image.data.iter();
-        let mut values: Vec<_> = pixels.map(|pixel| luminance(*pixel).max(0.0)).collect();
-        values.sort_by(f32::total_cmp);
-        values[values.len() * 19 / 20]
+    /// The luminances of the pixels that are not black, from dim to bright.
+    fn lit(&self) -> Vec<f32> {
+        let values = self.image.data.iter().map(|pixel| luminance(*pixel));
+        let mut lit: Vec<_> = values.filter(|value| *value > 0.0).collect();
+        lit.sort_by(f32::total_cmp);
+        lit
     }
 
     /// The second line of the label.
@@ -66,10 +66,16 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// How many times the brightness is doubled, so that bright parts of the brightest tile are
-    /// almost white.
+    /// How many times the brightness is doubled, so that nine tenths of the lit pixels of the
+    /// brightest tile are below white.
+    ///
+    /// A tile of few pixels, compared with others of its row, is noise: it has no say.
     fn stops(&self) -> i32 {
-        let bright = self.tiles.iter().map(Tile::bright).fold(0.0, f32::max);
+        let lit: Vec<_> = self.tiles.iter().map(Tile::lit).collect();
+        let most = lit.iter().map(Vec::len).max().unwrap_or(0);
+        let image = lit.iter().filter(|values| 2 * values.len() > most);
+        let bright = image.map(|values| values[values.len() * 9 / 10]);
+        let bright = bright.fold(0.0, f32::max);
         if bright > 0.0 {
             libm::log2f(0.9 / bright).floor().clamp(-30.0, 30.0) as i32
         } else {
@@ -243,6 +249,9 @@ mod tests {
         assert_eq!(row(&[0.1, 0.02]).stops(), 3);
         assert_eq!(row(&[4.0]).stops(), -3);
         assert_eq!(row(&[0.0]).stops(), 0);
+        let mut noisy = row(&[0.1, 0.0, 0.0]);
+        noisy.tiles[1].image.data[7] = [9.0; 3];
+        assert_eq!(noisy.stops(), 3);
         assert_eq!(exposure(3), "x8");
         assert_eq!(exposure(-3), "/8");
     }
