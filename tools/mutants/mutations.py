@@ -14,6 +14,11 @@ def unit(filter_):
     return ("bidir", "--lib", filter_)
 
 
+def layers(filter_):
+    """Tests of what a film keeps beside the picture."""
+    return ("bidir", "--test layers", filter_)
+
+
 def analytic(filter_):
     """Tests against known images."""
     return ("bidir", ANALYTIC, filter_)
@@ -143,13 +148,16 @@ MUTATIONS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "            workspace.add(sample, contribution);",
+        "            value: candidate.contribution(chosen.prob),",
         "            // Right in every grey image, wrong in colour.\n"
-        "            let candidates = &workspace.candidates;\n"
-        "            let all: f32 = candidates.iter().map(|c| c.score).sum();\n"
-        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
-        "            let value = sum * (candidate.score / chosen.prob as f32 / all);\n"
-        "            workspace.add(sample, Contribution { value, ..contribution });",
+        "            value: {\n"
+        "                let candidates = &workspace.candidates;\n"
+        "                let score = |i: usize| candidates[i].score;\n"
+        "                let all: f32 = (0..candidates.len()).map(score).sum();\n"
+        "                let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
+        "                let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
+        "                sum * part\n"
+        "            },",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
@@ -214,7 +222,7 @@ MUTATIONS = [
         "splats divided by passes",
         "crates/bidir/src/film/develop.rs",
         "fixed::to_f64(light, VALUE_SCALE) / light_paths",
-        "fixed::to_f64(light, VALUE_SCALE) / light_paths.min(self.samples())",
+        "fixed::to_f64(light, VALUE_SCALE) / self.samples()",
         unit("film::"),
     ),
     (
@@ -222,7 +230,7 @@ MUTATIONS = [
         "crates/bidir/src/integrator/workspace.rs",
         "lane / self.weight",
         "lane",
-        ("bidir", "--test layers", "a_raw_image"),
+        layers("a_raw_image"),
     ),
     (
         "environments of one escape varying one by one",
@@ -236,7 +244,28 @@ MUTATIONS = [
         "crates/bidir/src/driver/variance.rs",
         "1 => film.light_paths().max(1) as f64,",
         "1 => 1.0,",
-        ("bidir", "--test layers", "strategies_vary"),
+        layers("strategies_vary"),
+    ),
+    (
+        "contributions in the group of the light before",
+        "crates/bidir/src/film/layers.rs",
+        "then_some(group as usize)",
+        "then_some((group as usize).saturating_sub(1))",
+        layers("a_group"),
+    ),
+    (
+        "points divided by all samples, those without a surface too",
+        "crates/bidir/src/film/develop.rs",
+        "Some(coverage)) => fixed::to_f64(sums[coverage], VALUE_SCALE),",
+        "Some(_)) => self.samples(),",
+        layers("features"),
+    ),
+    (
+        "depth as the distance from the lens",
+        "crates/bidir/src/driver/features.rs",
+        "depth: (surface.point - lens.point).dot(lens.n_g),",
+        "depth: (surface.point - lens.point).length(),",
+        layers("features"),
     ),
     (
         "negative lobes splatted as positive",

@@ -85,9 +85,9 @@ fn lights_are_in_groups_by_name_or_by_kind() {
 
 /// Checks that images of the parts add up to the picture, up to the rounding of their values.
 #[track_caller]
-fn check_sum<'a>(picture: &Picture, parts: impl Iterator<Item = &'a LayerImage> + Clone) {
+fn check_sum(picture: &Picture, parts: &[LayerImage]) {
     for (i, pixel) in picture.pixels.iter().flatten().enumerate() {
-        let sum: f32 = parts.clone().map(|part| part.data[i]).sum();
+        let sum: f32 = parts.iter().map(|part| part.data[i]).sum();
         let tolerance = 1e-5 * pixel.abs() + 1e-9;
         assert!((sum - pixel).abs() < tolerance, "{i}: {sum}, not {pixel}");
     }
@@ -105,8 +105,8 @@ fn parts_add_up_to_the_picture_and_leave_it_alone() {
         let images = kept.develop_layers();
         let (groups, strategies) = images.split_at(3);
         assert_eq!(groups[2].name, "lightgroup.environment");
-        check_sum(&picture, groups.iter());
-        check_sum(&picture, strategies.iter());
+        check_sum(&picture, groups);
+        check_sum(&picture, strategies);
         assert!(
             groups
                 .iter()
@@ -278,11 +278,11 @@ const FEATURES: [Aov; 9] = [
     Aov::Rays,
 ];
 
-/// A plane at z = 1 that covers the left half of the view of a camera at z = -1.8.
-fn half_plane() -> Scene {
+/// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
+fn plane() -> Scene {
     let mut builder = builder(4, 0.0);
     let material = builder.material(diffuse([0.8, 0.4, 0.2]));
-    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.0);
+    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
     let plane = common::tilt(plane, Vec3::ZERO);
     builder.shape(Shape::Mesh(plane), material, None);
     builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
@@ -291,7 +291,7 @@ fn half_plane() -> Scene {
 
 #[test]
 fn features_of_a_plane_are_known() {
-    let scene = half_plane();
+    let scene = plane();
     for (name, integrator) in IntegratorKind::NAMES {
         let settings = settings(integrator, Layers::new(&FEATURES, &[], 0));
         let images = film(&scene, &settings, 64, 2).develop_layers();
@@ -323,7 +323,11 @@ fn features_of_a_plane_are_known() {
             "{name}: {position:?}"
         );
         assert!(at("", "Rays", 4)[0] >= 64.0, "{name}");
-        // The right half is the sky.
+        // Pixel 6 is half sky, which counts for no depth.
+        near(at("", "Z", 6), &[2.8]);
+        let coverage = at("", "Coverage", 6)[0];
+        assert!((coverage - 0.5).abs() < 0.1, "{name}: {coverage}");
+        // Pixel 7 is the sky.
         for (layer, channel) in [
             ("Albedo", "R"),
             ("P", "X"),
@@ -341,7 +345,7 @@ fn features_of_a_plane_are_known() {
 
 #[test]
 fn variance_is_that_of_the_mean() {
-    let scene = half_plane();
+    let scene = plane();
     let settings = settings(IntegratorKind::Path, Layers::new(&[Aov::Variance], &[], 0));
     let film = film(&scene, &settings, 64, 2);
     let (picture, images) = (film.develop(), film.develop_layers());
