@@ -40,7 +40,8 @@ pub(crate) struct LayerArgs {
     /// pyramid.exr has the layers of --strategy-layers (6 where it is not given), and raw.sStT.R, G,
     /// B: the same without the strategy's weight, which is what it would show alone, however noisy.
     /// The others are contact sheets with a row for each length of paths. Rays, blocked rays, mean and
-    /// variance of each strategy are told at the end, and are in --stats.
+    /// variance of each strategy are told at the end, and are in --stats. Paths of 6 vertices take 6.4
+    /// KB of memory for each pixel.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) pyramid: Option<PathBuf>,
 }

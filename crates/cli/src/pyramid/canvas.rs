@@ -77,7 +77,8 @@ mod tests {
             data: vec![[0.5, 1.0, 2.0]; 2],
         };
         canvas.image([59, 3], &image, 2.0);
-        assert_eq!(canvas.pixels.data[3 * 60 + 59], [1.0, 2.0, 4.0]);
-        assert_eq!(canvas.pixels.data[4 * 60], [0.0; 3]);
+        let bits = |i: usize| canvas.pixels.data[i].map(f32::to_bits);
+        assert_eq!(bits(3 * 60 + 59), [1.0f32, 2.0, 4.0].map(f32::to_bits));
+        assert_eq!(bits(20 * 60), [0; 3]);
     }
 }

@@ -102,7 +102,7 @@ mod tests {
 
     /// A letter as it looks.
     fn art(letter: char) -> String {
-        let mut rows = vec![[b'.'; WIDTH]; HEIGHT];
+        let mut rows = [[b'.'; WIDTH]; HEIGHT];
         dots(letter).for_each(|(column, row)| rows[row][column] = b'#');
         let rows = rows.iter().map(|row| String::from_utf8_lossy(row));
         rows.collect::<Vec<_>>().join(" ")
