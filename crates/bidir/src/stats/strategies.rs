@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     fn table(strategies: &[(usize, usize)]) -> StrategyTable {
-        let mut table = StrategyTable::default();
+        let mut table = StrategyTable::<StrategyCounts>::default();
         for &(s, t) in strategies {
             table.of(Strategy::new(s, t)).candidates += 1;
         }
