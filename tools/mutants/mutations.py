@@ -226,6 +226,27 @@ MUTATIONS = [
         unit("film::"),
     ),
     (
+        "raw images with the weight",
+        "crates/bidir/src/integrator/workspace.rs",
+        "lane / self.weight",
+        "lane",
+        layers("a_raw_image"),
+    ),
+    (
+        "environments of one escape varying one by one",
+        "crates/bidir/src/driver/deposit.rs",
+        "contributions.chunk_by(|a, b| a.strategy == b.strategy)",
+        "contributions.chunks(1)",
+        unit("driver::deposit"),
+    ),
+    (
+        "variance of the light image as if light paths had pixels",
+        "crates/bidir/src/driver/variance.rs",
+        "1 => film.light_paths().max(1) as f64,",
+        "1 => 1.0,",
+        layers("strategies_vary"),
+    ),
+    (
         "contributions in the group of the light before",
         "crates/bidir/src/film/layers.rs",
         "then_some(group as usize)",

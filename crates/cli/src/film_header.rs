@@ -134,7 +134,7 @@ pub(crate) fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
 }
 
 /// The name of a file without its folders, which are of no interest to others.
-fn file_name(path: &str) -> String {
+pub(crate) fn file_name(path: &str) -> String {
     let name = Path::new(path).file_name();
     name.map_or_else(
         || path.to_owned(),

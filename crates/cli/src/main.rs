@@ -16,6 +16,7 @@ mod info;
 mod lock;
 mod output;
 mod progress;
+mod pyramid;
 mod render;
 mod replay;
 mod scene_io;

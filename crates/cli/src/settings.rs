@@ -5,7 +5,7 @@ use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
-use bidir::film::Aov;
+use bidir::film::{Aov, StrategyImages};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
@@ -157,6 +157,9 @@ pub(crate) struct SettingsText {
     pub(crate) aov: String,
     pub(crate) light_groups: String,
     pub(crate) strategy_layers: usize,
+    /// Left out where there are none: films of old have the same identity.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub(crate) raw_strategies: bool,
 }
 
 /// Names with commas between them.
@@ -200,6 +203,7 @@ impl From<&Settings> for SettingsText {
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),
             light_groups: list(layers.light_groups().iter().map(String::as_str)),
             strategy_layers: layers.strategy_vertices(),
+            raw_strategies: layers.strategy_images() == StrategyImages::WeightedAndRaw,
         }
     }
 }

@@ -28,7 +28,7 @@ mod layers;
 mod tests;
 
 pub use header::{FilmHeader, Stopping};
-pub use layers::LayerNames;
+pub use layers::{LayerNames, StrategyImagesName};
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
