@@ -5,6 +5,7 @@
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
 //! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
+//! - [`report`]: what an experiment found, as a page for people.
 //! - [`results`]: what an experiment found, as it is written down.
 //! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
 //!   renders have the same expectation.
@@ -17,5 +18,6 @@ pub mod flip;
 pub mod image;
 pub mod metric;
 pub mod reference;
+pub mod report;
 pub mod results;
 pub mod statistics;
