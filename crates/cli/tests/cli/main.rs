@@ -12,6 +12,7 @@ mod help;
 mod info;
 mod layers;
 mod progress;
+mod reference;
 mod render;
 mod replay;
 #[cfg(unix)]
