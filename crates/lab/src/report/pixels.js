@@ -47,7 +47,7 @@ function fromHalf(bits) {
 const HALVES = Float32Array.from({ length: 65536 }, (_, bits) => fromHalf(bits));
 
 /** An image whose pixels are decoded when they are first asked for. */
-class Image {
+class Picture {
   /** @param {StoredImage} stored */
   constructor(stored) {
     this.stored = stored;
@@ -81,8 +81,8 @@ class Image {
 
 /**
  * For every pixel the mean over the channels of (a - b)² / (b² + 0.01).
- * @param {Image} image
- * @param {Image} reference
+ * @param {Picture} image
+ * @param {Picture} reference
  */
 function relativeErrors(image, reference) {
   const [a, b] = [image.channels, reference.channels];
@@ -98,8 +98,8 @@ function relativeErrors(image, reference) {
 /**
  * The errors of a layer. Null: they are not known.
  * @param {Layer} layer
- * @param {Image} image
- * @param {Image | undefined} reference
+ * @param {Picture} image
+ * @param {Picture | undefined} reference
  */
 function errorsOf(layer, image, reference) {
   const isReference = image === reference;
@@ -158,7 +158,7 @@ const SRGB = Uint8Array.from({ length: 65536 }, (_, step) => {
 
 /**
  * Light as colours: exposed, clipped, and brought to the screen.
- * @param {Image} image
+ * @param {Picture} image
  * @param {number} stops
  * @param {string} curve `srgb` or `linear`.
  * @param {ImageData} target

@@ -40,7 +40,7 @@ class Viewer {
     };
     this.flipButton = byId("flip", HTMLButtonElement);
     this.select.scene.append(...scenes.map((scene) => new Option(scene.name)));
-    /** @type {Image[]} */
+    /** @type {Picture[]} */
     this.images = [];
     /** @type {[number, number] | null} */
     this.pixel = null;
@@ -53,7 +53,7 @@ class Viewer {
   openScene() {
     const scene = this.scenes[this.select.scene.selectedIndex];
     painted.clear();
-    this.images = scene.images.map((stored) => new Image(stored));
+    this.images = scene.images.map((stored) => new Picture(stored));
     for (const select of [this.select.a, this.select.b]) select.replaceChildren(...this.options());
     const reference = this.images.findIndex((image) => image.stored.is_reference);
     const render = this.images.findIndex((image) => !image.stored.is_reference);
@@ -131,7 +131,7 @@ class Viewer {
 
   /**
    * The name of an image with the means of its errors.
-   * @param {Image} image
+   * @param {Picture} image
    */
   described(image) {
     const { layer, reference } = this.view;
@@ -160,7 +160,7 @@ class Viewer {
   showValues() {
     const { a, b, reference } = this.view;
     const place = this.pixel ? `pixel (${this.pixel.join(", ")})` : "pixel: point at the picture";
-    const line = (/** @type {string} */ word, /** @type {Image | undefined} */ image) => {
+    const line = (/** @type {string} */ word, /** @type {Picture | undefined} */ image) => {
       if (!this.pixel || !image) return "";
       const [column, row] = this.pixel;
       if (column >= image.width || row >= image.height) return `${word} has no such pixel`;
