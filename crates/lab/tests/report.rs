@@ -6,6 +6,7 @@
 #[path = "../examples/report/sample.rs"]
 mod sample;
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -31,9 +32,9 @@ fn browser() -> Option<PathBuf> {
 }
 
 /// What a browser says of a page after its scripts have run.
-fn opened(browser: &Path, folder: &Path, address: &str) -> String {
+fn opened(browser: &Path, folder: &Path, address: &str) -> io::Result<String> {
     let dom = folder.join("dom.html");
-    let out = std::fs::File::create(&dom).unwrap();
+    let out = std::fs::File::create(&dom)?;
     let child = Command::new(browser)
         .args([
             "--headless",
@@ -61,23 +62,23 @@ fn opened(browser: &Path, folder: &Path, address: &str) -> String {
         ])
         .stdout(out)
         .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    wait(child);
-    std::fs::read_to_string(dom).unwrap()
+        .spawn()?;
+    wait(child)?;
+    std::fs::read_to_string(dom)
 }
 
 /// Waits for a minute and a half at most.
-fn wait(mut child: Child) {
+fn wait(mut child: Child) -> io::Result<()> {
     let start = Instant::now();
-    while child.try_wait().unwrap().is_none() {
+    while child.try_wait()?.is_none() {
         if start.elapsed() > Duration::from_secs(90) {
-            child.kill().unwrap();
-            child.wait().unwrap();
+            child.kill()?;
+            child.wait()?;
             panic!("the browser does not end");
         }
         std::thread::sleep(Duration::from_millis(50));
     }
+    Ok(())
 }
 
 #[test]
@@ -91,7 +92,7 @@ fn the_viewer_works_in_a_browser() {
     let page = folder.join("report.html");
     std::fs::write(&page, sample::Sample::new().page()).unwrap();
     let address = format!("file://{}#selftest", page.display());
-    let dom = opened(&browser, &folder, &address);
+    let dom = opened(&browser, &folder, &address).unwrap();
 
     let (_, lines) = dom.split_once("<pre id=\"selftest\">").unwrap_or_else(|| {
         panic!(

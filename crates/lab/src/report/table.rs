@@ -212,6 +212,7 @@ mod tests {
 
     #[test]
     fn the_best_of_each_scene_is_marked() {
+        use Rank::{AsGood, Best, None};
         let rows = [
             ("a", interval_cell(1.0, 0.1)),
             ("a", interval_cell(1.15, 0.1)),
@@ -220,7 +221,6 @@ mod tests {
             ("b", Cell::Number(f64::NAN)),
             ("b", interval_cell(6.0, 0.1)),
         ];
-        use Rank::{AsGood, Best, None};
         assert_eq!(
             ranked("relmse", &rows),
             [Best, AsGood, None, None, None, Best]

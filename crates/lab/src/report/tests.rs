@@ -17,7 +17,7 @@ fn table(caption: &str) -> Table {
     }
 }
 
-fn plot(caption: &str, kind: PlotKind, points: &[[f64; 2]]) -> Plot {
+fn curve(caption: &str, kind: PlotKind, points: &[[f64; 2]]) -> Plot {
     let axis = |label: &str| Axis {
         label: label.into(),
         scale: Scale::Log,
@@ -44,7 +44,7 @@ fn claim(id: &str, verdict: Verdict) -> Claim {
         found: format!("found for {id}"),
         method: format!("test of {id}"),
         tables: vec![table(&format!("table of {id}"))],
-        plots: vec![plot(
+        plots: vec![curve(
             &format!("plot of {id}"),
             PlotKind::Lines,
             &[[1.0, 2.0], [10.0, 0.2]],
@@ -116,12 +116,12 @@ fn page(results: &Results) -> String {
         results,
         tables: &[table("a table of none")],
         plots: &[
-            plot(
+            curve(
                 "a plot of none",
                 PlotKind::Histogram,
                 &[[1.0, 3.0], [2.0, 0.0]],
             ),
-            plot("a plot without points", PlotKind::Lines, &[[0.0, 1.0]]),
+            curve("a plot without points", PlotKind::Lines, &[[0.0, 1.0]]),
         ],
         images: &images(),
         command: "bidir experiment <file>",
@@ -213,7 +213,7 @@ fn pixels_are_in_the_page_as_they_are() {
         scenes[0]["images"][1]["name"],
         format!("{HOSTILE} · 64 spp")
     );
-    assert_eq!(scenes[0]["images"][1]["flip"], "AP8=");
+    assert_eq!(scenes[0]["images"][1]["flip"], "AP4=");
 }
 
 #[test]
@@ -245,12 +245,12 @@ fn a_page_of_nothing_is_a_page() {
 
 #[test]
 fn points_without_a_place_are_told() {
-    let some = plot(
+    let some = curve(
         "p",
         PlotKind::Lines,
         &[[1.0, 2.0], [2.0, 0.0], [f64::NAN, 1.0]],
     );
-    let figure = super::plot::figure(&some, "p").to_string();
+    let figure = plot::figure(&some, "p").to_string();
     assert!(figure.contains("left out: 2."), "{figure}");
     assert_eq!(figure.matches("<tr>").count(), 4);
 }
