@@ -24,6 +24,11 @@ def lab(filter_):
     return ("bidir-lab", "--lib", filter_)
 
 
+def experiment(filter_):
+    """Tests of experiments as a host runs them."""
+    return ("bidir-lab", "--test experiment", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)
@@ -369,6 +374,41 @@ MUTATIONS = [
         "p: corrected(p, tests.len())",
         "p: corrected(p, 1)",
         lab("statistics::welch"),
+    ),
+    (
+        "all replicates of an experiment with one seed",
+        "crates/lab/src/experiment/cell.rs",
+        "settings.seed = self.seed;",
+        "settings.seed = 0 * self.seed;",
+        experiment("every_cell"),
+    ),
+    (
+        "equal rays with a pass too many",
+        "crates/lab/src/experiment/cell.rs",
+        "(next - target).abs() < (now - target).abs()",
+        "next.min(target) > 0.0 && now < target * 1.2",
+        experiment("equal_rays"),
+    ),
+    (
+        "training that costs no rays",
+        "crates/lab/src/experiment/cell.rs",
+        "training.map_or(0, |training| training.rays.total())",
+        "training.map_or(0, |training| 0 * training.rays.total())",
+        experiment("training"),
+    ),
+    (
+        "records of another experiment gone on from",
+        "crates/lab/src/experiment/run.rs",
+        "spec.name,\n            stage.digest,",
+        "spec.name,\n            0,",
+        experiment("another_experiment"),
+    ),
+    (
+        "ratios of other seeds",
+        "crates/lab/src/experiment/analysis/mod.rs",
+        "b.iter().find(|b| b.seed == a.seed)?",
+        "b.iter().find(|b| b.seed != a.seed)?",
+        lab("analysis"),
     ),
     (
         "both estimators of a reference with the same seeds",
