@@ -29,6 +29,11 @@ def lab(filter_):
     return ("bidir-lab", "--lib", filter_)
 
 
+def experiment(filter_):
+    """Tests of experiments as a host runs them."""
+    return ("bidir-lab", "--test experiment", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)
@@ -418,5 +423,68 @@ MUTATIONS = [
         "p: corrected(p, tests.len())",
         "p: corrected(p, 1)",
         lab("statistics::welch"),
+    ),
+    (
+        "all replicates of an experiment with one seed",
+        "crates/lab/src/experiment/cell.rs",
+        "settings.seed = self.seed;",
+        "settings.seed = 0 * self.seed;",
+        experiment("every_cell"),
+    ),
+    (
+        "equal rays with a pass too many",
+        "crates/lab/src/experiment/cell.rs",
+        "(next - target).abs() < (now - target).abs()",
+        "next.min(target) > 0.0 && now < target * 1.2",
+        experiment("equal_rays"),
+    ),
+    (
+        "training that costs no rays",
+        "crates/lab/src/experiment/cell.rs",
+        "training.map_or(0, |training| training.rays.total())",
+        "training.map_or(0, |training| 0 * training.rays.total())",
+        experiment("training"),
+    ),
+    (
+        "records of another experiment gone on from",
+        "crates/lab/src/experiment/run.rs",
+        "spec.name,\n            stage.digest,",
+        "spec.name,\n            0,",
+        experiment("another_experiment"),
+    ),
+    (
+        "ratios of other seeds",
+        "crates/lab/src/experiment/analysis/mod.rs",
+        "b.iter().find(|b| b.seed == a.seed)?",
+        "b.iter().find(|b| b.seed != a.seed)?",
+        lab("analysis"),
+    ),
+    (
+        "both estimators of a reference with the same seeds",
+        "crates/lab/src/reference/make.rs",
+        "settings.seed.wrapping_mul(2).wrapping_add(index)",
+        "settings.seed.wrapping_mul(2).wrapping_add(0 * index)",
+        lab("reference::tests"),
+    ),
+    (
+        "all replicates of a reference with the same seed",
+        "crates/lab/src/reference/replicate.rs",
+        "seed: self.settings.seed.wrapping_add(replicate),",
+        "seed: self.settings.seed.wrapping_add(0 * replicate),",
+        lab("reference::tests"),
+    ),
+    (
+        "references whose estimators disagree are taken",
+        "crates/lab/src/reference/provenance.rs",
+        "if *agree && *p >= LEVEL {",
+        "if *agree || *p < LEVEL {",
+        lab("reference::tests"),
+    ),
+    (
+        "a reference is that of any scene",
+        "crates/lab/src/reference/provenance.rs",
+        "if self.scene_digest != digest {",
+        "if self.scene_digest.len() != digest.len() {",
+        lab("reference::tests"),
     ),
 ]

@@ -9,6 +9,7 @@ mod compare;
 mod console;
 mod denoise;
 mod exit;
+mod experiment;
 mod farm;
 mod film;
 mod film_header;
@@ -17,6 +18,7 @@ mod lock;
 mod output;
 mod progress;
 mod pyramid;
+mod reference;
 mod render;
 mod replay;
 mod scene_io;
@@ -54,9 +56,12 @@ fn main() -> ExitCode {
 fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
         Command::Render(args) => render::run(args, console)
-            .inspect_err(|failure| progress::tell_failure(&args.output, failure)),
+            .inspect_err(|failure| progress::tell_failure(args.output.talk, failure)),
+        Command::Reference(args) => reference::run(args, console)
+            .inspect_err(|failure| progress::tell_failure(args.talk, failure)),
         Command::Info(args) => info::run(args, console),
         Command::Compare(args) => compare::run(args),
+        Command::Experiment(args) => experiment::run(args, console),
         Command::Film(command) => film::run(command, console),
         Command::Merge(args) => film::merge(args),
         Command::Missing(args) => film::missing(args, console),

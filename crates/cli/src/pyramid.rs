@@ -96,7 +96,7 @@ impl Kind {
 pub(crate) fn write(files: &Files, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = film_header::metadata(header);
     scene_io::write_exr(&files.exr, film.settings(), &developed(film), &metadata)?;
-    let scene = film_header::file_name(&header.scene);
+    let scene = header.scene_name();
     for (path, kind) in [(&files.weighted, Kind::Weighted), (&files.raw, Kind::Raw)] {
         let caption = kind.caption(&scene, film.passes().len());
         scene_io::write_screen(path, &sheet::draw(&caption, &rows(film, kind)))?;

@@ -62,7 +62,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
 }
 
 /// The threads that build the scene; the session has its own.
-fn set_threads(threads: u16) -> Result<(), Failure> {
+pub(crate) fn set_threads(threads: u16) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.into())
         .build_global()
@@ -184,7 +184,7 @@ impl Job<'_> {
     }
 
     fn display(&self) -> Display {
-        self.console.display(&self.args.output)
+        self.console.display(self.args.output.talk)
     }
 
     /// Writes the film file where it is time, and the image too where a signal asks for it. What
@@ -240,7 +240,7 @@ impl Job<'_> {
     fn tell(&self, report: &Report, keeper: &Keeper) {
         let warnings = report.warning().into_iter().chain(report.raw_warning());
         warnings.for_each(|warning| self.console.warning(warning));
-        if !self.args.output.quiet {
+        if !self.args.output.talk.quiet {
             let film = keeper.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
             let files = if names.is_empty() {

@@ -109,7 +109,7 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
 
 /// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no
 /// fault of the scene, but what it names and is not there is.
-fn exit_of_scene(error: &formats::Error) -> Exit {
+pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
         ErrorKind::Options => Exit::Usage,
         ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,
@@ -122,6 +122,30 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     let image = formats::image::read(path, None)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))?;
     Ok(Pixels::from(&image))
+}
+
+/// The layers of an image that tell how sure it is. None: it has no such.
+pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
+    let layers = formats::image::read_layers(path).ok()?;
+    let pixels = Pixels {
+        size: layers.size(),
+        data: layers.triples(["Variance.R", "Variance.G", "Variance.B"])?,
+    };
+    let samples = layers.channel("Samples")?.into_iter();
+    let fewest = samples.fold(f32::INFINITY, f32::min);
+    Some(Variance {
+        pixels,
+        freedom: f64::from(fewest) - 1.0,
+    })
+}
+
+/// How sure an image is.
+#[derive(Clone, Debug)]
+pub(crate) struct Variance {
+    /// The variance of every pixel's mean.
+    pub(crate) pixels: Pixels,
+    /// The degrees of freedom of the variances.
+    pub(crate) freedom: f64,
 }
 
 /// A developed film: the picture with the images beside it.

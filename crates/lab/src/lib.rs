@@ -1,17 +1,23 @@
 //! Experiments: images become numbers, and numbers get confidence.
 //!
+//! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
+//! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
+//! - [`report`]: what an experiment found, as a page for people.
 //! - [`results`]: what an experiment found, as it is written down.
 //! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
 //!   renders have the same expectation.
 //!
-//! The library reads no file and knows no scene: who has images can ask. Everything is a function of
-//! its arguments; where random numbers are drawn their seed is fixed.
+//! All but [`experiment`] and [`reference`](mod@reference) read no file and know no scene: who has images can
+//! ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
 
+pub mod experiment;
 pub mod flip;
 pub mod image;
 pub mod metric;
+pub mod reference;
+pub mod report;
 pub mod results;
 pub mod statistics;

@@ -2,10 +2,12 @@
 
 mod compare;
 mod denoise;
+mod experiment;
 mod farm;
 mod film;
 mod layers;
 mod long;
+mod reference;
 mod render;
 mod sources;
 mod tonemap;
@@ -13,12 +15,14 @@ mod values;
 
 pub(crate) use compare::{CompareArgs, MetricArgs};
 pub(crate) use denoise::DenoiseArgs;
+pub(crate) use experiment::ExperimentArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use long::{LongArgs, Part};
-pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, OutputArgs, RenderArgs};
+pub(crate) use reference::ReferenceArgs;
+pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use tonemap::TonemapArgs;
-pub(crate) use values::{Duration, ReplayTarget};
+pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
 
 use crate::exit::Exit;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};
@@ -82,6 +86,21 @@ pub(crate) enum Command {
     /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and
     /// textures, its extent, and the memory that rendering takes.
     Info(InfoArgs),
+    /// Render a reference: a picture that others can be measured against.
+    ///
+    /// Two estimators that could disagree render the scene, each in 16 replicates with seeds of
+    /// their own. Welch's t-test compares the replicates of both, on the mean of the film and on
+    /// blocks of pixels, with Šidák's correction at level 0.001; where it finds a difference, the
+    /// command exits with 6, and what was written is refused as a reference.
+    ///
+    /// The folder gets `picture.exr`, the mean of the first estimator with its variance,
+    /// `against.exr`, that of the second, `provenance.json`, which tells how it was made and whether
+    /// both agree, and `films`, from which samples can be added. `bidir compare --reference` takes the
+    /// folder.
+    ///
+    /// Ctrl-C ends after the running pass with exit code 75: the same command goes on. Whatever was
+    /// stopped or extended, the bits are those of a reference that was made at once.
+    Reference(Box<ReferenceArgs>),
     /// Compare image A with the reference B, or images of several seeds with one reference.
     ///
     /// Prints, over red, green and blue of all pixels: the root of the mean square error (rmse), the
@@ -90,10 +109,26 @@ pub(crate) enum Command {
     /// (`mean_ratio`), and whether both have the same size and the same bits (identical); with --flip,
     /// the mean difference that is seen (flip, `flip_hdr`).
     ///
+    /// Where both have variances, as images of `render --aov variance,samples` and references have, two
+    /// tests tell whether the difference is noise: `z_pixels` over all pixels and `z_blocks` over
+    /// blocks of them, each with p, the probability of so large a difference where both have the same
+    /// expectation, and the place of the largest difference. Below 0.001 it is hardly noise; of images
+    /// of few samples with fireflies the variances are too small, and so is p.
+    ///
     /// With several images and --reference, each number is the mean over the images, between the
     /// bounds of its 95 % interval, by Student's t distribution: the images have to be renders of
     /// independent seeds.
     Compare(CompareArgs),
+    /// Compare methods: scenes × methods × budgets × seeds, from a description in TOML.
+    ///
+    /// Every render is compared with the reference of its scene. Prints tables of means over the seeds
+    /// and of ratios to the first method, which are paired by seed, with 95 % intervals; writes
+    /// results.json with every record, report.html, records.ndjson to go on from, and the images of
+    /// the first seed.
+    ///
+    /// Budgets are equal samples, equal rays or equal time. Ctrl-C ends after the running pass with
+    /// exit code 75: the same command goes on.
+    Experiment(ExperimentArgs),
     /// Tell what is in film files, develop them to images, or check them.
     #[command(subcommand)]
     Film(FilmCommand),

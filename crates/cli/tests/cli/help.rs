@@ -41,9 +41,18 @@ fn every_flag_is_described() {
         "--help --isa --json --lenient --no-color --strict --version",
     );
     check_flags(
+        "reference",
+        "--against --crop --cropwindow --estimator --extend --help --isa --lenient --no-color --output \
+         --pixelbounds --progress --quiet --restart --size --spp --strict --threads --version",
+    );
+    check_flags(
         "compare",
         "--error-map --error-max --exact --flip --help --json --metric --no-color --reference --resample \
          --version",
+    );
+    check_flags(
+        "experiment",
+        "--help --no-color --output --quick --quiet --restart --threads --version",
     );
     check_flags(
         "tonemap",

@@ -5,6 +5,7 @@
 mod common;
 mod compare;
 mod denoise;
+mod experiment;
 mod failures;
 mod farm;
 mod film;
@@ -12,6 +13,7 @@ mod help;
 mod info;
 mod layers;
 mod progress;
+mod reference;
 mod render;
 mod replay;
 #[cfg(unix)]

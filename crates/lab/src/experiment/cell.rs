@@ -1,0 +1,203 @@
+//! One render of an experiment, and its record.
+
+use super::error::ExperimentError;
+use super::names::file_name;
+use super::run::Observer;
+use super::stage::{Reference, Stage};
+use super::{BudgetSpec, MethodSpec};
+use crate::image::{Pair, Pixels};
+use crate::metric::Metric;
+use crate::results::{BudgetKind, Rays, Record};
+use bidir::driver::Session;
+use bidir::film::Picture;
+use formats::image::{ExrImage, ExrLayer};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// What is rendered.
+#[derive(Clone, Copy)]
+pub(super) struct Cell<'a> {
+    pub(super) stage: &'a Stage<'a>,
+    pub(super) method: &'a MethodSpec,
+    pub(super) budget: &'a BudgetSpec,
+    pub(super) seed: u64,
+}
+
+/// What was rendered.
+pub(super) struct Rendered {
+    picture: Picture,
+    spp: u64,
+    seconds: f64,
+    rays: Rays,
+    connections_blocked: u64,
+}
+
+impl Cell<'_> {
+    /// Renders until the budget is used up. None: the observer stopped it.
+    pub(super) fn render(
+        &self,
+        threads: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Rendered>, ExperimentError> {
+        let mut settings = self.method.changes.apply(&self.stage.settings);
+        settings.seed = self.seed;
+        let begin = observer.seconds();
+        let mut session = self.stage.session(settings, threads)?;
+        let mut seconds = observer.seconds() - begin;
+        let training = seconds;
+        while self.goes_on(&session, seconds, training) {
+            if observer.should_stop() {
+                return Ok(None);
+            }
+            let begin = observer.seconds();
+            session.step(&());
+            seconds += observer.seconds() - begin;
+        }
+        Ok(Some(Rendered {
+            picture: session.film().develop(),
+            spp: session.next_pass(),
+            seconds,
+            rays: rays(&session),
+            connections_blocked: session.stats().connections_blocked,
+        }))
+    }
+
+    /// Whether another pass is rendered.
+    fn goes_on(&self, session: &Session<'_>, seconds: f64, training: f64) -> bool {
+        let passes = session.next_pass();
+        match self.budget.kind {
+            BudgetKind::Samples => (passes as f64) < self.budget.amount,
+            BudgetKind::Seconds => {
+                another(passes, seconds, training, |next| next <= self.budget.amount)
+            }
+            BudgetKind::Rays => {
+                let rays = rays(session);
+                let target = self.budget.amount * self.stage.scene.film().crop.area() as f64;
+                let now = rays.total() as f64;
+                let is_nearer = |next: f64| (next - target).abs() < (now - target).abs();
+                another(passes, now, rays.training as f64, is_nearer)
+            }
+        }
+    }
+
+    /// What there is to know about a render.
+    pub(super) fn record(
+        &self,
+        rendered: &Rendered,
+        reference: &Reference,
+        metrics: &[Metric],
+    ) -> Record {
+        let metrics = self.metrics(&rendered.picture, reference, metrics);
+        let mse = metrics.get("rmse").map_or(f64::NAN, |rmse| rmse * rmse);
+        Record {
+            scene: self.stage.spec.name.clone(),
+            method: self.method.name.clone(),
+            budget: self.budget.name.clone(),
+            seed: self.seed,
+            spp: rendered.spp,
+            seconds: rendered.seconds,
+            rays: rendered.rays,
+            connections_blocked: rendered.connections_blocked,
+            metrics,
+            efficiency_rays: efficiency(mse, rendered.rays.total() as f64),
+            efficiency_seconds: efficiency(mse, rendered.seconds),
+            image: None,
+        }
+    }
+
+    /// The distances that are numbers; JSON has no others.
+    fn metrics(
+        &self,
+        picture: &Picture,
+        reference: &Reference,
+        metrics: &[Metric],
+    ) -> BTreeMap<String, f64> {
+        let image = Pixels {
+            size: self.stage.size(),
+            data: picture.pixels.clone(),
+        };
+        let Some(pair) = Pair::new(&image, &reference.pixels) else {
+            return BTreeMap::new();
+        };
+        let wanted = |metric| metric == Metric::Rmse || metrics.contains(&metric);
+        let names = Metric::NAMES.into_iter();
+        let names = names.filter(|(_, metric)| wanted(*metric));
+        let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
+        values.filter(|(_, value)| value.is_finite()).collect()
+    }
+
+    /// The name of its image, relative to the folder of the results.
+    pub(super) fn image(&self) -> String {
+        let names = [&self.stage.spec.name, &self.budget.name, &self.method.name];
+        let [scene, budget, method] = names.map(|name| file_name(name));
+        // Two hyphens in no part: other names are other files.
+        format!("images/{scene}--{budget}--{method}.exr")
+    }
+}
+
+impl Rendered {
+    pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
+        write_image(path, &self.picture)
+    }
+}
+
+/// Whether another pass is rendered after `passes`, with the cost `now` of which `training` was before
+/// the first, where `is_wanted` tells of the cost after it. There is always a first pass.
+fn another(passes: u64, now: f64, training: f64, is_wanted: impl Fn(f64) -> bool) -> bool {
+    passes == 0 || is_wanted(now + (now - training) / passes as f64)
+}
+
+/// 1 / (MSE · cost); zero where the error is not known, and the largest number where there is none.
+fn efficiency(mse: f64, cost: f64) -> f64 {
+    let efficiency = 1.0 / (mse * cost);
+    if efficiency.is_nan() {
+        return 0.0;
+    }
+    efficiency.min(f64::MAX)
+}
+
+fn rays(session: &Session<'_>) -> Rays {
+    let rays = session.stats().rays;
+    let training = session.training();
+    Rays {
+        camera: rays.camera,
+        light: rays.light,
+        connection: rays.connection,
+        light_image: rays.light_image,
+        training: training.map_or(0, |training| training.rays.total()),
+    }
+}
+
+/// Writes a picture as EXR.
+pub(super) fn write_image(path: &Path, picture: &Picture) -> Result<(), ExperimentError> {
+    let layer = ExrLayer {
+        name: "",
+        channels: &["R", "G", "B"],
+        data: picture.pixels.as_flattened(),
+    };
+    let image = ExrImage {
+        resolution: [picture.width, picture.height],
+        crop: [0, 0, picture.width, picture.height],
+        layers: &[layer],
+        metadata: &[],
+    };
+    Ok(formats::image::write_exr(path, &image)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pass_more_costs_what_passes_cost() {
+        assert!(another(0, 9.0, 9.0, |_| false));
+        // Two passes of 3 after training of 4.
+        assert!(another(2, 10.0, 4.0, |next| (next - 13.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn efficiency_is_always_a_number() {
+        assert!((efficiency(0.5, 4.0) - 0.5).abs() < 1e-12);
+        assert!(efficiency(0.0, 4.0).is_finite() && efficiency(f64::NAN, 1.0).is_finite());
+    }
+}

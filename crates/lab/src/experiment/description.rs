@@ -1,0 +1,239 @@
+//! From TOML to an [`Experiment`].
+
+use super::error::ExperimentError;
+use super::names::file_name;
+use super::reader::{Entry, Section, Source};
+use super::settings::{Changes, named};
+use super::{BudgetSpec, Experiment, MethodSpec, ReferenceSpec, SceneSpec, Seeds};
+use crate::metric::Metric;
+use crate::results::BudgetKind;
+use std::path::Path;
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// Where no number of seeds is given.
+const SEEDS: u64 = 10;
+
+impl Experiment {
+    /// Reads a description; `file` is what messages call it, and its scenes are relative to its folder.
+    ///
+    /// Errors: [`ExperimentError::Description`], with line and column.
+    pub fn read(text: &str, file: &Path) -> Result<Self> {
+        let mut top = Source { file, text }.parse()?;
+        let defaults = match top.sections("settings")?.pop() {
+            Some(mut section) => {
+                let changes = changes(&mut section)?;
+                section.finish()?;
+                changes
+            }
+            None => Changes::default(),
+        };
+        let folder = formats::file::folder_of(file);
+        let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
+        let method = |section: &mut Section<'_>| method(section, &defaults);
+        let experiment = Self {
+            title: or(text_of(&mut top, "title")?, "Experiment"),
+            description: or(text_of(&mut top, "description")?, ""),
+            size: size(&mut top)?,
+            seeds: seeds(&mut top)?,
+            threads: whole(&mut top, "threads", 1)?.unwrap_or(0).min(1024) as usize,
+            metrics: metrics(&mut top)?,
+            scenes: all(&mut top, "scene", scene)?,
+            methods: all(&mut top, "method", method)?,
+            budgets: all(&mut top, "budget", budget)?,
+        };
+        top.finish()?;
+        Ok(experiment)
+    }
+}
+
+fn or(text: Option<String>, default: &str) -> String {
+    text.unwrap_or_else(|| default.to_owned())
+}
+
+fn text_of(section: &mut Section<'_>, key: &'static str) -> Result<Option<String>> {
+    let entry = section.take(key);
+    let text = entry.map(|entry| entry.text().map(|text| text.trim().to_owned()));
+    text.transpose()
+}
+
+fn whole(section: &mut Section<'_>, key: &'static str, least: u64) -> Result<Option<u64>> {
+    let entry = section.take(key);
+    entry.map(|entry| entry.whole(least)).transpose()
+}
+
+/// Width and height, written `64x48`.
+fn size(section: &mut Section<'_>) -> Result<Option<[u32; 2]>> {
+    let read = |text: &str| {
+        let sides = text.split_once(['x', 'X']);
+        let side = |side: &str| side.trim().parse().ok().filter(|side| *side > 0);
+        let size = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
+        size.ok_or_else(|| "expected WIDTHxHEIGHT, such as 320x240".to_owned())
+    };
+    let entry = section.take("size");
+    entry.map(|entry| entry.read(read)).transpose()
+}
+
+fn seeds(top: &mut Section<'_>) -> Result<Seeds> {
+    Ok(Seeds {
+        first: whole(top, "first-seed", 0)?.unwrap_or(0),
+        count: whole(top, "seeds", 1)?.unwrap_or(SEEDS),
+    })
+}
+
+/// The metrics beside `rmse`, which there always is.
+fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
+    let Some(entry) = top.take("metrics") else {
+        return Ok(vec![Metric::Relmse, Metric::RelmseTrimmed]);
+    };
+    let mut metrics = Vec::new();
+    for entry in entry.texts()? {
+        let metric = entry.read(|name| named(&Metric::NAMES, name))?;
+        if metric != Metric::Rmse && !metrics.contains(&metric) {
+            metrics.push(metric);
+        }
+    }
+    Ok(metrics)
+}
+
+/// What all tables `[[key]]` say, of which there is one at least; names differ also in files.
+fn all<'a, T: Named>(
+    top: &mut Section<'a>,
+    key: &'static str,
+    mut read: impl FnMut(&mut Section<'a>) -> Result<T>,
+) -> Result<Vec<T>> {
+    let mut all: Vec<T> = Vec::new();
+    for mut section in top.sections(key)? {
+        let one = read(&mut section)?;
+        let name = file_name(one.name());
+        if name.is_empty() {
+            return Err(section.fault("a name needs a letter or a digit"));
+        }
+        if all.iter().any(|other| file_name(other.name()) == name) {
+            let message = format!("there is another {key} `{}`", one.name());
+            return Err(section.fault(message));
+        }
+        section.finish()?;
+        all.push(one);
+    }
+    if all.is_empty() {
+        return Err(top.fault(format!("there is no [[{key}]]")));
+    }
+    Ok(all)
+}
+
+/// What has a name.
+trait Named {
+    fn name(&self) -> &str;
+}
+
+impl Named for SceneSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Named for MethodSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl Named for BudgetSpec {
+    fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// The settings of a table, under the names of flags.
+fn changes(section: &mut Section<'_>) -> Result<Changes> {
+    let mut changes = Changes::default();
+    for name in Changes::NAMES {
+        if let Some(entry) = section.take(name) {
+            entry.read(|value| changes.set(name, value))?;
+        }
+    }
+    Ok(changes)
+}
+
+fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
+    Ok(MethodSpec {
+        name: section.need("name")?.text()?.to_owned(),
+        changes: changes(section)?.or(defaults),
+    })
+}
+
+fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result<SceneSpec> {
+    let file = section.need("file")?.text()?.to_owned();
+    let stem = Path::new(&file).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    Ok(SceneSpec {
+        name: or(text_of(section, "name")?, &stem),
+        path: folder.join(&file),
+        size: size(section)?,
+        reference: reference(section, folder, defaults)?,
+        file,
+    })
+}
+
+/// A reference that is there, or how many samples the one that is made has.
+fn reference(
+    section: &mut Section<'_>,
+    folder: &Path,
+    defaults: &Changes,
+) -> Result<ReferenceSpec> {
+    let image = section.take("reference");
+    let spp = section.take("reference-spp");
+    let strategies = section.take("reference-strategies");
+    match (image, spp) {
+        (Some(image), None) => match strategies {
+            Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),
+            None => Ok(ReferenceSpec::There(folder.join(image.text()?))),
+        },
+        (None, Some(spp)) => Ok(ReferenceSpec::Make {
+            spp: spp.whole(1)?,
+            changes: Box::new(reference_changes(strategies, defaults)?),
+        }),
+        (Some(_), Some(spp)) => Err(spp.fault("there is a `reference` already")),
+        (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
+    }
+}
+
+/// What decides the expectation of the images is that of all methods.
+fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Changes) -> Result<Changes> {
+    let mut changes = Changes {
+        strategies: defaults.strategies.clone(),
+        max_depth: defaults.max_depth,
+        ..Changes::default()
+    };
+    if let Some(entry) = strategies {
+        entry.read(|value| changes.set("strategies", value))?;
+    }
+    Ok(changes)
+}
+
+fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
+    let name = text_of(section, "name")?;
+    let kinds = [
+        ("samples", BudgetKind::Samples),
+        ("rays", BudgetKind::Rays),
+        ("seconds", BudgetKind::Seconds),
+    ];
+    let mut budgets = Vec::new();
+    for (key, kind) in kinds {
+        if let Some(entry) = section.take(key) {
+            let amount = match kind {
+                BudgetKind::Samples => entry.whole(1)? as f64,
+                _ => entry.positive()?,
+            };
+            budgets.push(BudgetSpec::new(kind, amount));
+        }
+    }
+    let (Some(budget), true) = (budgets.pop(), budgets.is_empty()) else {
+        return Err(section.fault("expected one of `samples`, `rays` and `seconds`"));
+    };
+    Ok(BudgetSpec {
+        name: name.unwrap_or_else(|| budget.name.clone()),
+        ..budget
+    })
+}

@@ -1,0 +1,96 @@
+//! What keeps an experiment from its results.
+
+use crate::reference;
+use bidir::driver::SessionError;
+use std::fmt;
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// What keeps an experiment from its results, by whose fault it is.
+#[derive(Debug, Error)]
+pub enum ExperimentError {
+    /// The description is wrong.
+    #[error("{0}")]
+    Description(Fault),
+    /// A scene cannot be read, or a file not be read or written.
+    #[error(transparent)]
+    File(#[from] formats::Error),
+    /// The folder of the results cannot be made or read.
+    #[error("{}: {error}", path.display())]
+    Folder {
+        /// What cannot be made or read.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The folder has the records of another experiment.
+    #[error("{}: the records are of another experiment", .0.display())]
+    Mismatch(PathBuf),
+    /// An image has another size than its reference.
+    #[error("{}: the reference of `{scene}` has {} x {} pixels, its images have {} x {}",
+        path.display(), found[0], found[1], expected[0], expected[1])]
+    Size {
+        /// The reference.
+        path: PathBuf,
+        /// The scene.
+        scene: String,
+        /// Width and height of the reference.
+        found: [usize; 2],
+        /// Width and height of the images.
+        expected: [usize; 2],
+    },
+    /// A reference cannot be made or used.
+    #[error("the reference of scene `{scene}`: {error}")]
+    Reference {
+        /// The scene.
+        scene: String,
+        /// Why.
+        error: reference::Error,
+    },
+    /// A render cannot begin.
+    #[error("scene `{scene}`: {error}")]
+    Render {
+        /// The scene.
+        scene: String,
+        /// Why.
+        error: SessionError,
+    },
+}
+
+impl ExperimentError {
+    /// What to do about it. None: where the message says all there is to say.
+    pub fn hint(&self) -> Option<&str> {
+        match self {
+            Self::Description(fault) => fault.hint.as_deref(),
+            Self::File(error) => error.hint(),
+            Self::Mismatch(_) => {
+                Some("give another folder with -o, or begin anew in this one with --restart")
+            }
+            Self::Size { .. } => Some("give the scene the size of its reference"),
+            _ => None,
+        }
+    }
+}
+
+/// Something wrong in a description. Its text is `file:line:column: message`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, counted from 1.
+    pub line: usize,
+    /// The column, counted from 1, in characters.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub hint: Option<String>,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { line, column, .. } = self;
+        write!(f, "{}:{line}:{column}: ", self.file.display())?;
+        write!(f, "{}", self.message)
+    }
+}

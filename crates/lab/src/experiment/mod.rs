@@ -1,0 +1,189 @@
+//! An experiment: scenes × methods × budgets × seeds, each rendered and compared with a reference.
+//!
+//! - [`Experiment`]: the description, from TOML by [`Experiment::read`] or made by hand.
+//! - [`run`]: renders what no record has yet, and gives [`Results`](crate::results::Results).
+//! - [`analysis`]: what the records say, as tables and plots.
+//!
+//! # The folder of the results
+//!
+//! | file | is |
+//! |---|---|
+//! | `records.ndjson` | whose records these are, and a record per line; replaced after each render |
+//! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
+//! | `images/` | the pictures of the first seed, EXR |
+//! | `references/` | references that were made here |
+//!
+//! # Budgets
+//!
+//! With r̄ the mean cost of the passes so far, of training too, a render of the cost c goes on
+//!
+//! - to equal *samples* n: while there are fewer than n passes;
+//! - to equal *rays* R: while c + r̄ is nearer to R than c is. Rays are functions of scene, settings and
+//!   seed, so that the number of passes is;
+//! - for equal *time* T: while c + r̄ ≤ T. Only training and passes are timed.
+//!
+//! There is always a first pass. As a number of passes that depends on the passes is slightly
+//! correlated with them, rays and time have a bias of the order 1 / passes.
+//!
+//! # Order
+//!
+//! Seeds are outermost, then scenes, budgets, methods: where a shared machine gets slower with the
+//! hours, all methods do. A seed is the same for all methods, whose records are paired by it.
+
+pub mod analysis;
+mod cell;
+mod description;
+mod error;
+mod journal;
+mod names;
+mod reader;
+mod reference;
+mod run;
+mod settings;
+mod stage;
+
+pub use error::{ExperimentError, Fault};
+pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
+pub use settings::{Changes, texts};
+
+use crate::metric::Metric;
+use crate::results::BudgetKind;
+use std::path::PathBuf;
+
+/// What is compared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Experiment {
+    /// What it is about.
+    pub title: String,
+    /// A few sentences on what is compared and why.
+    pub description: String,
+    /// Width and height of all images, instead of the scenes'. Unit: pixels.
+    pub size: Option<[u32; 2]>,
+    /// Seeds; there is at least one.
+    pub seeds: Seeds,
+    /// Threads of each render; 0 is one per processor.
+    pub threads: usize,
+    /// What is computed of each image beside the root mean square error.
+    pub metrics: Vec<Metric>,
+    /// The scenes; there is at least one.
+    pub scenes: Vec<SceneSpec>,
+    /// The methods, of which ratios are relative to the first; there is at least one.
+    pub methods: Vec<MethodSpec>,
+    /// The budgets; there is at least one.
+    pub budgets: Vec<BudgetSpec>,
+}
+
+/// Successive seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seeds {
+    /// The first.
+    pub first: u64,
+    /// How many.
+    pub count: u64,
+}
+
+/// A scene of an experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSpec {
+    /// Its name, unlike all others also as part of a file's name.
+    pub name: String,
+    /// The file, as messages and results call it.
+    pub file: String,
+    /// Where the file is.
+    pub path: PathBuf,
+    /// Width and height of its images, instead of those of the experiment or of the scene.
+    pub size: Option<[u32; 2]>,
+    /// What its images are compared with.
+    pub reference: ReferenceSpec,
+}
+
+/// What images are compared with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReferenceSpec {
+    /// The folder of a [reference](mod@crate::reference) that is there, or an image.
+    There(PathBuf),
+    /// A reference that is made first, and kept in the folder of the results: by `bdpt` that traces
+    /// every connection, with a witness.
+    Make {
+        /// Samples per pixel.
+        spp: u64,
+        /// Settings on which the expectation depends, such as the strategies that take part.
+        changes: Box<Changes>,
+    },
+}
+
+/// A method: how scenes are rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodSpec {
+    /// Its name, unlike all others.
+    pub name: String,
+    /// What it wants otherwise than the scene.
+    pub changes: Changes,
+}
+
+/// What is equal for all methods.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BudgetSpec {
+    /// Its name, unlike all others.
+    pub name: String,
+    /// What is counted.
+    pub kind: BudgetKind,
+    /// How much of it: samples per pixel, rays per pixel, or seconds. Range: above 0.
+    pub amount: f64,
+}
+
+impl BudgetSpec {
+    /// A budget with the name that tells it, such as `64 spp`.
+    pub fn new(kind: BudgetKind, amount: f64) -> Self {
+        let unit = match kind {
+            BudgetKind::Samples => "spp",
+            BudgetKind::Rays => "rays per pixel",
+            BudgetKind::Seconds => "s",
+        };
+        Self {
+            name: format!("{amount} {unit}"),
+            kind,
+            amount,
+        }
+    }
+}
+
+impl Experiment {
+    /// How many renders there are, but those of references.
+    pub fn cells(&self) -> usize {
+        self.seeds.count as usize * self.scenes.len() * self.budgets.len() * self.methods.len()
+    }
+
+    /// The same in little time, to see whether it works: at most three seeds, sizes of at most 64
+    /// pixels, an eighth of the samples of budgets and references.
+    #[must_use]
+    pub fn quick(mut self) -> Self {
+        self.seeds.count = self.seeds.count.min(3);
+        let own = self.size;
+        self.size = Some(small(own.unwrap_or([64, 48])));
+        for scene in &mut self.scenes {
+            match &mut scene.reference {
+                // An image that is there has the size that it has.
+                ReferenceSpec::There(_) => scene.size = scene.size.or(own),
+                ReferenceSpec::Make { spp, .. } => {
+                    scene.size = scene.size.map(small);
+                    *spp = spp.div_ceil(8);
+                }
+            }
+        }
+        let budgets = self.budgets.iter().map(|budget| {
+            let amount = budget.amount / 8.0;
+            let is_whole = budget.kind == BudgetKind::Samples;
+            BudgetSpec::new(budget.kind, if is_whole { amount.ceil() } else { amount })
+        });
+        self.budgets = budgets.collect();
+        self.budgets.dedup();
+        self
+    }
+}
+
+/// A size of the same shape, of at most 64 pixels.
+fn small(size: [u32; 2]) -> [u32; 2] {
+    let shrink = size[0].max(size[1]).div_ceil(64).max(1);
+    size.map(|side| (side / shrink).max(1))
+}

@@ -1,0 +1,203 @@
+//! Tables of TOML, and where in the file everything stands.
+//!
+//! A [`Section`] remembers which keys were asked for, so that every other one is refused with the
+//! nearest of them.
+
+use super::error::{ExperimentError, Fault};
+use super::names::nearest;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// A text that is read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) file: &'a Path,
+    pub(super) text: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// The whole text as a table.
+    pub(super) fn parse(self) -> Result<Section<'a>> {
+        let table = DeTable::parse(self.text).map_err(|error| {
+            let place = error.span().unwrap_or(0..0);
+            self.fault(place, error.message().replace('\n', ", "), None)
+        })?;
+        Ok(Section {
+            source: self,
+            place: 0..0,
+            table: table.into_inner(),
+            known: Vec::new(),
+        })
+    }
+
+    /// An error at a place.
+    fn fault(self, place: Range<usize>, message: String, hint: Option<String>) -> ExperimentError {
+        let before = self.text.get(..place.start).unwrap_or(self.text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        ExperimentError::Description(Fault {
+            file: self.file.to_owned(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            message,
+            hint,
+        })
+    }
+}
+
+/// A table.
+#[derive(Debug)]
+pub(super) struct Section<'a> {
+    source: Source<'a>,
+    /// Its head.
+    place: Range<usize>,
+    /// What was not asked for yet.
+    table: DeTable<'a>,
+    known: Vec<&'static str>,
+}
+
+/// A value with its place.
+#[derive(Debug)]
+pub(super) struct Entry<'a> {
+    source: Source<'a>,
+    place: Range<usize>,
+    value: DeValue<'a>,
+}
+
+impl<'a> Section<'a> {
+    /// The value of a key.
+    pub(super) fn take(&mut self, key: &'static str) -> Option<Entry<'a>> {
+        self.known.push(key);
+        self.table
+            .remove(key)
+            .map(|value| Entry::new(self.source, value))
+    }
+
+    /// The value of a key that has to be there.
+    pub(super) fn need(&mut self, key: &'static str) -> Result<Entry<'a>> {
+        self.take(key)
+            .ok_or_else(|| self.fault(format!("`{key}` is missing")))
+    }
+
+    /// All tables `[[key]]`, or the one `[key]`.
+    pub(super) fn sections(&mut self, key: &'static str) -> Result<Vec<Self>> {
+        let Some(entry) = self.take(key) else {
+            return Ok(Vec::new());
+        };
+        match entry.value {
+            DeValue::Array(array) => {
+                let entries = array
+                    .into_iter()
+                    .map(|value| Entry::new(entry.source, value));
+                entries.map(Entry::section).collect()
+            }
+            _ => Ok(vec![entry.section()?]),
+        }
+    }
+
+    /// An error of the whole table.
+    pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
+        self.source.fault(self.place.clone(), message.into(), None)
+    }
+
+    /// Refuses what nobody asked for.
+    pub(super) fn finish(self) -> Result<()> {
+        let unknown = self.table.keys().min_by_key(|key| key.span().start);
+        let Some(key) = unknown else { return Ok(()) };
+        let known = self.known.iter().copied();
+        let hint = match nearest(key.get_ref(), known) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("known here are {}", self.known.join(", ")),
+        };
+        let message = format!("there is no key `{}` here", key.get_ref());
+        Err(self.source.fault(key.span(), message, Some(hint)))
+    }
+}
+
+impl<'a> Entry<'a> {
+    fn new(source: Source<'a>, value: Spanned<DeValue<'a>>) -> Self {
+        Self {
+            source,
+            place: value.span(),
+            value: value.into_inner(),
+        }
+    }
+
+    /// An error of this value.
+    pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
+        self.source.fault(self.place.clone(), message.into(), None)
+    }
+
+    /// A table.
+    pub(super) fn section(self) -> Result<Section<'a>> {
+        match self.value {
+            DeValue::Table(table) => Ok(Section {
+                source: self.source,
+                place: self.place,
+                table,
+                known: Vec::new(),
+            }),
+            _ => Err(self.fault("expected a table")),
+        }
+    }
+
+    /// A text that is not empty.
+    pub(super) fn text(&self) -> Result<&str> {
+        match &self.value {
+            DeValue::String(text) if !text.trim().is_empty() => Ok(text),
+            _ => Err(self.fault("expected a text")),
+        }
+    }
+
+    /// A text, or a number as it is written: what a flag takes.
+    pub(super) fn written(&self) -> Result<&str> {
+        match &self.value {
+            DeValue::Integer(number) => Ok(number.as_str()),
+            DeValue::Float(number) => Ok(number.as_str()),
+            _ => self.text(),
+        }
+    }
+
+    /// Texts.
+    pub(super) fn texts(self) -> Result<Vec<Self>> {
+        let fault = self.fault("expected a list of texts");
+        let DeValue::Array(array) = self.value else {
+            return Err(fault);
+        };
+        let entries = array.into_iter().map(|value| Self::new(self.source, value));
+        Ok(entries.collect())
+    }
+
+    /// A whole number from `least` on.
+    pub(super) fn whole(&self, least: u64) -> Result<u64> {
+        let number = match &self.value {
+            DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
+            _ => None,
+        };
+        // Numbers of JSON are exact up to here.
+        let number = number.filter(|number| (least..1 << 53).contains(number));
+        number.ok_or_else(|| self.fault(format!("expected a whole number from {least} on")))
+    }
+
+    /// A finite number above zero.
+    pub(super) fn positive(&self) -> Result<f64> {
+        let number = match &self.value {
+            DeValue::Integer(_) => Some(self.whole(1)? as f64),
+            DeValue::Float(number) => number.as_str().parse().ok(),
+            _ => None,
+        };
+        let number = number.filter(|number: &f64| *number > 0.0 && number.is_finite());
+        number.ok_or_else(|| self.fault("expected a number above 0"))
+    }
+
+    /// What a text says, or an error at its place.
+    pub(super) fn read<T>(
+        &self,
+        read: impl FnOnce(&str) -> std::result::Result<T, String>,
+    ) -> Result<T> {
+        read(self.written()?).map_err(|message| self.fault(message))
+    }
+}

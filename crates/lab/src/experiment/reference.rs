@@ -1,0 +1,192 @@
+//! What images are compared with: a picture that is there, or one that is made once and kept.
+
+use super::ReferenceSpec;
+use super::error::ExperimentError;
+use super::journal::hash;
+use super::names::file_name;
+use super::run::{Event, Observer, Setup};
+use super::settings::{Changes, texts};
+use super::stage::{Reference, Stage};
+use crate::image::Pixels;
+use crate::reference::{self as references, Host, Made, Plan, Provenance, Subject};
+use bidir::ESTIMATOR_VERSION;
+use bidir::driver::{Progress, Resources};
+use bidir::integrator::IntegratorKind;
+use bidir::path::{MisHeuristic, Strategies};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The reference of a scene. None: the observer stopped its making.
+pub(super) fn obtain(
+    stage: &Stage<'_>,
+    setup: &Setup,
+    threads: usize,
+    observer: &mut dyn Observer,
+) -> Result<Option<Reference>> {
+    match &stage.spec.reference {
+        ReferenceSpec::There(path) if path.is_dir() => load(stage, path, None).map(Some),
+        ReferenceSpec::There(path) => Ok(Some(Reference {
+            pixels: read(path, stage)?,
+            words: format!("the image {}", path.display()),
+            image: None,
+        })),
+        ReferenceSpec::Make { spp, changes } => {
+            make(stage, &plan(stage, *spp, changes), setup, threads, observer)
+        }
+    }
+}
+
+/// A reference that is there; `name` is its folder in that of the results, if it lies there.
+fn load(stage: &Stage<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
+    let of_scene = |error| failed(stage, error);
+    let loaded = references::Reference::load(folder).map_err(of_scene)?;
+    let checked = loaded.check(&stage.digest, stage.scene.film());
+    checked.map_err(of_scene)?;
+    Ok(new(loaded.picture, &loaded.provenance, name))
+}
+
+fn new(pixels: Pixels, provenance: &Provenance, name: Option<&str>) -> Reference {
+    Reference {
+        pixels,
+        words: provenance.summary(),
+        image: name.map(|name| format!("{name}/picture.exr")),
+    }
+}
+
+fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
+    ExperimentError::Reference {
+        scene: stage.spec.name.clone(),
+        error,
+    }
+}
+
+/// Reads an image, which has the size of the scene's.
+fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+    let pixels = Pixels::from(&formats::image::read(path, None)?);
+    if pixels.size != stage.size() {
+        return Err(ExperimentError::Size {
+            path: path.to_owned(),
+            scene: stage.spec.name.clone(),
+            found: pixels.size,
+            expected: stage.size(),
+        });
+    }
+    Ok(pixels)
+}
+
+/// How a reference is made: as usual, where all strategies take part. Else paths may be missing, which
+/// path tracing has: the witness then has the same strategies under other weights.
+fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes) -> Plan {
+    let mut plan = Plan::usual(&stage.settings, spp);
+    plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
+    let [picture, witness] = &mut plan.estimators;
+    if picture.path.strategies != Strategies::default() {
+        witness.integrator = IntegratorKind::Bdpt;
+        picture.path.mis = MisHeuristic::Balance;
+        witness.path.mis = MisHeuristic::Uniform;
+    }
+    plan
+}
+
+/// The folder of a reference in that of the results: another reference has another name.
+fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
+    let settings = plan.estimators.each_ref().map(texts);
+    let [width, height] = stage.size();
+    let identity = format!(
+        "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
+        stage.digest, plan.spp
+    );
+    let hash = hash(&identity);
+    format!("references/{}-{}", file_name(&stage.spec.name), &hash[..12])
+}
+
+fn make(
+    stage: &Stage<'_>,
+    plan: &Plan,
+    setup: &Setup,
+    threads: usize,
+    observer: &mut dyn Observer,
+) -> Result<Option<Reference>> {
+    let name = folder(stage, plan);
+    let path = setup.folder.join(&name);
+    if let Ok(reference) = load(stage, &path, Some(&name)) {
+        return Ok(Some(reference));
+    }
+    let subject = Subject {
+        name: &stage.spec.file,
+        digest: &stage.digest,
+        scene: &stage.scene,
+    };
+    let resources = Resources {
+        threads,
+        ..Resources::default()
+    };
+    let watch = Watch::new(stage, plan, observer);
+    let made = references::make(&path, &subject, plan, &resources, &watch);
+    let Made::Whole(reference) = made.map_err(|error| failed(stage, error))? else {
+        return Ok(None);
+    };
+    if !reference.provenance.agreement.agree {
+        let warning = format!("{name}: the estimators of the reference disagree");
+        observer.tell(Event::Warning(&warning));
+    }
+    let reference = new(reference.picture, &reference.provenance, Some(&name));
+    Ok(Some(reference))
+}
+
+/// Tells an observer of a reference that is made.
+struct Watch<'a> {
+    scene: &'a str,
+    samples_per_pass: u64,
+    passes: u64,
+    samples: AtomicU64,
+    observer: Mutex<&'a mut dyn Observer>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(stage: &'a Stage<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
+        Self {
+            scene: &stage.spec.name,
+            samples_per_pass: stage.scene.film().crop.area().max(1),
+            passes: 2 * plan.rounded_spp(),
+            samples: AtomicU64::new(0),
+            observer: Mutex::new(observer),
+        }
+    }
+
+    fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
+        let observer = self.observer.lock();
+        ask(*observer.unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Progress for Watch<'_> {
+    fn advance(&self, samples: u64) {
+        self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+
+    fn nanoseconds(&self) -> u64 {
+        (self.with(|observer| observer.seconds()) * 1e9) as u64
+    }
+}
+
+impl Host for Watch<'_> {
+    fn should_end(&self) -> bool {
+        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
+        self.with(|observer| {
+            observer.tell(Event::Reference {
+                scene: self.scene,
+                passes,
+                of: self.passes,
+            });
+            observer.should_stop()
+        })
+    }
+
+    fn found(&self, samples: u64) {
+        self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,300 @@
+//! From a description to results.
+
+use super::Experiment;
+use super::cell::Cell;
+use super::error::ExperimentError;
+use super::journal::{Journal, hash};
+use super::settings::texts;
+use super::stage::{Reference, Stage};
+use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
+use bidir::ESTIMATOR_VERSION;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// Where an experiment runs, and as what.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The folder of the results.
+    pub folder: PathBuf,
+    /// What becomes of records that are there.
+    pub start: Start,
+    /// The program with its version.
+    pub program: String,
+    /// What it runs on; the number of threads is filled in.
+    pub machine: Machine,
+}
+
+/// What becomes of records that are there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// They stay, and what is missing is rendered.
+    Resume,
+    /// They go; references of the same scene and settings stay.
+    Anew,
+}
+
+/// Who runs an experiment: is told how far it is, has the clock, and can stop it.
+///
+/// References ask it from one of their threads at a time.
+pub trait Observer: Send {
+    /// Tells what happens.
+    fn tell(&mut self, event: Event<'_>);
+
+    /// The host's clock. Unit: seconds since any moment.
+    fn seconds(&self) -> f64;
+
+    /// True to stop: asked before each pass. The running render is then forgotten.
+    fn should_stop(&mut self) -> bool {
+        false
+    }
+}
+
+/// What happens.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// Something is odd with a scene or its reference.
+    Warning(&'a str),
+    /// A pass of a reference begins, of one of its two estimators.
+    Reference {
+        /// The scene.
+        scene: &'a str,
+        /// Passes that are done.
+        passes: u64,
+        /// Passes in all.
+        of: u64,
+    },
+    /// References are there, and so are `done` of all renders.
+    Begin {
+        /// Renders that are done.
+        done: usize,
+        /// Renders in all.
+        of: usize,
+    },
+    /// A render is done.
+    Record(&'a Record),
+}
+
+/// How an experiment ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Every render has a record.
+    Complete,
+    /// The observer stopped it; the same again goes on.
+    Stopped,
+}
+
+/// What an experiment found, all or so far.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// How it ended.
+    pub end: End,
+    /// What was found. None: it was stopped before the references were there.
+    pub results: Option<Results>,
+}
+
+/// Runs what no record has yet, and writes `results.json`.
+pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
+    for folder in ["", "images", "references"] {
+        let path = setup.folder.join(folder);
+        std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
+    }
+    let stages = experiment
+        .scenes
+        .iter()
+        .map(|spec| Stage::load(experiment, spec));
+    let stages = stages.collect::<Result<Vec<_>>>()?;
+    for warning in stages.iter().flat_map(|stage| &stage.warnings) {
+        observer.tell(Event::Warning(warning));
+    }
+    let identity = hash(&identity(experiment, &stages));
+    let mut journal = match setup.start {
+        Start::Resume => Journal::open(&setup.folder, &identity)?,
+        Start::Anew => Journal::begin(&setup.folder, &identity),
+    };
+    let mut references = Vec::new();
+    for stage in &stages {
+        match stage.reference(setup, experiment.threads, observer)? {
+            Some(reference) => references.push(reference),
+            None => {
+                return Ok(Outcome {
+                    end: End::Stopped,
+                    results: None,
+                });
+            }
+        }
+    }
+    let work = Work {
+        experiment,
+        setup,
+        stages: &stages,
+        references: &references,
+    };
+    let end = work.render(&mut journal, observer)?;
+    let results = work.results(journal.records());
+    write_results(&setup.folder, &results)?;
+    Ok(Outcome {
+        end,
+        results: Some(results),
+    })
+}
+
+/// Writes `results.json` into the folder of the results.
+pub fn write_results(folder: &Path, results: &Results) -> Result<()> {
+    formats::file::replace(&folder.join("results.json"), json(results).as_bytes())?;
+    Ok(())
+}
+
+fn json(results: &Results) -> String {
+    let text = serde_json::to_string_pretty(results);
+    text.expect("texts and numbers have a JSON") + "\n"
+}
+
+/// All that records depend on.
+fn identity(experiment: &Experiment, stages: &[Stage<'_>]) -> String {
+    let mut text = format!(
+        "estimator {ESTIMATOR_VERSION}\nseeds {:?}\nthreads {}\nmetrics {:?}\nbudgets {:?}\n",
+        experiment.seeds, experiment.threads, experiment.metrics, experiment.budgets
+    );
+    for stage in stages {
+        let spec = stage.spec;
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "scene {:?} {} {:?} {:?}",
+            spec.name,
+            stage.digest,
+            stage.size(),
+            spec.reference
+        );
+        for method in &experiment.methods {
+            let settings = texts(&method.changes.apply(&stage.settings));
+            let _ = writeln!(text, "method {:?} {settings:?}", method.name);
+        }
+    }
+    text
+}
+
+/// What is rendered and compared.
+struct Work<'a> {
+    experiment: &'a Experiment,
+    setup: &'a Setup,
+    stages: &'a [Stage<'a>],
+    /// One for each stage.
+    references: &'a [Reference],
+}
+
+impl Work<'_> {
+    /// All renders in their order, each with its reference.
+    fn cells(&self) -> impl Iterator<Item = (Cell<'_>, &Reference)> {
+        let Self {
+            experiment,
+            stages,
+            references,
+            ..
+        } = *self;
+        let seeds = experiment.seeds;
+        let seeds = seeds.first..seeds.first + seeds.count;
+        let scenes = move |seed| {
+            stages
+                .iter()
+                .zip(references)
+                .map(move |scene| (seed, scene))
+        };
+        let methods = &experiment.methods;
+        seeds
+            .flat_map(scenes)
+            .flat_map(move |(seed, (stage, reference))| {
+                experiment.budgets.iter().flat_map(move |budget| {
+                    methods.iter().map(move |method| {
+                        let cell = Cell {
+                            stage,
+                            method,
+                            budget,
+                            seed,
+                        };
+                        (cell, reference)
+                    })
+                })
+            })
+    }
+
+    /// Renders what has no record yet.
+    fn render(&self, journal: &mut Journal, observer: &mut dyn Observer) -> Result<End> {
+        observer.tell(Event::Begin {
+            done: journal.records().len(),
+            of: self.experiment.cells(),
+        });
+        for (cell, reference) in self.cells() {
+            if journal.has(&cell) {
+                continue;
+            }
+            let Some(rendered) = cell.render(self.experiment.threads, observer)? else {
+                return Ok(End::Stopped);
+            };
+            let mut record = cell.record(&rendered, reference, &self.experiment.metrics);
+            if cell.seed == self.experiment.seeds.first {
+                let image = cell.image();
+                rendered.write(&self.setup.folder.join(&image))?;
+                record.image = Some(image);
+            }
+            observer.tell(Event::Record(&record));
+            journal.add(record)?;
+        }
+        Ok(End::Complete)
+    }
+
+    fn results(&self, records: &[Record]) -> Results {
+        let Self {
+            experiment,
+            setup,
+            stages,
+            references,
+        } = *self;
+        let scenes = stages.iter().zip(references);
+        let budgets = experiment.budgets.iter().map(|budget| BudgetInfo {
+            name: budget.name.clone(),
+            kind: budget.kind,
+            amount: budget.amount,
+        });
+        Results {
+            format: FORMAT,
+            title: experiment.title.clone(),
+            description: experiment.description.clone(),
+            program: setup.program.clone(),
+            machine: Machine {
+                threads: experiment.threads,
+                ..setup.machine.clone()
+            },
+            scenes: scenes
+                .map(|(stage, reference)| stage.info(reference))
+                .collect(),
+            methods: self.methods(),
+            budgets: budgets.collect(),
+            records: records.to_vec(),
+            claims: Vec::new(),
+        }
+    }
+
+    /// The methods with their settings; where those are the scenes', which differ, they say so.
+    fn methods(&self) -> Vec<MethodInfo> {
+        let methods = self.experiment.methods.iter().map(|method| {
+            let mut settings: BTreeMap<String, String> = BTreeMap::new();
+            for (number, stage) in self.stages.iter().enumerate() {
+                for (name, value) in texts(&method.changes.apply(&stage.settings)) {
+                    let known = settings.entry(name).or_insert_with(|| value.clone());
+                    if number > 0 && *known != value {
+                        "the scene's".clone_into(known);
+                    }
+                }
+            }
+            MethodInfo {
+                name: method.name.clone(),
+                settings,
+            }
+        });
+        methods.collect()
+    }
+}

@@ -1,0 +1,172 @@
+//! What a method wants otherwise than the scene: settings under the names of the flags of
+//! `bidir render`, with the values that these take.
+
+use super::names::nearest;
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::sampler::SamplerKind;
+use bidir::select::ShadowRays;
+use formats::film::SettingsText;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::str::FromStr;
+
+/// Settings that differ from the scene's; None leaves the scene's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Changes {
+    /// The estimator.
+    pub integrator: Option<IntegratorKind>,
+    /// Which connections are traced.
+    pub shadow_rays: Option<ShadowRays>,
+    /// How strategies share paths.
+    pub mis: Option<MisHeuristic>,
+    /// The strategies that take part.
+    pub strategies: Option<Strategies>,
+    /// Where next-event estimation takes its light point from.
+    pub light_point: Option<LightPointChoice>,
+    /// How subpaths end by chance.
+    pub path_roulette: Option<PathRoulette>,
+    /// The random numbers.
+    pub sampler: Option<SamplerKind>,
+    /// The most bounces of a path; 0 is no limit.
+    pub max_depth: Option<u32>,
+}
+
+impl Changes {
+    /// The names of all settings.
+    pub const NAMES: [&'static str; 8] = [
+        "integrator",
+        "shadow-rays",
+        "mis",
+        "strategies",
+        "light-point",
+        "path-roulette",
+        "sampler",
+        "max-depth",
+    ];
+
+    /// Changes the setting that is called `name`, one of [`Self::NAMES`].
+    ///
+    /// Errors: what is wrong with the value, in words.
+    pub fn set(&mut self, name: &str, value: &str) -> Result<(), String> {
+        match name {
+            "integrator" => self.integrator = Some(named(&IntegratorKind::NAMES, value)?),
+            "shadow-rays" => self.shadow_rays = Some(parsed(value)?),
+            "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
+            "strategies" => self.strategies = Some(parsed(value)?),
+            "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
+            "path-roulette" => self.path_roulette = Some(parsed(value)?),
+            "sampler" => self.sampler = Some(named(&SamplerKind::NAMES, value)?),
+            "max-depth" => {
+                let depth = value.parse().map_err(|_| "expected a whole number")?;
+                self.max_depth = Some(depth);
+            }
+            _ => return Err(format!("there is no setting `{name}`")),
+        }
+        Ok(())
+    }
+
+    /// These changes, and `defaults` where there is none.
+    #[must_use]
+    pub fn or(self, defaults: &Self) -> Self {
+        Self {
+            integrator: self.integrator.or(defaults.integrator),
+            shadow_rays: self.shadow_rays.or(defaults.shadow_rays),
+            mis: self.mis.or(defaults.mis),
+            strategies: self.strategies.or_else(|| defaults.strategies.clone()),
+            light_point: self.light_point.or(defaults.light_point),
+            path_roulette: self.path_roulette.or(defaults.path_roulette),
+            sampler: self.sampler.or(defaults.sampler),
+            max_depth: self.max_depth.or(defaults.max_depth),
+        }
+    }
+
+    /// The settings of a scene with these changes.
+    pub fn apply(&self, scene: &Settings) -> Settings {
+        let mut settings = scene.clone();
+        let path = &mut settings.path;
+        path.mis = self.mis.unwrap_or(path.mis);
+        path.light_point = self.light_point.unwrap_or(path.light_point);
+        path.roulette = self.path_roulette.unwrap_or(path.roulette);
+        if let Some(depth) = self.max_depth {
+            path.max_depth = (depth > 0).then_some(depth);
+        }
+        if let Some(strategies) = &self.strategies {
+            path.strategies = strategies.clone();
+        }
+        settings.integrator = self.integrator.unwrap_or(settings.integrator);
+        settings.shadow_rays = self.shadow_rays.unwrap_or(settings.shadow_rays);
+        settings.sampler = self.sampler.unwrap_or(settings.sampler);
+        settings
+    }
+}
+
+/// All settings but the seed, by the names of [`Changes::NAMES`] and as [`Changes::set`] takes them.
+pub fn texts(settings: &Settings) -> BTreeMap<String, String> {
+    let mut texts = SettingsText::from(settings).by_flag();
+    texts.retain(|name, _| Changes::NAMES.contains(&name.as_str()));
+    if settings.path.max_depth.is_none() {
+        texts.insert("max-depth".to_owned(), "0".to_owned());
+    }
+    texts
+}
+
+/// The value that a table of the library has under a name.
+pub(super) fn named<T: Copy>(
+    names: &'static [(&'static str, T)],
+    given: &str,
+) -> Result<T, String> {
+    let found = names.iter().find(|(name, _)| *name == given);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let known = names.iter().map(|(name, _)| *name);
+        let hint = nearest(given, known.clone()).map_or_else(
+            || format!("expected {}", known.collect::<Vec<_>>().join(", ")),
+            |near| format!("did you mean `{near}`?"),
+        );
+        format!("there is no `{given}`: {hint}")
+    })
+}
+
+fn parsed<T: FromStr<Err: Display>>(value: &str) -> Result<T, String> {
+    value.parse().map_err(|error: T::Err| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_read_as_they_are_written() {
+        let mut changes = Changes::default();
+        let values = [
+            "light", "per-pair", "uniform", "all,-s0", "shared", "off", "sobol", "7",
+        ];
+        for (name, value) in Changes::NAMES.into_iter().zip(values) {
+            changes.set(name, value).unwrap();
+        }
+        let settings = changes.apply(&Settings::default());
+        let written = texts(&settings);
+        for (name, value) in Changes::NAMES.into_iter().zip(values) {
+            assert_eq!(written[name], value);
+        }
+        assert_eq!(Changes::default().or(&changes), changes);
+        assert_eq!(texts(&Changes::default().apply(&settings)), written);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        let mut changes = Changes::default();
+        let mut wrong = |name, value| changes.set(name, value).unwrap_err();
+        assert_eq!(
+            wrong("mis", "balence"),
+            "there is no `balence`: did you mean `balance`?"
+        );
+        assert_eq!(
+            wrong("light-point", "x"),
+            "there is no `x`: expected fresh, shared"
+        );
+        assert!(wrong("strategies", "s").contains("no strategy"));
+        assert_eq!(wrong("max-depth", "-1"), "expected a whole number");
+    }
+}

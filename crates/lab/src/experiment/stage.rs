@@ -1,0 +1,102 @@
+//! A scene that is ready to be rendered and compared.
+
+use super::error::ExperimentError;
+use super::reference;
+use super::run::{Observer, Setup};
+use super::{Experiment, SceneSpec};
+use crate::image::Pixels;
+use crate::results::SceneInfo;
+use bidir::driver::{Resources, Session, Settings};
+use bidir::scene::Scene;
+use formats::pbrt::LoadOptions;
+
+/// A scene with what its file says.
+pub(super) struct Stage<'a> {
+    pub(super) spec: &'a SceneSpec,
+    pub(super) scene: Scene,
+    /// The settings of the file, over the defaults.
+    pub(super) settings: Settings,
+    pub(super) digest: String,
+    /// What is odd in the file but no error.
+    pub(super) warnings: Vec<String>,
+}
+
+/// What the images of a scene are compared with.
+pub(super) struct Reference {
+    pub(super) pixels: Pixels,
+    /// How it was made.
+    pub(super) words: String,
+    /// The image, relative to the folder of the results, if it lies there.
+    pub(super) image: Option<String>,
+}
+
+impl<'a> Stage<'a> {
+    /// Reads a scene.
+    pub(super) fn load(
+        experiment: &Experiment,
+        spec: &'a SceneSpec,
+    ) -> Result<Self, ExperimentError> {
+        let options = LoadOptions {
+            resolution: spec.size.or(experiment.size),
+            ..LoadOptions::default()
+        };
+        let loaded = formats::pbrt::load(&spec.path, &options)?;
+        let mut settings = Settings {
+            integrator: loaded.settings.integrator,
+            sampler: loaded.settings.sampler,
+            ..Settings::default()
+        };
+        settings.path.max_depth = Some(loaded.settings.max_depth);
+        Ok(Self {
+            spec,
+            scene: loaded.scene,
+            settings,
+            digest: loaded.digest.to_string(),
+            warnings: loaded.warnings,
+        })
+    }
+
+    /// A session of this scene.
+    pub(super) fn session(
+        &self,
+        settings: Settings,
+        threads: usize,
+    ) -> Result<Session<'_>, ExperimentError> {
+        let resources = Resources {
+            threads,
+            ..Resources::default()
+        };
+        let session = Session::new(&self.scene, settings, &resources);
+        session.map_err(|error| ExperimentError::Render {
+            scene: self.spec.name.clone(),
+            error,
+        })
+    }
+
+    /// Width and height of the images. Unit: pixels.
+    pub(super) fn size(&self) -> [usize; 2] {
+        let crop = self.scene.film().crop;
+        [crop.width() as usize, crop.height() as usize]
+    }
+
+    /// The reference; it is rendered where there is none yet. None: the observer stopped it.
+    pub(super) fn reference(
+        &self,
+        setup: &Setup,
+        threads: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Reference>, ExperimentError> {
+        reference::obtain(self, setup, threads, observer)
+    }
+
+    pub(super) fn info(&self, reference: &Reference) -> SceneInfo {
+        SceneInfo {
+            name: self.spec.name.clone(),
+            file: self.spec.file.clone(),
+            digest: self.digest.clone(),
+            size: self.size(),
+            reference: reference.words.clone(),
+            reference_image: reference.image.clone(),
+        }
+    }
+}

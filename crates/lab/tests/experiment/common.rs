@@ -1,0 +1,128 @@
+use bidir_lab::experiment::{self, End, Event, Experiment, ExperimentError, Observer, Outcome};
+use bidir_lab::experiment::{Setup, Start};
+use bidir_lab::results::{Machine, Record, Results};
+use std::fs;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A floor and a wall with a small light above them.
+const SCENE: &str = r#"
+LookAt 0 1 -4  0 1 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 16 "integer yresolution" 12
+PixelFilter "box"
+Sampler "independent"
+Integrator "bdpt" "integer maxdepth" 4
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2 -2 0 2 2 0 2 2 0 -2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2 -2 3 2 2 3 2 2 0 2]
+Shape "sphere" "float radius" 0.4
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [9 8 7]
+Shape "trianglemesh" "integer indices" [0 2 1 0 3 2]
+  "point3 P" [-0.3 2.5 0 -0.3 2.5 0.6 0.3 2.5 0.6 0.3 2.5 0]
+AttributeEnd
+"#;
+
+/// Two methods under two seeds.
+pub(crate) const DESCRIPTION: &str = r#"
+seeds = 2
+threads = 1
+[[scene]]
+file = "room.pbrt"
+reference-spp = 16
+[[method]]
+name = "all"
+[[method]]
+name = "one"
+shadow-rays = "per-pair"
+"#;
+
+/// A folder with a scene in it, gone at the end.
+pub(crate) struct Workplace(TempDir);
+
+impl Workplace {
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("room.pbrt"), SCENE).unwrap();
+        Self(folder)
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn read(&self, text: &str) -> Result<Experiment, ExperimentError> {
+        Experiment::read(text, &self.path("test.toml"))
+    }
+
+    /// Runs a description until `observer` stops it.
+    pub(crate) fn run(
+        &self,
+        text: &str,
+        out: &str,
+        observer: &mut Watch,
+    ) -> Result<Outcome, ExperimentError> {
+        let setup = Setup {
+            folder: self.path(out),
+            start: Start::Resume,
+            program: "test".to_owned(),
+            machine: Machine::default(),
+        };
+        experiment::run(&self.read(text)?, &setup, observer)
+    }
+
+    /// Runs a description to its end.
+    pub(crate) fn complete(&self, text: &str, out: &str) -> Results {
+        let outcome = self.run(text, out, &mut Watch::default()).unwrap();
+        assert_eq!(outcome.end, End::Complete);
+        outcome.results.unwrap()
+    }
+}
+
+/// Stops after a number of renders, and has a clock that is one tick further at every look.
+#[derive(Default)]
+pub(crate) struct Watch {
+    pub(crate) renders: usize,
+    most: Option<usize>,
+    pub(crate) resumed: usize,
+    looks: std::cell::Cell<u32>,
+}
+
+impl Watch {
+    pub(crate) fn until(renders: usize) -> Self {
+        Self {
+            most: Some(renders),
+            ..Self::default()
+        }
+    }
+}
+
+impl Observer for Watch {
+    fn tell(&mut self, event: Event<'_>) {
+        match event {
+            Event::Record(_) => self.renders += 1,
+            Event::Begin { done, .. } => self.resumed = done,
+            _ => {}
+        }
+    }
+
+    fn seconds(&self) -> f64 {
+        self.looks.set(self.looks.get() + 1);
+        f64::from(self.looks.get())
+    }
+
+    fn should_stop(&mut self) -> bool {
+        self.most.is_some_and(|most| self.renders >= most)
+    }
+}
+
+/// Records whose times are forgotten.
+pub(crate) fn without_times(records: &[Record]) -> Vec<Record> {
+    let mut records = records.to_vec();
+    for record in &mut records {
+        (record.seconds, record.efficiency_seconds) = (0.0, 0.0);
+    }
+    records
+}

@@ -1,0 +1,97 @@
+use crate::common::{DESCRIPTION, Workplace};
+use bidir_lab::experiment::{BudgetSpec, ExperimentError, ReferenceSpec};
+use bidir_lab::results::BudgetKind;
+
+/// A description whose fault is at a place in its own lines.
+#[track_caller]
+fn check(text: &str, expected: &str, hint: Option<&str>) {
+    let place = Workplace::new();
+    let error = place.read(text).unwrap_err();
+    assert!(matches!(error, ExperimentError::Description(_)));
+    let said = error.to_string();
+    let name = place.path("test.toml").display().to_string();
+    assert_eq!(said.strip_prefix(&name), Some(expected));
+    assert_eq!(error.hint(), hint);
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_place() {
+    check(
+        "seeds = \n",
+        ":1:9: string values must be quoted, expected literal string",
+        None,
+    );
+    check("sedes = 3\n", ":1:1: there is no [[scene]]", None);
+    let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
+    check(
+        &all.replace("seeds", "sedes"),
+        ":2:1: there is no key `sedes` here",
+        Some("did you mean `seeds`?"),
+    );
+    check(
+        &all.replace("shadow-rays = \"per-pair\"", "mis = \"powr\""),
+        ":11:7: there is no `powr`: did you mean `power`?",
+        None,
+    );
+    check(
+        &all.replace("samples = 2", "samples = 0"),
+        ":13:11: expected a whole number from 1 on",
+        None,
+    );
+    check(
+        &all.replace("samples = 2", "samples = 2\nrays = 3"),
+        ":12:1: expected one of `samples`, `rays` and `seconds`",
+        None,
+    );
+    check(
+        &all.replace("\"one\"", "\"All \""),
+        ":9:1: there is another method `All `",
+        None,
+    );
+    check(
+        &all.replace("reference-spp = 16", "size = 3"),
+        ":6:8: expected WIDTHxHEIGHT, such as 320x240",
+        None,
+    );
+    check(
+        &all.replace("reference-spp = 16", ""),
+        ":4:1: `reference` or `reference-spp` is missing",
+        None,
+    );
+}
+
+#[test]
+fn methods_have_the_common_settings() {
+    let place = Workplace::new();
+    let text = "[settings]\nmis = \"uniform\"\nstrategies = \"all,-t1\"\n".to_owned()
+        + &DESCRIPTION.replace("seeds = 2\nthreads = 1\n", "")
+        + "mis = \"power\"\n[[budget]]\nrays = 50.5\n";
+    let experiment = place.read(&text).unwrap();
+    let names = experiment.methods.iter().map(|method| {
+        let mis = method.changes.mis.unwrap();
+        (method.name.clone(), format!("{mis:?}"))
+    });
+    let expected = [("all", "Uniform"), ("one", "Power")];
+    assert!(names.eq(expected.map(|(name, mis)| (name.to_owned(), mis.to_owned()))));
+    assert_eq!(
+        experiment.budgets,
+        [BudgetSpec::new(BudgetKind::Rays, 50.5)]
+    );
+    let ReferenceSpec::Make { spp: 16, changes } = &experiment.scenes[0].reference else {
+        panic!("{:?}", experiment.scenes);
+    };
+    assert_eq!(changes.strategies.as_ref().unwrap().to_string(), "all,-t1");
+    assert_eq!(changes.mis, None);
+}
+
+#[test]
+fn a_quick_one_has_the_same_methods() {
+    let place = Workplace::new();
+    let text = DESCRIPTION.replace("seeds = 2", "seeds = 20\nsize = \"640x480\"")
+        + "[[budget]]\nsamples = 64\n[[budget]]\nsamples = 1\n[[budget]]\nsamples = 2\n";
+    let quick = place.read(&text).unwrap().quick();
+    assert_eq!((quick.seeds.count, quick.size), (3, Some([64, 48])));
+    let names: Vec<_> = quick.budgets.iter().map(|budget| &*budget.name).collect();
+    assert_eq!(names, ["8 spp", "1 spp"]);
+    assert_eq!(quick.methods.len(), 2);
+}

@@ -1,0 +1,113 @@
+use crate::common::{DESCRIPTION, Watch, Workplace, without_times};
+use bidir_lab::experiment::{End, ExperimentError};
+use bidir_lab::results::Results;
+use std::fs;
+
+fn with_budget(budget: &str) -> String {
+    format!("{DESCRIPTION}[[budget]]\n{budget}\n")
+}
+
+#[test]
+fn every_cell_has_a_record() {
+    let place = Workplace::new();
+    let results = place.complete(&with_budget("samples = 3"), "out");
+    let cells = results.records.iter();
+    let cells = cells.map(|record| (record.seed, &*record.method, record.spp));
+    let expected = [(0, "all", 3), (0, "one", 3), (1, "all", 3), (1, "one", 3)];
+    assert!(cells.eq(expected));
+    for record in &results.records {
+        let rmse = record.metrics["rmse"];
+        let efficiency = record.efficiency_rays * rmse * rmse * record.rays.total() as f64;
+        assert!((efficiency - 1.0).abs() < 1e-9, "{record:?}");
+        assert!(record.metrics.contains_key("relmse_trim"));
+        // Begin, end and each of three passes take a tick.
+        assert!((record.seconds - 4.0).abs() < 1e-9, "{record:?}");
+        assert_eq!(record.image.is_some(), record.seed == 0);
+        let images = record
+            .image
+            .iter()
+            .map(|image| place.path("out").join(image));
+        assert!(images.into_iter().all(|image| image.exists()));
+    }
+    let rmse = |record: usize| results.records[record].metrics["rmse"].to_bits();
+    assert_ne!(rmse(0), rmse(2), "seeds are not used");
+    assert_eq!(results.scenes[0].size, [16, 12]);
+    assert_eq!(results.methods[1].settings["shadow-rays"], "per-pair");
+    let text = fs::read_to_string(place.path("out/results.json")).unwrap();
+    assert_eq!(serde_json::from_str::<Results>(&text).unwrap(), results);
+}
+
+/// Wherever it is stopped, also during the reference.
+#[test]
+fn what_was_stopped_goes_on_to_the_same_records() {
+    let place = Workplace::new();
+    let text = with_budget("samples = 2") + "[[budget]]\nrays = 20\n";
+    let whole = place.complete(&text, "whole");
+    for most in 0..whole.records.len() {
+        let out = format!("stopped-{most}");
+        let mut watch = Watch::until(most);
+        let stopped = place.run(&text, &out, &mut watch).unwrap();
+        assert_eq!((stopped.end, watch.renders), (End::Stopped, most));
+        let mut watch = Watch::default();
+        let outcome = place.run(&text, &out, &mut watch).unwrap();
+        assert_eq!((outcome.end, watch.resumed), (End::Complete, most));
+        assert_eq!(watch.renders, whole.records.len() - most);
+        let records = outcome.results.unwrap().records;
+        assert_eq!(without_times(&records), without_times(&whole.records));
+    }
+}
+
+#[test]
+fn another_experiment_is_refused() {
+    let place = Workplace::new();
+    let text = with_budget("samples = 1");
+    place.complete(&text, "out");
+    // What is told about it is not it.
+    place.complete(&format!("title = \"Other\"\n{text}"), "out");
+    let other = with_budget("samples = 2");
+    let error = place.run(&other, "out", &mut Watch::default()).unwrap_err();
+    assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
+    assert!(error.hint().unwrap().contains("--restart"));
+    let scene = fs::read_to_string(place.path("room.pbrt")).unwrap();
+    fs::write(place.path("room.pbrt"), scene + "# another\n").unwrap();
+    let error = place.run(&text, "out", &mut Watch::default()).unwrap_err();
+    assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
+}
+
+/// The number of passes whose rays come nearest to the budget.
+#[test]
+fn equal_rays_are_equal_within_half_a_pass() {
+    let place = Workplace::new();
+    let (rays, pixels) = (150.0, 16.0 * 12.0);
+    let text = with_budget(&format!("rays = {rays}"));
+    for record in place.complete(&text, "out").records {
+        let total = record.rays.total() as f64 / pixels;
+        let pass = total / record.spp as f64;
+        assert!(record.spp > 4, "{record:?}");
+        // Passes differ a little from their mean.
+        assert!((total - rays).abs() < 0.55 * pass, "{total} {pass}");
+    }
+}
+
+/// Each pass takes a tick, and so does what comes before the first.
+#[test]
+fn no_pass_overruns_the_time() {
+    let place = Workplace::new();
+    for record in place.complete(&with_budget("seconds = 5.5"), "out").records {
+        assert_eq!(record.spp, 4, "{record:?}");
+        assert!((record.seconds - 5.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn training_is_paid_for() {
+    let place = Workplace::new();
+    let text = with_budget("rays = 1").replace("per-pair", "ray-roulette");
+    let results = place.complete(&text, "out");
+    let trained = &results.records[1];
+    assert!(
+        trained.rays.training > 16_000 && trained.spp == 1,
+        "{trained:?}"
+    );
+    assert_eq!(results.records[0].rays.training, 0);
+}
