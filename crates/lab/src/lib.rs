@@ -3,6 +3,7 @@
 //! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
+//! - [`paper`]: the experiment of 1995, claim by claim.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
 //! - [`results`]: what an experiment found, as it is written down.
 //! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
@@ -16,5 +17,6 @@ pub mod experiment;
 pub mod flip;
 pub mod image;
 pub mod metric;
+pub mod paper;
 pub mod results;
 pub mod statistics;
