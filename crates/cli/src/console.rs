@@ -78,7 +78,12 @@ impl Console {
         } else {
             Display::Bar
         };
-        match args.progress.unwrap_or(default) {
+        self.on_terminal(args.progress.unwrap_or(default))
+    }
+
+    /// How progress is shown that is wanted so: a bar on terminals only.
+    pub(crate) fn on_terminal(self, wanted: Display) -> Display {
+        match wanted {
             Display::Bar if !self.is_terminal => Display::Lines(LineFormat::Plain),
             display => display,
         }

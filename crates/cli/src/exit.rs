@@ -37,14 +37,17 @@ impl Exit {
             Self::Usage,
             "the command line is wrong, or its crop is outside the film",
         ),
-        (Self::Scene, "the scene is wrong, or too large"),
+        (
+            Self::Scene,
+            "the scene or the experiment is wrong, or the scene too large",
+        ),
         (
             Self::InputOutput,
             "a file cannot be read or written, images differ in size, or a library is missing",
         ),
         (
             Self::FilmMismatch,
-            "a film file belongs to another render, or has the same passes",
+            "a file belongs to another render or experiment, or a film has the same passes",
         ),
         (
             Self::Validation,
@@ -52,7 +55,7 @@ impl Exit {
         ),
         (
             Self::Checkpoint,
-            "stopped early by a signal, with a checkpoint to go on from",
+            "stopped early by a signal, with a checkpoint or records to go on from",
         ),
         (
             Self::Interrupted,

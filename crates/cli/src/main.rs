@@ -9,6 +9,7 @@ mod compare;
 mod console;
 mod denoise;
 mod exit;
+mod experiment;
 mod farm;
 mod film;
 mod film_header;
@@ -56,6 +57,7 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
             .inspect_err(|failure| progress::tell_failure(&args.output, failure)),
         Command::Info(args) => info::run(args, console),
         Command::Compare(args) => compare::run(args),
+        Command::Experiment(args) => experiment::run(args, console),
         Command::Film(command) => film::run(command, console),
         Command::Merge(args) => film::merge(args),
         Command::Missing(args) => film::missing(args, console),

@@ -191,7 +191,8 @@ impl Progress for Reporter<'_> {
     }
 }
 
-fn bar() -> ProgressBar {
+/// A bar whose end is at 1000.
+pub(crate) fn bar() -> ProgressBar {
     let bar = ProgressBar::new(BAR_LENGTH);
     let style =
         ProgressStyle::with_template("{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left");

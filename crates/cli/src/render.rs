@@ -61,7 +61,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
 }
 
 /// The threads that build the scene; the session has its own.
-fn set_threads(threads: u16) -> Result<(), Failure> {
+pub(crate) fn set_threads(threads: u16) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.into())
         .build_global()

@@ -109,7 +109,7 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
 
 /// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no
 /// fault of the scene, but what it names and is not there is.
-fn exit_of_scene(error: &formats::Error) -> Exit {
+pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
         ErrorKind::Options => Exit::Usage,
         ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,

@@ -5,13 +5,11 @@ use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
-use bidir::film::Aov;
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
-use bidir::sampler::SamplerKind;
-use serde::Serialize;
 use std::ops::Range;
 use std::time::Duration;
+
+pub(crate) use formats::film::{SettingsText, name_of};
 
 /// The settings of a render; `scene` holds what the scene file says, over the defaults.
 pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
@@ -127,81 +125,6 @@ fn share(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
     let Part { index, of } = part;
     let message = format!("share {index} of {of} has no passes: there are {passes} in all");
     Err(Failure::usage(message).with_hint("make fewer shares, or more passes with --spp"))
-}
-
-/// The name of a value in a table of the library.
-pub(crate) fn name_of<T: Copy + PartialEq>(
-    names: &'static [(&'static str, T)],
-    value: T,
-) -> &'static str {
-    names
-        .iter()
-        .find(|(_, named)| *named == value)
-        .map_or("", |(name, _)| name)
-}
-
-/// All settings, as flags write them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct SettingsText {
-    pub(crate) integrator: &'static str,
-    pub(crate) shadow_rays: String,
-    pub(crate) mis: &'static str,
-    pub(crate) strategies: String,
-    pub(crate) light_point: &'static str,
-    pub(crate) path_roulette: String,
-    /// None: no limit.
-    pub(crate) max_depth: Option<u32>,
-    pub(crate) sampler: &'static str,
-    pub(crate) seed: u64,
-    /// The images beside the picture.
-    pub(crate) aov: String,
-    pub(crate) light_groups: String,
-    pub(crate) strategy_layers: usize,
-}
-
-/// Names with commas between them.
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    let names: Vec<_> = names.collect();
-    if names.is_empty() {
-        "none".to_owned()
-    } else {
-        names.join(",")
-    }
-}
-
-impl From<&Settings> for SettingsText {
-    fn from(settings: &Settings) -> Self {
-        // Taken apart, so that no setting can be forgotten: identities of films are made of these.
-        let Settings {
-            integrator,
-            shadow_rays,
-            path,
-            sampler,
-            seed,
-            layers,
-        } = settings;
-        let PathSettings {
-            max_depth,
-            roulette,
-            strategies,
-            mis,
-            light_point,
-        } = path;
-        Self {
-            integrator: name_of(&IntegratorKind::NAMES, *integrator),
-            shadow_rays: shadow_rays.to_string(),
-            mis: name_of(&MisHeuristic::NAMES, *mis),
-            strategies: strategies.to_string(),
-            light_point: name_of(&LightPointChoice::NAMES, *light_point),
-            path_roulette: roulette.to_string(),
-            max_depth: *max_depth,
-            sampler: name_of(&SamplerKind::NAMES, *sampler),
-            seed: *seed,
-            aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),
-            light_groups: list(layers.light_groups().iter().map(String::as_str)),
-            strategy_layers: layers.strategy_vertices(),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@ use bidir::driver::Session;
 use bidir::film::Film;
 use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StrategyReport};
 use serde::Serialize;
-use serde_json::{Value, json};
 use std::time::Duration;
 
 /// The version of the program.
@@ -61,19 +60,6 @@ pub(crate) struct Report {
     dropped_list: Vec<DroppedReport>,
     film_bytes: u64,
     bvh_bytes: usize,
-}
-
-/// What film files keep of what was counted: numbers that add up when films are merged.
-pub(crate) fn counts(session: &Session<'_>) -> Value {
-    let stats = session.stats();
-    json!({
-        "samples": stats.samples,
-        "rays": RayReport::new(stats, session.training()),
-        "connections_blocked": stats.connections_blocked,
-        "light_image_blocked": stats.light_image_blocked,
-        "candidates": stats.candidates,
-        "dropped": stats.dropped,
-    })
 }
 
 impl Report {

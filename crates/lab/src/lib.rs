@@ -5,18 +5,21 @@
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
 //! - [`paper`]: the experiment of 1995, claim by claim.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
+//! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
+//! - [`report`]: what an experiment found, as a page for people.
 //! - [`results`]: what an experiment found, as it is written down.
 //! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
 //!   renders have the same expectation.
 //!
-//! All but [`experiment`] read no file and know no scene: who has images can ask. Everything is a
-//! function of its arguments; where random numbers are drawn their seed is fixed. Nothing looks at a
-//! clock: who runs an experiment has it.
+//! All but [`experiment`] and [`reference`](mod@reference) read no file and know no scene: who has images can
+//! ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
 
 pub mod experiment;
 pub mod flip;
 pub mod image;
 pub mod metric;
 pub mod paper;
+pub mod reference;
+pub mod report;
 pub mod results;
 pub mod statistics;

@@ -2,6 +2,7 @@
 
 mod compare;
 mod denoise;
+mod experiment;
 mod farm;
 mod film;
 mod layers;
@@ -13,6 +14,7 @@ mod values;
 
 pub(crate) use compare::{CompareArgs, MetricArgs};
 pub(crate) use denoise::DenoiseArgs;
+pub(crate) use experiment::ExperimentArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use long::{LongArgs, Part};
@@ -94,6 +96,16 @@ pub(crate) enum Command {
     /// bounds of its 95 % interval, by Student's t distribution: the images have to be renders of
     /// independent seeds.
     Compare(CompareArgs),
+    /// Compare methods: scenes × methods × budgets × seeds, from a description in TOML.
+    ///
+    /// Every render is compared with the reference of its scene. Prints tables of means over the seeds
+    /// and of ratios to the first method, which are paired by seed, with 95 % intervals; writes
+    /// results.json with every record, report.html, records.ndjson to go on from, and the images of
+    /// the first seed.
+    ///
+    /// Budgets are equal samples, equal rays or equal time. Ctrl-C ends after the running pass with
+    /// exit code 75: the same command goes on.
+    Experiment(ExperimentArgs),
     /// Tell what is in film files, develop them to images, or check them.
     #[command(subcommand)]
     Film(FilmCommand),

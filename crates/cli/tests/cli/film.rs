@@ -303,12 +303,12 @@ fn two_writers_of_one_film_are_kept_apart() {
     place
         .run(render)
         .expect(4)
-        .says("another process is writing this film file");
+        .says("another process is writing this file");
     place.render_share("0..1", "b.film");
     place
         .run("merge b.film -o a.film")
         .expect(4)
-        .says("another process is writing this film file");
+        .says("another process is writing this file");
     first.kill().unwrap();
     first.wait().unwrap();
     // What was killed holds nothing.

@@ -46,6 +46,10 @@ fn every_flag_is_described() {
          --version",
     );
     check_flags(
+        "experiment",
+        "--help --no-color --output --quick --quiet --restart --threads --version",
+    );
+    check_flags(
         "tonemap",
         "--exposure --help --no-color --operator --output --version",
     );

@@ -5,6 +5,7 @@
 mod common;
 mod compare;
 mod denoise;
+mod experiment;
 mod failures;
 mod farm;
 mod film;

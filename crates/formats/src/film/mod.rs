@@ -23,12 +23,16 @@
 
 mod block;
 mod header;
+mod identity;
 mod layers;
+mod settings;
 #[cfg(test)]
 mod tests;
 
 pub use header::{FilmHeader, Stopping};
+pub use identity::{SceneIdentity, counts_by_name, metadata, of_run, program, untrained};
 pub use layers::LayerNames;
+pub use settings::{SettingsText, name_of, settings_from_flags};
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};

@@ -176,7 +176,7 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result
     })
 }
 
-/// An image that is there, or how many samples the one that is rendered has.
+/// A reference that is there, or how many samples the one that is made has.
 fn reference(
     section: &mut Section<'_>,
     folder: &Path,
@@ -188,9 +188,9 @@ fn reference(
     match (image, spp) {
         (Some(image), None) => match strategies {
             Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),
-            None => Ok(ReferenceSpec::Image(folder.join(image.text()?))),
+            None => Ok(ReferenceSpec::There(folder.join(image.text()?))),
         },
-        (None, Some(spp)) => Ok(ReferenceSpec::Render {
+        (None, Some(spp)) => Ok(ReferenceSpec::Make {
             spp: spp.whole(1)?,
             changes: Box::new(reference_changes(strategies, defaults)?),
         }),

@@ -1,5 +1,6 @@
 //! What keeps an experiment from its results.
 
+use crate::reference;
 use bidir::driver::SessionError;
 use std::fmt;
 use std::path::PathBuf;
@@ -37,6 +38,14 @@ pub enum ExperimentError {
         found: [usize; 2],
         /// Width and height of the images.
         expected: [usize; 2],
+    },
+    /// A reference cannot be made or used.
+    #[error("the reference of scene `{scene}`: {error}")]
+    Reference {
+        /// The scene.
+        scene: String,
+        /// Why.
+        error: reference::Error,
     },
     /// A render cannot begin.
     #[error("scene `{scene}`: {error}")]

@@ -11,7 +11,7 @@
 //! | `records.ndjson` | whose records these are, and a record per line; replaced after each render |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
 //! | `images/` | the pictures of the first seed, EXR |
-//! | `references/` | references that were rendered here, EXR |
+//! | `references/` | references that were made here |
 //!
 //! # Budgets
 //!
@@ -100,13 +100,14 @@ pub struct SceneSpec {
 /// What images are compared with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceSpec {
-    /// An image that is there.
-    Image(PathBuf),
-    /// An image that is rendered first: `bdpt` that traces every connection.
-    Render {
+    /// The folder of a [reference](mod@crate::reference) that is there, or an image.
+    There(PathBuf),
+    /// A reference that is made first, and kept in the folder of the results: by `bdpt` that traces
+    /// every connection, with a witness.
+    Make {
         /// Samples per pixel.
         spp: u64,
-        /// Other settings, such as the strategies that count.
+        /// Settings on which the expectation depends, such as the strategies that take part.
         changes: Box<Changes>,
     },
 }
@@ -163,8 +164,8 @@ impl Experiment {
         for scene in &mut self.scenes {
             match &mut scene.reference {
                 // An image that is there has the size that it has.
-                ReferenceSpec::Image(_) => scene.size = scene.size.or(own),
-                ReferenceSpec::Render { spp, .. } => {
+                ReferenceSpec::There(_) => scene.size = scene.size.or(own),
+                ReferenceSpec::Make { spp, .. } => {
                     scene.size = scene.size.map(small);
                     *spp = spp.div_ceil(8);
                 }

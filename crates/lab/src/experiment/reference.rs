@@ -1,7 +1,6 @@
-//! What images are compared with: an image that is there, or one that is rendered once and kept.
+//! What images are compared with: a picture that is there, or one that is made once and kept.
 
 use super::ReferenceSpec;
-use super::cell::write_image;
 use super::error::ExperimentError;
 use super::journal::hash;
 use super::names::file_name;
@@ -9,19 +8,18 @@ use super::run::{Event, Observer, Setup};
 use super::settings::{Changes, texts};
 use super::stage::{Reference, Stage};
 use crate::image::Pixels;
+use crate::reference::{self as references, Host, Made, Plan, Provenance, Subject};
 use bidir::ESTIMATOR_VERSION;
-use bidir::driver::Settings;
+use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
-use bidir::sampler::SamplerKind;
-use bidir::select::ShadowRays;
+use bidir::path::{MisHeuristic, Strategies};
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The seed of references, which no experiment has: seeds are below 2⁵³.
-const SEED: u64 = u64::MAX;
-
-/// The reference of a scene. None: the observer stopped its render.
+/// The reference of a scene. None: the observer stopped its making.
 pub(super) fn obtain(
     stage: &Stage<'_>,
     setup: &Setup,
@@ -29,23 +27,39 @@ pub(super) fn obtain(
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     match &stage.spec.reference {
-        ReferenceSpec::Image(path) => Ok(Some(Reference {
+        ReferenceSpec::There(path) if path.is_dir() => load(stage, path, None).map(Some),
+        ReferenceSpec::There(path) => Ok(Some(Reference {
             pixels: read(path, stage)?,
             words: format!("the image {}", path.display()),
             image: None,
         })),
-        ReferenceSpec::Render { spp, changes } => {
-            let plan = Plan::new(stage, *spp, changes);
-            let path = setup.folder.join(&plan.file);
-            if !path.exists() && !plan.render(stage, &path, threads, observer)? {
-                return Ok(None);
-            }
-            Ok(Some(Reference {
-                pixels: read(&path, stage)?,
-                words: plan.words(),
-                image: Some(plan.file),
-            }))
+        ReferenceSpec::Make { spp, changes } => {
+            make(stage, &plan(stage, *spp, changes), setup, threads, observer)
         }
+    }
+}
+
+/// A reference that is there; `name` is its folder in that of the results, if it lies there.
+fn load(stage: &Stage<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
+    let of_scene = |error| failed(stage, error);
+    let loaded = references::Reference::load(folder).map_err(of_scene)?;
+    let checked = loaded.check(&stage.digest, stage.scene.film());
+    checked.map_err(of_scene)?;
+    Ok(new(loaded.picture, &loaded.provenance, name))
+}
+
+fn new(pixels: Pixels, provenance: &Provenance, name: Option<&str>) -> Reference {
+    Reference {
+        pixels,
+        words: provenance.summary(),
+        image: name.map(|name| format!("{name}/picture.exr")),
+    }
+}
+
+fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
+    ExperimentError::Reference {
+        scene: stage.spec.name.clone(),
+        error,
     }
 }
 
@@ -63,66 +77,112 @@ fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
     Ok(pixels)
 }
 
-/// What a reference is rendered with.
-struct Plan {
-    settings: Settings,
-    spp: u64,
-    /// Its file, relative to the folder of the results: another reference has another name.
-    file: String,
+/// How a reference is made: as usual, where all strategies take part. Else paths may be missing, which
+/// path tracing has: the witness then has the same strategies under other weights.
+fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes) -> Plan {
+    let mut plan = Plan::usual(&stage.settings, spp);
+    plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
+    let [picture, witness] = &mut plan.estimators;
+    if picture.path.strategies != Strategies::default() {
+        witness.integrator = IntegratorKind::Bdpt;
+        picture.path.mis = MisHeuristic::Balance;
+        witness.path.mis = MisHeuristic::Uniform;
+    }
+    plan
 }
 
-impl Plan {
-    fn new(stage: &Stage<'_>, spp: u64, changes: &Changes) -> Self {
-        let mut settings = changes.apply(&stage.settings);
-        settings.integrator = IntegratorKind::Bdpt;
-        settings.shadow_rays = ShadowRays::All;
-        settings.sampler = SamplerKind::Sobol;
-        settings.seed = SEED;
-        let [width, height] = stage.size();
-        let identity = format!(
-            "{} {width}x{height} {spp} {ESTIMATOR_VERSION} {:?}",
-            stage.digest,
-            texts(&settings)
-        );
-        let hash = hash(&identity);
-        let name = file_name(&stage.spec.name);
-        let file = format!("references/{name}-{}.exr", &hash[..12]);
+/// The folder of a reference in that of the results: another reference has another name.
+fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
+    let settings = plan.estimators.each_ref().map(texts);
+    let [width, height] = stage.size();
+    let identity = format!(
+        "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
+        stage.digest, plan.spp
+    );
+    let hash = hash(&identity);
+    format!("references/{}-{}", file_name(&stage.spec.name), &hash[..12])
+}
+
+fn make(
+    stage: &Stage<'_>,
+    plan: &Plan,
+    setup: &Setup,
+    threads: usize,
+    observer: &mut dyn Observer,
+) -> Result<Option<Reference>> {
+    let name = folder(stage, plan);
+    let path = setup.folder.join(&name);
+    if let Ok(reference) = load(stage, &path, Some(&name)) {
+        return Ok(Some(reference));
+    }
+    let subject = Subject {
+        name: &stage.spec.file,
+        digest: &stage.digest,
+        scene: &stage.scene,
+    };
+    let resources = Resources {
+        threads,
+        ..Resources::default()
+    };
+    let watch = Watch::new(stage, plan, observer);
+    let made = references::make(&path, &subject, plan, &resources, &watch);
+    let Made::Whole(reference) = made.map_err(|error| failed(stage, error))? else {
+        return Ok(None);
+    };
+    if !reference.provenance.agreement.agree {
+        let warning = format!("{name}: the estimators of the reference disagree");
+        observer.tell(Event::Warning(&warning));
+    }
+    let reference = new(reference.picture, &reference.provenance, Some(&name));
+    Ok(Some(reference))
+}
+
+/// Tells an observer of a reference that is made.
+struct Watch<'a> {
+    scene: &'a str,
+    samples_per_pass: u64,
+    passes: u64,
+    samples: AtomicU64,
+    observer: Mutex<&'a mut dyn Observer>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(stage: &'a Stage<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
         Self {
-            settings,
-            spp,
-            file,
+            scene: &stage.spec.name,
+            samples_per_pass: stage.scene.film().crop.area().max(1),
+            passes: 2 * plan.rounded_spp(),
+            samples: AtomicU64::new(0),
+            observer: Mutex::new(observer),
         }
     }
 
-    fn words(&self) -> String {
-        let texts = texts(&self.settings);
-        format!(
-            "bdpt with {} samples per pixel, all shadow rays, strategies {}, max-depth {}",
-            self.spp, texts["strategies"], texts["max-depth"]
-        )
+    fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
+        let observer = self.observer.lock();
+        ask(*observer.unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Progress for Watch<'_> {
+    fn advance(&self, samples: u64) {
+        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
-    /// Renders and writes the image. False: it was stopped.
-    fn render(
-        &self,
-        stage: &Stage<'_>,
-        path: &Path,
-        threads: usize,
-        observer: &mut dyn Observer,
-    ) -> Result<bool> {
-        let mut session = stage.session(self.settings.clone(), threads)?;
-        while session.next_pass() < self.spp {
-            if observer.should_stop() {
-                return Ok(false);
-            }
+    fn nanoseconds(&self) -> u64 {
+        (self.with(|observer| observer.seconds()) * 1e9) as u64
+    }
+}
+
+impl Host for Watch<'_> {
+    fn should_end(&self) -> bool {
+        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
+        self.with(|observer| {
             observer.tell(Event::Reference {
-                scene: &stage.spec.name,
-                passes: session.next_pass(),
-                of: self.spp,
+                scene: self.scene,
+                passes,
+                of: self.passes,
             });
-            session.step(&());
-        }
-        write_image(path, &session.film().develop())?;
-        Ok(true)
+            observer.should_stop()
+        })
     }
 }

@@ -37,7 +37,9 @@ pub enum Start {
 }
 
 /// Who runs an experiment: is told how far it is, has the clock, and can stop it.
-pub trait Observer {
+///
+/// References ask it from one of their threads at a time.
+pub trait Observer: Send {
     /// Tells what happens.
     fn tell(&mut self, event: Event<'_>);
 
@@ -53,13 +55,13 @@ pub trait Observer {
 /// What happens.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// A scene was read, in which something is odd.
+    /// Something is odd with a scene or its reference.
     Warning(&'a str),
-    /// A pass of a reference begins.
+    /// A pass of a reference begins, of one of its two estimators.
     Reference {
         /// The scene.
         scene: &'a str,
-        /// Passes that are done.
+        /// Passes that were done since it was begun or gone on with.
         passes: u64,
         /// Passes in all.
         of: u64,

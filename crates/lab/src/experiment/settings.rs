@@ -7,6 +7,7 @@ use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
+use formats::film::SettingsText;
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::str::FromStr;
@@ -103,19 +104,12 @@ impl Changes {
 
 /// All settings but the seed, by the names of [`Changes::NAMES`] and as [`Changes::set`] takes them.
 pub fn texts(settings: &Settings) -> BTreeMap<String, String> {
-    let path = &settings.path;
-    let values = [
-        name_of(&IntegratorKind::NAMES, settings.integrator),
-        settings.shadow_rays.to_string(),
-        name_of(&MisHeuristic::NAMES, path.mis),
-        path.strategies.to_string(),
-        name_of(&LightPointChoice::NAMES, path.light_point),
-        path.roulette.to_string(),
-        name_of(&SamplerKind::NAMES, settings.sampler),
-        path.max_depth.unwrap_or(0).to_string(),
-    ];
-    let names = Changes::NAMES.map(str::to_owned);
-    names.into_iter().zip(values).collect()
+    let mut texts = SettingsText::from(settings).by_flag();
+    texts.retain(|name, _| Changes::NAMES.contains(&name.as_str()));
+    if settings.path.max_depth.is_none() {
+        texts.insert("max-depth".to_owned(), "0".to_owned());
+    }
+    texts
 }
 
 /// The value that a table of the library has under a name.
@@ -132,12 +126,6 @@ pub(super) fn named<T: Copy>(
         );
         format!("there is no `{given}`: {hint}")
     })
-}
-
-/// The name of a value in a table of the library.
-fn name_of<T: Copy + PartialEq>(names: &'static [(&'static str, T)], value: T) -> String {
-    let found = names.iter().find(|(_, named)| *named == value);
-    found.map_or("", |(name, _)| name).to_owned()
 }
 
 fn parsed<T: FromStr<Err: Display>>(value: &str) -> Result<T, String> {

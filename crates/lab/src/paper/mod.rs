@@ -55,6 +55,15 @@ pub enum Effort {
     Full,
 }
 
+/// How the experiment is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// How much is rendered.
+    pub effort: Effort,
+    /// Threads of each render; 0 is one per processor.
+    pub threads: usize,
+}
+
 /// The setting of the paper, but for weights and rules.
 pub(crate) fn setting() -> Changes {
     let mut changes = Changes::default();
@@ -74,7 +83,12 @@ pub(crate) fn setting() -> Changes {
 }
 
 /// Runs everything that has no record yet, judges, and writes `results.json`.
-pub fn run(effort: Effort, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
+pub fn run(options: Options, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
+    let Options { effort, threads } = options;
+    let part = |plan, name, observer: &mut dyn Observer| {
+        let plan = Experiment { threads, ..plan };
+        part(&plan, name, setup, observer)
+    };
     let folder = setup.folder.join("scenes");
     scenes::unpack(&folder).map_err(|error| ExperimentError::Folder {
         path: folder.clone(),
@@ -84,23 +98,23 @@ pub fn run(effort: Effort, setup: &Setup, observer: &mut dyn Observer) -> Result
     claims.extend(figure_2(&folder)?);
     let mut parts = Vec::new();
     let plan = plans::table_1(effort, &folder);
-    let Some(table) = part(&plan, "table-1", setup, observer)? else {
+    let Some(table) = part(plan, "table-1", observer)? else {
         return Ok(STOPPED);
     };
     parts.push(("table-1", table));
     let complexity = Complexity::write(effort, &folder)?;
     let plan = complexity.references();
-    let Some(references) = part(&plan, "complexity-references", setup, observer)? else {
+    let Some(references) = part(plan, "complexity-references", observer)? else {
         return Ok(STOPPED);
     };
     let at = setup.folder.join("complexity-references");
     let plan = complexity.plan(effort, &references, &at);
-    let Some(sweep) = part(&plan, "complexity", setup, observer)? else {
+    let Some(sweep) = part(plan, "complexity", observer)? else {
         return Ok(STOPPED);
     };
     parts.push(("complexity", sweep));
     let plan = plans::albedo(effort, &folder)?;
-    let Some(albedo) = part(&plan, "albedo", setup, observer)? else {
+    let Some(albedo) = part(plan, "albedo", observer)? else {
         return Ok(STOPPED);
     };
     parts.push(("albedo", albedo));

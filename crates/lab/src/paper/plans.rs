@@ -65,7 +65,7 @@ fn scene(name: &str, path: PathBuf, spp: u64) -> SceneSpec {
         file: file.to_string_lossy().into_owned(),
         path,
         size: None,
-        reference: ReferenceSpec::Render {
+        reference: ReferenceSpec::Make {
             spp,
             changes: Box::new(reference_changes()),
         },
@@ -108,8 +108,8 @@ fn experiment(title: &str, description: &str) -> Experiment {
 /// Scenes A, B and the apartment; all weights, all rules; equal rays.
 pub(super) fn table_1(effort: Effort, folder: &Path) -> Experiment {
     let (size, seeds, spp, rays) = match effort {
-        Effort::Quick => (SMALL, 10, 1024, 100.0),
-        Effort::Full => ([96, 72], 24, 4096, 200.0),
+        Effort::Quick => (SMALL, 10, 512, 100.0),
+        Effort::Full => ([96, 72], 24, 2048, 200.0),
     };
     let files = ROOMS.iter().copied().chain([(APARTMENT, APARTMENT)]);
     let rules = RULES.into_iter().chain(BEYOND);
@@ -144,8 +144,8 @@ impl Complexity {
     /// Writes the rooms.
     pub(super) fn write(effort: Effort, folder: &Path) -> Result<Self> {
         let (largest, spp) = match effort {
-            Effort::Quick => (5, 1024),
-            Effort::Full => (6, 8192),
+            Effort::Quick => (5, 512),
+            Effort::Full => (6, 4096),
         };
         let mut rooms = Vec::new();
         for power in 2..=largest {
@@ -197,7 +197,7 @@ impl Complexity {
             at.join(image.map_or("", |image| image))
         };
         let scenes = self.rooms.iter().map(|(lamp, triangles, path)| SceneSpec {
-            reference: ReferenceSpec::Image(reference(*lamp)),
+            reference: ReferenceSpec::There(reference(*lamp)),
             ..scene(
                 &complexity_name(lamp.name(), *triangles),
                 path.clone(),
@@ -230,7 +230,7 @@ fn methods(weights: &[&str]) -> Vec<MethodSpec> {
 pub(super) fn albedo(effort: Effort, folder: &Path) -> Result<Experiment> {
     let (seeds, spp, samples) = match effort {
         Effort::Quick => (10, 1024, 16.0),
-        Effort::Full => (24, 8192, 32.0),
+        Effort::Full => (24, 4096, 32.0),
     };
     let mut scenes = Vec::new();
     for albedo in ALBEDOS {

@@ -16,7 +16,7 @@ mod welch;
 
 pub use bootstrap::ratio_interval;
 pub use interval::{Interval, mean_interval};
-pub use welch::{Difference, Estimated, WHOLE, welch_test, z_test};
+pub use welch::{Difference, Estimated, WHOLE, smallest_bias, welch_test, z_test};
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 

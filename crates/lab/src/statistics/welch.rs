@@ -84,6 +84,46 @@ pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference
     worst(blocks, &moments(a), &moments(b))
 }
 
+/// The relative bias of one of two estimators, in the mean of any channel over the whole film, that
+/// [`welch_test`] of [`WHOLE`] finds more often than not at `level`.
+///
+/// With ν of the test, and α the level of one of its three comparisons:
+/// max_c t_{1 - α/2}(ν) √(v_a + v_b) / ½ (m_a + m_b).
+///
+/// None: where the test has none, all channels are black, or a number is not finite.
+pub fn smallest_bias(a: &[Pixels], b: &[Pixels], level: f64) -> Option<f64> {
+    let tests = welch_test(a, b, WHOLE)?.tests as f64;
+    // That of each comparison, 1 - (1 - level)^(1/n) [Sidak67].
+    let alpha = -libm::expm1(libm::log1p(-level) / tests);
+    let blocks = Blocks::new(a.first()?.size, WHOLE);
+    let moments = [a, b].map(|replicates| moments_of_replicates(blocks, replicates));
+    let [a, b] = &moments;
+    let lit = a.iter().zip(b).filter(|(a, b)| a.mean + b.mean != 0.0);
+    let biases = lit.map(|(a, b)| {
+        let (variance, freedom) = sum_of_variances(*a, *b);
+        let t = students_t(freedom).map_or(0.0, |distribution| {
+            distribution.inverse_cdf(1.0 - 0.5 * alpha)
+        });
+        t * variance.sqrt() / (0.5 * (a.mean + b.mean)).abs()
+    });
+    let biases: Vec<f64> = biases.collect();
+    let largest = biases.iter().copied().max_by(f64::total_cmp)?;
+    largest.is_finite().then_some(largest)
+}
+
+/// The variance of a difference, and its degrees of freedom; NaN where it has no variance.
+fn sum_of_variances(a: Moments, b: Moments) -> (f64, f64) {
+    let variance = a.variance + b.variance;
+    let share = |moments: Moments| moments.variance * moments.variance / moments.freedom;
+    // An estimate without variance has no degrees of freedom to give.
+    let shares: f64 = [a, b]
+        .into_iter()
+        .filter(|m| m.variance > 0.0)
+        .map(share)
+        .sum();
+    (variance, variance * variance / shares)
+}
+
 /// An estimate of the mean over a block.
 #[derive(Clone, Copy, Debug)]
 struct Moments {
@@ -144,7 +184,7 @@ fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
 ///
 /// What is not finite differs from everything.
 fn welch(a: Moments, b: Moments) -> (f64, f64) {
-    let variance = a.variance + b.variance;
+    let (variance, freedom) = sum_of_variances(a, b);
     let difference = a.mean - b.mean;
     let scale = a.mean.abs() + b.mean.abs();
     // Estimates without variance must agree to rounding.
@@ -153,14 +193,6 @@ fn welch(a: Moments, b: Moments) -> (f64, f64) {
         return (f64::from(agree), if agree { 0.0 } else { f64::INFINITY });
     }
     let t = difference / variance.sqrt();
-    let share = |moments: Moments| moments.variance * moments.variance / moments.freedom;
-    // An estimate without variance has no degrees of freedom to give.
-    let shares: f64 = [a, b]
-        .into_iter()
-        .filter(|m| m.variance > 0.0)
-        .map(share)
-        .sum();
-    let freedom = variance * variance / shares;
     let p = tail(t.abs(), freedom);
     if p.is_finite() { (p, t) } else { (0.0, t) }
 }

@@ -1,1 +1,224 @@
-//! What records say, as tables and plots.
+//! What records say, as tables and plots: a pure function of [`Results`].
+//!
+//! For each scene and budget there are two tables. The first has the means over seeds, with
+//! [`mean_interval`]. The second has ratios to the first method, paired by seed, with
+//! [`ratio_interval`]: of errors, and of the efficiencies
+//!
+//!   1 / (MSE · rays)  and  1 / (MSE · seconds).
+//!
+//! Where several budgets are of one kind there is a plot of each metric over them. All intervals are
+//! of 95 %; a single seed has a number and no interval.
+
+mod curves;
+#[cfg(test)]
+mod tests;
+
+use crate::results::{Cell, Plot, Record, Results, SceneInfo, Table};
+use crate::statistics::{Interval, mean_interval, ratio_interval};
+use std::collections::BTreeSet;
+
+/// How sure intervals are.
+pub const CONFIDENCE: f64 = 0.95;
+
+/// What is said of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// The scene, or what else it is about.
+    pub title: String,
+    /// The numbers.
+    pub tables: Vec<Table>,
+    /// The curves.
+    pub plots: Vec<Plot>,
+}
+
+/// A section for each scene that has records.
+pub fn sections(results: &Results) -> Vec<Section> {
+    let has_records = |scene: &&SceneInfo| results.records.iter().any(|r| r.scene == scene.name);
+    let scenes = results.scenes.iter().filter(has_records);
+    let section = |scene: &SceneInfo| Section {
+        title: scene.name.clone(),
+        tables: tables(results, scene),
+        plots: curves::plots(results, scene),
+    };
+    scenes.map(section).collect()
+}
+
+/// The records of a scene, a budget and a method, by seed.
+pub fn records_of<'a>(results: &'a Results, [scene, budget, method]: [&str; 3]) -> Vec<&'a Record> {
+    let is_one = |record: &&Record| {
+        record.scene == scene && record.budget == budget && record.method == method
+    };
+    let mut records: Vec<_> = results.records.iter().filter(is_one).collect();
+    records.sort_by_key(|record| record.seed);
+    records
+}
+
+/// The geometric mean of the ratio of a value in `a` and in `b`, over the seeds that both have.
+///
+/// None: there are fewer than two such seeds, or a value is not positive.
+pub fn ratio(
+    a: &[&Record],
+    b: &[&Record],
+    value: impl Fn(&Record) -> Option<f64>,
+) -> Option<Interval> {
+    let (a, b) = pairs(a, b, value);
+    ratio_interval(&a, &b, CONFIDENCE)
+}
+
+/// Values under the seeds that both have.
+fn pairs(
+    a: &[&Record],
+    b: &[&Record],
+    value: impl Fn(&Record) -> Option<f64>,
+) -> (Vec<f64>, Vec<f64>) {
+    let pair = |a: &&Record| {
+        let b = b.iter().find(|b| b.seed == a.seed)?;
+        Some((value(a)?, value(b)?))
+    };
+    a.iter().filter_map(pair).unzip()
+}
+
+/// The names of all metrics of a scene's records.
+fn metrics<'a>(results: &'a Results, scene: &SceneInfo) -> BTreeSet<&'a str> {
+    let records = results.records.iter();
+    let records = records.filter(|record| record.scene == scene.name);
+    let names = records.flat_map(|record| record.metrics.keys());
+    names.map(String::as_str).collect()
+}
+
+/// A head, and what stands under it in the row of a method.
+type Column<'a> = (String, Box<dyn Fn(&[&Record]) -> Cell + 'a>);
+
+fn tables(results: &Results, scene: &SceneInfo) -> Vec<Table> {
+    let mut tables = Vec::new();
+    for budget in &results.budgets {
+        let rows: Vec<(&str, Vec<&Record>)> = (results.methods.iter())
+            .map(|method| {
+                let records = records_of(results, [&scene.name, &budget.name, &method.name]);
+                (&*method.name, records)
+            })
+            .filter(|(_, records)| !records.is_empty())
+            .collect();
+        let Some((first, baseline)) = rows.first() else {
+            continue;
+        };
+        let place = format!("{}, {}", scene.name, budget.name);
+        let seeds = baseline.len();
+        let caption = format!("{place}: means over {seeds} seeds, with 95 % intervals.");
+        tables.push(table(caption, &means(results, scene), &rows));
+        if rows.len() > 1 {
+            let caption = format!(
+                "{place}: ratios to {first}, paired by seed, with 95 % intervals. \
+                 Errors are better below 1, efficiencies above."
+            );
+            let columns = ratios(results, scene, baseline);
+            tables.push(table(caption, &columns, &rows[1..]));
+        }
+    }
+    tables
+}
+
+fn table(caption: String, columns: &[Column<'_>], rows: &[(&str, Vec<&Record>)]) -> Table {
+    let heads = columns.iter().map(|(head, _)| head.clone());
+    let row = |(method, records): &(&str, Vec<&Record>)| {
+        let cells = columns.iter().map(|(_, cell)| cell(records));
+        std::iter::once(Cell::Text((*method).to_owned()))
+            .chain(cells)
+            .collect()
+    };
+    Table {
+        caption,
+        columns: std::iter::once("method".to_owned()).chain(heads).collect(),
+        rows: rows.iter().map(row).collect(),
+    }
+}
+
+/// The columns of the table of means.
+fn means<'a>(results: &'a Results, scene: &SceneInfo) -> Vec<Column<'a>> {
+    let pixels = (scene.size[0] * scene.size[1]) as f64;
+    let plain = |value: &dyn Fn(&Record) -> f64, records: &[&Record]| {
+        let sum: f64 = records.iter().map(|record| value(record)).sum();
+        Cell::Number(sum / records.len() as f64)
+    };
+    let mut columns: Vec<Column<'a>> = vec![
+        (
+            "samples per pixel".to_owned(),
+            Box::new(move |records| plain(&|record| record.spp as f64, records)),
+        ),
+        (
+            "rays per pixel".to_owned(),
+            Box::new(move |records| plain(&|record| record.rays.total() as f64 / pixels, records)),
+        ),
+        (
+            "seconds".to_owned(),
+            Box::new(move |records| plain(&|record| record.seconds, records)),
+        ),
+    ];
+    for metric in metrics(results, scene) {
+        let cell = move |records: &[&Record]| {
+            let values = records
+                .iter()
+                .filter_map(|r| r.metrics.get(metric).copied());
+            mean_cell(&values.collect::<Vec<_>>())
+        };
+        columns.push((metric.to_owned(), Box::new(cell)));
+    }
+    columns
+}
+
+/// The columns of the table of ratios.
+fn ratios<'a>(
+    results: &'a Results,
+    scene: &SceneInfo,
+    baseline: &'a [&'a Record],
+) -> Vec<Column<'a>> {
+    let mut columns: Vec<Column<'a>> = Vec::new();
+    for metric in metrics(results, scene) {
+        let value = move |record: &Record| record.metrics.get(metric).copied();
+        let cell = move |records: &[&Record]| ratio_cell(records, baseline, value);
+        columns.push((metric.to_owned(), Box::new(cell)));
+    }
+    let of_rays = |record: &Record| Some(record.efficiency_rays);
+    let of_seconds = |record: &Record| Some(record.efficiency_seconds);
+    columns.push((
+        "efficiency by rays".to_owned(),
+        Box::new(move |records| ratio_cell(records, baseline, of_rays)),
+    ));
+    columns.push((
+        "efficiency by time".to_owned(),
+        Box::new(move |records| ratio_cell(records, baseline, of_seconds)),
+    ));
+    columns
+}
+
+/// Where there is nothing to say.
+fn nothing() -> Cell {
+    Cell::Text("–".to_owned())
+}
+
+fn mean_cell(values: &[f64]) -> Cell {
+    match (mean_interval(values, CONFIDENCE), values) {
+        (Some(interval), _) => interval_cell(interval),
+        (None, [value]) => Cell::Number(*value),
+        (None, _) => nothing(),
+    }
+}
+
+fn ratio_cell(
+    records: &[&Record],
+    baseline: &[&Record],
+    value: impl Fn(&Record) -> Option<f64> + Copy,
+) -> Cell {
+    if let Some(interval) = ratio(records, baseline, value) {
+        return interval_cell(interval);
+    }
+    match pairs(records, baseline, value) {
+        (a, b) if a.len() == 1 && b[0] > 0.0 => Cell::Number(a[0] / b[0]),
+        _ => nothing(),
+    }
+}
+
+fn interval_cell(interval: Interval) -> Cell {
+    let Interval { value, low, high } = interval;
+    Cell::Interval { value, low, high }
+}

@@ -1,0 +1,69 @@
+//! The flags of `bidir experiment`.
+
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// What is compared, and where the results go.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+A description:
+  title = \"One ray for each pair\"        # description = \"…\" says more
+  seeds = 10                             # first-seed = 0
+  size = \"320x240\"                       # of all images; else the scenes' own
+  threads = 2                            # of each render; else one per processor
+  metrics = [\"relmse\", \"relmse_trim\"]    # beside rmse; names are those of `bidir compare`
+
+  [settings]                             # of all methods: names and values are those of the flags
+  integrator = \"bdpt\"                    # of `bidir render` from --integrator to --sampler
+  max-depth = 16                         # what nobody sets is the scene's
+
+  [[scene]]
+  file = \"room.pbrt\"                     # relative to the description; name and size if you like
+  reference = \"references/room\"          # a folder of `bidir reference`, or an image; or
+  # reference-spp = 4096                 # made first, with reference-strategies = \"all\"
+
+  [[method]]                             # ratios are relative to the first
+  name = \"all\"
+  [[method]]
+  name = \"one\"
+  shadow-rays = \"per-pair\"
+
+  [[budget]]                             # one of
+  rays = 500                             # rays per pixel, those of training too
+  # samples = 64                         # samples per pixel
+  # seconds = 10                         # training and passes
+
+Examples:
+  bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
+      every method under every budget and seed; the same again goes on where it was stopped
+  bidir experiment room.toml -o out/quick --quick
+      small and coarse, to see whether it works")]
+pub(crate) struct ExperimentArgs {
+    /// The description, a file of TOML. The name `paper` is kept for an experiment that the program
+    /// brings: a file of that name is ./paper.
+    #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
+    pub(crate) description: PathBuf,
+    /// The folder of the results, which is made where it is not there.
+    #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) output: PathBuf,
+    /// Begin anew; without it, records of the same experiment in the folder are gone on from, and
+    /// those of another are refused. References of the same scene and settings stay.
+    #[arg(long)]
+    pub(crate) restart: bool,
+    /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Threads of each render, instead of the description's [default: its own, or one per processor].
+    #[arg(
+        long,
+        visible_alias = "nthreads",
+        env = "BIDIR_THREADS",
+        value_name = "N"
+    )]
+    #[arg(default_value_t = 0, hide_default_value = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
+    /// Tell nothing but warnings and errors.
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}

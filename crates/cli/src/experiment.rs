@@ -1,0 +1,188 @@
+//! `bidir experiment`: methods are compared, from a description to a report.
+
+mod tables;
+mod watch;
+
+use crate::args::ExperimentArgs;
+use crate::console::{Console, Display, print, say};
+use crate::exit::{Exit, Failure};
+use crate::lock::FilmLock;
+use crate::render::set_threads;
+use crate::scene_io;
+use crate::signals::Signals;
+use lab::experiment::{self, End, Experiment, ExperimentError, Outcome, Setup, Start, analysis};
+use lab::report::{self, ImageKind, Report, ReportImage};
+use lab::results::{Machine, Results};
+use std::path::Path;
+use watch::Watch;
+
+/// The names of experiments that the program brings.
+const BUILT_IN: [&str; 1] = ["paper"];
+
+/// Runs an experiment, and tells what it found.
+pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
+    let signals = Signals::watch()?;
+    set_threads(args.threads)?;
+    let mut experiment = read(&args.description)?;
+    if args.quick {
+        experiment = experiment.quick();
+    }
+    experiment.threads = threads(args, &experiment);
+    let outcome = execute(&experiment, args, console, &signals)?;
+    let Some(results) = &outcome.results else {
+        return Ok(stopped(args));
+    };
+    write_report(args, results)?;
+    let sections = analysis::sections(results);
+    let found = sections.iter().flat_map(|section| &section.tables);
+    print(&found.map(tables::text).collect::<Vec<_>>().join("\n"))?;
+    if outcome.end == End::Stopped {
+        return Ok(stopped(args));
+    }
+    if !args.quiet {
+        say(format_args!("wrote {}", args.output.join(REPORT).display()));
+    }
+    Ok(Exit::Done)
+}
+
+/// Says how to go on.
+fn stopped(args: &ExperimentArgs) -> Exit {
+    if !args.quiet {
+        say("stopped: the same command goes on");
+    }
+    Exit::Checkpoint
+}
+
+/// Reads a description.
+fn read(file: &Path) -> Result<Experiment, Failure> {
+    if BUILT_IN.iter().any(|name| file == Path::new(name)) {
+        let message = format!("the experiment `{}` is not built in yet", file.display());
+        let hint = format!("a file of this name is ./{}", file.display());
+        return Err(Failure::usage(message).with_hint(hint));
+    }
+    let text = std::fs::read_to_string(file);
+    let text = text.map_err(|error| Failure::io(file, "read", &error))?;
+    Experiment::read(&text, file).map_err(failure)
+}
+
+/// As many as are asked for, or as there are processors: records tell the number.
+fn threads(args: &ExperimentArgs, experiment: &Experiment) -> usize {
+    match (args.threads, experiment.threads) {
+        (0, 0) => std::thread::available_parallelism().map_or(1, usize::from),
+        (0, own) => own,
+        (asked, _) => asked.into(),
+    }
+}
+
+/// Renders what is missing, alone in its folder.
+fn execute(
+    experiment: &Experiment,
+    args: &ExperimentArgs,
+    console: Console,
+    signals: &Signals,
+) -> Result<Outcome, Failure> {
+    let folder = &args.output;
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "make", &error))?;
+    let _lock = FilmLock::take(&folder.join("records.ndjson"))?;
+    let setup = Setup {
+        folder: folder.clone(),
+        start: if args.restart {
+            Start::Anew
+        } else {
+            Start::Resume
+        },
+        program: concat!("bidir ", env!("CARGO_PKG_VERSION")).to_owned(),
+        machine: machine(),
+    };
+    let wanted = if args.quiet {
+        Display::Silent
+    } else {
+        Display::Bar
+    };
+    let mut watch = Watch::new(console, wanted, signals);
+    let outcome = experiment::run(experiment, &setup, &mut watch);
+    watch.finish();
+    outcome.map_err(failure)
+}
+
+fn machine() -> Machine {
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processor.lines().find_map(|line| {
+        let (name, value) = line.split_once(':')?;
+        (name.trim() == "model name").then(|| value.trim().to_owned())
+    });
+    Machine {
+        processor: model.unwrap_or_else(|| "unknown".to_owned()),
+        isa: accel::Isa::detect().name().to_owned(),
+        system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        ..Machine::default()
+    }
+}
+
+/// What an error is to the shell.
+fn failure(error: ExperimentError) -> Failure {
+    let exit = match &error {
+        ExperimentError::Description(_) => Exit::Scene,
+        ExperimentError::Mismatch(_) => Exit::FilmMismatch,
+        ExperimentError::Render { .. } => Exit::RenderFailed,
+        _ => Exit::InputOutput,
+    };
+    let failure = Failure::new(exit, error.to_string());
+    match (error.hint().map(str::to_owned), error) {
+        // These can show their lines.
+        (_, ExperimentError::File(error)) => {
+            Failure::diagnostic(scene_io::exit_of_scene(&error), error)
+        }
+        (Some(hint), _) => failure.with_hint(hint),
+        (None, _) => failure,
+    }
+}
+
+/// The name of the page for people.
+const REPORT: &str = "report.html";
+
+/// Writes the page for people.
+fn write_report(args: &ExperimentArgs, results: &Results) -> Result<(), Failure> {
+    let sections = analysis::sections(results);
+    let (mut tables, mut plots) = (Vec::new(), Vec::new());
+    for section in sections {
+        tables.extend(section.tables);
+        plots.extend(section.plots);
+    }
+    let description = args.description.display();
+    let quick = if args.quick { " --quick" } else { "" };
+    let page = report::html(&Report {
+        results,
+        tables: &tables,
+        plots: &plots,
+        images: &images(&args.output, results)?,
+        command: &format!("bidir experiment {description} -o FOLDER{quick}"),
+    });
+    scene_io::write_text(&args.output.join(REPORT), &page)
+}
+
+/// The references, and the images of the first seed.
+fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>, Failure> {
+    let scenes = results.scenes.iter();
+    let references = scenes.filter_map(|scene| {
+        let image = scene.reference_image.as_ref()?;
+        Some((&scene.name, ImageKind::Reference, image))
+    });
+    let renders = results.records.iter().filter_map(|record| {
+        let kind = ImageKind::Render {
+            method: record.method.clone(),
+            budget: record.budget.clone(),
+        };
+        Some((&record.scene, kind, record.image.as_ref()?))
+    });
+    let all = references.chain(renders);
+    all.map(|(scene, kind, image)| {
+        Ok(ReportImage {
+            scene: scene.clone(),
+            kind,
+            pixels: scene_io::read_image(&folder.join(image))?,
+            flip: None,
+        })
+    })
+    .collect()
+}

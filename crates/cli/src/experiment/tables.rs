@@ -1,0 +1,92 @@
+//! Tables as text.
+
+use lab::results::{Cell, Table};
+
+/// A table with its caption, in columns.
+pub(super) fn text(table: &Table) -> String {
+    let head = table.columns.clone();
+    let rows = table.rows.iter().map(|row| row.iter().map(cell).collect());
+    let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths);
+        let cells = cells.map(|(cell, &width)| format!("{cell:width$}"));
+        let line = cells.collect::<Vec<_>>().join("  ");
+        line.trim_end().to_owned() + "\n"
+    };
+    let lines: String = rows.iter().map(line).collect();
+    format!("{}\n{lines}", table.caption)
+}
+
+fn cell(cell: &Cell) -> String {
+    match cell {
+        Cell::Text(text) => text.clone(),
+        Cell::Number(value) => number(*value),
+        Cell::Interval { value, low, high } => {
+            format!("{} [{}, {}]", number(*value), number(*low), number(*high))
+        }
+    }
+}
+
+/// A number with three digits that matter, or all of a whole one.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    let is_whole = value.fract().abs() < f64::EPSILON;
+    if value.is_nan() || is_whole && size < 1e6 {
+        return format!("{value}");
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let before = libm::floor(libm::log10(size)) as i32;
+    format!("{value:.*}", (2 - before).max(0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let cases = [
+            (64.0, "64"),
+            (0.84159, "0.842"),
+            (123.456, "123"),
+            (12.3456, "12.3"),
+            (0.00123456, "0.00123"),
+            (1.23456e-7, "1.23e-7"),
+            (-0.5, "-0.500"),
+        ];
+        for (value, expected) in cases {
+            assert_eq!(number(value), expected);
+        }
+    }
+
+    #[test]
+    fn columns_stand_below_each_other() {
+        let table = Table {
+            caption: "Errors.".into(),
+            columns: ["method", "rmse"].map(str::to_owned).into(),
+            rows: vec![
+                vec![Cell::Text("a longer name".into()), Cell::Number(2.0)],
+                vec![
+                    Cell::Text("b".into()),
+                    Cell::Interval {
+                        value: 1.5,
+                        low: 1.25,
+                        high: 1.75,
+                    },
+                ],
+            ],
+        };
+        let expected = "Errors.\n\
+                        method         rmse\n\
+                        a longer name  2\n\
+                        b              1.50 [1.25, 1.75]\n";
+        assert_eq!(text(&table), expected);
+    }
+}

@@ -1,0 +1,139 @@
+//! Progress of an experiment: a bar on a terminal, lines elsewhere.
+
+use crate::args::Duration;
+use crate::console::{Console, Display, say};
+use crate::progress::bar;
+use crate::signals::Signals;
+use indicatif::ProgressBar;
+use lab::experiment::{Event, Observer};
+use std::time::{Duration as Time, Instant};
+
+/// Lines are at least this far apart, but for the last.
+const GAP: Time = Time::from_secs(2);
+
+/// Tells of an experiment, and has its clock.
+pub(super) struct Watch<'a> {
+    console: Console,
+    signals: &'a Signals,
+    start: Instant,
+    channel: Channel,
+    /// Renders done before this run.
+    before: usize,
+    /// Renders done.
+    done: usize,
+    /// Renders in all.
+    of: usize,
+    is_stop_told: bool,
+}
+
+enum Channel {
+    Silent,
+    Bar(ProgressBar),
+    /// With the time of the last line.
+    Lines(Option<Instant>),
+}
+
+impl<'a> Watch<'a> {
+    pub(super) fn new(console: Console, wanted: Display, signals: &'a Signals) -> Self {
+        let channel = match console.on_terminal(wanted) {
+            Display::Silent => Channel::Silent,
+            Display::Bar => Channel::Bar(bar()),
+            Display::Lines(_) => Channel::Lines(None),
+        };
+        Self {
+            console,
+            signals,
+            start: Instant::now(),
+            channel,
+            before: 0,
+            done: 0,
+            of: 0,
+            is_stop_told: false,
+        }
+    }
+
+    /// Removes the bar.
+    pub(super) fn finish(&self) {
+        if let Channel::Bar(bar) = &self.channel {
+            bar.finish_and_clear();
+        }
+    }
+
+    /// Shows a part of all, and what it is.
+    fn show(&mut self, part: f64, what: &str) {
+        match &mut self.channel {
+            Channel::Silent => {}
+            Channel::Bar(bar) => {
+                bar.set_message(what.to_owned());
+                bar.set_position((part * 1000.0) as u64);
+            }
+            Channel::Lines(last) => {
+                let is_due = last.is_none_or(|last| last.elapsed() >= GAP) || part >= 1.0;
+                if is_due {
+                    *last = Some(Instant::now());
+                    say(format_args!("Progress: {}% {what}", (part * 100.0) as u32));
+                }
+            }
+        }
+    }
+
+    /// `render 3 of 40, 12.3s, 2m04s left`.
+    fn count(&self) -> String {
+        let Self { done, of, .. } = *self;
+        let elapsed = self.start.elapsed();
+        let here = (done - self.before).max(1);
+        let left = elapsed.mul_f64((of - done) as f64 / here as f64);
+        let [elapsed, left] = [elapsed, left].map(Duration);
+        format!("{done} of {of} renders, {elapsed}, {left} left")
+    }
+
+    fn begin(&mut self, [done, of]: [usize; 2]) {
+        (self.before, self.done, self.of) = (done, done, of);
+        self.start = Instant::now();
+        if let Channel::Bar(bar) = &self.channel {
+            bar.reset();
+        }
+        self.show(part(done, of), &format!("{done} of {of} renders"));
+    }
+}
+
+fn part(done: usize, of: usize) -> f64 {
+    done as f64 / of.max(1) as f64
+}
+
+impl Observer for Watch<'_> {
+    fn tell(&mut self, event: Event<'_>) {
+        match event {
+            Event::Warning(text) => match &self.channel {
+                Channel::Bar(bar) => bar.suspend(|| self.console.warning(text)),
+                _ => self.console.warning(text),
+            },
+            Event::Reference { scene, passes, of } => {
+                let part = part(passes as usize, of as usize).min(0.99);
+                self.show(part, &format!("reference of {scene}"));
+            }
+            Event::Begin { done, of } => self.begin([done, of]),
+            Event::Record(record) => {
+                self.done += 1;
+                let what = format!("{}, {}, {}", record.scene, record.budget, record.method);
+                let what = format!("{} ({what}, seed {})", self.count(), record.seed);
+                self.show(part(self.done, self.of), &what);
+            }
+        }
+    }
+
+    fn seconds(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    fn should_stop(&mut self) -> bool {
+        let is_asked = self.signals.exit().is_some();
+        if is_asked && !self.is_stop_told {
+            self.is_stop_told = true;
+            if let Channel::Lines(_) = self.channel {
+                say("stopping after the running pass; a second signal stops at once");
+            }
+        }
+        is_asked
+    }
+}

@@ -1,0 +1,156 @@
+use crate::common::{Ran, Workplace};
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+/// Two methods under two budgets, in 16 x 12 pixels.
+const DESCRIPTION: &str = r#"
+title = "A test"
+seeds = 3
+size = "16x12"
+[[scene]]
+file = "room.pbrt"
+reference-spp = 16
+[[method]]
+name = "all"
+[[method]]
+name = "one"
+shadow-rays = "per-pair"
+[[budget]]
+samples = 2
+[[budget]]
+rays = 40
+"#;
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.write("test.toml", DESCRIPTION);
+    place
+}
+
+/// The records of an experiment, whose times are forgotten.
+fn records(place: &Workplace, folder: &str) -> Vec<Value> {
+    let text = place.read(&format!("{folder}/results.json"));
+    let mut results: Value = serde_json::from_str(&text).unwrap();
+    let records = results["records"].as_array_mut().unwrap();
+    for record in records.iter_mut() {
+        let record = record.as_object_mut().unwrap();
+        record.remove("seconds").unwrap();
+        record.remove("efficiency_seconds").unwrap();
+    }
+    records.clone()
+}
+
+#[test]
+fn an_experiment_has_tables_records_and_a_report() {
+    let place = place();
+    place
+        .run("experiment test.toml -o out/deep")
+        .expect(0)
+        .prints("room, 2 spp: means over 3 seeds, with 95 % intervals.")
+        .prints("room, 40 rays per pixel: ratios to all, paired by seed")
+        .says("Progress: 100% 12 of 12 renders")
+        .says("wrote out/deep/report.html");
+    assert_eq!(records(&place, "out/deep").len(), 12);
+    assert!(place.read("out/deep/report.html").contains("A test"));
+    let images = std::fs::read_dir(place.path("out/deep/images")).unwrap();
+    assert_eq!(images.count(), 4);
+    // Nothing is rendered twice, and nothing else is in the folder.
+    place
+        .run("experiment test.toml -o out/deep --quiet")
+        .expect(0)
+        .prints("room, 2 spp");
+    let names = std::fs::read_dir(place.path("out/deep")).unwrap();
+    assert_eq!(names.count(), 5);
+}
+
+#[test]
+fn one_more_method_needs_the_description_alone() {
+    let place = place();
+    let more = "[[method]]\nname = \"light\"\nintegrator = \"light\"\n";
+    place.write("more.toml", &(DESCRIPTION.to_owned() + more));
+    place
+        .run("experiment more.toml -o out --quick --threads 1")
+        .expect(0)
+        .prints("light");
+    let records = records(&place, "out");
+    assert_eq!(records.len(), 18);
+}
+
+/// Runs an experiment, and stops it when a line with these words was told.
+fn interrupted(place: &Workplace, arguments: &str, words: &str) -> Ran {
+    let mut command = place.command(arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut told = String::new();
+    for line in BufReader::new(child.stderr.take().unwrap()).lines() {
+        let line = line.unwrap() + "\n";
+        if line.contains(words) && !told.contains(words) {
+            let id = child.id().to_string();
+            let kill = Command::new("kill").args(["-s", "INT", &id]).status();
+            assert!(kill.unwrap().success());
+        }
+        told += &line;
+    }
+    let code = child.wait().unwrap().code();
+    Ran {
+        code,
+        stdout: String::new(),
+        stderr: told,
+    }
+}
+
+#[test]
+fn what_was_interrupted_goes_on_to_the_same_records() {
+    let place = place();
+    // Long enough to be stopped after the first line, which tells of the beginning or soon after.
+    place.write(
+        "test.toml",
+        &DESCRIPTION.replace("samples = 2", "samples = 600"),
+    );
+    place.run("experiment test.toml -o whole").expect(0);
+    interrupted(&place, "experiment test.toml -o stopped", "Progress:")
+        .expect(75)
+        .says("stopped: the same command goes on");
+    place.run("experiment test.toml -o stopped").expect(0);
+    assert_eq!(records(&place, "stopped"), records(&place, "whole"));
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_place() {
+    let place = place();
+    place.write("key.toml", &DESCRIPTION.replace("seeds", "sedes"));
+    place
+        .run("experiment key.toml -o out")
+        .expect(3)
+        .says("key.toml:3:1: there is no key `sedes` here")
+        .says("did you mean `seeds`?");
+    place.write("scene.toml", &DESCRIPTION.replace("room.pbrt", "rom.pbrt"));
+    place
+        .run("experiment scene.toml -o out")
+        .expect(4)
+        .says("rom.pbrt");
+    place
+        .run("experiment none.toml -o out")
+        .expect(4)
+        .says("none.toml");
+    place
+        .run("experiment paper -o out")
+        .expect(2)
+        .says("a file of this name is ./paper");
+    place.write("paper", DESCRIPTION);
+    place.run("experiment ./paper -o out").expect(0);
+}
+
+#[test]
+fn another_experiment_needs_to_begin_anew() {
+    let place = place();
+    place.run("experiment test.toml -o out").expect(0);
+    place.write("test.toml", &DESCRIPTION.replace("rays = 40", "rays = 30"));
+    place
+        .run("experiment test.toml -o out")
+        .expect(5)
+        .says("--restart");
+    place.run("experiment test.toml -o out --restart").expect(0);
+    assert_eq!(records(&place, "out").len(), 12);
+}

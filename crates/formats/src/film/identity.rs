@@ -1,0 +1,164 @@
+//! Whose film it is: what a film file says of the render that it belongs to, and its image likewise.
+//!
+//! Names are those of flags: `light-point`, not `light_point`.
+
+use super::header::FilmHeader;
+use super::settings::{SettingsText, flag, text};
+use crate::image::MetadataValue;
+use bidir::ESTIMATOR_VERSION;
+use bidir::driver::{Session, Settings, Training};
+use bidir::film::FilmSettings;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+/// The version of the program that writes.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// The setting that is known after training only.
+const TRAINED_MEAN: &str = "trained-mean";
+
+/// The scene that a film is of.
+#[derive(Clone, Copy, Debug)]
+pub struct SceneIdentity<'a> {
+    /// The scene file, as it was named.
+    pub name: &'a str,
+    /// The hash of everything that was read for it, as text.
+    pub digest: &'a str,
+    /// The geometry of the film.
+    pub film: &'a FilmSettings,
+}
+
+impl SceneIdentity<'_> {
+    /// The header of an empty film of this scene. Without `training` it is that of a render that
+    /// needs none, or what is known before.
+    pub fn header(&self, settings: &Settings, training: Option<&Training>) -> FilmHeader {
+        new(self.name, self.all_settings(settings, training))
+    }
+
+    /// Everything that the bits of the picture depend on but the passes, by name.
+    fn all_settings(
+        &self,
+        settings: &Settings,
+        training: Option<&Training>,
+    ) -> BTreeMap<String, String> {
+        let film = self.film;
+        let mut settings = SettingsText::from(settings).by_flag();
+        let [width, height] = film.resolution;
+        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+        let own = [
+            ("version", VERSION.to_owned()),
+            ("estimator-version", ESTIMATOR_VERSION.to_string()),
+            ("scene-digest", self.digest.to_owned()),
+            ("size", format!("{width} x {height}")),
+            ("crop", format!("{left},{top},{right},{bottom}")),
+        ];
+        settings.extend(own.map(|(name, value)| (name.to_owned(), value)));
+        if let Some(training) = training {
+            let mean = format!("{:e}", training.mean_luminance);
+            settings.insert(TRAINED_MEAN.to_owned(), mean);
+        }
+        settings
+    }
+}
+
+/// The program with its version, as files name it.
+pub fn program() -> String {
+    format!("bidir {VERSION}")
+}
+
+fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
+    FilmHeader::new(&program(), name.to_owned(), settings)
+}
+
+/// The same before training: what can be compared before it.
+#[must_use]
+pub fn untrained(header: &FilmHeader) -> FilmHeader {
+    let mut settings = header.settings.clone();
+    settings.remove(TRAINED_MEAN);
+    new(&header.scene, settings)
+}
+
+/// What film files keep of what was counted: numbers that add up when films are merged.
+fn counts(session: &Session<'_>) -> Value {
+    let stats = session.stats();
+    let rays = &stats.rays;
+    let training = session.training();
+    json!({
+        "samples": stats.samples,
+        "rays": {
+            "camera": rays.camera,
+            "light": rays.light,
+            "connection": rays.connection,
+            "light_image": rays.light_image,
+            // The sum of those above.
+            "total": rays.total(),
+            "training": training.map_or(0, |training| training.rays.total()),
+        },
+        "connections_blocked": stats.connections_blocked,
+        "light_image_blocked": stats.light_image_blocked,
+        "candidates": stats.candidates,
+        "dropped": stats.dropped,
+    })
+}
+
+/// The header with the time and the counts of this run.
+pub fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> FilmHeader {
+    FilmHeader {
+        seconds: time.as_secs_f64(),
+        counts: counts(session),
+        ..header.clone()
+    }
+}
+
+/// What was counted, by name, such as `rays.camera`.
+pub fn counts_by_name(header: &FilmHeader) -> Vec<(String, String)> {
+    let mut counts = Vec::new();
+    flatten(String::new(), &header.counts, &mut counts);
+    counts
+}
+
+fn flatten(name: String, value: &Value, counts: &mut Vec<(String, String)>) {
+    match value {
+        Value::Object(fields) => {
+            let dot = if name.is_empty() { "" } else { "." };
+            for (field, value) in fields {
+                flatten(format!("{name}{dot}{}", flag(field)), value, counts);
+            }
+        }
+        Value::Null => {}
+        value => counts.push((name, text(value))),
+    }
+}
+
+/// The attributes of an image of the film with this header, whichever command writes it: pbrt's
+/// where it has such, else our own. Time and counts are those of all runs.
+pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
+    let passes = i32::try_from(header.passes.len()).unwrap_or(i32::MAX);
+    let seconds = header.seconds as f32;
+    let pbrt = [
+        ("samplesPerPixel", MetadataValue::Integer(passes)),
+        ("renderTimeSeconds", MetadataValue::Float(seconds)),
+    ];
+    let own = [
+        ("scene", file_name(&header.scene)),
+        ("identity", header.identity.clone()),
+        ("passes", header.passes.to_string()),
+        ("stopping", header.stopping.name().to_owned()),
+    ];
+    let own = own.map(|(name, text)| (name.to_owned(), text));
+    let texts = header.settings.clone().into_iter();
+    let texts = texts.chain(own).chain(counts_by_name(header));
+    let texts = texts.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text)));
+    let pbrt = pbrt.map(|(name, value)| (name.to_owned(), value));
+    pbrt.into_iter().chain(texts).collect()
+}
+
+/// The name of a file without its folders, which are of no interest to others.
+fn file_name(path: &str) -> String {
+    let name = Path::new(path).file_name();
+    name.map_or_else(
+        || path.to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
+}

@@ -1,0 +1,177 @@
+//! The settings of a render as flags write them: identities of films are made of these.
+
+use bidir::driver::Settings;
+use bidir::film::Aov;
+use bidir::integrator::IntegratorKind;
+use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
+use bidir::sampler::SamplerKind;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+/// All settings, as flags write them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettingsText {
+    /// The estimator.
+    pub integrator: &'static str,
+    /// Which connections are traced.
+    pub shadow_rays: String,
+    /// How strategies share paths.
+    pub mis: &'static str,
+    /// Which take part.
+    pub strategies: String,
+    /// Where next-event estimation takes its point from.
+    pub light_point: &'static str,
+    /// How subpaths end by chance.
+    pub path_roulette: String,
+    /// The most bounces. None: no limit.
+    pub max_depth: Option<u32>,
+    /// The random numbers.
+    pub sampler: &'static str,
+    /// Their seed.
+    pub seed: u64,
+    /// The images beside the picture.
+    pub aov: String,
+    /// The groups of lights with images of their own.
+    pub light_groups: String,
+    /// The most vertices of paths whose strategies have images of their own.
+    pub strategy_layers: usize,
+}
+
+impl SettingsText {
+    /// The same by the names of flags: `light-point`, not `light_point`.
+    pub fn by_flag(&self) -> BTreeMap<String, String> {
+        match serde_json::to_value(self) {
+            Ok(Value::Object(texts)) => texts.iter().map(|(k, v)| (flag(k), text(v))).collect(),
+            _ => unreachable!("settings are an object of texts and numbers"),
+        }
+    }
+}
+
+/// The settings that [`SettingsText::by_flag`] wrote, but for the layers, which are left out.
+///
+/// None: a setting is missing, or has a value that this program does not know.
+pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings> {
+    fn parse<T: FromStr>(text: &str) -> Option<T> {
+        text.parse().ok()
+    }
+    let flag = |name: &str| flags.get(name).map(String::as_str);
+    let max_depth = flag("max-depth")?;
+    let settings = Settings {
+        integrator: named(&IntegratorKind::NAMES, flag("integrator")?)?,
+        shadow_rays: parse(flag("shadow-rays")?)?,
+        path: PathSettings {
+            max_depth: match max_depth {
+                "none" => None,
+                number => Some(parse(number)?),
+            },
+            roulette: parse(flag("path-roulette")?)?,
+            strategies: parse(flag("strategies")?)?,
+            mis: named(&MisHeuristic::NAMES, flag("mis")?)?,
+            light_point: named(&LightPointChoice::NAMES, flag("light-point")?)?,
+        },
+        sampler: named(&SamplerKind::NAMES, flag("sampler")?)?,
+        seed: parse(flag("seed")?)?,
+        ..Settings::default()
+    };
+    Some(settings)
+}
+
+/// The value of a name in a table of the library. None: it is not there.
+fn named<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
+    let mut names = names.iter();
+    names.find(|(known, _)| *known == name).map(|entry| entry.1)
+}
+
+/// The name of a field as flags are spelt.
+pub(super) fn flag(field: &str) -> String {
+    field.replace('_', "-")
+}
+
+/// A value as flags write it.
+pub(super) fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Null => "none".to_owned(),
+        value => value.to_string(),
+    }
+}
+
+/// The name of a value in a table of the library.
+pub fn name_of<T: Copy + PartialEq>(names: &'static [(&'static str, T)], value: T) -> &'static str {
+    names
+        .iter()
+        .find(|(_, named)| *named == value)
+        .map_or("", |(name, _)| name)
+}
+
+/// Names with commas between them.
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<_> = names.collect();
+    if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(",")
+    }
+}
+
+impl From<&Settings> for SettingsText {
+    fn from(settings: &Settings) -> Self {
+        // Taken apart, so that no setting can be forgotten: identities of films are made of these.
+        let Settings {
+            integrator,
+            shadow_rays,
+            path,
+            sampler,
+            seed,
+            layers,
+        } = settings;
+        let PathSettings {
+            max_depth,
+            roulette,
+            strategies,
+            mis,
+            light_point,
+        } = path;
+        Self {
+            integrator: name_of(&IntegratorKind::NAMES, *integrator),
+            shadow_rays: shadow_rays.to_string(),
+            mis: name_of(&MisHeuristic::NAMES, *mis),
+            strategies: strategies.to_string(),
+            light_point: name_of(&LightPointChoice::NAMES, *light_point),
+            path_roulette: roulette.to_string(),
+            max_depth: *max_depth,
+            sampler: name_of(&SamplerKind::NAMES, *sampler),
+            seed: *seed,
+            aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),
+            light_groups: list(layers.light_groups().iter().map(String::as_str)),
+            strategy_layers: layers.strategy_vertices(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_read_as_they_were_written() {
+        let mut settings = Settings {
+            integrator: IntegratorKind::Path,
+            shadow_rays: "budget:3".parse().unwrap(),
+            seed: u64::MAX,
+            ..Settings::default()
+        };
+        settings.path.strategies = "all,-s0,-t1".parse().unwrap();
+        settings.path.light_point = LightPointChoice::Shared;
+        for max_depth in [None, Some(7)] {
+            settings.path.max_depth = max_depth;
+            let mut flags = SettingsText::from(&settings).by_flag();
+            let read = settings_from_flags(&flags).unwrap();
+            assert_eq!(SettingsText::from(&read).by_flag(), flags);
+            flags.insert("mis".to_owned(), "best".to_owned());
+            assert!(settings_from_flags(&flags).is_none());
+        }
+    }
+}

@@ -1,0 +1,150 @@
+use super::*;
+use crate::results::{BudgetInfo, BudgetKind, FORMAT, Machine, MethodInfo, Rays};
+use std::collections::BTreeMap;
+
+/// A method whose error is `factor` times as large, and that takes twice the rays.
+fn record(method: &str, factor: f64, budget: f64, seed: u64) -> Record {
+    // Large differences between seeds, that all methods share.
+    let error = factor * [1.0, 4.0, 0.5][seed as usize] / budget;
+    Record {
+        scene: "room".into(),
+        method: method.into(),
+        budget: format!("{budget} spp"),
+        seed,
+        spp: budget as u64,
+        seconds: 2.0,
+        rays: Rays {
+            camera: if method == "first" { 500 } else { 1000 },
+            ..Rays::default()
+        },
+        connections_blocked: 0,
+        metrics: BTreeMap::from([("rmse".to_owned(), error)]),
+        efficiency_rays: 1.0 / (error * error * if method == "first" { 500.0 } else { 1000.0 }),
+        efficiency_seconds: 1.0 / (error * error * 2.0),
+        image: None,
+    }
+}
+
+fn results(seeds: u64) -> Results {
+    let method = |name: &str| MethodInfo {
+        name: name.into(),
+        settings: BTreeMap::new(),
+    };
+    let budget = |amount: f64| BudgetInfo {
+        name: format!("{amount} spp"),
+        kind: BudgetKind::Samples,
+        amount,
+    };
+    let cells = (0..seeds).flat_map(|seed| {
+        [64.0, 16.0].into_iter().flat_map(move |budget| {
+            let methods = [("first", 1.0), ("second", 0.5)];
+            methods.map(|(method, factor)| record(method, factor, budget, seed))
+        })
+    });
+    Results {
+        format: FORMAT,
+        title: String::new(),
+        description: String::new(),
+        program: String::new(),
+        machine: Machine::default(),
+        scenes: vec![SceneInfo {
+            name: "room".into(),
+            file: String::new(),
+            digest: String::new(),
+            size: [5, 10],
+            reference: String::new(),
+            reference_image: None,
+        }],
+        methods: vec![method("first"), method("second"), method("not run")],
+        budgets: vec![budget(64.0), budget(16.0)],
+        records: cells.collect(),
+        claims: Vec::new(),
+    }
+}
+
+#[track_caller]
+fn check_interval(cell: &Cell, expected: f64) {
+    let Cell::Interval { value, low, high } = cell else {
+        panic!("{cell:?}");
+    };
+    for number in [value, low, high] {
+        assert!((number - expected).abs() < 1e-9, "{cell:?}");
+    }
+}
+
+#[test]
+fn ratios_are_paired_by_seed() {
+    let sections = sections(&results(3));
+    let [means, ratios, ..] = &sections[0].tables[..] else {
+        panic!("{sections:?}");
+    };
+    assert_eq!((sections.len(), sections[0].tables.len()), (1, 4));
+    let heads = [
+        "method",
+        "samples per pixel",
+        "rays per pixel",
+        "seconds",
+        "rmse",
+    ];
+    assert_eq!(means.columns, heads);
+    assert_eq!(means.rows.len(), 2);
+    assert_eq!(means.rows[1][2], Cell::Number(20.0));
+    let Cell::Interval { value, low, high } = means.rows[0][4] else {
+        panic!("{means:?}");
+    };
+    assert!((value - 5.5 / 3.0 / 64.0).abs() < 1e-12 && low < 0.0 && high > 0.05);
+    // However different the seeds, the ratio is the same under each.
+    let [row] = &ratios.rows[..] else {
+        panic!("{ratios:?}");
+    };
+    assert_eq!(row[0], Cell::Text("second".into()));
+    check_interval(&row[1], 0.5);
+    check_interval(&row[2], 2.0);
+    check_interval(&row[3], 4.0);
+}
+
+#[test]
+fn seeds_that_one_method_lacks_are_left_out() {
+    let mut results = results(3);
+    results
+        .records
+        .retain(|record| record.seed != 1 || record.method == "first");
+    let of = |method| records_of(&results, ["room", "64 spp", method]);
+    let rmse = |record: &Record| record.metrics.get("rmse").copied();
+    let interval = ratio(&of("second"), &of("first"), rmse).unwrap();
+    assert!((interval.value - 0.5).abs() < 1e-12, "{interval:?}");
+}
+
+#[test]
+fn one_seed_has_numbers() {
+    let sections = sections(&results(1));
+    let tables = &sections[0].tables;
+    assert!(matches!(tables[0].rows[0][4], Cell::Number(_)));
+    assert_eq!(tables[1].rows[0][1], Cell::Number(0.5));
+    assert!(sections[0].plots[0].series[0].intervals.is_empty());
+}
+
+#[test]
+fn curves_go_over_all_budgets_of_a_kind() {
+    let sections = sections(&results(3));
+    let [plot] = &sections[0].plots[..] else {
+        panic!("{sections:?}");
+    };
+    assert_eq!(plot.series.len(), 2);
+    let curve = &plot.series[1];
+    assert!((curve.points[0][0] - 16.0).abs() < 1e-12);
+    assert!((curve.points[1][0] - 64.0).abs() < 1e-12);
+    assert!((curve.points[0][1] / curve.points[1][1] - 4.0).abs() < 1e-9);
+    assert_eq!(curve.intervals.len(), 2);
+    assert!(
+        curve
+            .intervals
+            .iter()
+            .all(|[low, high]| *low > 0.0 && high > low)
+    );
+}
+
+#[test]
+fn nothing_was_run_and_nothing_is_said() {
+    assert_eq!(sections(&results(0)), []);
+}

@@ -1,0 +1,94 @@
+//! Do the two estimators of a reference have the same expectation?
+
+use super::LEVEL;
+use crate::image::Pixels;
+use crate::statistics::{Difference, WHOLE, smallest_bias, welch_test};
+use serde::{Deserialize, Serialize};
+
+/// The film is cut into about so many blocks along its longer side.
+const BLOCKS: usize = 8;
+/// Blocks have at least so many pixels along a side: means of few pixels have heavy tails.
+const SMALLEST_BLOCK: usize = 8;
+
+/// What the test of agreement found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// True where p ≥ level.
+    pub agree: bool,
+    /// The probability of a difference at least as large where there is none: the smaller one of
+    /// both parts, corrected for there being two.
+    pub p: f64,
+    /// The level of the test.
+    pub level: f64,
+    /// Which test it is, in words.
+    pub test: String,
+    /// Replicates of each estimator.
+    pub replicates: usize,
+    /// Comparisons in all: three channels of the film, and of every block.
+    pub comparisons: usize,
+    /// The side of a block. Unit: pixels.
+    pub block: usize,
+    /// Where the film's mean differs most.
+    pub film: Comparison,
+    /// Where the blocks' means differ most.
+    pub blocks: Comparison,
+    /// The relative bias of the film's mean, in any channel, that would have been found more often
+    /// than not. None: the film is black, or nothing is known of its variance.
+    pub smallest_bias: Option<f64>,
+}
+
+/// The most significant one of several comparisons.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Corrected for the number of comparisons.
+    pub p: f64,
+    /// Left, top, right and bottom (exclusive) of the block. Unit: pixels from the crop's corner.
+    pub block: [usize; 4],
+    /// Red, green or blue: 0, 1 or 2.
+    pub channel: usize,
+    /// The means of both estimators. None: not finite.
+    pub means: [Option<f64>; 2],
+    /// Their difference. Unit: standard errors. None: not finite.
+    pub deviations: Option<f64>,
+}
+
+impl From<&Difference> for Comparison {
+    fn from(difference: &Difference) -> Self {
+        let finite = |number: f64| Some(number).filter(|number| number.is_finite());
+        Self {
+            p: difference.p,
+            block: difference.block,
+            channel: difference.channel,
+            means: difference.means.map(finite),
+            deviations: finite(difference.deviations),
+        }
+    }
+}
+
+/// Compares the replicates of two estimators. None: there are too few, or no pixels.
+pub(super) fn agreement(a: &[Pixels], b: &[Pixels]) -> Option<Agreement> {
+    let size = a.first()?.size;
+    let block = size[0].max(size[1]).div_ceil(BLOCKS).max(SMALLEST_BLOCK);
+    let film = welch_test(a, b, WHOLE)?;
+    let blocks = welch_test(a, b, block)?;
+    // 1 - (1 - p)² [Sidak67], exact for small p too.
+    let p = film.p.min(blocks.p);
+    let p = p * (2.0 - p);
+    // That of the film's part alone.
+    let level = LEVEL / (1.0 + (1.0 - LEVEL).sqrt());
+    Some(Agreement {
+        agree: p >= LEVEL,
+        p,
+        level: LEVEL,
+        test:
+            "Welch's t-test over replicates, of the means of the film and of blocks, with Šidák's \
+               correction"
+                .to_owned(),
+        replicates: a.len(),
+        comparisons: film.tests + blocks.tests,
+        block,
+        film: Comparison::from(&film),
+        blocks: Comparison::from(&blocks),
+        smallest_bias: smallest_bias(a, b, level),
+    })
+}

@@ -1,0 +1,204 @@
+//! Making references, and making them longer.
+
+use super::agreement::agreement;
+use super::provenance::{EstimatorRecord, FORMAT, Provenance};
+use super::replicate::{Estimator, Replicates};
+use super::{AGAINST, Error, FILMS, PICTURE, REPLICATES, Reference, picture};
+use crate::results::Rays;
+use bidir::ESTIMATOR_VERSION;
+use bidir::driver::{Progress, Resources, Settings};
+use bidir::film::{Aov, Layers};
+use bidir::integrator::IntegratorKind;
+use bidir::sampler::SamplerKind;
+use bidir::scene::Scene;
+use formats::film::{FilmHeader, SceneIdentity, SettingsText};
+use serde_json::Value;
+use std::path::Path;
+
+/// The first of all seeds: far from those that people choose.
+const SEEDS: u64 = 1 << 40;
+/// The beginnings of the names of the films of both estimators.
+const NAMES: [&str; 2] = ["picture", "against"];
+
+/// Who asks for a reference: is told of progress, may have a clock, and may want to stop.
+pub trait Host: Progress {
+    /// True to stop after the running pass, so that a later [`make`] can go on.
+    fn should_end(&self) -> bool {
+        false
+    }
+}
+
+/// Nobody listens, and there is no clock.
+impl Host for () {}
+
+/// What a reference is of.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The scene file, as it was named.
+    pub name: &'a str,
+    /// The hash of everything that was read for it, as text.
+    pub digest: &'a str,
+    /// The scene, whose film is that of the reference.
+    pub scene: &'a Scene,
+}
+
+impl Subject<'_> {
+    pub(super) fn identity(&self) -> SceneIdentity<'_> {
+        SceneIdentity {
+            name: self.name,
+            digest: self.digest,
+            film: self.scene.film(),
+        }
+    }
+}
+
+/// How a reference is made.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The estimator of the picture, and the one that it has to agree with. What they say of layers
+    /// has no influence.
+    pub estimators: [Settings; 2],
+    /// Samples per pixel of each, those included that are there already. Rounded up to a multiple
+    /// of [`REPLICATES`].
+    pub spp: u64,
+}
+
+impl Plan {
+    /// The usual one: bidirectional path tracing with all strategies makes the picture, path tracing
+    /// is the witness, both with independent random numbers, and the longest paths and the seed of
+    /// `scene`.
+    pub fn usual(scene: &Settings, spp: u64) -> Self {
+        let of = |integrator| {
+            let mut settings = Settings {
+                integrator,
+                sampler: SamplerKind::Independent,
+                seed: scene.seed,
+                ..Settings::default()
+            };
+            settings.path.max_depth = scene.path.max_depth;
+            settings
+        };
+        Self {
+            estimators: [of(IntegratorKind::Bdpt), of(IntegratorKind::Path)],
+            spp,
+        }
+    }
+
+    /// Passes of each replicate.
+    fn passes(&self) -> u64 {
+        self.spp.div_ceil(REPLICATES).max(1)
+    }
+
+    /// Samples per pixel of each estimator, rounded up.
+    pub fn rounded_spp(&self) -> u64 {
+        self.passes().saturating_mul(REPLICATES)
+    }
+}
+
+/// What became of a reference.
+#[derive(Clone, Debug)]
+pub enum Made {
+    /// It is done, and whether its estimators agree is in its provenance.
+    Whole(Box<Reference>),
+    /// The host asked to stop: the films are written, and the same call goes on.
+    Stopped,
+}
+
+/// Makes a reference in `folder`, which is made where it is not there. Films that are there are gone
+/// on from, so that the result has the bits of a reference that is made at once.
+///
+/// A reference whose estimators disagree is a result, too, and written as one.
+///
+/// Errors: a file cannot be read or written or is damaged; a film in the folder is of another render
+/// or has more passes than are asked for; no render can begin.
+pub fn make(
+    folder: &Path,
+    subject: &Subject<'_>,
+    plan: &Plan,
+    resources: &Resources,
+    host: &dyn Host,
+) -> Result<Made, Error> {
+    let films = folder.join(FILMS);
+    std::fs::create_dir_all(&films).map_err(|error| Error::io(&films, error))?;
+    let mut made = Vec::with_capacity(2);
+    for (index, settings) in plan.estimators.iter().enumerate() {
+        let estimator = Estimator {
+            folder,
+            subject,
+            settings: seeded(settings, index as u64),
+            name: NAMES[index],
+            passes: plan.passes(),
+            resources,
+        };
+        match estimator.replicates(host)? {
+            Some(replicates) => made.push(replicates),
+            None => return Ok(Made::Stopped),
+        }
+    }
+    let [first, second] = <[Replicates; 2]>::try_from(made)
+        .unwrap_or_else(|_| unreachable!("there are two estimators"));
+    let reference = finish(folder, subject, plan, [&first, &second])?;
+    Ok(Made::Whole(Box::new(reference)))
+}
+
+/// Compares what both estimators made, and writes it all.
+fn finish(
+    folder: &Path,
+    subject: &Subject<'_>,
+    plan: &Plan,
+    made: [&Replicates; 2],
+) -> Result<Reference, Error> {
+    let agreement = agreement(&made[0].pictures, &made[1].pictures)
+        .ok_or_else(|| Error::damaged(folder, "the films have no pixels, or not one size"))?;
+    for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {
+        picture::write(&folder.join(name), &replicates.header, &replicates.film)?;
+    }
+    let [picture, variance] = picture::of(made[0].film.develop());
+    let header = &made[0].header;
+    let provenance = Provenance {
+        format: FORMAT,
+        program: formats::film::program(),
+        estimator_version: ESTIMATOR_VERSION,
+        scene: subject.name.to_owned(),
+        scene_digest: subject.digest.to_owned(),
+        resolution: header.resolution,
+        crop: header.crop,
+        estimators: [0, 1].map(|i| record(&plan.estimators[i], i as u64, &made[i].header)),
+        agreement,
+        picture: picture::digest(&picture, &variance),
+    };
+    provenance.write(folder)?;
+    Ok(Reference {
+        folder: folder.to_owned(),
+        picture,
+        variance,
+        provenance,
+    })
+}
+
+/// The settings of the first replicate of estimator number `index`.
+fn seeded(settings: &Settings, index: u64) -> Settings {
+    let seeds = settings.seed.wrapping_mul(2).wrapping_add(index);
+    Settings {
+        seed: seeds.wrapping_mul(REPLICATES).wrapping_add(SEEDS),
+        layers: Layers::new(&[Aov::Samples, Aov::Variance], &[], 0),
+        ..settings.clone()
+    }
+}
+
+fn record(settings: &Settings, index: u64, header: &FilmHeader) -> EstimatorRecord {
+    let mut flags = SettingsText::from(settings).by_flag();
+    flags.remove("seed");
+    let rays = header.counts.get("rays").cloned().unwrap_or_default();
+    let dropped = header.counts.get("dropped").and_then(Value::as_u64);
+    EstimatorRecord {
+        settings: flags,
+        spp: header.passes.len(),
+        replicates: REPLICATES,
+        seed: settings.seed,
+        first_seed: seeded(settings, index).seed,
+        seconds: header.seconds,
+        rays: serde_json::from_value::<Rays>(rays).unwrap_or_default(),
+        dropped: dropped.unwrap_or_default(),
+    }
+}

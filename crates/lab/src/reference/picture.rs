@@ -1,0 +1,71 @@
+//! The pictures of a reference, as files.
+
+use super::Error;
+use crate::image::Pixels;
+use bidir::film::{Film, Picture};
+use formats::film::FilmHeader;
+use formats::image::{ExrImage, ExrLayer, read_layers, write_exr};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// The picture and its variances of a developed film.
+pub(super) fn of(picture: Picture) -> [Pixels; 2] {
+    let size = [picture.width, picture.height];
+    [picture.pixels, picture.variance].map(|data| Pixels { size, data })
+}
+
+/// Writes a film with the layers that it keeps.
+pub(super) fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Error> {
+    let (picture, others) = (film.develop(), film.develop_layers());
+    let layers = others.iter().map(|layer| ExrLayer {
+        name: &layer.name,
+        channels: layer.channels,
+        data: &layer.data,
+    });
+    let picture = ExrLayer {
+        name: "",
+        channels: &["R", "G", "B"],
+        data: picture.pixels.as_flattened(),
+    };
+    let (settings, layers) = (film.settings(), layers.collect::<Vec<_>>());
+    let ([left, top], [right, bottom]) = (settings.crop.min, settings.crop.max);
+    let image = ExrImage {
+        resolution: settings.resolution.map(|side| side as usize),
+        crop: [left, top, right, bottom].map(|edge| edge as usize),
+        layers: &[&[picture], &layers[..]].concat(),
+        metadata: &formats::film::metadata(header),
+    };
+    Ok(write_exr(path, &image)?)
+}
+
+/// Reads a picture and its variances.
+pub(super) fn read(path: &Path) -> Result<[Pixels; 2], Error> {
+    let layers = read_layers(path)?;
+    let size = layers.size();
+    let image = |names: [&str; 3]| {
+        let data = layers.triples(names).ok_or_else(|| {
+            let names = names.join(", ");
+            Error::damaged(path, format!("it lacks one of the channels {names}"))
+        });
+        data.map(|data| Pixels { size, data })
+    };
+    Ok([
+        image(["R", "G", "B"])?,
+        image(["Variance.R", "Variance.G", "Variance.B"])?,
+    ])
+}
+
+/// The SHA-256 of the numbers of a picture and its variances.
+pub(super) fn digest(picture: &Pixels, variance: &Pixels) -> String {
+    let mut hash = Sha256::new();
+    for pixels in [picture, variance] {
+        for side in pixels.size {
+            hash.update((side as u64).to_le_bytes());
+        }
+        for channel in pixels.data.iter().flatten() {
+            hash.update(channel.to_le_bytes());
+        }
+    }
+    let bytes = hash.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,179 @@
+//! The replicates of an estimator: films that are gone on from, rendered and written.
+
+use super::make::{Host, Subject};
+use super::{Error, FILMS, REPLICATES};
+use crate::image::Pixels;
+use bidir::driver::{Resources, Session, Settings};
+use bidir::film::{Film, PassSet};
+use formats::film::{FilmFile, FilmHeader, Stopping};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The time between writings of a film that is being rendered.
+const WRITE_EVERY: Duration = Duration::from_secs(300);
+
+/// An estimator that makes replicates.
+pub(super) struct Estimator<'a> {
+    pub(super) folder: &'a Path,
+    pub(super) subject: &'a Subject<'a>,
+    /// The seed is that of the first replicate.
+    pub(super) settings: Settings,
+    /// The beginning of the names of its films.
+    pub(super) name: &'static str,
+    /// Of each replicate.
+    pub(super) passes: u64,
+    pub(super) resources: &'a Resources,
+}
+
+/// What an estimator made.
+pub(super) struct Replicates {
+    /// All replicates in one film: pass p of replicate r is pass r · n + p of it.
+    pub(super) film: Film,
+    /// With the time and the counts of all; its identity is that of the first.
+    pub(super) header: FilmHeader,
+    /// The picture of each.
+    pub(super) pictures: Vec<Pixels>,
+}
+
+impl Estimator<'_> {
+    /// The films of replicates, which may not be there yet.
+    fn film(&self, replicate: u64) -> PathBuf {
+        let name = format!("{}-{replicate:02}.film", self.name);
+        self.folder.join(FILMS).join(name)
+    }
+
+    /// Renders what is missing. None: the host asked to stop.
+    pub(super) fn replicates(&self, host: &dyn Host) -> Result<Option<Replicates>, Error> {
+        let mut all: Option<Replicates> = None;
+        for replicate in 0..REPLICATES {
+            let path = self.film(replicate);
+            let settings = Settings {
+                seed: self.settings.seed.wrapping_add(replicate),
+                ..self.settings.clone()
+            };
+            let Some(file) = self.replicate(&path, &settings, host)? else {
+                return Ok(None);
+            };
+            let merged = |error| Error::merge(&path, &error);
+            let begin = replicate * self.passes;
+            let film = moved(&file.film, begin..begin + self.passes).map_err(merged)?;
+            let [picture, _] = super::picture::of(file.film.develop());
+            all = Some(match all {
+                None => Replicates {
+                    header: file.header,
+                    pictures: vec![picture],
+                    film,
+                },
+                Some(mut all) => {
+                    all.film.merge(&film).map_err(merged)?;
+                    all.header = all.header.joined(&file.header);
+                    all.pictures.push(picture);
+                    all
+                }
+            });
+        }
+        Ok(all.map(|all| Replicates {
+            header: all.header.of(&all.film),
+            ..all
+        }))
+    }
+
+    /// A replicate with all its passes. None: the host asked to stop; its film is written.
+    fn replicate(
+        &self,
+        path: &Path,
+        settings: &Settings,
+        host: &dyn Host,
+    ) -> Result<Option<FilmFile>, Error> {
+        let untrained = self.subject.identity().header(settings, None);
+        let earlier = self.earlier(path, &untrained)?;
+        match earlier {
+            Some(file) if file.header.passes.len() == self.passes => Ok(Some(file)),
+            earlier => self.render(path, settings, earlier, host),
+        }
+    }
+
+    /// The film that is gone on from, if there is one.
+    ///
+    /// Errors: it is damaged, of another render, or has passes that are not asked for.
+    fn earlier(&self, path: &Path, header: &FilmHeader) -> Result<Option<FilmFile>, Error> {
+        if !path.exists() {
+            return Ok(None);
+        }
+        let file = formats::film::read(path)?;
+        check(path, header, &formats::film::untrained(&file.header))?;
+        let passes = &file.header.passes;
+        if passes.difference(&PassSet::from(0..self.passes)).is_empty() {
+            return Ok(Some(file));
+        }
+        let most = passes.ranges().last().map_or(0, |range| range.end);
+        let reason = format!(
+            "it has {} samples per pixel already, more than the {} that are asked for",
+            most * REPLICATES,
+            self.passes * REPLICATES
+        );
+        let folder = self.folder.to_owned();
+        Err(Error::Refused { folder, reason })
+    }
+
+    fn render(
+        &self,
+        path: &Path,
+        settings: &Settings,
+        earlier: Option<FilmFile>,
+        host: &dyn Host,
+    ) -> Result<Option<FilmFile>, Error> {
+        let start = host.nanoseconds();
+        let since = |start| Duration::from_nanos(host.nanoseconds().saturating_sub(start));
+        let mut session = Session::new(self.subject.scene, settings.clone(), self.resources)?;
+        let header = self.subject.identity();
+        let header = header.header(settings, session.training());
+        let before = earlier.as_ref().map(|file| file.header.clone());
+        if let Some(file) = earlier {
+            check(path, &header, &file.header)?;
+            let added = session.add_film(file.film);
+            added.map_err(|error| Error::merge(path, &error))?;
+        }
+        let write = |session: &Session<'_>, stopping| {
+            let run = formats::film::of_run(&header, session, since(start));
+            let all = before.as_ref().map_or(run.clone(), |old| run.joined(old));
+            let header = FilmHeader { stopping, ..all }.of(session.film());
+            formats::film::write(path, &header, session.film()).map(|()| header)
+        };
+        let mut written = start;
+        while session.next_pass() < self.passes {
+            if host.should_end() || !session.step(host) {
+                if !session.film().passes().is_empty() {
+                    write(&session, Stopping::Time)?;
+                }
+                return Ok(None);
+            }
+            if since(written) >= WRITE_EVERY {
+                write(&session, Stopping::Time)?;
+                written = host.nanoseconds();
+            }
+        }
+        let header = write(&session, Stopping::Fixed)?;
+        let film = session.into_film();
+        Ok(Some(FilmFile { header, film }))
+    }
+}
+
+/// Fails where `found` is the header of another render than `expected`.
+fn check(path: &Path, expected: &FilmHeader, found: &FilmHeader) -> Result<(), Error> {
+    let difference = expected.difference(found);
+    difference.map_or(Ok(()), |difference| {
+        let path = path.to_owned();
+        Err(Error::OtherRender { path, difference })
+    })
+}
+
+/// The film as if its passes were these.
+fn moved(film: &Film, passes: std::ops::Range<u64>) -> Result<Film, bidir::film::MergeError> {
+    Film::restore(
+        film.settings().clone(),
+        film.layers().clone(),
+        PassSet::from(passes),
+        film.sums().to_vec(),
+    )
+}

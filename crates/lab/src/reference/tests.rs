@@ -1,0 +1,300 @@
+use super::*;
+use crate::statistics::z_test;
+use bidir::driver::{Progress, Resources, Settings};
+use bidir::integrator::IntegratorKind;
+use bidir::path::LightPointChoice;
+use bidir::sampler::SamplerKind;
+use formats::pbrt::{LoadOptions, Loaded, build, parse_text};
+use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
+use tempfile::TempDir;
+
+/// A floor and a wall below a light that the camera does not see.
+const SCENE: &str = r#"
+LookAt 0 1 -4  0 1 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 12 "integer yresolution" 8
+Integrator "bdpt" "integer maxdepth" 3
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2 -2 0 2 2 0 2 2 0 -2]
+Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 2 -2 3 2 2 3 2 2 0 2]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [9 8 7]
+Shape "trianglemesh" "integer indices" [0 2 1 0 3 2]
+  "point3 P" [-0.5 2.8 0 -0.5 2.8 1 0.5 2.8 1 0.5 2.8 0]
+AttributeEnd
+"#;
+
+fn scene(text: &str) -> Loaded {
+    let description = parse_text("room.pbrt", text).unwrap();
+    build(&description, &LoadOptions::default()).unwrap()
+}
+
+/// A folder of its own, gone at the end, and a scene.
+struct Workplace {
+    folder: TempDir,
+    loaded: Loaded,
+    digest: String,
+}
+
+impl Workplace {
+    fn new() -> Self {
+        let loaded = scene(SCENE);
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+            digest: loaded.digest.to_string(),
+            loaded,
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn made(&self, name: &str, plan: &Plan, host: &dyn Host) -> Result<Made, Error> {
+        let subject = Subject {
+            name: "room.pbrt",
+            digest: &self.digest,
+            scene: &self.loaded.scene,
+        };
+        let resources = Resources {
+            threads: 1,
+            ..Resources::default()
+        };
+        make(&self.path(name), &subject, plan, &resources, host)
+    }
+
+    #[track_caller]
+    fn make(&self, name: &str, plan: &Plan) -> Reference {
+        match self.made(name, plan, &()).unwrap() {
+            Made::Whole(reference) => *reference,
+            Made::Stopped => panic!("nobody asked to stop"),
+        }
+    }
+
+    /// What the reference is refused for.
+    #[track_caller]
+    fn refusal(&self, name: &str) -> String {
+        Reference::load(&self.path(name)).unwrap_err().to_string()
+    }
+}
+
+fn plan(spp: u64) -> Plan {
+    let mut scene = Settings::default();
+    scene.path.max_depth = Some(3);
+    Plan::usual(&scene, spp)
+}
+
+#[test]
+fn estimators_that_agree_make_a_reference() {
+    let place = Workplace::new();
+    let made = place.make("a", &plan(256));
+    let Agreement {
+        agree,
+        comparisons,
+        block,
+        smallest_bias,
+        ..
+    } = made.provenance.agreement;
+    assert!(agree && comparisons == 9 && block == 8);
+    let bias = smallest_bias.unwrap();
+    assert!((0.01..0.2).contains(&bias), "{bias}");
+    let loaded = Reference::load(&place.path("a")).unwrap();
+    assert!(crate::image::identical(&loaded.picture, &made.picture));
+    assert!(crate::image::identical(&loaded.variance, &made.variance));
+    assert_eq!(loaded.provenance.estimators, made.provenance.estimators);
+    loaded
+        .check(&place.digest, place.loaded.scene.film())
+        .unwrap();
+    for (record, light) in made.provenance.estimators.iter().zip([true, false]) {
+        assert_eq!((record.spp, record.replicates), (256, REPLICATES));
+        assert_eq!(record.rays.light > 0, light);
+        let samples = 256 * 12 * 8;
+        assert!(record.rays.camera > samples && record.dropped == 0);
+    }
+}
+
+#[test]
+fn restricted_estimators_agree_where_they_make_the_same_paths() {
+    let place = Workplace::new();
+    let mut plan = plan(128);
+    let [first, second] = &mut plan.estimators;
+    first.path.strategies = "all,-s0,-t1".parse().unwrap();
+    first.path.light_point = LightPointChoice::Shared;
+    second.integrator = IntegratorKind::Bdpt;
+    second.path.strategies = "s1,-t1".parse().unwrap();
+    let made = place.make("a", &plan);
+    assert!(made.provenance.agreement.agree);
+    let summary = made.provenance.summary();
+    let expected = "bdpt --light-point shared --strategies all,-s0,-t1, 128 samples per pixel; agrees with \
+                    bdpt --strategies s1,-t1, 128";
+    assert!(summary.starts_with(expected), "{summary}");
+}
+
+#[test]
+fn an_estimator_that_misses_paths_is_found_out() {
+    let place = Workplace::new();
+    let mut plan = plan(128);
+    plan.estimators[1].path.max_depth = Some(1);
+    let made = place.make("a", &plan);
+    let agreement = &made.provenance.agreement;
+    assert!(!agreement.agree && agreement.p < LEVEL);
+    let refusal = place.refusal("a");
+    assert!(refusal.contains("its estimators disagree"), "{refusal}");
+    // A flag that was set by hand does not help.
+    let path = place.path("a/provenance.json");
+    let json = fs::read_to_string(&path).unwrap();
+    fs::write(&path, json.replace("\"agree\": false", "\"agree\": true")).unwrap();
+    assert!(place.refusal("a").contains("its estimators disagree"));
+}
+
+/// Stops after so many passes, with a clock that counts readings.
+struct Stopper {
+    left: AtomicU64,
+    time: AtomicU64,
+}
+
+impl Progress for Stopper {
+    fn advance(&self, _samples: u64) {}
+
+    fn nanoseconds(&self) -> u64 {
+        self.time.fetch_add(1_000_000_000, Ordering::Relaxed)
+    }
+}
+
+impl Host for Stopper {
+    fn should_end(&self) -> bool {
+        let left = self.left.load(Ordering::Relaxed);
+        self.left.store(left.saturating_sub(1), Ordering::Relaxed);
+        left == 0
+    }
+}
+
+#[test]
+fn what_was_stopped_and_extended_has_the_same_bits() {
+    let place = Workplace::new();
+    place.make("a", &plan(64));
+    let at_once = Reference::load(&place.path("a")).unwrap();
+    place.make("b", &plan(17));
+    let mut stops = 0;
+    // In the middle of the first estimator, of the second, and never.
+    for passes in [7, 50, 1000] {
+        let host = Stopper {
+            left: AtomicU64::new(passes),
+            time: AtomicU64::new(0),
+        };
+        if let Made::Stopped = place.made("b", &plan(60), &host).unwrap() {
+            stops += 1;
+            // The reference of 32 samples is whole all the while.
+            let spp = Reference::load(&place.path("b")).unwrap().provenance;
+            assert_eq!(spp.estimators[0].spp, 32);
+        }
+    }
+    assert_eq!(stops, 2);
+    let extended = Reference::load(&place.path("b")).unwrap();
+    assert!(extended.provenance.estimators[1].seconds > 0.0);
+    assert_eq!(extended.provenance.picture, at_once.provenance.picture);
+    assert_eq!(extended.provenance.agreement, at_once.provenance.agreement);
+    let rays = |reference: &Reference| reference.provenance.estimators.clone().map(|e| e.rays);
+    assert_eq!(rays(&extended), rays(&at_once));
+    let film = |name: &str| {
+        let path = place.path(name).join("films/against-15.film");
+        formats::film::read(&path).unwrap().film
+    };
+    assert!(film("a") == film("b"));
+    let error = place.made("b", &plan(32), &()).unwrap_err().to_string();
+    assert!(error.contains("it has 64 samples per pixel"), "{error}");
+}
+
+#[test]
+fn replicates_have_seeds_of_their_own_and_the_variance_is_honest() {
+    let place = Workplace::new();
+    let a = place.make("a", &plan(128));
+    let mut other = plan(128);
+    for settings in &mut other.estimators {
+        settings.seed = 1;
+    }
+    let b = place.make("b", &other);
+    assert_ne!(a.provenance.picture, b.provenance.picture);
+    let seeds = [&a, &b].map(|r| r.provenance.estimators.each_ref().map(|e| e.first_seed));
+    let seeds = seeds.as_flattened();
+    assert!(seeds.windows(2).all(|pair| pair[1] == pair[0] + REPLICATES));
+    let p = z_test(&a.estimated(), &b.estimated(), 4).unwrap().p;
+    assert!(p >= LEVEL, "{p}");
+}
+
+#[test]
+fn another_scene_and_another_film_are_refused() {
+    let place = Workplace::new();
+    let reference = place.make("a", &plan(1));
+    let refused = |text: &str| {
+        let other = scene(text);
+        let digest = other.digest.to_string();
+        let error = reference.check(&digest, other.scene.film());
+        error.unwrap_err().to_string()
+    };
+    let changed = refused(&SCENE.replace("9 8 7", "9 8 8"));
+    assert!(changed.contains("one that has changed since"), "{changed}");
+    let mut film = place.loaded.scene.film().clone();
+    film.crop.max[1] = 7;
+    let error = reference.check(&place.digest, &film).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("another crop: 0,0,12,8, not 0,0,12,7")
+    );
+    film.resolution = [24, 16];
+    let error = reference.check(&place.digest, &film).unwrap_err();
+    assert!(error.to_string().contains("of 12 x 8 pixels, not 24 x 16"));
+}
+
+#[test]
+fn films_of_another_render_are_not_gone_on_from() {
+    let mut place = Workplace::new();
+    place.make("a", &plan(1));
+    let mut other = plan(32);
+    other.estimators[0].sampler = SamplerKind::Sobol;
+    let error = place.made("a", &other, &()).unwrap_err().to_string();
+    let expected =
+        "picture-00.film: the film of another render: sampler is sobol here and independent";
+    assert!(error.contains(expected), "{error}");
+    place.loaded = scene(&SCENE.replace("9 8 7", "9 8 8"));
+    place.digest = place.loaded.digest.to_string();
+    let error = place.made("a", &plan(32), &()).unwrap_err().to_string();
+    assert!(error.contains("scene-digest is"), "{error}");
+}
+
+#[test]
+fn damaged_and_stale_references_are_refused() {
+    let place = Workplace::new();
+    place.make("a", &plan(1));
+    let path = place.path("a/provenance.json");
+    let whole = fs::read_to_string(&path).unwrap();
+    let check = |text: &str, part: &str| {
+        fs::write(&path, text).unwrap();
+        let refusal = place.refusal("a");
+        assert!(refusal.contains(part), "{refusal}");
+    };
+    check(&whole[..whole.len() / 2], "provenance.json: damaged: EOF");
+    check("{}", "damaged: missing field `format`");
+    check("[1]", "damaged");
+    check(
+        &whole.replace("\"format\": 1", "\"format\": 2"),
+        "format 2 of references, this program reads 1",
+    );
+    let version = bidir::ESTIMATOR_VERSION;
+    let line = |version: u32| format!("\"estimator_version\": {version}");
+    check(
+        &whole.replace(&line(version), &line(version + 1)),
+        "stale: made by version",
+    );
+    fs::write(&path, &whole).unwrap();
+    fs::copy(place.path("a/against.exr"), place.path("a/picture.exr")).unwrap();
+    assert!(place.refusal("a").contains("not the picture that"));
+    fs::remove_file(place.path("a/picture.exr")).unwrap();
+    assert!(place.refusal("a").contains("no such file"));
+    fs::remove_file(&path).unwrap();
+    assert!(place.refusal("a").contains("provenance.json"));
+    assert!(!is_reference(&place.path("a")));
+}

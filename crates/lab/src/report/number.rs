@@ -1,0 +1,174 @@
+//! Numbers for people: as many digits as mean something.
+
+/// A number with at most four significant digits; whole numbers below ten millions have all of theirs.
+pub(super) fn number(value: f64) -> String {
+    if let Some(word) = not_finite(value) {
+        return word.to_owned();
+    }
+    let magnitude = exponent(value);
+    if value.fract() == 0.0 && magnitude < 7 {
+        return grouped(&format!("{value:.0}"));
+    }
+    if !(-4..6).contains(&magnitude) {
+        return scientific(value, magnitude);
+    }
+    let decimals = usize::try_from(3 - magnitude).unwrap_or(0);
+    grouped(&shortened(&format!("{value:.decimals$}")))
+}
+
+/// A number with exactly so many decimals.
+pub(super) fn with_decimals(value: f64, decimals: usize) -> String {
+    grouped(&format!("{value:.decimals$}"))
+}
+
+/// A number and its interval, `0.85 [0.82, 0.88]`.
+///
+/// The last digit is the first in which the interval has at least four steps; very large and very
+/// small numbers share one power of ten.
+pub(super) fn interval(value: f64, low: f64, high: f64) -> String {
+    let plain = || format!("{} [{}, {}]", number(value), number(low), number(high));
+    let width = high - low;
+    if !value.is_finite() || !width.is_finite() || width <= 0.0 {
+        return plain();
+    }
+    let largest = exponent(value.abs().max(low.abs()).max(high.abs()));
+    let last = exponent(width / 4.0);
+    // An interval of a millionth of its value needs no more digits.
+    let last = last.max(largest - 7);
+    let (shift, suffix) = if (-4..6).contains(&largest) {
+        (0, String::new())
+    } else {
+        (largest, format!(" ·{}", power_of_ten(largest)))
+    };
+    let decimals = usize::try_from(shift - last).unwrap_or(0);
+    let [value, low, high] = [value, low, high].map(|number| {
+        let shifted = number / libm::exp10(f64::from(shift));
+        with_decimals(shifted, decimals)
+    });
+    format!("{value} [{low}, {high}]{suffix}")
+}
+
+/// 10ⁿ.
+pub(super) fn power_of_ten(n: i32) -> String {
+    let digit = |character| match character {
+        '-' => '⁻',
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        _ => '⁹',
+    };
+    let raised: String = n.to_string().chars().map(digit).collect();
+    format!("10{raised}")
+}
+
+/// The power of ten of the first digit; 0 for 0.
+pub(super) fn exponent(value: f64) -> i32 {
+    let written = format!("{value:e}");
+    let digits = written.split_once('e').map(|(_, exponent)| exponent);
+    digits
+        .and_then(|digits| digits.parse().ok())
+        .unwrap_or_default()
+}
+
+fn scientific(value: f64, magnitude: i32) -> String {
+    let written = format!("{value:.3e}");
+    let (digits, power) = written.split_once('e').unwrap_or((&written, ""));
+    let power = power.parse().unwrap_or(magnitude);
+    format!("{}·{}", grouped(&shortened(digits)), power_of_ten(power))
+}
+
+fn not_finite(value: f64) -> Option<&'static str> {
+    if value.is_nan() {
+        Some("no number")
+    } else if value == f64::INFINITY {
+        Some("∞")
+    } else if value == f64::NEG_INFINITY {
+        Some("−∞")
+    } else {
+        None
+    }
+}
+
+/// Decimals without the zeros at their end.
+fn shortened(written: &str) -> String {
+    if written.contains('.') {
+        let digits = written.trim_end_matches('0');
+        digits.trim_end_matches('.').to_owned()
+    } else {
+        written.to_owned()
+    }
+}
+
+/// With a minus sign, and a narrow space between thousands where there are five digits or more.
+fn grouped(written: &str) -> String {
+    let (sign, digits) = match written.strip_prefix('-') {
+        Some(digits) if digits.bytes().any(|byte| (b'1'..=b'9').contains(&byte)) => ("−", digits),
+        Some(digits) => ("", digits),
+        None => ("", written),
+    };
+    let (whole, decimals) = match digits.split_once('.') {
+        Some((whole, _)) => digits.split_at(whole.len()),
+        None => (digits, ""),
+    };
+    if whole.len() < 5 {
+        return format!("{sign}{whole}{decimals}");
+    }
+    let spaced = |(index, digit)| {
+        let space = index > 0 && (whole.len() - index) % 3 == 0;
+        space.then_some('\u{202f}').into_iter().chain([digit])
+    };
+    let whole: String = whole.chars().enumerate().flat_map(spaced).collect();
+    format!("{sign}{whole}{decimals}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        for (value, expected) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (0.5, "0.5"),
+            (1.0 / 3.0, "0.3333"),
+            (-12.3456, "−12.35"),
+            (9.99996, "10"),
+            (123456.0, "123\u{202f}456"),
+            (1234.0, "1234"),
+            (54321.6, "54\u{202f}322"),
+            (0.000123456, "0.0001235"),
+            (0.0000123456, "1.235·10⁻⁵"),
+            (9.9999e-5, "1·10⁻⁴"),
+            (2.5e9, "2.5·10⁹"),
+            (f64::NAN, "no number"),
+            (f64::NEG_INFINITY, "−∞"),
+        ] {
+            assert_eq!(number(value), expected, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn an_interval_decides_the_digits() {
+        for ([value, low, high], expected) in [
+            ([0.853, 0.821, 0.884], "0.85 [0.82, 0.88]"),
+            ([0.85, 0.84, 0.86], "0.850 [0.840, 0.860]"),
+            ([12.0, -3.0, 27.0], "12 [−3, 27]"),
+            ([1.0, 1.0, 1.0], "1 [1, 1]"),
+            ([2.13e-6, 1.91e-6, 2.35e-6], "2.13 [1.91, 2.35] ·10⁻⁶"),
+            (
+                [123456.0, 110000.0, 140000.0],
+                "123\u{202f}456 [110\u{202f}000, 140\u{202f}000]",
+            ),
+            ([1.0, 0.5, f64::INFINITY], "1 [0.5, ∞]"),
+        ] {
+            assert_eq!(interval(value, low, high), expected);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The beginning and the end of the page: what it is about, all verdicts at a glance, its size.
+
+use super::markup::{Element, element};
+use super::number::with_decimals;
+use super::{Report, paragraphs, section};
+use crate::results::{Claim, Verdict};
+
+/// Title, description and the way around the page.
+pub(super) fn header(report: &Report<'_>) -> Element {
+    let link = |(id, words): (&str, &str)| {
+        let link = element("a").with("href", format!("#{id}")).text(words);
+        element("li").child(link)
+    };
+    let links = [
+        ("verdicts", "Verdicts"),
+        ("setting", "What was compared"),
+        ("claims", "Claims"),
+        ("more", "More"),
+        ("viewer", "Images"),
+        ("again", "Again"),
+        ("glossary", "Glossary"),
+    ];
+    let navigation = element("nav")
+        .with("aria-label", "Sections")
+        .child(element("ul").children(links.into_iter().map(link)));
+    element("header")
+        .child(element("h1").text(&report.results.title))
+        .children(paragraphs(&report.results.description))
+        .child(navigation)
+}
+
+/// All claims with their verdicts.
+pub(super) fn verdicts(claims: &[Claim]) -> Element {
+    let section = section("verdicts", "Verdicts");
+    if claims.is_empty() {
+        return section.child(element("p").text("This experiment examines no claim."));
+    }
+    let row = |(index, claim): (usize, &Claim)| {
+        let link = element("a").with("href", format!("#claim-{}", index + 1));
+        element("tr")
+            .child(element("td").child(badge(claim.verdict)))
+            .child(element("td").child(link.text(&claim.claim)))
+            .child(element("td").text(&claim.found))
+    };
+    let heads = ["verdict", "claim", "what was found"];
+    let heads = heads.map(|head| element("th").with("scope", "col").text(head));
+    let table = element("table")
+        .child(element("thead").child(element("tr").children(heads)))
+        .child(element("tbody").children(claims.iter().enumerate().map(row)));
+    section
+        .child(element("p").text(counts(claims)))
+        .child(element("div").class("scroll").child(table))
+}
+
+/// How many claims have which verdict.
+fn counts(claims: &[Claim]) -> String {
+    let count = |(verdict, words): (Verdict, &str)| {
+        let count = claims
+            .iter()
+            .filter(|claim| claim.verdict == verdict)
+            .count();
+        format!("{count} {words}")
+    };
+    let verdicts = [
+        (Verdict::Reproduced, "reproduced"),
+        (Verdict::NotReproduced, "not reproduced"),
+        (Verdict::Undecided, "undecided"),
+    ];
+    let claims = if claims.len() == 1 {
+        "1 claim".into()
+    } else {
+        format!("{} claims", claims.len())
+    };
+    format!("{claims}: {}.", verdicts.map(count).join(", "))
+}
+
+/// A verdict as a symbol and in words; the colour says it once more.
+pub(super) fn badge(verdict: Verdict) -> Element {
+    let (class, words) = match verdict {
+        Verdict::Reproduced => ("verdict reproduced", "✔ reproduced"),
+        Verdict::NotReproduced => ("verdict not-reproduced", "✘ not reproduced"),
+        Verdict::Undecided => ("verdict undecided", "? undecided"),
+    };
+    element("span").class(class).text(words)
+}
+
+/// The size of the page.
+pub(super) fn footer(bytes: usize) -> Element {
+    element("footer").child(element("p").text(format!(
+        "This page has {} bytes and loads nothing: all it shows is in it.",
+        with_decimals(bytes as f64, 0)
+    )))
+}
