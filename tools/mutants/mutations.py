@@ -370,4 +370,32 @@ MUTATIONS = [
         "p: corrected(p, 1)",
         lab("statistics::welch"),
     ),
+    (
+        "both estimators of a reference with the same seeds",
+        "crates/lab/src/reference/make.rs",
+        "settings.seed.wrapping_mul(2).wrapping_add(index)",
+        "settings.seed.wrapping_mul(2).wrapping_add(0 * index)",
+        lab("reference::tests"),
+    ),
+    (
+        "all replicates of a reference with the same seed",
+        "crates/lab/src/reference/replicate.rs",
+        "seed: self.settings.seed.wrapping_add(replicate),",
+        "seed: self.settings.seed.wrapping_add(0 * replicate),",
+        lab("reference::tests"),
+    ),
+    (
+        "references whose estimators disagree are taken",
+        "crates/lab/src/reference/provenance.rs",
+        "if *agree && *p >= LEVEL {",
+        "if *agree || *p < LEVEL {",
+        lab("reference::tests"),
+    ),
+    (
+        "a reference is that of any scene",
+        "crates/lab/src/reference/provenance.rs",
+        "if self.scene_digest != digest {",
+        "if self.scene_digest.len() != digest.len() {",
+        lab("reference::tests"),
+    ),
 ]

@@ -1,13 +1,15 @@
 //! `bidir compare`: images and a reference, in numbers.
 
+mod noise;
 mod report;
 
 use crate::args::{CompareArgs, MetricArgs};
 use crate::console::{print, print_json, say};
 use crate::exit::{Exit, Failure};
-use crate::scene_io::{self, IMAGES, MetadataValue, read_image};
+use crate::scene_io::{self, IMAGES, MetadataValue};
 use lab::image::{Pair, Pixels, identical, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
+use noise::{Noisy, Significance};
 use report::{Comparison, MEAN_RATIO, Number, Replicates};
 use std::path::{Path, PathBuf};
 
@@ -17,10 +19,10 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Exit, Failure> {
     if let Some(path) = &args.metrics.error_map {
         scene_io::image_format(path, IMAGES)?;
     }
-    let reference = read_image(reference)?;
+    let reference = Noisy::reference(reference)?;
     let comparisons: Vec<Comparison> = images
         .iter()
-        .map(|image| compare(args, read_image(image)?, &reference))
+        .map(|image| compare(args, Noisy::read(image)?, &reference))
         .collect::<Result<_, _>>()?;
     let all_identical = comparisons.iter().all(|comparison| comparison.identical);
     match &comparisons[..] {
@@ -59,7 +61,9 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
 }
 
 /// Compares one image.
-fn compare(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Result<Comparison, Failure> {
+fn compare(args: &CompareArgs, image: Noisy, reference: &Noisy) -> Result<Comparison, Failure> {
+    let significance = Significance::of(&image, reference);
+    let (image, reference) = (image.pixels, &reference.pixels);
     let identical = identical(&image, reference);
     let fitted = Fitted::new(args, image, reference);
     let (numbers, size) = match fitted.pair(reference) {
@@ -72,6 +76,7 @@ fn compare(args: &CompareArgs, image: Pixels, reference: &Pixels) -> Result<Comp
         identical,
         size,
         resampled: fitted.resampled,
+        significance,
     })
 }
 

@@ -1,6 +1,6 @@
 //! Talk on stderr and data on stdout.
 
-use crate::args::{ColorArgs, OutputArgs};
+use crate::args::{ColorArgs, TalkArgs};
 use crate::exit::{Exit, Failure};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt;
@@ -72,7 +72,7 @@ impl Console {
     }
 
     /// How progress is shown: as it is asked for, but a bar on terminals only.
-    pub(crate) fn display(self, args: &OutputArgs) -> Display {
+    pub(crate) fn display(self, args: TalkArgs) -> Display {
         let default = if args.quiet {
             Display::Silent
         } else {

@@ -51,7 +51,8 @@ impl Exit {
         ),
         (
             Self::Validation,
-            "a check failed: `render --strict`, `compare --exact`, `missing`",
+            "a check failed: `render --strict`, `compare --exact`, `missing`, `reference`; or a reference \
+             is refused",
         ),
         (
             Self::Checkpoint,

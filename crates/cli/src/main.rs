@@ -17,6 +17,7 @@ mod info;
 mod lock;
 mod output;
 mod progress;
+mod reference;
 mod render;
 mod replay;
 mod scene_io;
@@ -54,7 +55,9 @@ fn main() -> ExitCode {
 fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
         Command::Render(args) => render::run(args, console)
-            .inspect_err(|failure| progress::tell_failure(&args.output, failure)),
+            .inspect_err(|failure| progress::tell_failure(args.output.talk, failure)),
+        Command::Reference(args) => reference::run(args, console)
+            .inspect_err(|failure| progress::tell_failure(args.talk, failure)),
         Command::Info(args) => info::run(args, console),
         Command::Compare(args) => compare::run(args),
         Command::Experiment(args) => experiment::run(args, console),

@@ -4,7 +4,7 @@
 //! [OpenJD23, Stdout/Stderr Messages]; the latter go to stdout, all others to stderr. One is written
 //! now and then, and one at the end where all is done.
 
-use crate::args::{self, OutputArgs};
+use crate::args::{self, TalkArgs};
 use crate::console::{Display, LineFormat, print, say};
 use crate::exit::Failure;
 use crate::settings::Budget;
@@ -40,8 +40,8 @@ pub(crate) struct Clock {
 pub(crate) struct Reporter<'a> {
     signals: &'a Signals,
     clock: Clock,
-    /// What was there before the render began.
-    before: u64,
+    /// What was there before it was rendered here.
+    before: AtomicU64,
     samples: AtomicU64,
     /// True when it was said that the running pass is the last.
     is_stop_told: AtomicBool,
@@ -77,7 +77,7 @@ impl<'a> Reporter<'a> {
         Self {
             signals,
             clock,
-            before: 0,
+            before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
             is_stop_told: AtomicBool::new(false),
             channel,
@@ -86,11 +86,14 @@ impl<'a> Reporter<'a> {
 
     /// Reports on a render that goes on after so many samples.
     pub(crate) fn after(self, samples: u64) -> Self {
-        Self {
-            before: samples,
-            samples: AtomicU64::new(samples),
-            ..self
-        }
+        self.find(samples);
+        self
+    }
+
+    /// Takes notice of samples that are there already.
+    pub(crate) fn find(&self, samples: u64) {
+        self.before.fetch_add(samples, Ordering::Relaxed);
+        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
     /// Tells that all is done.
@@ -122,7 +125,8 @@ impl<'a> Reporter<'a> {
         let now = self.passes(self.samples.load(Ordering::Relaxed));
         let elapsed = start.elapsed();
         let progress = budget.used(now, elapsed);
-        let gained = progress - budget.used(self.passes(self.before), Duration::ZERO);
+        let before = self.passes(self.before.load(Ordering::Relaxed));
+        let gained = progress - budget.used(before, Duration::ZERO);
         let left = elapsed.mul_f64((1.0 - progress) / gained.max(1e-9));
         let running = now as u64 + 1;
         State {
@@ -275,7 +279,7 @@ impl LineFormat {
 }
 
 /// Tells a scheduler why the command fails, where it reads Open Job Description.
-pub(crate) fn tell_failure(args: &OutputArgs, failure: &Failure) {
+pub(crate) fn tell_failure(args: TalkArgs, failure: &Failure) {
     if args.progress != Some(Display::Lines(LineFormat::OpenJd)) {
         return;
     }

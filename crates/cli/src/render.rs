@@ -183,7 +183,7 @@ impl Job<'_> {
     }
 
     fn display(&self) -> Display {
-        self.console.display(&self.args.output)
+        self.console.display(self.args.output.talk)
     }
 
     /// Writes the film file where it is time, and the image too where a signal asks for it. What
@@ -237,7 +237,7 @@ impl Job<'_> {
         if let Some(warning) = report.warning() {
             self.console.warning(warning);
         }
-        if !self.args.output.quiet {
+        if !self.args.output.talk.quiet {
             let film = keeper.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
             let files = if names.is_empty() {

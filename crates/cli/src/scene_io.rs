@@ -124,6 +124,30 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     Ok(Pixels::from(&image))
 }
 
+/// The layers of an image that tell how sure it is. None: it has no such.
+pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
+    let layers = formats::image::read_layers(path).ok()?;
+    let pixels = Pixels {
+        size: layers.size(),
+        data: layers.triples(["Variance.R", "Variance.G", "Variance.B"])?,
+    };
+    let samples = layers.channel("Samples")?.into_iter();
+    let fewest = samples.fold(f32::INFINITY, f32::min);
+    Some(Variance {
+        pixels,
+        freedom: f64::from(fewest) - 1.0,
+    })
+}
+
+/// How sure an image is.
+#[derive(Clone, Debug)]
+pub(crate) struct Variance {
+    /// The variance of every pixel's mean.
+    pub(crate) pixels: Pixels,
+    /// The degrees of freedom of the variances.
+    pub(crate) freedom: f64,
+}
+
 /// A developed film: the picture with the images beside it.
 pub(crate) struct Developed {
     pub(crate) picture: Picture,

@@ -13,13 +13,17 @@ use std::path::PathBuf;
     after_help = "Examples:\n  bidir compare out.exr reference.exr --flip\n  \
         bidir compare seed-*.exr --reference reference.exr --json\n  \
         bidir compare out.exr reference.exr --error-map out.png --metric flip_hdr\n  \
+        bidir compare room.exr --reference room.reference\n  \
         bidir compare a.exr b.exr --exact"
 )]
 pub(crate) struct CompareArgs {
     /// Image and reference; with --reference, images alone.
     #[arg(required = true, value_name = "A", value_hint = ValueHint::FilePath)]
     pub(crate) images: Vec<PathBuf>,
-    /// What all images are compared with.
+    /// What all images are compared with: an image, or a folder of `bidir reference`.
+    ///
+    /// A reference that is damaged, of another version of the estimators, or whose estimators
+    /// disagree is refused.
     #[arg(long, value_name = "B", value_hint = ValueHint::FilePath)]
     pub(crate) reference: Option<PathBuf>,
     /// Exit with 6 unless every pixel of all has the same bits.
@@ -36,7 +40,9 @@ pub(crate) struct CompareArgs {
     pub(crate) metrics: MetricArgs,
     /// Print JSON with the names of the numbers as keys, and size and resampled.
     ///
-    /// Numbers that are not finite are null, as are all numbers where sizes differ. With several
+    /// The test of noise is the key `z_test`, with block (the side of the blocks), pixels and blocks,
+    /// each with p, tests (their number), block (left, top, right, bottom), channel, means and
+    /// deviations. Numbers that are not finite are null, as are all numbers where sizes differ. With several
     /// images a number is an object with mean, low, high and values, and there are the keys images
     /// and confidence.
     #[arg(long)]

@@ -7,6 +7,7 @@ mod farm;
 mod film;
 mod layers;
 mod long;
+mod reference;
 mod render;
 mod sources;
 mod tonemap;
@@ -18,9 +19,10 @@ pub(crate) use experiment::ExperimentArgs;
 pub(crate) use farm::{FarmArgs, FarmCommand};
 pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use long::{LongArgs, Part};
-pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, OutputArgs, RenderArgs};
+pub(crate) use reference::ReferenceArgs;
+pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use tonemap::TonemapArgs;
-pub(crate) use values::{Duration, ReplayTarget};
+pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
 
 use crate::exit::Exit;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};
@@ -84,6 +86,21 @@ pub(crate) enum Command {
     /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and
     /// textures, its extent, and the memory that rendering takes.
     Info(InfoArgs),
+    /// Render a reference: a picture that others can be measured against.
+    ///
+    /// Two estimators that could disagree render the scene, each in 16 replicates with seeds of
+    /// their own. Welch's t-test compares the replicates of both, on the mean of the film and on
+    /// blocks of pixels, with Šidák's correction at level 0.001; where it finds a difference, the
+    /// command exits with 6, and what was written is refused as a reference.
+    ///
+    /// The folder gets `picture.exr`, the mean of the first estimator with its variance,
+    /// `against.exr`, that of the second, `provenance.json`, which tells how it was made and whether
+    /// both agree, and `films`, from which samples can be added. `bidir compare --reference` takes the
+    /// folder.
+    ///
+    /// Ctrl-C ends after the running pass with exit code 75: the same command goes on. Whatever was
+    /// stopped or extended, the bits are those of a reference that was made at once.
+    Reference(Box<ReferenceArgs>),
     /// Compare image A with the reference B, or images of several seeds with one reference.
     ///
     /// Prints, over red, green and blue of all pixels: the root of the mean square error (rmse), the
@@ -91,6 +108,12 @@ pub(crate) enum Command {
     /// `relmse_trim`), the mean of |a-b|/(|b|+0.01) (mape), the mean of A divided by the mean of B
     /// (`mean_ratio`), and whether both have the same size and the same bits (identical); with --flip,
     /// the mean difference that is seen (flip, `flip_hdr`).
+    ///
+    /// Where both have variances, as images of `render --aov variance,samples` and references have, two
+    /// tests tell whether the difference is noise: `z_pixels` over all pixels and `z_blocks` over
+    /// blocks of them, each with p, the probability of so large a difference where both have the same
+    /// expectation, and the place of the largest difference. Below 0.001 it is hardly noise; of images
+    /// of few samples with fireflies the variances are too small, and so is p.
     ///
     /// With several images and --reference, each number is the mean over the images, between the
     /// bounds of its 95 % interval, by Student's t distribution: the images have to be renders of

@@ -77,6 +77,15 @@ pub(crate) struct OutputArgs {
     /// Write what was counted and measured, with all settings, as JSON.
     #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
     pub(crate) stats: Option<PathBuf>,
+    /// What is told meanwhile.
+    #[command(flatten)]
+    pub(crate) talk: TalkArgs,
+}
+
+/// What is told meanwhile.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Output")]
+pub(crate) struct TalkArgs {
     /// Tell nothing but warnings and errors, and the progress that --progress asks for.
     #[arg(short, long)]
     pub(crate) quiet: bool,
@@ -90,7 +99,7 @@ pub(crate) struct OutputArgs {
 }
 
 /// How light is estimated.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Estimator")]
 pub(crate) struct EstimatorArgs {
     /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].

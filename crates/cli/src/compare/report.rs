@@ -1,5 +1,6 @@
 //! What a comparison found, as text and as JSON.
 
+use super::noise::Significance;
 use crate::exit::{Exit, Failure};
 use lab::statistics::{Interval, mean_interval};
 use serde::ser::SerializeMap;
@@ -27,6 +28,10 @@ pub(super) struct Comparison {
     pub(super) size: Option<[usize; 2]>,
     /// Which image was brought to the size of the other.
     pub(super) resampled: Option<&'static str>,
+    /// Whether the difference is noise. None: an image does not know its variances, or the sizes
+    /// differ.
+    #[serde(rename = "z_test", skip_serializing_if = "Option::is_none")]
+    pub(super) significance: Option<Significance>,
 }
 
 /// What is found of images of independent seeds.
@@ -131,6 +136,10 @@ impl Comparison {
         }
         lines.add_identical(self.identical);
         lines.add_resampled(self.resampled, self.size);
+        if let Some(significance) = &self.significance {
+            lines.add("z_pixels", &significance.pixels.text());
+            lines.add("z_blocks", &significance.blocks.text());
+        }
         lines.text
     }
 }
@@ -178,6 +187,7 @@ mod tests {
             identical: false,
             size: Some([1, 1]),
             resampled: None,
+            significance: None,
         }
     }
 

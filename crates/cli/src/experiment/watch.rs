@@ -8,8 +8,8 @@ use indicatif::ProgressBar;
 use lab::experiment::{Event, Observer};
 use std::time::{Duration as Time, Instant};
 
-/// Lines are at least this far apart, but for the last.
-const GAP: Time = Time::from_secs(2);
+/// Lines are at least this far apart, but for the first and the last.
+const GAP: Time = Time::from_secs(10);
 
 /// Tells of an experiment, and has its clock.
 pub(super) struct Watch<'a> {
@@ -90,8 +90,10 @@ impl<'a> Watch<'a> {
     fn begin(&mut self, [done, of]: [usize; 2]) {
         (self.before, self.done, self.of) = (done, done, of);
         self.start = Instant::now();
-        if let Channel::Bar(bar) = &self.channel {
-            bar.reset();
+        match &mut self.channel {
+            Channel::Silent => {}
+            Channel::Bar(bar) => bar.reset(),
+            Channel::Lines(last) => *last = None,
         }
         self.show(part(done, of), &format!("{done} of {of} renders"));
     }

@@ -103,13 +103,13 @@ fn interrupted(place: &Workplace, arguments: &str, words: &str) -> Ran {
 #[test]
 fn what_was_interrupted_goes_on_to_the_same_records() {
     let place = place();
-    // Long enough to be stopped after the first line, which tells of the beginning or soon after.
+    // The first render is long enough to be stopped.
     place.write(
         "test.toml",
-        &DESCRIPTION.replace("samples = 2", "samples = 600"),
+        &DESCRIPTION.replace("samples = 2", "samples = 3000"),
     );
     place.run("experiment test.toml -o whole").expect(0);
-    interrupted(&place, "experiment test.toml -o stopped", "Progress:")
+    interrupted(&place, "experiment test.toml -o stopped", "0 of 12 renders")
         .expect(75)
         .says("stopped: the same command goes on");
     place.run("experiment test.toml -o stopped").expect(0);

@@ -41,6 +41,11 @@ fn every_flag_is_described() {
         "--help --isa --json --lenient --no-color --strict --version",
     );
     check_flags(
+        "reference",
+        "--against --crop --cropwindow --estimator --extend --help --isa --lenient --no-color --output \
+         --pixelbounds --progress --quiet --restart --size --spp --strict --threads --version",
+    );
+    check_flags(
         "compare",
         "--error-map --error-max --exact --flip --help --json --metric --no-color --reference --resample \
          --version",

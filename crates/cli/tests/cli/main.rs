@@ -13,6 +13,7 @@ mod help;
 mod info;
 mod layers;
 mod progress;
+mod reference;
 mod render;
 mod replay;
 #[cfg(unix)]

@@ -85,6 +85,31 @@ fn with_a_film_file_the_render_can_go_on() {
 }
 
 #[test]
+fn a_reference_can_be_stopped_and_gone_on_with() {
+    let place = Workplace::new();
+    let arguments = "reference room.pbrt --size 48x32 --spp 4096 --progress plain";
+    let mut child = place
+        .command(arguments)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // As soon as the first replicate is done.
+    while !place.path("room.reference/films/picture-00.film").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send("INT", &child);
+    let mut told = String::new();
+    let stderr = child.stderr.as_mut().unwrap();
+    std::io::Read::read_to_string(stderr, &mut told).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(75), "{told}");
+    assert!(told.contains("the same command goes on"), "{told}");
+    assert!(!place.path("room.reference/provenance.json").exists());
+    // With less it cannot go on in the replicate that is done.
+    let least = "reference room.pbrt --size 48x32 --spp 16";
+    place.run(least).expect(5).says("ask for --spp 4096");
+}
+
+#[test]
 fn a_signal_writes_now() {
     let place = Workplace::new();
     let arguments = "--time 3 -o a.exr --checkpoint a.film";

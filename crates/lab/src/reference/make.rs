@@ -2,8 +2,8 @@
 
 use super::agreement::agreement;
 use super::provenance::{EstimatorRecord, FORMAT, Provenance};
-use super::replicate::{Estimator, Replicates};
-use super::{AGAINST, Error, FILMS, PICTURE, REPLICATES, Reference, picture};
+use super::replicate::{Estimator, Replicates, film};
+use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
 use crate::results::Rays;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Settings};
@@ -11,8 +11,9 @@ use bidir::film::{Aov, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
-use formats::film::{FilmHeader, SceneIdentity, SettingsText};
+use formats::film::{FilmHeader, SceneIdentity, SettingsText, settings_from_flags};
 use serde_json::Value;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The first of all seeds: far from those that people choose.
@@ -26,6 +27,9 @@ pub trait Host: Progress {
     fn should_end(&self) -> bool {
         false
     }
+
+    /// Told of samples that are there already.
+    fn found(&self, _samples: u64) {}
 }
 
 /// Nobody listens, and there is no clock.
@@ -84,6 +88,20 @@ impl Plan {
         }
     }
 
+    /// The plan of a reference that gets so many samples more. None: it has settings that this
+    /// program does not know.
+    pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
+        let [first, second] = provenance.estimators.each_ref().map(|record| {
+            let mut flags = record.settings.clone();
+            flags.insert("seed".to_owned(), record.seed.to_string());
+            settings_from_flags(&flags)
+        });
+        Some(Self {
+            estimators: [first?, second?],
+            spp: provenance.estimators[0].spp.saturating_add(more),
+        })
+    }
+
     /// Passes of each replicate.
     fn passes(&self) -> u64 {
         self.spp.div_ceil(REPLICATES).max(1)
@@ -139,6 +157,23 @@ pub fn make(
         .unwrap_or_else(|_| unreachable!("there are two estimators"));
     let reference = finish(folder, subject, plan, [&first, &second])?;
     Ok(Made::Whole(Box::new(reference)))
+}
+
+/// Removes what says that `folder` has a reference, and its films: the next one begins anew.
+pub fn clear(folder: &Path) -> Result<(), Error> {
+    let films = NAMES.iter().flat_map(|name| {
+        let films = 0..REPLICATES;
+        films.map(|replicate| film(folder, name, replicate))
+    });
+    for path in std::iter::once(folder.join(PROVENANCE)).chain(films) {
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(Error::io(&path, error));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Compares what both estimators made, and writes it all.

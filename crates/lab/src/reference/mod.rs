@@ -37,7 +37,7 @@ mod replicate;
 mod tests;
 
 pub use agreement::{Agreement, Comparison};
-pub use make::{Host, Made, Plan, Subject, make};
+pub use make::{Host, Made, Plan, Subject, clear, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::Pixels;
@@ -56,7 +56,8 @@ pub const LEVEL: f64 = 1e-3;
 const PICTURE: &str = "picture.exr";
 const AGAINST: &str = "against.exr";
 const PROVENANCE: &str = "provenance.json";
-const FILMS: &str = "films";
+/// The folder of the films in it.
+pub const FILMS: &str = "films";
 
 /// Why a reference cannot be made or used.
 #[derive(Debug, Error)]
@@ -90,6 +91,19 @@ pub enum Error {
         folder: PathBuf,
         /// What is wrong.
         reason: String,
+    },
+    /// A film has more passes than are asked for.
+    #[error(
+        "{}: it has {found} samples per pixel already, more than the {asked} that are asked for",
+        folder.display()
+    )]
+    TooLong {
+        /// The folder of the reference.
+        folder: PathBuf,
+        /// Samples per pixel of its longest replicate, times their number.
+        found: u64,
+        /// Samples per pixel that were asked for.
+        asked: u64,
     },
     /// The folder has films of another render.
     #[error("{}: the film of another render: {difference}", path.display())]
@@ -161,11 +175,7 @@ impl Reference {
 
     /// Refuses it for another scene than the one with this digest, and for another film.
     pub fn check(&self, digest: &str, film: &FilmSettings) -> Result<(), Error> {
-        let difference = self.provenance.difference(digest, film);
-        difference.map_or(Ok(()), |reason| {
-            let folder = self.folder.clone();
-            Err(Error::Refused { folder, reason })
-        })
+        self.provenance.check(&self.folder, digest, film)
     }
 
     /// The picture with its variances, to be tested against.

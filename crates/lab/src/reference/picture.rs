@@ -67,5 +67,6 @@ pub(super) fn digest(picture: &Pixels, variance: &Pixels) -> String {
         }
     }
     let bytes = hash.finalize();
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    let digits = bytes.iter().map(|byte| format!("{byte:02x}"));
+    digits.collect()
 }

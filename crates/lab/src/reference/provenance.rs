@@ -138,8 +138,18 @@ impl Provenance {
         ))
     }
 
+    /// Refuses the reference in `folder` for another scene than the one with this digest, and for
+    /// another film.
+    pub fn check(&self, folder: &Path, digest: &str, film: &FilmSettings) -> Result<(), Error> {
+        let difference = self.difference(digest, film);
+        difference.map_or(Ok(()), |reason| {
+            let folder = folder.to_owned();
+            Err(Error::Refused { folder, reason })
+        })
+    }
+
     /// Why it is not of the scene with this digest and film. None: it is.
-    pub(super) fn difference(&self, digest: &str, film: &FilmSettings) -> Option<String> {
+    fn difference(&self, digest: &str, film: &FilmSettings) -> Option<String> {
         if self.scene_digest != digest {
             let (found, wanted) = (short(&self.scene_digest), short(digest));
             return Some(format!(

@@ -36,10 +36,9 @@ pub(super) struct Replicates {
 }
 
 impl Estimator<'_> {
-    /// The films of replicates, which may not be there yet.
+    /// The film of a replicate, which may not be there yet.
     fn film(&self, replicate: u64) -> PathBuf {
-        let name = format!("{}-{replicate:02}.film", self.name);
-        self.folder.join(FILMS).join(name)
+        film(self.folder, self.name, replicate)
     }
 
     /// Renders what is missing. None: the host asked to stop.
@@ -87,6 +86,9 @@ impl Estimator<'_> {
     ) -> Result<Option<FilmFile>, Error> {
         let untrained = self.subject.identity().header(settings, None);
         let earlier = self.earlier(path, &untrained)?;
+        if let Some(file) = &earlier {
+            host.found(file.header.passes.len() * self.subject.scene.film().crop.area());
+        }
         match earlier {
             Some(file) if file.header.passes.len() == self.passes => Ok(Some(file)),
             earlier => self.render(path, settings, earlier, host),
@@ -107,13 +109,11 @@ impl Estimator<'_> {
             return Ok(Some(file));
         }
         let most = passes.ranges().last().map_or(0, |range| range.end);
-        let reason = format!(
-            "it has {} samples per pixel already, more than the {} that are asked for",
-            most * REPLICATES,
-            self.passes * REPLICATES
-        );
-        let folder = self.folder.to_owned();
-        Err(Error::Refused { folder, reason })
+        Err(Error::TooLong {
+            folder: self.folder.to_owned(),
+            found: most.saturating_mul(REPLICATES),
+            asked: self.passes.saturating_mul(REPLICATES),
+        })
     }
 
     fn render(
@@ -157,6 +157,12 @@ impl Estimator<'_> {
         let film = session.into_film();
         Ok(Some(FilmFile { header, film }))
     }
+}
+
+/// The film of a replicate in `folder`; `name` is that of the estimator.
+pub(super) fn film(folder: &Path, name: &str, replicate: u64) -> PathBuf {
+    let name = format!("{name}-{replicate:02}.film");
+    folder.join(FILMS).join(name)
 }
 
 /// Fails where `found` is the header of another render than `expected`.

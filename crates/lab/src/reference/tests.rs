@@ -127,6 +127,12 @@ fn restricted_estimators_agree_where_they_make_the_same_paths() {
     let made = place.make("a", &plan);
     assert!(made.provenance.agreement.agree);
     let summary = made.provenance.summary();
+    let extended = Plan::extended(&made.provenance, 16).unwrap();
+    let made = place.make("a", &extended);
+    assert_eq!(made.provenance.estimators[1].spp, 144);
+    clear(&place.path("a")).unwrap();
+    assert!(!is_reference(&place.path("a")));
+    assert_eq!(place.make("a", &plan).provenance.estimators[0].spp, 128);
     let expected = "bdpt --light-point shared --strategies all,-s0,-t1, 128 samples per pixel; agrees with \
                     bdpt --strategies s1,-t1, 128";
     assert!(summary.starts_with(expected), "{summary}");

@@ -74,46 +74,54 @@ impl Ruler {
     fn log(low: f64, high: f64) -> Self {
         let decades = libm::log10(high / low);
         let margin = libm::exp10((MARGIN * decades).max(0.05));
-        let (start, end) = (low / margin, high * margin);
-        let inside = |value: &f64| (start..=end).contains(value);
-        let powers = exponent(start)..=exponent(end);
-        let multiples = |digits: &'static [f64]| {
-            let powers = powers.clone();
-            powers.flat_map(move |power| digits.iter().map(move |&digit| (digit, power)))
-        };
-        let decades = libm::log10(end / start);
-        let minor = multiples(&[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+        let (low, high) = (low / margin, high * margin);
+        let decades = libm::log10(high / low);
+        let minor = multiples(low, high, &[2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
         let minor = minor.map(|(digit, power)| times_power(digit, power));
-        let labelled: &[f64] = if decades < 3.0 {
-            &[1.0, 2.0, 5.0]
-        } else {
-            &[1.0]
-        };
-        let every = libm::ceil(decades / 8.0) as i32;
-        let ticks = multiples(labelled).filter(|(_, power)| power.rem_euclid(every) == 0);
-        // One way of writing for the whole axis.
-        let short = (1e-3..=1e5).contains(&start) && end < 1e5;
-        let label = |digit, power| match short {
-            true => number(times_power(digit, power)),
-            false => power_label(digit, power),
-        };
-        let ticks = ticks.map(|(digit, power)| (times_power(digit, power), label(digit, power)));
         Self {
             scale: Scale::Log,
-            low: start,
-            high: end,
+            low,
+            high,
             ticks: if decades < 1.0 {
-                Step::near((end - start) / 5.0).ticks(start, end)
+                Step::near((high - low) / 5.0).ticks(low, high)
             } else {
-                ticks.filter(|(value, _)| inside(value)).collect()
+                powers(low, high)
             },
-            minor: if decades < 8.0 {
-                minor.filter(inside).collect()
-            } else {
-                Vec::new()
-            },
+            minor: minor.take_while(|_| decades < 8.0).collect(),
         }
     }
+}
+
+/// Powers of ten, at most about eight of them, and where they are few their multiples by 2 and 5.
+fn powers(low: f64, high: f64) -> Vec<(f64, String)> {
+    let decades = libm::log10(high / low);
+    let every = libm::ceil(decades / 8.0) as i32;
+    let digits: &[f64] = if decades < 3.0 {
+        &[1.0, 2.0, 5.0]
+    } else {
+        &[1.0]
+    };
+    // One way of writing for the whole axis.
+    let is_short = low >= 1e-3 && high < 1e5;
+    let label = |digit, power| {
+        if is_short {
+            number(times_power(digit, power))
+        } else {
+            power_label(digit, power)
+        }
+    };
+    multiples(low, high, digits)
+        .filter(|(_, power)| power.rem_euclid(every) == 0)
+        .map(|(digit, power)| (times_power(digit, power), label(digit, power)))
+        .collect()
+}
+
+/// All numbers of a range that have one of these digits and zeros.
+fn multiples(low: f64, high: f64, digits: &[f64]) -> impl Iterator<Item = (f64, i32)> {
+    let powers = exponent(low)..=exponent(high);
+    powers
+        .flat_map(move |power| digits.iter().map(move |&digit| (digit, power)))
+        .filter(move |&(digit, power)| (low..=high).contains(&times_power(digit, power)))
 }
 
 fn has_place(scale: Scale, value: f64) -> bool {

@@ -59,7 +59,7 @@ pub struct Report<'a> {
     pub command: &'a str,
 }
 
-/// An image of the viewer.
+/// An image of the viewer; one scene has each kind once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportImage {
     /// The name of its scene.

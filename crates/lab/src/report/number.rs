@@ -23,7 +23,7 @@ pub(super) fn with_decimals(value: f64, decimals: usize) -> String {
 
 /// A number and its interval, `0.85 [0.82, 0.88]`.
 ///
-/// The last digit is the first in which the interval has at least four steps; very large and very
+/// The last digit is the first in which the interval has at least five steps; very large and very
 /// small numbers share one power of ten.
 pub(super) fn interval(value: f64, low: f64, high: f64) -> String {
     let plain = || format!("{} [{}, {}]", number(value), number(low), number(high));
@@ -32,7 +32,7 @@ pub(super) fn interval(value: f64, low: f64, high: f64) -> String {
         return plain();
     }
     let largest = exponent(value.abs().max(low.abs()).max(high.abs()));
-    let last = exponent(width / 4.0);
+    let last = exponent(width / 5.0);
     // An interval of a millionth of its value needs no more digits.
     let last = last.max(largest - 7);
     let (shift, suffix) = if (-4..6).contains(&largest) {

@@ -4,12 +4,11 @@
  * An image as it is stored.
  * @typedef {object} StoredImage
  * @property {string} name
- * @property {string} group The budget; empty for a reference.
  * @property {boolean} is_reference
  * @property {number} width
  * @property {number} height
  * @property {string} halves Three half floats for each pixel, low byte first, in base64.
- * @property {string | null} flip One byte for each pixel, 255 for an error of 1, in base64.
+ * @property {string | null} flip One byte for each pixel, 254 for an error of 1, 255 for no number, in base64.
  */
 
 /** @typedef {{name: string, images: StoredImage[]}} StoredScene */
@@ -47,7 +46,7 @@ function fromHalf(bits) {
 const HALVES = Float32Array.from({ length: 65536 }, (_, bits) => fromHalf(bits));
 
 /** An image whose pixels are decoded when they are first asked for. */
-class Image {
+class Picture {
   /** @param {StoredImage} stored */
   constructor(stored) {
     this.stored = stored;
@@ -56,6 +55,11 @@ class Image {
     this.height = stored.height;
     /** @type {Float32Array | null} */
     this.decoded = null;
+    /**
+     * What was asked for of `errorsOf`.
+     * @type {Map<Layer, Float32Array | null>}
+     */
+    this.errors = new Map();
   }
 
   /** Three channels for each pixel, row by row from the top left. */
@@ -81,8 +85,8 @@ class Image {
 
 /**
  * For every pixel the mean over the channels of (a - b)² / (b² + 0.01).
- * @param {Image} image
- * @param {Image} reference
+ * @param {Picture} image
+ * @param {Picture} reference
  */
 function relativeErrors(image, reference) {
   const [a, b] = [image.channels, reference.channels];
@@ -96,16 +100,32 @@ function relativeErrors(image, reference) {
 }
 
 /**
- * The errors of a layer. Null: they are not known.
+ * The errors of a layer against the reference of the scene. Null: they are not known.
  * @param {Layer} layer
- * @param {Image} image
- * @param {Image | undefined} reference
+ * @param {Picture} image
+ * @param {Picture | undefined} reference
  */
 function errorsOf(layer, image, reference) {
+  let errors = image.errors.get(layer);
+  if (errors === undefined) {
+    errors = computedErrors(layer, image, reference);
+    image.errors.set(layer, errors);
+  }
+  return errors;
+}
+
+/**
+ * The same, computed anew.
+ * @param {Layer} layer
+ * @param {Picture} image
+ * @param {Picture | undefined} reference
+ */
+function computedErrors(layer, image, reference) {
   const isReference = image === reference;
   if (layer === "flip") {
     if (isReference) return new Float32Array(image.width * image.height);
-    return image.stored.flip ? Float32Array.from(bytesOf(image.stored.flip), (byte) => byte / 255) : null;
+    const fraction = (/** @type {number} */ byte) => (byte === 255 ? NaN : byte / 254);
+    return image.stored.flip ? Float32Array.from(bytesOf(image.stored.flip), fraction) : null;
   }
   const isComparable = reference && reference.width === image.width && reference.height === image.height;
   return isComparable ? relativeErrors(image, reference) : null;
@@ -158,7 +178,7 @@ const SRGB = Uint8Array.from({ length: 65536 }, (_, step) => {
 
 /**
  * Light as colours: exposed, clipped, and brought to the screen.
- * @param {Image} image
+ * @param {Picture} image
  * @param {number} stops
  * @param {string} curve `srgb` or `linear`.
  * @param {ImageData} target

@@ -15,6 +15,8 @@ use crate::results::{Cell, Plot, PlotKind, Series, Table};
 pub(super) const WIDTH: f64 = 680.0;
 const PLOT_HEIGHT: f64 = 300.0;
 const TOP: f64 = 12.0;
+/// The lower end of the plot.
+pub(super) const BOTTOM: f64 = TOP + PLOT_HEIGHT;
 const RIGHT: f64 = 16.0;
 /// Room below the plot for the ticks and the label of the axis.
 const BELOW: f64 = 48.0;
@@ -53,21 +55,20 @@ impl Frame {
     }
 
     /// Where a point is; what is beyond an end is at the end.
-    pub(super) fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        let width = WIDTH - RIGHT - self.left;
-        [
-            self.left + width * self.x.fraction(point[0]),
-            TOP + PLOT_HEIGHT * (1.0 - self.y.fraction(point[1])),
-        ]
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.x_of(x), self.y_of(y)]
+    }
+
+    fn x_of(&self, value: f64) -> f64 {
+        self.left + (WIDTH - RIGHT - self.left) * self.x.fraction(value)
+    }
+
+    fn y_of(&self, value: f64) -> f64 {
+        TOP + PLOT_HEIGHT * (1.0 - self.y.fraction(value))
     }
 
     pub(super) fn has_place(&self, point: [f64; 2]) -> bool {
         self.x.has_place(point[0]) && self.y.has_place(point[1])
-    }
-
-    /// Height of the lower end. Unit: pixels.
-    pub(super) fn bottom(&self) -> f64 {
-        TOP + PLOT_HEIGHT
     }
 }
 
@@ -101,13 +102,13 @@ pub(super) fn figure(plot: &Plot, id: &str) -> Element {
 }
 
 fn picture(plot: &Plot, frame: &Frame, id: &str) -> Element {
-    let (legend, legend_height) = legend(plot, frame.bottom() + BELOW);
+    let (legend, legend_height) = legend(plot, BOTTOM + BELOW);
     let [title, description] = ["title", "description"].map(|part| format!("{id}-{part}"));
     let series = plot.series.iter().enumerate();
     element("svg")
         .with(
             "viewBox",
-            format!("0 0 {WIDTH} {:.0}", frame.bottom() + BELOW + legend_height),
+            format!("0 0 {WIDTH} {:.0}", BOTTOM + BELOW + legend_height),
         )
         .with("role", "img")
         .with("aria-labelledby", format!("{title} {description}"))
@@ -126,16 +127,16 @@ fn picture(plot: &Plot, frame: &Frame, id: &str) -> Element {
 
 /// Lines at the ticks, what is written beside them, and the labels of the axes.
 fn grid(plot: &Plot, frame: &Frame) -> Element {
-    let (left, right, bottom) = (frame.left, WIDTH - RIGHT, frame.bottom());
-    let x_of = |value: f64| left + (right - left) * frame.x.fraction(value);
-    let y_of = |value: f64| TOP + PLOT_HEIGHT * (1.0 - frame.y.fraction(value));
-    let vertical = |value: f64, opacity| rule([x_of(value), TOP, x_of(value), bottom], opacity);
-    let horizontal = |value: f64, opacity| rule([left, y_of(value), right, y_of(value)], opacity);
+    let (left, right) = (frame.left, WIDTH - RIGHT);
+    let vertical =
+        |value: f64, opacity| rule([frame.x_of(value), TOP, frame.x_of(value), BOTTOM], opacity);
+    let horizontal =
+        |value: f64, opacity| rule([left, frame.y_of(value), right, frame.y_of(value)], opacity);
     let below = |(value, label): &(f64, String)| {
-        label_at([x_of(*value), bottom + 16.0], "middle").text(label)
+        label_at([frame.x_of(*value), BOTTOM + 16.0], "middle").text(label)
     };
     let beside = |(value, label): &(f64, String)| {
-        label_at([left - 6.0, y_of(*value) + 4.0], "end").text(label)
+        label_at([left - 6.0, frame.y_of(*value) + 4.0], "end").text(label)
     };
     let middle = TOP + 0.5 * PLOT_HEIGHT;
     element("g")
@@ -150,12 +151,12 @@ fn grid(plot: &Plot, frame: &Frame) -> Element {
                 .map(|(value, _)| horizontal(*value, 0.2)),
         )
         .children([
-            rule([left, bottom, right, bottom], 0.8),
-            rule([left, TOP, left, bottom], 0.8),
+            rule([left, BOTTOM, right, BOTTOM], 0.8),
+            rule([left, TOP, left, BOTTOM], 0.8),
         ])
         .children(frame.x.ticks.iter().map(below))
         .children(frame.y.ticks.iter().map(beside))
-        .child(label_at([0.5 * (left + right), bottom + 36.0], "middle").text(&plot.x.label))
+        .child(label_at([0.5 * (left + right), BOTTOM + 36.0], "middle").text(&plot.x.label))
         .child(
             label_at([14.0, middle], "middle")
                 .with("transform", format!("rotate(-90 14 {middle:.1})"))

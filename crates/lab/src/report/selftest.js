@@ -55,7 +55,7 @@ function steps() {
     "flip error": () => thereAndBack(() => set(layer, "flip"), () => set(layer, "image")),
     "zoom": () => thereAndBack(() => press("+"), () => press("-")),
     "pan": () => thereAndBack(() => press("ArrowLeft"), () => press("ArrowRight")),
-    "digits choose": () => thereAndBack(() => press("1"), () => press("2")),
+    "digits choose": () => thereAndBack(() => press("2"), () => press("1")),
     "values of pixels": () => {
       const canvas = byId("canvas", HTMLCanvasElement);
       const { left, top, width, height } = canvas.getBoundingClientRect();

@@ -1,7 +1,7 @@
 //! Curves and histograms, told apart by colour, by marker and by dashes.
 
 use super::markup::{Element, element};
-use super::plot::{Frame, last_edge};
+use super::plot::{BOTTOM, Frame, last_edge};
 use crate::results::Series;
 use std::fmt::Write;
 
@@ -123,7 +123,7 @@ pub(super) fn steps(series: &Series, index: usize, frame: &Frame) -> Element {
         corners.extend([frame.at([edge[0], *height]), frame.at([edge[1], *height])]);
     }
     let ends = corners.first().zip(corners.last());
-    let ends = ends.map(|(first, last)| [[first[0], frame.bottom()], [last[0], frame.bottom()]]);
+    let ends = ends.map(|(first, last)| [[first[0], BOTTOM], [last[0], BOTTOM]]);
     let [start, end] = ends.map_or([None, None], |ends| ends.map(Some));
     let outline = polyline(start.into_iter().chain(corners).chain(end));
     let half = edges.windows(2).next().map_or(0.0, |edge| {

@@ -92,6 +92,7 @@ fn methods(methods: &[MethodInfo]) -> [Element; 3] {
         element("h3").text("Methods"),
         element("div").class("differing").child(table(&settings)),
         element("details")
+            .with("open", "")
             .child(element("summary").text("Settings that are the same for all methods"))
             .child(definitions(shared)),
     ]
@@ -120,7 +121,7 @@ fn scenes(scenes: &[SceneInfo]) -> Table {
 /// What the images of a scene are compared with.
 fn reference(scene: &SceneInfo) -> Element {
     let stored = scene.reference_image.as_ref();
-    let stored = stored.map_or(String::new(), |file| format!(" It is {file}."));
+    let stored = stored.map_or(String::new(), |file| format!(" ({file})"));
     element("p")
         .child(element("b").text(format!("Reference of {}: ", scene.name)))
         .text(&scene.reference)

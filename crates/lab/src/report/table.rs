@@ -25,6 +25,9 @@ enum Better {
     More,
 }
 
+/// A longer text is divided into lines. Unit: characters.
+const LONGEST_NAME: usize = 28;
+
 /// A table of the page.
 pub(super) fn table(table: &Table) -> Element {
     let ranks: Vec<_> = (0..table.columns.len())
@@ -70,6 +73,10 @@ fn legend() -> Element {
 
 fn cell(cell: &Cell, rank: Rank) -> Element {
     let written = match cell {
+        // A name stays on its line; a sentence does not.
+        Cell::Text(text) if text.chars().count() <= LONGEST_NAME => {
+            return element("td").class("name").text(text);
+        }
         Cell::Text(text) => return element("td").text(text),
         Cell::Number(value) => number(*value),
         Cell::Interval { value, low, high } => interval(*value, *low, *high),
@@ -205,15 +212,15 @@ mod tests {
 
     #[test]
     fn the_best_of_each_scene_is_marked() {
+        use Rank::{AsGood, Best, None};
         let rows = [
             ("a", interval_cell(1.0, 0.1)),
             ("a", interval_cell(1.15, 0.1)),
-            ("a", interval_cell(1.3, 0.05)),
+            ("a", interval_cell(1.3, 0.04)),
             ("b", interval_cell(7.0, 0.1)),
             ("b", Cell::Number(f64::NAN)),
             ("b", interval_cell(6.0, 0.1)),
         ];
-        use Rank::{AsGood, Best, None};
         assert_eq!(
             ranked("relmse", &rows),
             [Best, AsGood, None, None, None, Best]

@@ -6,9 +6,9 @@ const ZOOMS = [1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 24,
 /**
  * All that decides what is seen. `x` and `y` are the place of the image in the middle of the canvas.
  * @typedef {object} View
- * @property {Image} a
- * @property {Image} b
- * @property {Image | undefined} reference
+ * @property {Picture} a
+ * @property {Picture} b
+ * @property {Picture | undefined} reference
  * @property {"a" | "b"} side Which is shown, where the picture is not divided.
  * @property {boolean} isSplit
  * @property {number} split The part of the image that A has, from the left.
@@ -29,7 +29,7 @@ const painted = new Map();
 /**
  * A canvas of the size of an image, with a layer of it. Null: the layer is not known.
  * @param {View} view
- * @param {Image} image
+ * @param {Picture} image
  */
 function paint(view, image) {
   const light = `${view.exposure} ${view.curve}`;
@@ -68,7 +68,7 @@ function contextOf(canvas) {
  * @param {View} view
  * @param {HTMLCanvasElement} canvas
  */
-function origin(view, canvas) {
+function cornerOf(view, canvas) {
   const scale = view.zoom * devicePixelRatio;
   return [canvas.width / 2 - view.x * scale, canvas.height / 2 - view.y * scale].map(Math.round);
 }
@@ -97,14 +97,14 @@ function draw(view, canvas) {
 /**
  * Draws the columns of an image from the first up to the second.
  * @param {View} view
- * @param {Image} image
+ * @param {Picture} image
  * @param {HTMLCanvasElement} canvas
  * @param {[number, number]} columns
  */
 function drawPart(view, image, canvas, [from, to]) {
   const source = paint(view, image);
   const scale = view.zoom * devicePixelRatio;
-  const [left, top] = origin(view, canvas);
+  const [left, top] = cornerOf(view, canvas);
   if (!source || to <= from) return;
   const [width, height] = [to - from, image.height];
   const target = [left + from * scale, top, width * scale, height * scale];
@@ -121,7 +121,7 @@ function drawPart(view, image, canvas, [from, to]) {
 function drawEdge(view, canvas, column) {
   const context = contextOf(canvas);
   const scale = view.zoom * devicePixelRatio;
-  const [left, top] = origin(view, canvas);
+  const [left, top] = cornerOf(view, canvas);
   const x = left + column * scale;
   context.fillStyle = "black";
   context.fillRect(x - 2, top, 4, view.a.height * scale);
@@ -138,7 +138,7 @@ function drawEdge(view, canvas, column) {
  * @returns {[number, number] | null}
  */
 function pixelAt(view, canvas, x, y) {
-  const [left, top] = origin(view, canvas);
+  const [left, top] = cornerOf(view, canvas);
   const scale = view.zoom * devicePixelRatio;
   const column = Math.floor((x * devicePixelRatio - left) / scale);
   const row = Math.floor((y * devicePixelRatio - top) / scale);

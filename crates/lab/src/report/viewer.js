@@ -40,7 +40,7 @@ class Viewer {
     };
     this.flipButton = byId("flip", HTMLButtonElement);
     this.select.scene.append(...scenes.map((scene) => new Option(scene.name)));
-    /** @type {Image[]} */
+    /** @type {Picture[]} */
     this.images = [];
     /** @type {[number, number] | null} */
     this.pixel = null;
@@ -49,16 +49,21 @@ class Viewer {
     this.listen();
   }
 
-  /** Lists the images of the chosen scene: A is the first method, B the reference where there is one. */
+  /**
+   * Lists the images of the chosen scene: A and B are what they were in the scene before, if this
+   * one has it; otherwise the first method, and the reference where there is one.
+   */
   openScene() {
     const scene = this.scenes[this.select.scene.selectedIndex];
+    const before = [this.select.a, this.select.b].map((select) => this.images[select.selectedIndex]?.name);
     painted.clear();
-    this.images = scene.images.map((stored) => new Image(stored));
+    this.images = scene.images.map((stored) => new Picture(stored));
     for (const select of [this.select.a, this.select.b]) select.replaceChildren(...this.options());
     const reference = this.images.findIndex((image) => image.stored.is_reference);
     const render = this.images.findIndex((image) => !image.stored.is_reference);
-    this.select.a.selectedIndex = Math.max(render, 0);
-    this.select.b.selectedIndex = reference >= 0 ? reference : this.images.length - 1;
+    const [a, b] = before.map((name) => this.images.findIndex((image) => image.name === name));
+    this.select.a.selectedIndex = a >= 0 ? a : Math.max(render, 0);
+    this.select.b.selectedIndex = b >= 0 ? b : reference >= 0 ? reference : this.images.length - 1;
     this.pixel = null;
     /** @type {View} */
     const view = {
@@ -131,7 +136,7 @@ class Viewer {
 
   /**
    * The name of an image with the means of its errors.
-   * @param {Image} image
+   * @param {Picture} image
    */
   described(image) {
     const { layer, reference } = this.view;
@@ -147,7 +152,7 @@ class Viewer {
     if (layer === "image") return;
     const [low, high] = layer === "flip" ? [0, 1] : RELATIVE_RANGE;
     byId("scale-low", HTMLOutputElement).value = layer === "flip" ? "0" : `≤ ${low}`;
-    byId("scale-high", HTMLOutputElement).value = layer === "flip" ? "1" : `≥ ${high}, by factors`;
+    byId("scale-high", HTMLOutputElement).value = layer === "flip" ? "1" : `≥ ${high} (logarithmic)`;
     const errors = Float32Array.from({ length: 256 }, (_, i) =>
       layer === "flip" ? i / 255 : low * (high / low) ** (i / 255),
     );
@@ -160,7 +165,7 @@ class Viewer {
   showValues() {
     const { a, b, reference } = this.view;
     const place = this.pixel ? `pixel (${this.pixel.join(", ")})` : "pixel: point at the picture";
-    const line = (/** @type {string} */ word, /** @type {Image | undefined} */ image) => {
+    const line = (/** @type {string} */ word, /** @type {Picture | undefined} */ image) => {
       if (!this.pixel || !image) return "";
       const [column, row] = this.pixel;
       if (column >= image.width || row >= image.height) return `${word} has no such pixel`;

@@ -12,20 +12,19 @@ use serde::Serialize;
 #[derive(Serialize)]
 struct Scene<'a> {
     name: &'a str,
-    images: Vec<Image<'a>>,
+    images: Vec<Image>,
 }
 
 /// An image as the scripts read it.
 #[derive(Serialize)]
-struct Image<'a> {
+struct Image {
     name: String,
-    group: &'a str,
     is_reference: bool,
     width: usize,
     height: usize,
     /// Half floats, low byte first, in base64. Shape: `3 · width · height`.
     halves: String,
-    /// Errors times 255, one byte each, in base64. Shape: `width · height`.
+    /// Errors times 254, one byte each, and 255 for what is no number, in base64. Shape: `width · height`.
     flip: Option<String>,
 }
 
@@ -46,26 +45,29 @@ pub(super) fn section(images: &[ReportImage]) -> Element {
 /// Scenes, images and how they are shown.
 fn choices() -> Element {
     let choice = |id, words| labelled(words, element("select").with("id", id));
-    element("div")
-        .class("controls")
+    let is_split = element("input")
+        .with("type", "checkbox")
+        .with("id", "is-split");
+    let row = || element("div").class("row");
+    let images = row()
         .child(choice("scene", "Scene"))
         .child(choice("image-a", "A"))
         .child(choice("image-b", "B"))
-        .child(button("flip", "Flip A/B"))
+        .child(button("flip", "Flip A/B"));
+    let painting = row()
         .child(options("layer", "Show", &LAYERS))
         .child(options("curve", "Tone", &CURVES))
-        .child(range("exposure", "Exposure", ["-8", "8", "0.25", "0"]))
-        .child(labelled(
-            "Split",
-            element("input")
-                .with("type", "checkbox")
-                .with("id", "is-split"),
-        ))
+        .child(range("exposure", "Exposure", ["-8", "8", "0.25", "0"]));
+    let place = row()
+        .child(labelled("Divide", is_split))
         .child(range("split", "at", ["0", "1", "0.01", "0.5"]))
-        .child(button("zoom-out", "−"))
+        .child(button("zoom-out", "−").with("aria-label", "smaller"))
         .child(element("output").with("id", "zoom"))
-        .child(button("zoom-in", "+"))
-        .child(button("reset", "Reset"))
+        .child(button("zoom-in", "+").with("aria-label", "larger"))
+        .child(button("reset", "Reset"));
+    element("div")
+        .class("controls")
+        .children([images, painting, place])
 }
 
 const LAYERS: [(&str, &str); 3] = [
@@ -198,15 +200,14 @@ pub(super) fn data(images: &[ReportImage]) -> Element {
         .code(script_json(&json))
 }
 
-fn stored(image: &ReportImage) -> Image<'_> {
-    let (name, group) = match &image.kind {
-        ImageKind::Reference => ("reference".to_owned(), ""),
-        ImageKind::Render { method, budget } => (format!("{method} · {budget}"), budget.as_str()),
+fn stored(image: &ReportImage) -> Image {
+    let name = match &image.kind {
+        ImageKind::Reference => "reference".to_owned(),
+        ImageKind::Render { method, budget } => format!("{method} · {budget}"),
     };
     let [width, height] = image.pixels.size;
     Image {
         name,
-        group,
         is_reference: image.kind == ImageKind::Reference,
         width,
         height,
@@ -216,6 +217,11 @@ fn stored(image: &ReportImage) -> Image<'_> {
 }
 
 fn flip_bytes(map: &ErrorMap) -> String {
-    let byte = |&error: &f64| (error * 255.0).round() as u8;
+    let byte = |&error: &f64| {
+        if error.is_nan() {
+            return 255;
+        }
+        (error.clamp(0.0, 1.0) * 254.0).round() as u8
+    };
     base64(&map.data.iter().map(byte).collect::<Vec<_>>())
 }

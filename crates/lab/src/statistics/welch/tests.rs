@@ -118,6 +118,26 @@ fn a_bias_of_two_per_cent_is_seen() {
     assert!(p_of_variances(&a, &biased, WHOLE) < 1e-3);
 }
 
+/// A bias of that size is found in three of four trials or so, as there are three channels; half of
+/// it rarely.
+#[test]
+fn the_smallest_bias_is_found_more_often_than_not() {
+    let found = |part: f64| {
+        let trials = (0..200).filter(|trial| {
+            let [a, b] = [2 * trial, 2 * trial + 1].map(|stream| renders(stream, 16, 1.0));
+            let bias = smallest_bias(&a, &b, 1e-3).unwrap();
+            let b = renders(2 * trial + 1, 16, 1.0 + part * bias);
+            welch_test(&a, &b, WHOLE).unwrap().p < 1e-3
+        });
+        trials.count() as f64 / 200.0
+    };
+    let [half, whole] = [0.5, 1.0].map(found);
+    assert!((0.5..0.95).contains(&whole), "{whole}");
+    assert!(half < 0.2, "{half}");
+    let black = vec![flat(0.0); 3];
+    assert!(smallest_bias(&black, &black, 1e-3).is_none());
+}
+
 #[test]
 fn a_local_bias_is_found_where_it_is() {
     let mut a = renders(3, 16, 1.0);

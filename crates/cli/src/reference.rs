@@ -1,0 +1,257 @@
+//! `bidir reference`: a picture that others can be measured against.
+
+use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
+use crate::console::{Console, say};
+use crate::exit::{Exit, Failure};
+use crate::lock::FilmLock;
+use crate::progress::{Clock, Reporter};
+use crate::render;
+use crate::scene_io::{self, LoadedScene};
+use crate::settings::{self, Budget};
+use crate::signals::Signals;
+use bidir::driver::{Progress, Resources, SessionError};
+use bidir::film::PixelRect;
+use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference, Subject};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Makes a reference, goes on with one, or adds samples to one.
+pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failure> {
+    let signals = Signals::watch()?;
+    render::set_threads(args.threads)?;
+    let folder = args.output.clone();
+    let folder = folder.unwrap_or_else(|| default_folder(&args.scene.scene));
+    let earlier = args.extend.map(|_| Provenance::read(&folder));
+    let earlier = earlier.transpose().map_err(failure)?;
+    check_folder(&folder)?;
+    let film = earlier.as_ref().map(film_of);
+    let loaded = scene_io::load(&args.scene, Some(film.as_ref().unwrap_or(&args.film)))?;
+    loaded.tell_warnings(&args.scene, 0, console)?;
+    if let Some(earlier) = &earlier {
+        let same = earlier.check(&folder, &loaded.digest, loaded.scene.film());
+        same.map_err(failure)?;
+    }
+    let films = folder.join(FILMS);
+    std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
+    let _lock = FilmLock::take(&folder.join("reference"))?;
+    if args.restart {
+        reference::clear(&folder).map_err(failure)?;
+    }
+    let job = Job {
+        args,
+        console,
+        folder: &folder,
+        loaded: &loaded,
+        plan: plan(args, earlier.as_ref(), &loaded)?,
+        signals: &signals,
+    };
+    job.run()
+}
+
+/// A folder that is called as the scene is.
+fn default_folder(scene: &Path) -> PathBuf {
+    let stem = scene.file_stem().filter(|stem| *stem != "-");
+    let mut name = stem.unwrap_or("bidir".as_ref()).to_owned();
+    name.push(".reference");
+    name.into()
+}
+
+/// Refuses a folder that is in use for something else.
+fn check_folder(folder: &Path) -> Result<(), Failure> {
+    let is_ours = reference::is_reference(folder) || folder.join(FILMS).is_dir();
+    let entries = std::fs::read_dir(folder);
+    let has_others = folder.exists() && entries.map_or(true, |mut all| all.next().is_some());
+    if is_ours || !has_others {
+        return Ok(());
+    }
+    let message = format!("{}: there already, and no reference", folder.display());
+    Err(Failure::usage(message).with_hint("name another folder with --output"))
+}
+
+/// The film that a reference has.
+fn film_of(provenance: &Provenance) -> FilmArgs {
+    let [left, top, right, bottom] = provenance.crop;
+    FilmArgs {
+        size: Some(Size(provenance.resolution)),
+        crop: Some(PixelBounds(PixelRect {
+            min: [left, top],
+            max: [right, bottom],
+        })),
+        pixelbounds: None,
+        cropwindow: None,
+    }
+}
+
+/// Which estimators make how many samples.
+fn plan(
+    args: &ReferenceArgs,
+    earlier: Option<&Provenance>,
+    loaded: &LoadedScene,
+) -> Result<Plan, Failure> {
+    if let (Some(earlier), Some(more)) = (earlier, args.extend) {
+        return Plan::extended(earlier, more).ok_or_else(|| {
+            let message = "the reference has settings that this program does not know";
+            Failure::new(Exit::FilmMismatch, message)
+        });
+    }
+    let mut plan = Plan::usual(&loaded.settings, args.spp.unwrap_or(loaded.spp));
+    let flags = [&args.estimator, &args.against];
+    for (settings, flags) in plan.estimators.iter_mut().zip(flags) {
+        if let Some(flags) = flags {
+            *settings = settings::resolve(&flags.0, settings.clone());
+        }
+    }
+    Ok(plan)
+}
+
+/// A reference that can be made.
+struct Job<'a> {
+    args: &'a ReferenceArgs,
+    console: Console,
+    folder: &'a Path,
+    loaded: &'a LoadedScene,
+    plan: Plan,
+    signals: &'a Signals,
+}
+
+impl Job<'_> {
+    fn run(&self) -> Result<Exit, Failure> {
+        let name = self.args.scene.scene.display().to_string();
+        let subject = Subject {
+            name: &name,
+            digest: &self.loaded.digest,
+            scene: &self.loaded.scene,
+        };
+        let resources = Resources {
+            threads: self.args.threads.into(),
+            ..Resources::default()
+        };
+        let display = self.console.display(self.args.talk);
+        let watcher = Watcher {
+            reporter: Reporter::new(display, self.signals, self.clock()),
+            signals: self.signals,
+        };
+        let made = reference::make(self.folder, &subject, &self.plan, &resources, &watcher);
+        if let Ok(Made::Whole(_)) = made {
+            watcher.reporter.complete();
+        }
+        watcher.reporter.finish();
+        match made.map_err(failure)? {
+            Made::Whole(reference) => Ok(self.tell(&reference)),
+            Made::Stopped => {
+                let folder = self.folder.display();
+                self.say(format_args!(
+                    "stopped; the same command goes on in {folder}"
+                ));
+                Ok(Exit::Checkpoint)
+            }
+        }
+    }
+
+    /// Both estimators are one budget of passes.
+    fn clock(&self) -> Clock {
+        Clock {
+            budget: Budget {
+                first: 0,
+                passes: Some(self.plan.rounded_spp().saturating_mul(2)),
+                time: None,
+                noise: None,
+            },
+            samples_per_pass: self.loaded.scene.film().crop.area(),
+            start: Instant::now(),
+        }
+    }
+
+    fn say(&self, text: std::fmt::Arguments<'_>) {
+        if !self.args.talk.quiet {
+            say(text);
+        }
+    }
+
+    /// Tells what was found; exits with 6 where the estimators disagree.
+    fn tell(&self, reference: &Reference) -> Exit {
+        let provenance = &reference.provenance;
+        let (agreement, folder) = (&provenance.agreement, self.folder.display());
+        let dropped: u64 = provenance.estimators.iter().map(|e| e.dropped).sum();
+        if dropped > 0 {
+            self.console.warning(format_args!(
+                "{dropped} contributions were not finite or too large, and were dropped"
+            ));
+        }
+        self.say(format_args!("{}; wrote {folder}", provenance.summary()));
+        if agreement.agree {
+            if let Some(bias) = agreement.smallest_bias {
+                let percent = 100.0 * bias;
+                self.say(format_args!(
+                    "a bias of {percent:.2} % of the film's mean would have been found"
+                ));
+            }
+            return Exit::Done;
+        }
+        let worst = if agreement.film.p < agreement.blocks.p {
+            &agreement.film
+        } else {
+            &agreement.blocks
+        };
+        let [left, top, right, bottom] = worst.block;
+        let channel = ["red", "green", "blue"][worst.channel % 3];
+        let means = worst.means.map(|mean| mean.unwrap_or(f64::NAN));
+        let [a, b] = means;
+        self.console.warning(format_args!(
+            "the estimators disagree, most in {channel} of the pixels {left},{top} to \
+             {right},{bottom}: {a:.6e} and {b:.6e}; nothing should be measured against this"
+        ));
+        Exit::Validation
+    }
+}
+
+/// Reports, and passes signals on.
+struct Watcher<'a> {
+    reporter: Reporter<'a>,
+    signals: &'a Signals,
+}
+
+impl Progress for Watcher<'_> {
+    fn advance(&self, samples: u64) {
+        self.reporter.advance(samples);
+    }
+
+    fn nanoseconds(&self) -> u64 {
+        self.reporter.nanoseconds()
+    }
+}
+
+impl Host for Watcher<'_> {
+    fn should_end(&self) -> bool {
+        self.signals.exit().is_some()
+    }
+
+    fn found(&self, samples: u64) {
+        self.reporter.find(samples);
+    }
+}
+
+/// How the command ends because of an error with a reference.
+pub(crate) fn failure(error: Error) -> Failure {
+    let text = error.to_string();
+    match error {
+        Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
+        Error::Io { .. } | Error::Damaged { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Session(SessionError::Threads(_)) => Failure::new(Exit::RenderFailed, text),
+        Error::Session(_) => {
+            let hint = "make it smaller with --size, or render a part of it with --crop";
+            Failure::new(Exit::Scene, text).with_hint(hint)
+        }
+        Error::Refused { .. } => {
+            let hint = "make one anew with `bidir reference`, in another folder or with --restart";
+            Failure::new(Exit::Validation, text).with_hint(hint)
+        }
+        Error::TooLong { found, .. } => Failure::new(Exit::FilmMismatch, text).with_hint(format!(
+            "ask for --spp {found}, or begin anew with --restart"
+        )),
+        Error::OtherRender { .. } => {
+            let hint = "name another folder with --output, or begin anew with --restart";
+            Failure::new(Exit::FilmMismatch, text).with_hint(hint)
+        }
+    }
+}

@@ -1,0 +1,193 @@
+use crate::common::Workplace;
+use serde_json::Value;
+use std::fs;
+
+fn provenance(place: &Workplace, folder: &str) -> Value {
+    serde_json::from_str(&place.read(&format!("{folder}/provenance.json"))).unwrap()
+}
+
+#[test]
+fn two_estimators_make_a_reference_that_images_are_compared_with() {
+    let place = Workplace::new();
+    place
+        .run("reference room.pbrt --spp 100")
+        .expect(0)
+        .says("bdpt, 112 samples per pixel; agrees with path, 112 samples per pixel (p = ")
+        .says("level 0.001); wrote room.reference")
+        .says("of the film's mean would have been found");
+    assert_eq!(place.names(), ["room.pbrt", "room.reference"]);
+    let json = provenance(&place, "room.reference");
+    assert_eq!(json["agreement"]["agree"], true);
+    assert_eq!(json["agreement"]["replicates"], 16);
+    assert_eq!(json["resolution"], serde_json::json!([24, 16]));
+    assert_eq!(json["estimators"][1]["settings"]["integrator"], "path");
+    assert_eq!(json["estimators"][0]["settings"]["sampler"], "independent");
+    assert_eq!(json["estimators"][0]["settings"]["max-depth"], "4");
+    assert!(json["estimators"][0]["seconds"].as_f64().unwrap() > 0.0);
+    assert!(json["estimators"][0]["rays"]["light"].as_u64().unwrap() > 0);
+    let picture = "room.reference/picture.exr";
+    assert_eq!(place.attributes(picture)["samplesPerPixel"], "112");
+    place
+        .run("film verify room.reference/films/picture-00.film room.reference/films/against-15.film")
+        .expect(0);
+    // The folder is its picture.
+    place
+        .run(&format!(
+            "compare {picture} --reference room.reference --exact"
+        ))
+        .expect(0);
+    let other = place
+        .run("compare room.reference/against.exr room.reference --json")
+        .expect(0)
+        .json();
+    assert!(other["rmse"].as_f64().unwrap() > 0.0);
+    assert!(other["z_test"]["blocks"]["p"].as_f64().unwrap() > 1e-3);
+}
+
+#[test]
+fn a_difference_is_tested_where_both_know_their_noise() {
+    let place = Workplace::new();
+    let image = |name: &str, flags: &str| {
+        let flags = format!("render room.pbrt -q -o {name} --sampler independent {flags}");
+        place.run(&flags).expect(0);
+    };
+    let layers = "--aov variance,samples --spp 256";
+    image("a.exr", layers);
+    image("b.exr", &format!("{layers} --seed 1 --integrator path"));
+    image("c.exr", &format!("{layers} --seed 2 --max-depth 1"));
+    image("d.exr", "--spp 4");
+    let p = |images: &str, test: &str| {
+        let json = place.run(&format!("compare {images} --json")).expect(0);
+        json.json()["z_test"][test]["p"].as_f64()
+    };
+    assert!(p("a.exr b.exr", "blocks").unwrap() > 1e-3);
+    for test in ["pixels", "blocks"] {
+        assert!(p("a.exr c.exr", test).unwrap() < 1e-3, "{test}");
+    }
+    assert_eq!(p("a.exr d.exr", "pixels"), None);
+    place
+        .run("compare a.exr c.exr")
+        .expect(0)
+        .prints("z_blocks    p ")
+        .prints(" standard errors");
+}
+
+#[test]
+fn more_samples_are_added_to_the_same_bits() {
+    let place = Workplace::new();
+    let film = "--size 12x8 --crop 2,1,10,7";
+    let estimators = ["--estimator", "bdpt --strategies all,-s0 --seed 3"];
+    let reference = |arguments: &str| {
+        let mut command = place.command(&format!("reference room.pbrt -q {arguments}"));
+        let output = command.args(estimators).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+    };
+    reference(&format!("-o a.reference {film} --spp 48"));
+    reference(&format!("-o b.reference {film} --spp 16"));
+    place
+        .run("reference room.pbrt -o b.reference --extend 32")
+        .expect(0);
+    let [a, b] = ["a.reference", "b.reference"].map(|name| provenance(&place, name));
+    for key in ["picture", "agreement", "crop", "resolution", "scene_digest"] {
+        assert_eq!(a[key], b[key], "{key}");
+    }
+    for index in [0, 1] {
+        let [a, b] = [&a, &b].map(|json| &json["estimators"][index]);
+        for key in ["settings", "spp", "first_seed", "rays"] {
+            assert_eq!(a[key], b[key], "{key}");
+        }
+    }
+    assert_eq!(a["estimators"][0]["seed"], 3);
+    assert_eq!(a["estimators"][0]["settings"]["strategies"], "all,-s0");
+    // The same again has nothing to do, less is refused.
+    reference(&format!("-o b.reference {film} --spp 48"));
+    assert_eq!(provenance(&place, "b.reference")["picture"], a["picture"]);
+    place
+        .run("reference room.pbrt -o b.reference --spp 16 --size 12x8 --crop 2,1,10,7 --estimator bdpt")
+        .expect(5)
+        .says("picture-00.film: the film of another render: seed is");
+}
+
+#[test]
+fn what_disagrees_is_written_and_refused() {
+    let place = Workplace::new();
+    let mut command = place.command("reference room.pbrt --spp 64 --against");
+    let output = command.arg("path --max-depth 1").output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(6), "{told}");
+    assert!(told.contains("the estimators disagree, most in"), "{told}");
+    assert_eq!(
+        provenance(&place, "room.reference")["agreement"]["agree"],
+        false
+    );
+    let picture = "room.reference/picture.exr";
+    place
+        .run(&format!("compare {picture} --reference room.reference"))
+        .expect(6)
+        .says("room.reference: refused: its estimators disagree");
+    // With other estimators it begins anew, when asked to.
+    place
+        .run("reference room.pbrt --spp 16")
+        .expect(5)
+        .says("--restart");
+    place
+        .run("reference room.pbrt --spp 64 --restart")
+        .expect(0);
+    place
+        .run(&format!("compare {picture} --reference room.reference"))
+        .expect(0);
+    place
+        .run("reference room.pbrt --spp 32")
+        .expect(5)
+        .says("it has 64 samples per pixel already, more than the 32");
+}
+
+#[test]
+fn stale_and_damaged_references_are_refused() {
+    let place = Workplace::new();
+    place
+        .run("reference room.pbrt -q --spp 16 -o a.reference")
+        .expect(0);
+    let scene = place.read("room.pbrt");
+    place.write("room.pbrt", &scene.replace("[9 8 7]", "[9 8 6]"));
+    place
+        .run("reference room.pbrt -o a.reference --extend 16")
+        .expect(6)
+        .says("another scene, or one that has changed since");
+    place
+        .run("reference room.pbrt -o a.reference --spp 16")
+        .expect(5)
+        .says("scene-digest is");
+    let json = place.read("a.reference/provenance.json");
+    place.write("a.reference/provenance.json", &json[..json.len() / 2]);
+    let image = "compare a.reference/picture.exr --reference a.reference";
+    place.run(image).expect(4).says("provenance.json: damaged");
+    let older = json.replace("\"estimator_version\": ", "\"estimator_version\": 9");
+    place.write("a.reference/provenance.json", &older);
+    place.run(image).expect(6).says("stale: made by version");
+    fs::remove_file(place.path("a.reference/provenance.json")).unwrap();
+    place.run(image).expect(4).says("provenance.json");
+    place
+        .run("reference room.pbrt -o a.reference --extend 16")
+        .expect(4);
+}
+
+#[test]
+fn a_wrong_command_line_is_told() {
+    let place = Workplace::new();
+    for (arguments, says) in [
+        ("--spp 4 --extend 4", "cannot be used with"),
+        ("--extend 4 --size 4x4", "cannot be used with"),
+        ("--extend 4 --crop 0,0,4,4", "cannot be used with"),
+        ("--spp 0", "invalid value '0'"),
+        ("--against photons", "invalid value 'photons'"),
+        ("-o .", "there already, and no reference"),
+    ] {
+        place
+            .run(&format!("reference room.pbrt {arguments}"))
+            .expect(2)
+            .says(says);
+    }
+    place.run("reference nothing.pbrt").expect(4);
+    assert_eq!(place.names(), ["room.pbrt"]);
+}
