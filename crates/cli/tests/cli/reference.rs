@@ -28,7 +28,9 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
     let picture = "room.reference/picture.exr";
     assert_eq!(place.attributes(picture)["samplesPerPixel"], "112");
     place
-        .run("film verify room.reference/films/picture-00.film room.reference/films/against-15.film")
+        .run(
+            "film verify room.reference/films/picture-00.film room.reference/films/against-15.film",
+        )
         .expect(0);
     // The folder is its picture.
     place

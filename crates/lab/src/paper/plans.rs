@@ -30,6 +30,73 @@ pub(super) const ALBEDOS: [f32; 4] = [0.3, 0.5, 0.7, 0.8];
 /// Width and height of small images.
 pub(super) const SMALL: [u32; 2] = [64, 48];
 
+/// How much is rendered of what.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Amounts {
+    /// Walks from each end in a closed room.
+    pub(super) walks: u64,
+    /// Width and height of the images of table 1. Unit: pixels.
+    size: [u32; 2],
+    /// Seeds of all renders.
+    seeds: u64,
+    /// Samples per pixel of references, of each of their two estimators.
+    spp: u64,
+    /// Rays per pixel of table 1.
+    rays: f64,
+    /// The largest power of ten of triangles.
+    largest: u32,
+    /// Samples per pixel of the sweeps.
+    samples: f64,
+}
+
+impl Amounts {
+    fn seeds(&self) -> Seeds {
+        Seeds {
+            first: 1,
+            count: self.seeds,
+        }
+    }
+
+    /// Width and height of the images of the sweep of triangles, whose references are few.
+    fn sweep_size(&self) -> [u32; 2] {
+        [0, 1].map(|axis| self.size[axis].min(SMALL[axis]))
+    }
+}
+
+impl Effort {
+    pub(super) fn amounts(self) -> Amounts {
+        match self {
+            Self::Trial => Amounts {
+                walks: 4000,
+                size: [8, 6],
+                seeds: 2,
+                spp: 16,
+                rays: 40.0,
+                largest: 3,
+                samples: 1.0,
+            },
+            Self::Quick => Amounts {
+                walks: 400_000,
+                size: SMALL,
+                seeds: 8,
+                spp: 512,
+                rays: 100.0,
+                largest: 5,
+                samples: 8.0,
+            },
+            Self::Full => Amounts {
+                walks: 4_000_000,
+                size: [96, 72],
+                seeds: 20,
+                spp: 2048,
+                rays: 200.0,
+                largest: 6,
+                samples: 16.0,
+            },
+        }
+    }
+}
+
 /// The name of a method.
 pub(super) fn method_name(weights: &str, rule: &str) -> String {
     format!("{weights} {rule}")
@@ -106,26 +173,19 @@ fn experiment(title: &str, description: &str) -> Experiment {
 }
 
 /// Scenes A, B and the apartment; all weights, all rules; equal rays.
-pub(super) fn table_1(effort: Effort, folder: &Path) -> Experiment {
-    let (size, seeds, spp, rays) = match effort {
-        Effort::Quick => (SMALL, 10, 512, 100.0),
-        Effort::Full => ([96, 72], 24, 2048, 200.0),
-    };
+pub(super) fn table_1(amounts: &Amounts, folder: &Path) -> Experiment {
     let files = ROOMS.iter().copied().chain([(APARTMENT, APARTMENT)]);
     let rules = RULES.into_iter().chain(BEYOND);
     Experiment {
-        size: Some(size),
-        seeds: Seeds {
-            first: 1,
-            count: seeds,
-        },
+        size: Some(amounts.size),
+        seeds: amounts.seeds(),
         scenes: files
-            .map(|(name, file)| scene(name, scenes::path(folder, file), spp))
+            .map(|(name, file)| scene(name, scenes::path(folder, file), amounts.spp))
             .collect(),
         methods: rules
             .flat_map(|rule| WEIGHTS.map(|weights| method(weights, rule)))
             .collect(),
-        budgets: vec![BudgetSpec::new(BudgetKind::Rays, rays)],
+        budgets: vec![BudgetSpec::new(BudgetKind::Rays, amounts.rays)],
         ..experiment(
             "Table 1",
             "RMS errors at equal total rays, under three kinds of weights.",
@@ -138,17 +198,14 @@ pub(super) struct Complexity {
     /// Lamp, triangles and file.
     rooms: Vec<(Lamp, usize, PathBuf)>,
     spp: u64,
+    size: [u32; 2],
 }
 
 impl Complexity {
     /// Writes the rooms.
-    pub(super) fn write(effort: Effort, folder: &Path) -> Result<Self> {
-        let (largest, spp) = match effort {
-            Effort::Quick => (5, 512),
-            Effort::Full => (6, 4096),
-        };
+    pub(super) fn write(amounts: &Amounts, folder: &Path) -> Result<Self> {
         let mut rooms = Vec::new();
-        for power in 2..=largest {
+        for power in 2..=amounts.largest {
             for lamp in Lamp::ALL {
                 let room = Room {
                     lamp,
@@ -160,7 +217,11 @@ impl Complexity {
                 rooms.push((lamp, room.count(), path));
             }
         }
-        Ok(Self { rooms, spp })
+        Ok(Self {
+            rooms,
+            spp: amounts.spp,
+            size: amounts.sweep_size(),
+        })
     }
 
     /// The rooms' numbers of triangles, ascending.
@@ -174,6 +235,7 @@ impl Complexity {
     pub(super) fn references(&self) -> Experiment {
         let few = &self.rooms[..Lamp::ALL.len()];
         Experiment {
+            size: Some(self.size),
             scenes: few
                 .iter()
                 .map(|(lamp, _, path)| scene(lamp.name(), path.clone(), self.spp))
@@ -185,11 +247,7 @@ impl Complexity {
     }
 
     /// All rooms, with the references that lie in the folder `at`.
-    pub(super) fn plan(&self, effort: Effort, references: &Results, at: &Path) -> Experiment {
-        let (seeds, samples) = match effort {
-            Effort::Quick => (8, 8.0),
-            Effort::Full => (24, 32.0),
-        };
+    pub(super) fn plan(&self, amounts: &Amounts, references: &Results, at: &Path) -> Experiment {
         let reference = |lamp: Lamp| {
             let mut scenes = references.scenes.iter();
             let scene = scenes.find(|scene| scene.name == lamp.name());
@@ -205,13 +263,11 @@ impl Complexity {
             )
         });
         Experiment {
-            seeds: Seeds {
-                first: 1,
-                count: seeds,
-            },
+            size: Some(self.size),
+            seeds: amounts.seeds(),
             scenes: scenes.collect(),
             methods: methods(&["balance"]),
-            budgets: vec![BudgetSpec::new(BudgetKind::Samples, samples)],
+            budgets: vec![BudgetSpec::new(BudgetKind::Samples, amounts.samples)],
             ..experiment(
                 "Geometric complexity",
                 "The same light in rooms whose faces are divided ever finer.",
@@ -227,11 +283,7 @@ fn methods(weights: &[&str]) -> Vec<MethodSpec> {
 }
 
 /// The sweep of albedo: the same room, ever brighter.
-pub(super) fn albedo(effort: Effort, folder: &Path) -> Result<Experiment> {
-    let (seeds, spp, samples) = match effort {
-        Effort::Quick => (10, 1024, 16.0),
-        Effort::Full => (24, 4096, 32.0),
-    };
+pub(super) fn albedo(amounts: &Amounts, folder: &Path) -> Result<Experiment> {
     let mut scenes = Vec::new();
     for albedo in ALBEDOS {
         let room = Room {
@@ -241,17 +293,14 @@ pub(super) fn albedo(effort: Effort, folder: &Path) -> Result<Experiment> {
         };
         let name = albedo_name(albedo);
         let path = write(room, folder, &name.replace(' ', "-"))?;
-        scenes.push(scene(&name, path, spp));
+        scenes.push(scene(&name, path, amounts.spp));
     }
     Ok(Experiment {
-        size: Some([32, 24]),
-        seeds: Seeds {
-            first: 1,
-            count: seeds,
-        },
+        size: Some(amounts.size.map(|side| side / 2)),
+        seeds: amounts.seeds(),
         scenes,
         methods: methods(&WEIGHTS),
-        budgets: vec![BudgetSpec::new(BudgetKind::Samples, samples)],
+        budgets: vec![BudgetSpec::new(BudgetKind::Samples, amounts.samples)],
         ..experiment("Albedo", "The same room with ever brighter surfaces.")
     })
 }
@@ -281,10 +330,33 @@ mod tests {
     #[test]
     fn quick_experiments_keep_all_methods() {
         let folder = Path::new("");
-        let [quick, full] = [Effort::Quick, Effort::Full].map(|effort| table_1(effort, folder));
+        let [quick, full] =
+            [Effort::Quick, Effort::Full].map(|effort| table_1(&effort.amounts(), folder));
         assert_eq!(quick.methods, full.methods);
         assert_eq!(quick.methods.len(), 27);
         assert_eq!(quick.scenes.len(), full.scenes.len());
         assert!(quick.seeds.count >= 4 && full.seeds.count >= 10);
+    }
+
+    /// The description that people begin from renders what the program does.
+    #[test]
+    fn the_description_beside_is_the_same() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/paper.toml");
+        let text = std::fs::read_to_string(&file).unwrap();
+        let mut written = Experiment::read(&text, &file).unwrap();
+        let mut own = table_1(&Effort::Full.amounts(), Path::new(""));
+        own.metrics.retain(|metric| *metric != Metric::Rmse);
+        written.metrics.retain(|metric| *metric != Metric::Rmse);
+        assert_eq!(written.scenes.len(), own.scenes.len());
+        for (scene, own) in written.scenes.iter_mut().zip(&own.scenes) {
+            assert_eq!(scene.path.file_name(), own.path.file_name());
+            (scene.path, scene.file) = (own.path.clone(), own.file.clone());
+            // It may say more than what decides the expectation.
+            if let ReferenceSpec::Make { changes, .. } = &mut scene.reference {
+                assert_eq!(changes.strategies, setting().strategies);
+                **changes = reference_changes();
+            }
+        }
+        assert_eq!(written, own);
     }
 }

@@ -150,7 +150,7 @@ pub fn figure_2(scene: &str, weights: &[(&str, Contributions)]) -> Claim {
         ]);
         curves.push(Series {
             name: format!("{name} weights"),
-            points: histogram(values, 4),
+            points: histogram(values, 2),
             intervals: Vec::new(),
         });
     }
