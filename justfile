@@ -46,6 +46,10 @@ look SCENE *FLAGS:
 scenes:
     python3 tools/make_scenes
 
+# What the exact film costs.
+bench-film:
+    cargo bench -p bidir-formats --bench film
+
 # Puts faults into a copy of the sources: each must turn some test red.
 mutants *FLAGS:
     python3 tools/mutants {{FLAGS}}

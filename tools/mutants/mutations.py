@@ -14,6 +14,11 @@ def unit(filter_):
     return ("bidir", "--lib", filter_)
 
 
+def layers(filter_):
+    """Tests of what a film keeps beside the picture."""
+    return ("bidir", "--test layers", filter_)
+
+
 def analytic(filter_):
     """Tests against known images."""
     return ("bidir", ANALYTIC, filter_)
@@ -22,6 +27,11 @@ def analytic(filter_):
 def lab(filter_):
     """The unit tests of the `lab` crate whose names contain `filter_`."""
     return ("bidir-lab", "--lib", filter_)
+
+
+def experiment(filter_):
+    """Tests of experiments as a host runs them."""
+    return ("bidir-lab", "--test experiment", filter_)
 
 
 def estimators(filter_):
@@ -143,14 +153,16 @@ MUTATIONS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "            workspace.add(sample, candidate.strategy, value);",
+        "            value: candidate.contribution(chosen.prob),",
         "            // Right in every grey image, wrong in colour.\n"
-        "            let candidates = &workspace.candidates;\n"
-        "            let score = |i: usize| candidates[i].score;\n"
-        "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
-        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
-        "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
-        "            workspace.add(sample, candidate.strategy, sum * part);",
+        "            value: {\n"
+        "                let candidates = &workspace.candidates;\n"
+        "                let score = |i: usize| candidates[i].score;\n"
+        "                let all: f32 = (0..candidates.len()).map(score).sum();\n"
+        "                let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
+        "                let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
+        "                sum * part\n"
+        "            },",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
@@ -213,10 +225,52 @@ MUTATIONS = [
     # --- film and camera --------------------------------------------------------------------
     (
         "splats divided by passes",
-        "crates/bidir/src/film/mod.rs",
-        "fixed::to_f64(sums.light[channel], VALUE_SCALE) / light_paths;",
-        "fixed::to_f64(sums.light[channel], VALUE_SCALE) / passes;",
+        "crates/bidir/src/film/develop.rs",
+        "fixed::to_f64(light, VALUE_SCALE) / light_paths",
+        "fixed::to_f64(light, VALUE_SCALE) / self.samples()",
         unit("film::"),
+    ),
+    (
+        "raw images with the weight",
+        "crates/bidir/src/integrator/workspace.rs",
+        "lane / self.weight",
+        "lane",
+        layers("a_raw_image"),
+    ),
+    (
+        "environments of one escape varying one by one",
+        "crates/bidir/src/driver/deposit.rs",
+        "contributions.chunk_by(|a, b| a.strategy == b.strategy)",
+        "contributions.chunks(1)",
+        unit("driver::deposit"),
+    ),
+    (
+        "variance of the light image as if light paths had pixels",
+        "crates/bidir/src/driver/variance.rs",
+        "1 => film.light_paths().max(1) as f64,",
+        "1 => 1.0,",
+        layers("strategies_vary"),
+    ),
+    (
+        "contributions in the group of the light before",
+        "crates/bidir/src/film/layers.rs",
+        "then_some(group as usize)",
+        "then_some((group as usize).saturating_sub(1))",
+        layers("a_group"),
+    ),
+    (
+        "points divided by all samples, those without a surface too",
+        "crates/bidir/src/film/develop.rs",
+        "Some(coverage)) => fixed::to_f64(sums[coverage], VALUE_SCALE),",
+        "Some(_)) => self.samples(),",
+        layers("features"),
+    ),
+    (
+        "depth as the distance from the lens",
+        "crates/bidir/src/driver/features.rs",
+        "depth: (surface.point - lens.point).dot(lens.n_g),",
+        "depth: (surface.point - lens.point).length(),",
+        layers("features"),
     ),
     (
         "negative lobes splatted as positive",
@@ -369,6 +423,41 @@ MUTATIONS = [
         "p: corrected(p, tests.len())",
         "p: corrected(p, 1)",
         lab("statistics::welch"),
+    ),
+    (
+        "all replicates of an experiment with one seed",
+        "crates/lab/src/experiment/cell.rs",
+        "settings.seed = self.seed;",
+        "settings.seed = 0 * self.seed;",
+        experiment("every_cell"),
+    ),
+    (
+        "equal rays with a pass too many",
+        "crates/lab/src/experiment/cell.rs",
+        "(next - target).abs() < (now - target).abs()",
+        "next.min(target) > 0.0 && now < target * 1.2",
+        experiment("equal_rays"),
+    ),
+    (
+        "training that costs no rays",
+        "crates/lab/src/experiment/cell.rs",
+        "training.map_or(0, |training| training.rays.total())",
+        "training.map_or(0, |training| 0 * training.rays.total())",
+        experiment("training"),
+    ),
+    (
+        "records of another experiment gone on from",
+        "crates/lab/src/experiment/run.rs",
+        "spec.name,\n            stage.digest,",
+        "spec.name,\n            0,",
+        experiment("another_experiment"),
+    ),
+    (
+        "ratios of other seeds",
+        "crates/lab/src/experiment/analysis/mod.rs",
+        "b.iter().find(|b| b.seed == a.seed)?",
+        "b.iter().find(|b| b.seed != a.seed)?",
+        lab("analysis"),
     ),
     (
         "both estimators of a reference with the same seeds",

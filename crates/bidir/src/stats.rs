@@ -3,7 +3,7 @@
 
 mod strategies;
 
-pub use strategies::{StrategyCounts, StrategyTable};
+pub use strategies::{LayerCounts, StrategyCounts, StrategyTable};
 
 use crate::path::Strategy;
 use std::collections::BTreeSet;
@@ -67,6 +67,8 @@ pub struct Stats {
     pub candidates: u64,
     /// What became of the contributions of each strategy.
     pub strategies: StrategyTable,
+    /// The same of those that the film keeps images of.
+    pub strategy_images: StrategyTable<LayerCounts>,
     /// Contributions dropped.
     pub dropped: u64,
     /// The first of them.
@@ -101,6 +103,17 @@ impl Stats {
         }
     }
 
+    /// Counts what one sample added to the weighted image of `strategy`.
+    #[inline]
+    pub fn add_square(&mut self, strategy: Strategy, luminance: f64) {
+        self.strategy_images.of(strategy).add_square(luminance);
+    }
+
+    /// Counts a value that is missing in the raw image of `strategy`.
+    pub fn drop_raw(&mut self, strategy: Strategy) {
+        self.strategy_images.of(strategy).raw_dropped += 1;
+    }
+
     /// Counts a contribution that was dropped.
     pub fn drop_contribution(&mut self, dropped: Dropped) {
         self.dropped += 1;
@@ -123,6 +136,7 @@ impl AddAssign<&Self> for Stats {
         self.light_image_blocked += other.light_image_blocked;
         self.candidates += other.candidates;
         self.strategies += &other.strategies;
+        self.strategy_images += &other.strategy_images;
         self.dropped += other.dropped;
         other
             .dropped_list

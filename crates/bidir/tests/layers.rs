@@ -8,9 +8,12 @@ use bidir::film::{Aov, Film, LayerImage, Layers, MergeError, Picture};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::Vec3;
+use bidir::path::Strategy;
+use bidir::sampler::SamplerKind;
 use bidir::scene::{DEFAULT_GROUP, ENVIRONMENT_GROUP, Scene};
+use bidir::select::ShadowRays;
 use bidir::shape::Shape;
-use bidir::spectrum::Rgb;
+use bidir::spectrum::{Rgb, luminance};
 use common::statistics::{WHOLE, check_agree, replicates, replicates_of};
 use common::{add_walls, builder, diffuse, emission, quad, sphere};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -82,9 +85,9 @@ fn lights_are_in_groups_by_name_or_by_kind() {
 
 /// Checks that images of the parts add up to the picture, up to the rounding of their values.
 #[track_caller]
-fn check_sum<'a>(picture: &Picture, parts: impl Iterator<Item = &'a LayerImage> + Clone) {
+fn check_sum(picture: &Picture, parts: &[LayerImage]) {
     for (i, pixel) in picture.pixels.iter().flatten().enumerate() {
-        let sum: f32 = parts.clone().map(|part| part.data[i]).sum();
+        let sum: f32 = parts.iter().map(|part| part.data[i]).sum();
         let tolerance = 1e-5 * pixel.abs() + 1e-9;
         assert!((sum - pixel).abs() < tolerance, "{i}: {sum}, not {pixel}");
     }
@@ -102,8 +105,8 @@ fn parts_add_up_to_the_picture_and_leave_it_alone() {
         let images = kept.develop_layers();
         let (groups, strategies) = images.split_at(3);
         assert_eq!(groups[2].name, "lightgroup.environment");
-        check_sum(&picture, groups.iter());
-        check_sum(&picture, strategies.iter());
+        check_sum(&picture, groups);
+        check_sum(&picture, strategies);
         assert!(
             groups
                 .iter()
@@ -141,6 +144,128 @@ fn a_group_is_what_its_lights_alone_would_give() {
     }
 }
 
+/// Bidirectional path tracing with these strategies, and raw images of paths of four vertices.
+fn with_raw(strategies: &str) -> Settings {
+    let mut settings = settings(IntegratorKind::Bdpt, Layers::new(&[], &[], 4).with_raw());
+    settings.path.strategies = strategies.parse().expect("a list of strategies");
+    settings
+}
+
+fn pixels(film: &Film, part: Option<usize>) -> Vec<Rgb> {
+    let part = part.expect("the strategy has an image");
+    film.part_pixels(part).collect()
+}
+
+#[test]
+fn a_raw_image_is_what_its_strategy_alone_would_give() {
+    let scene = lit_room(8, &LAMPS);
+    let all = film(&scene, &with_raw("all"), 16, 2);
+    for strategy in all.layers().kept_strategies() {
+        let raw = pixels(&all, all.layers().raw_part(strategy));
+        // No walk depends on the strategies that take part, so both have the same samples.
+        let alone = film(&scene, &with_raw(&strategy.to_string()), 16, 2).develop();
+        for (a, b) in raw.iter().flatten().zip(alone.pixels.iter().flatten()) {
+            assert!((a - b).abs() <= 1e-4 * b, "{strategy}: {a}, not {b}");
+        }
+        assert!(
+            alone.pixels.iter().flatten().any(|v| *v > 0.0),
+            "{strategy}"
+        );
+    }
+}
+
+#[test]
+fn raw_images_do_not_depend_on_the_choice_of_shadow_rays() {
+    let scene = lit_room(8, &LAMPS);
+    let chosen = Settings {
+        shadow_rays: ShadowRays::PerPair,
+        ..with_raw("all")
+    };
+    let strategy = Strategy::new(1, 2);
+    let raw = |film: &Film| pixels(film, film.layers().raw_part(strategy));
+    let raw = replicates_of(&scene, &chosen, 16384, raw);
+    let alone = replicates(&scene, &with_raw("s1t2"), 16384);
+    check_agree("s1t2, one ray per pair", &raw, &alone, &[WHOLE]);
+}
+
+#[test]
+fn what_has_all_the_weight_is_its_raw_image() {
+    let scene = lit_room(8, &LAMPS);
+    for (s, t) in [(0, 3), (1, 2), (2, 1), (2, 2)] {
+        let strategy = Strategy::new(s, t);
+        let film = film(&scene, &with_raw(&strategy.to_string()), 4, 2);
+        let layers = film.layers();
+        let weighted = pixels(&film, layers.weighted_part(strategy));
+        assert_eq!(pixels(&film, layers.raw_part(strategy)), weighted);
+        assert_eq!(film.develop().pixels, weighted, "{strategy}");
+    }
+}
+
+#[test]
+fn strategies_vary_as_their_images_do_from_pass_to_pass() {
+    const PASSES: u64 = 512;
+    let scene = lit_room(4, &LAMPS);
+    let settings = Settings {
+        sampler: SamplerKind::Independent,
+        ..with_raw("all")
+    };
+    let session = |first: u64, passes: u64| {
+        let resources = Resources::default();
+        let session = Session::new(&scene, settings.clone(), &resources);
+        let mut session = session.expect("the film is small");
+        session.start_at(first);
+        (0..passes).for_each(|_| assert!(session.step(&())));
+        session
+    };
+    let images: Vec<Film> = (0..PASSES)
+        .map(|pass| session(pass, 1).into_film())
+        .collect();
+    for told in session(0, PASSES).strategy_moments() {
+        let values = images.iter().map(|film| {
+            let pixels = pixels(film, film.layers().weighted_part(told.strategy));
+            let values = pixels.into_iter().map(|pixel| f64::from(luminance(pixel)));
+            values.collect::<Vec<_>>()
+        });
+        let values: Vec<_> = values.collect();
+        let of_pixel = |i: usize| {
+            let n = PASSES as f64;
+            let mean = values.iter().map(|image| image[i]).sum::<f64>() / n;
+            let square = values
+                .iter()
+                .map(|image| (image[i] - mean) * (image[i] - mean));
+            (mean, square.sum::<f64>() / (n - 1.0))
+        };
+        let moments: Vec<_> = (0..16).map(of_pixel).collect();
+        let mean = moments.iter().map(|(mean, _)| mean).sum::<f64>() / 16.0;
+        let variance = moments.iter().map(|(_, variance)| variance).sum::<f64>() / 16.0;
+        // Exact where a sample has a pixel of its own; light paths of a pass meet in pixels.
+        let tolerance = if told.strategy.t == 1 { 0.1 } else { 1e-4 };
+        let found = told.variance.expect("several passes");
+        assert!(
+            (found - variance).abs() <= tolerance * variance,
+            "{told:?}: {variance}"
+        );
+        assert!((told.mean - mean).abs() <= 1e-5 * mean, "{told:?}: {mean}");
+    }
+}
+
+#[test]
+fn counters_do_not_depend_on_threads() {
+    let scene = lit_room(8, &LAMPS);
+    let stats = [1, 3].map(|threads| {
+        let resources = Resources {
+            threads,
+            ..Resources::default()
+        };
+        let session = Session::new(&scene, with_raw("all"), &resources);
+        let mut session = session.expect("the film is small");
+        (0..4).for_each(|_| assert!(session.step(&())));
+        session.stats().clone()
+    });
+    assert_eq!(stats[0], stats[1]);
+    assert!(stats[0].strategy_images.rows().count() > 6);
+}
+
 const FEATURES: [Aov; 9] = [
     Aov::Albedo,
     Aov::Position,
@@ -153,11 +278,11 @@ const FEATURES: [Aov; 9] = [
     Aov::Rays,
 ];
 
-/// A plane at z = 1 that covers the left half of the view of a camera at z = -1.8.
-fn half_plane() -> Scene {
+/// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
+fn plane() -> Scene {
     let mut builder = builder(4, 0.0);
     let material = builder.material(diffuse([0.8, 0.4, 0.2]));
-    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.0);
+    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
     let plane = common::tilt(plane, Vec3::ZERO);
     builder.shape(Shape::Mesh(plane), material, None);
     builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
@@ -166,7 +291,7 @@ fn half_plane() -> Scene {
 
 #[test]
 fn features_of_a_plane_are_known() {
-    let scene = half_plane();
+    let scene = plane();
     for (name, integrator) in IntegratorKind::NAMES {
         let settings = settings(integrator, Layers::new(&FEATURES, &[], 0));
         let images = film(&scene, &settings, 64, 2).develop_layers();
@@ -198,7 +323,11 @@ fn features_of_a_plane_are_known() {
             "{name}: {position:?}"
         );
         assert!(at("", "Rays", 4)[0] >= 64.0, "{name}");
-        // The right half is the sky.
+        // Pixel 6 is half sky, which counts for no depth.
+        near(at("", "Z", 6), &[2.8]);
+        let coverage = at("", "Coverage", 6)[0];
+        assert!((coverage - 0.5).abs() < 0.1, "{name}: {coverage}");
+        // Pixel 7 is the sky.
         for (layer, channel) in [
             ("Albedo", "R"),
             ("P", "X"),
@@ -216,7 +345,7 @@ fn features_of_a_plane_are_known() {
 
 #[test]
 fn variance_is_that_of_the_mean() {
-    let scene = half_plane();
+    let scene = plane();
     let settings = settings(IntegratorKind::Path, Layers::new(&[Aov::Variance], &[], 0));
     let film = film(&scene, &settings, 64, 2);
     let (picture, images) = (film.develop(), film.develop_layers());
@@ -239,7 +368,7 @@ fn variance_is_that_of_the_mean() {
 #[test]
 fn layers_have_the_same_bits_in_any_order() {
     let scene = common::room(0.1);
-    let layers = Layers::new(&FEATURES, scene.group_names(), 5);
+    let layers = Layers::new(&FEATURES, scene.group_names(), 5).with_raw();
     for (name, integrator) in IntegratorKind::NAMES {
         let settings = settings(integrator, layers.clone());
         let one = film(&scene, &settings, 4, 1);

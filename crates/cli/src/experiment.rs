@@ -8,6 +8,7 @@ use crate::args::ExperimentArgs;
 use crate::console::{Console, Display, print, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
+use crate::reference;
 use crate::render::set_threads;
 use crate::scene_io;
 use crate::signals::Signals;
@@ -149,14 +150,19 @@ fn failure(error: ExperimentError) -> Failure {
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,
     };
-    let failure = Failure::new(exit, error.to_string());
+    let text = error.to_string();
     match (error.hint().map(str::to_owned), error) {
+        (_, ExperimentError::Reference { error, .. }) => {
+            let exit = reference::failure(error).exit();
+            let hint = "make it anew with `bidir reference`, or all of it with --restart";
+            Failure::new(exit, text).with_hint(hint)
+        }
         // These can show their lines.
         (_, ExperimentError::File(error)) => {
             Failure::diagnostic(scene_io::exit_of_scene(&error), error)
         }
-        (Some(hint), _) => failure.with_hint(hint),
-        (None, _) => failure,
+        (Some(hint), _) => Failure::new(exit, text).with_hint(hint),
+        (None, _) => Failure::new(exit, text),
     }
 }
 

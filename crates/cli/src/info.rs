@@ -12,7 +12,7 @@ use bidir::scene::Scene;
 use bidir::shape::Shape;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 /// How many there are of each kind.
 type Counts = BTreeMap<&'static str, usize>;
@@ -31,6 +31,8 @@ struct Info {
     instances: usize,
     materials: Counts,
     lights: Counts,
+    /// How many lights are in each group.
+    light_groups: BTreeMap<String, usize>,
     textures: usize,
     /// The two corners of a box around all surfaces. None: there are none.
     bounds: Option<[[f32; 3]; 2]>,
@@ -85,6 +87,7 @@ impl Info {
             instances: loaded.summary.instances,
             materials: count(scene.materials(), Material::kind),
             lights: count(scene.lights(), Light::kind),
+            light_groups: light_groups(scene),
             textures: loaded.summary.textures,
             bounds: (scene.bvh().primitive_count() > 0).then_some(corners),
             bvh_bytes: scene.bvh().memory_bytes(),
@@ -126,6 +129,7 @@ impl Info {
             ("instances", self.instances.to_string()),
             ("materials", list(&self.materials)),
             ("lights", list(&self.lights)),
+            ("light groups", list(&self.light_groups)),
             ("textures", self.textures.to_string()),
             ("bounds", self.bounds_text()),
             ("film memory", bytes(film.bytes)),
@@ -169,6 +173,15 @@ impl FilmInfo {
     }
 }
 
+fn light_groups(scene: &Scene) -> BTreeMap<String, usize> {
+    let mut counts = BTreeMap::new();
+    for light in 0..scene.lights().len() as u32 {
+        let name = &scene.group_names()[scene.light_group(light) as usize];
+        *counts.entry(name.clone()).or_default() += 1;
+    }
+    counts
+}
+
 fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
     let mut counts = Counts::new();
     for item in items {
@@ -178,7 +191,7 @@ fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
 }
 
 /// `3: 2 disk, 1 mesh`.
-fn list(counts: &Counts) -> String {
+fn list<K: Display>(counts: &BTreeMap<K, usize>) -> String {
     let kinds: Vec<_> = counts
         .iter()
         .map(|(kind, count)| format!("{count} {kind}"))

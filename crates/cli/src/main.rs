@@ -17,6 +17,7 @@ mod info;
 mod lock;
 mod output;
 mod progress;
+mod pyramid;
 mod reference;
 mod render;
 mod replay;

@@ -2,6 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
+use crate::pyramid;
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, MetadataValue};
 use bidir::film::FilmSettings;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,8 @@ pub(crate) struct Outputs {
     png: Option<PathBuf>,
     /// The counts, as JSON.
     pub(crate) stats: Option<PathBuf>,
+    /// What each strategy does.
+    pub(crate) pyramid: Option<pyramid::Files>,
 }
 
 impl Outputs {
@@ -21,7 +24,14 @@ impl Outputs {
         let image = args.output.output.clone();
         let [exr, png] = image.map_or(Ok([None, None]), images)?;
         let stats = args.output.stats.clone();
-        Ok(Self { exr, png, stats })
+        let folder = args.layers.pyramid.as_deref();
+        let pyramid = folder.map(pyramid::Files::new);
+        Ok(Self {
+            exr,
+            png,
+            stats,
+            pyramid,
+        })
     }
 
     /// The files of a render; `film` is the name that the scene file gives its image. A share of a
@@ -41,6 +51,7 @@ impl Outputs {
             .iter()
             .chain(&self.png)
             .chain(&self.stats)
+            .chain(self.pyramid.iter().flat_map(pyramid::Files::all))
             .map(PathBuf::as_path)
     }
 
@@ -51,6 +62,9 @@ impl Outputs {
             let message = "a PNG has no room for layers";
             let hint = "write NAME.exr with --output, or keep a film file with --checkpoint";
             return Err(Failure::usage(message).with_hint(hint));
+        }
+        if let Some(folder) = &args.layers.pyramid {
+            pyramid::make_folder(folder)?;
         }
         let mut taken = vec![scene_io::target_of(&args.scene.scene)];
         for file in self.files().chain(args.long.checkpoint.as_deref()) {

@@ -8,6 +8,7 @@ use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::output::Outputs;
 use crate::progress::{Clock, Reporter};
+use crate::pyramid;
 use crate::replay;
 use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, Stopping};
 use crate::settings::{self, Budget};
@@ -226,6 +227,9 @@ impl Job<'_> {
         report: &Report,
     ) -> Result<(), Failure> {
         self.write_image(session, header)?;
+        if let Some(files) = &self.outputs.pyramid {
+            pyramid::write(files, session.film(), header)?;
+        }
         let Some(path) = &self.outputs.stats else {
             return Ok(());
         };
@@ -234,9 +238,8 @@ impl Job<'_> {
 
     /// Tells what was done.
     fn tell(&self, report: &Report, keeper: &Keeper) {
-        if let Some(warning) = report.warning() {
-            self.console.warning(warning);
-        }
+        let warnings = report.warning().into_iter().chain(report.raw_warning());
+        warnings.for_each(|warning| self.console.warning(warning));
         if !self.args.output.talk.quiet {
             let film = keeper.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
@@ -246,6 +249,9 @@ impl Job<'_> {
                 names.join(", ")
             };
             say(format_args!("{}; wrote {files}", report.summary()));
+            if self.outputs.pyramid.is_some() {
+                say(report.strategy_table().trim_end());
+            }
         }
     }
 }

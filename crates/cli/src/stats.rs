@@ -95,7 +95,7 @@ impl Report {
             connection_blocked: stats.connections_blocked,
             light_image_blocked: stats.light_image_blocked,
             candidates: stats.candidates,
-            strategies: stats.strategies.rows().map(StrategyReport::from).collect(),
+            strategies: StrategyReport::all(session),
             longer_paths: CountsReport::from(stats.strategies.longer()),
             training: TrainingReport::new(session),
             dropped: stats.dropped,
@@ -124,6 +124,22 @@ impl Report {
             ray(rays.connection),
             ray(rays.light_image),
         )
+    }
+
+    /// What each strategy did, as a table to read.
+    pub(crate) fn strategy_table(&self) -> String {
+        parts::strategy_table(&self.strategies, self.samples)
+    }
+
+    /// What is said of raw images that lack something. None: they lack nothing.
+    pub(crate) fn raw_warning(&self) -> Option<String> {
+        let dropped = |strategy: &StrategyReport| strategy.raw_dropped.unwrap_or(0);
+        let count: u64 = self.strategies.iter().map(dropped).sum();
+        (count > 0).then(|| {
+            format!(
+                "{count} values were too large without their weight, and are missing in raw images"
+            )
+        })
     }
 
     /// What is said of contributions that were dropped. None: there were none.

@@ -132,8 +132,8 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Measures one estimator with some threads, and prints a row.
-fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) {
+/// Measures one estimator with some threads: a row of the table.
+fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) -> String {
     let resources = Resources {
         threads,
         ..Resources::default()
@@ -161,7 +161,7 @@ fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) {
     let milliseconds = [of(0), of(1), of(2)].map(|seconds| seconds * 1e3);
     let [all, plain, exact] = milliseconds;
     let share = share * 100.0;
-    println!("{name:10} {threads:7} {all:14.2} {plain:10.3} {exact:10.3} {share:9.2} %");
+    format!("{name:10} {threads:7} {all:14.2} {plain:10.3} {exact:10.3} {share:9.2} %")
 }
 
 #[expect(clippy::print_stdout, reason = "this is what the bench is for")]
@@ -180,7 +180,7 @@ fn main() {
                 integrator,
                 ..Settings::default()
             };
-            measure(&scene, name, &settings, threads);
+            println!("{}", measure(&scene, name, &settings, threads));
         }
     }
 }

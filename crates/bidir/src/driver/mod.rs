@@ -7,14 +7,17 @@
 //!
 //! A host that wants a time budget looks at its own clock between passes: there is none here.
 
+mod deposit;
 mod features;
 mod replay;
 mod session;
 mod training;
+mod variance;
 
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::Session;
 pub use training::Training;
+pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
 use crate::integrator::IntegratorKind;

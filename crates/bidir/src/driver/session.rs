@@ -2,15 +2,15 @@
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
 //! trace. Nothing here looks at a clock.
 
+use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
-use crate::integrator::{Contribution, Integrator, Sample, Workspace};
+use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
-use crate::spectrum::Wavelengths;
 use crate::stats::Stats;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -197,7 +197,13 @@ impl<'a> Session<'a> {
         let layers = self.film.layers();
         let before = Meter::read(layers, workspace, progress);
         self.integrator.sample(&context, &sample, workspace);
-        self.deposit(pixel as usize, workspace, &context.wavelengths);
+        Deposit {
+            context: &context,
+            layers,
+            buffer: &self.buffer,
+            pixel: pixel as usize,
+        }
+        .take(workspace);
         if layers.features() > 0 {
             let after = Meter::read(layers, workspace, progress);
             let taken = (&sample, workspace);
@@ -224,32 +230,6 @@ impl<'a> Session<'a> {
                 pass.wrapping_mul(film.light_paths()).wrapping_add(pixel),
             ),
         }
-    }
-
-    /// Moves the contributions of the last sample to the film.
-    fn deposit(&self, pixel: usize, workspace: &Workspace, wavelengths: &Wavelengths) {
-        let rgb = |value| self.scene.color().to_rgb(value, wavelengths);
-        self.buffer.set_camera_sample(pixel, rgb(workspace.value));
-        if self.film.layers().parts() > 0 {
-            for contribution in &workspace.contributions {
-                for part in self.parts_of(contribution) {
-                    self.buffer
-                        .add_to_part(pixel, part, rgb(contribution.value));
-                }
-            }
-        }
-        for splat in &workspace.splats {
-            let contribution = &splat.contribution;
-            let (place, parts) = ((splat.raster, splat.u), self.parts_of(contribution));
-            self.buffer
-                .splat(self.scene.film(), place, rgb(contribution.value), parts);
-        }
-    }
-
-    /// The parts of the picture that a contribution is in.
-    fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
-        let group = self.scene.light_group(contribution.light);
-        self.film.layers().parts_of(contribution.strategy, group)
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.

@@ -78,10 +78,7 @@ impl Film {
         let parts = names.map(|(part, name)| LayerImage {
             name,
             channels: &["R", "G", "B"],
-            data: self
-                .pixels()
-                .flat_map(|sums| self.part(sums, part))
-                .collect(),
+            data: self.part_pixels(part).flatten().collect(),
         });
         aovs.chain(parts).collect()
     }
@@ -110,6 +107,11 @@ impl Film {
             variance[channel] = (of_mean * exposure * exposure) as f32;
         }
         (value, variance)
+    }
+
+    /// The pixels of part number `part` of [`Layers`](super::Layers), exposed.
+    pub fn part_pixels(&self, part: usize) -> impl Iterator<Item = Rgb> {
+        self.pixels().map(move |sums| self.part(sums, part))
     }
 
     /// A pixel of part number `part`.

@@ -4,6 +4,14 @@
 //!
 //! A contribution goes into the part of its light's group and into that of its strategy; the groups
 //! add up to the picture, and so do the strategies.
+//!
+//! Of strategies there may be **raw** images too: C/π without the weight, so that each is the
+//! estimate that its strategy would make alone of all paths of its length that it can make. They
+//! are unbiased there, but nothing bounds their variance: a strategy has a small weight where it
+//! rarely makes a path that then counts much. They are made of what the weighted picture is made
+//! of: a connection whose weighted value is zero is never traced, and is in no image. A raw value
+//! beyond [`fixed::LARGEST_CONTRIBUTION`](super::fixed::LARGEST_CONTRIBUTION) is left out of the
+//! raw image alone, and counted ([`LayerCounts`](crate::stats::LayerCounts)).
 
 use crate::path::Strategy;
 
@@ -126,6 +134,17 @@ pub struct Layers {
     aovs: Vec<Aov>,
     light_groups: Vec<String>,
     strategy_vertices: usize,
+    strategies: StrategyImages,
+}
+
+/// Which images of strategies are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StrategyImages {
+    /// Weighted ones: parts of the picture.
+    #[default]
+    Weighted,
+    /// These, and raw ones.
+    WeightedAndRaw,
 }
 
 impl Layers {
@@ -146,7 +165,18 @@ impl Layers {
             aovs,
             light_groups: light_groups.to_vec(),
             strategy_vertices: strategy_vertices.min(Self::MOST_STRATEGY_VERTICES),
+            strategies: StrategyImages::Weighted,
         }
+    }
+
+    /// The same with raw images of the strategies that have images.
+    #[must_use]
+    pub fn with_raw(self) -> Self {
+        let strategies = match self.strategy_vertices {
+            0 => StrategyImages::Weighted,
+            _ => StrategyImages::WeightedAndRaw,
+        };
+        Self { strategies, ..self }
     }
 
     /// The images beside the picture, sorted.
@@ -162,6 +192,11 @@ impl Layers {
     /// The most vertices of paths whose strategies have images.
     pub fn strategy_vertices(&self) -> usize {
         self.strategy_vertices
+    }
+
+    /// Which images of strategies are kept.
+    pub fn strategy_images(&self) -> StrategyImages {
+        self.strategies
     }
 
     /// True where nothing but the picture is kept.
@@ -186,8 +221,18 @@ impl Layers {
     }
 
     /// The number of parts: one for each group of lights, then one for each strategy, shorter paths
-    /// first, and the last one for all longer paths.
+    /// first, then one for all longer paths, and then those of raw images, in the same order.
     pub fn parts(&self) -> usize {
+        match self.strategies {
+            StrategyImages::Weighted => self.first_raw(),
+            StrategyImages::WeightedAndRaw => {
+                self.first_raw() + strategies_below(self.strategy_vertices + 1)
+            }
+        }
+    }
+
+    /// The number of parts that are weighted.
+    fn first_raw(&self) -> usize {
         let strategies = match self.strategy_vertices {
             0 => 0,
             n => strategies_below(n + 1) + 1,
@@ -195,31 +240,58 @@ impl Layers {
         self.light_groups.len() + strategies
     }
 
-    /// The parts that a contribution of `strategy` and of lights in `group` belongs to.
+    /// Where `strategy` is among those that have images. None: it has none.
+    #[inline]
+    fn strategy(&self, strategy: Strategy) -> Option<usize> {
+        let n = usize::from(strategy.s + strategy.t);
+        let is_kept = (2..=self.strategy_vertices).contains(&n);
+        is_kept.then(|| strategies_below(n) + usize::from(strategy.s))
+    }
+
+    /// The part of the weighted image of `strategy` alone. None: it has none.
+    #[inline]
+    pub fn weighted_part(&self, strategy: Strategy) -> Option<usize> {
+        Some(self.light_groups.len() + self.strategy(strategy)?)
+    }
+
+    /// The part of the raw image of `strategy`. None: it has none.
+    #[inline]
+    pub fn raw_part(&self, strategy: Strategy) -> Option<usize> {
+        match self.strategies {
+            StrategyImages::Weighted => None,
+            StrategyImages::WeightedAndRaw => Some(self.first_raw() + self.strategy(strategy)?),
+        }
+    }
+
+    /// All strategies that have images, in the order of their parts.
+    pub fn kept_strategies(&self) -> impl Iterator<Item = Strategy> + use<> {
+        let rows = 2..=self.strategy_vertices;
+        rows.flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)))
+    }
+
+    /// The parts that a contribution of `strategy` and of lights in `group` belongs to; raw images
+    /// have values of their own, and are not among them.
     #[inline]
     pub fn parts_of(&self, strategy: Strategy, group: u32) -> impl Iterator<Item = usize> {
         let groups = self.light_groups.len();
         let of_group = (groups > 0).then_some(group as usize);
-        let (s, n) = (strategy.s, usize::from(strategy.s + strategy.t));
         let of_strategy = (self.strategy_vertices > 0).then(|| {
-            if n > self.strategy_vertices {
-                groups + strategies_below(self.strategy_vertices + 1)
-            } else {
-                groups + strategies_below(n) + usize::from(s)
-            }
+            let part = self.weighted_part(strategy);
+            part.unwrap_or(groups + strategies_below(self.strategy_vertices + 1))
         });
         of_group.into_iter().chain(of_strategy)
     }
 
-    /// The layers' names of all parts: `lightgroup.NAME`, `sStT`, and `longer`.
+    /// The layers' names of all parts: `lightgroup.NAME`, `sStT`, `longer`, and `raw.sStT`.
     pub fn part_names(&self) -> impl Iterator<Item = String> + '_ {
         let groups = self.light_groups.iter();
         let groups = groups.map(|name| format!("lightgroup.{name}"));
-        let n = self.strategy_vertices;
-        let strategies = (2..=n).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
-        let longer = (n > 0).then(|| "longer".to_owned());
-        let strategies = strategies.map(|strategy| strategy.to_string());
-        groups.chain(strategies).chain(longer)
+        let longer = (self.strategy_vertices > 0).then(|| "longer".to_owned());
+        let strategies = self.kept_strategies().map(|strategy| strategy.to_string());
+        let is_raw = |strategy: &Strategy| self.raw_part(*strategy).is_some();
+        let raw = self.kept_strategies().filter(is_raw);
+        let raw = raw.map(|strategy| format!("raw.{strategy}"));
+        groups.chain(strategies).chain(longer).chain(raw)
     }
 }
 
@@ -263,6 +335,28 @@ mod tests {
         let longer: Vec<_> = layers.parts_of(Strategy::new(2, 3), 0).collect();
         assert_eq!(longer, [0, layers.parts() - 1]);
         assert_eq!(names[longer[1]], "longer");
+    }
+
+    #[test]
+    fn raw_images_follow_all_others() {
+        let (weighted, raw) = (layers(), layers().with_raw());
+        assert_eq!(raw.parts(), weighted.parts() + 9);
+        let names: Vec<_> = raw.part_names().collect();
+        assert_eq!(names.len(), raw.parts());
+        assert!(
+            weighted
+                .part_names()
+                .eq(names[..weighted.parts()].iter().cloned())
+        );
+        for strategy in raw.kept_strategies() {
+            let part = raw.raw_part(strategy).unwrap();
+            assert_eq!(names[part], format!("raw.{strategy}"));
+            let part = raw.weighted_part(strategy).unwrap();
+            assert_eq!(names[part], strategy.to_string());
+            assert_eq!(weighted.raw_part(strategy), None);
+        }
+        assert_eq!(raw.raw_part(Strategy::new(3, 2)), None);
+        assert_eq!(Layers::default().with_raw(), Layers::default());
     }
 
     #[test]

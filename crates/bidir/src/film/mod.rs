@@ -26,7 +26,7 @@ mod settings;
 
 pub use develop::{LayerImage, Picture};
 pub use filter::{Filter, FilterKind};
-pub use layers::{Aov, AovKind, Channels, Layers};
+pub use layers::{Aov, AovKind, Channels, Layers, StrategyImages};
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
 pub use settings::{FilmError, FilmSettings, PixelRect};

@@ -53,6 +53,20 @@ fn load(cell: &AtomicU32) -> f32 {
     f32::from_bits(cell.load(Ordering::Relaxed))
 }
 
+/// Adds a splat that the filter weighs to all of `sums`.
+#[inline]
+fn add<'a>(sums: impl Iterator<Item = &'a [FixedSum; 3]>, value: Rgb, weight: f32) {
+    let value = value.map(|channel| {
+        let weighted = f64::from(channel) * f64::from(weight);
+        fixed::from_f64(weighted, VALUE_SCALE)
+    });
+    for cells in sums {
+        for (cell, channel) in cells.iter().zip(value) {
+            cell.add(channel);
+        }
+    }
+}
+
 fn to_fixed(value: f32) -> i128 {
     fixed::from_f64(f64::from(value), VALUE_SCALE)
 }
@@ -126,15 +140,22 @@ impl PassBuffer {
         let Some((i, weight)) = settings.pick_pixel(raster, u) else {
             return;
         };
-        let value = value.map(|channel| {
-            let weighted = f64::from(channel) * f64::from(weight);
-            fixed::from_f64(weighted, VALUE_SCALE)
-        });
         let parts = parts.map(|part| &self.part_light[i * self.layers[1] + part]);
-        for cells in std::iter::once(&self.light[i]).chain(parts) {
-            for (cell, channel) in cells.iter().zip(value) {
-                cell.add(channel);
-            }
+        add(std::iter::once(&self.light[i]).chain(parts), value, weight);
+    }
+
+    /// Adds a contribution to one part alone, in the pixel where [`Self::splat`] adds with the same
+    /// numbers.
+    pub fn splat_to_part(
+        &self,
+        settings: &FilmSettings,
+        (raster, u): (Vec2, Vec2),
+        value: Rgb,
+        part: usize,
+    ) {
+        if let Some((i, weight)) = settings.pick_pixel(raster, u) {
+            let cells = &self.part_light[i * self.layers[1] + part];
+            add(std::iter::once(cells), value, weight);
         }
     }
 

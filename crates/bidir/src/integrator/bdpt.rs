@@ -154,13 +154,14 @@ fn candidate(
         return;
     };
     let value = term.value();
+    let weighted = (value, term.weight);
     workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
     if workspace.accepts(sample, strategy, value) && !value.is_black() {
         let color = context.scene.color();
         let luminance = color.luminance(value.map(f32::abs), &context.wavelengths);
         workspace
             .candidates
-            .push(Candidate::new(strategy, term.light, value, luminance));
+            .push(Candidate::new(strategy, term.light, weighted, luminance));
     }
 }
 
@@ -202,6 +203,7 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
             strategy: candidate.strategy,
             light: candidate.light,
             value: candidate.contribution(chosen.prob),
+            weight: candidate.weight,
         };
         let ends = workspace.ends(candidate.strategy);
         if workspace.trace(context.scene, candidate.strategy, &ends) {

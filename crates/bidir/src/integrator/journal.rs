@@ -35,6 +35,7 @@ impl Term {
             strategy: self.strategy,
             light: self.light,
             value: self.value(),
+            weight: self.weight,
         }
     }
 }

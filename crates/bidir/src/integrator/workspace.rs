@@ -37,6 +37,25 @@ pub struct Contribution {
     pub light: u32,
     /// Its value.
     pub value: Spectrum,
+    /// The strategy's share of the path, which is in the value.
+    pub weight: f32,
+}
+
+impl Contribution {
+    /// C/π: the value without the weight. None: no film can sum it, though it can sum the value.
+    ///
+    /// Zero where the value is zero: what a weight of 0 leaves out is not known here.
+    pub fn unweighted(&self) -> Option<Spectrum> {
+        let unweighted = |lane: f32| if lane == 0.0 { 0.0 } else { lane / self.weight };
+        Some(self.value.map(unweighted)).filter(|value| is_summable(*value))
+    }
+}
+
+/// True where a film can sum `value`.
+#[inline]
+fn is_summable(value: Spectrum) -> bool {
+    let mut lanes = value.0.iter();
+    lanes.all(|lane| lane.abs() <= LARGEST_CONTRIBUTION)
 }
 
 /// A contribution to the light image.
@@ -135,10 +154,7 @@ impl Workspace {
 
     /// True where a contribution can be summed; else it is counted as dropped.
     pub(super) fn accepts(&mut self, sample: &Sample, strategy: Strategy, value: Spectrum) -> bool {
-        let fine = value
-            .0
-            .iter()
-            .all(|lane| lane.abs() <= LARGEST_CONTRIBUTION);
+        let fine = is_summable(value);
         if !fine {
             let dropped = Dropped {
                 pass: sample.pass,

@@ -37,19 +37,27 @@ pub struct Candidate {
     pub strategy: Strategy,
     /// The light that the path begins on, by index.
     pub light: u32,
+    /// The strategy's share of the path, which is in `value` already.
+    pub weight: f32,
 }
 
 impl Candidate {
-    /// A candidate for `value`, which is not black and has the luminance `luminance` without regard
-    /// to signs.
+    /// A candidate for `value`, which is not black, has `weight` in it, and has the luminance
+    /// `luminance` without regard to signs.
     #[inline]
-    pub fn new(strategy: Strategy, light: u32, value: Spectrum, luminance: f32) -> Self {
+    pub fn new(
+        strategy: Strategy,
+        light: u32,
+        (value, weight): (Spectrum, f32),
+        luminance: f32,
+    ) -> Self {
         Self {
             value,
             // What underflows must keep a chance.
             score: luminance.max(f32::MIN_POSITIVE),
             strategy,
             light,
+            weight,
         }
     }
 

@@ -7,6 +7,7 @@ fn candidate(s: usize, t: usize, score: f32) -> Candidate {
         score,
         strategy: Strategy::new(s, t),
         light: 0,
+        weight: 1.0,
     }
 }
 

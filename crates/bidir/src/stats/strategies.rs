@@ -1,5 +1,6 @@
 //! Counts by strategy (s, t), in a triangle of rows n = s + t; row n begins at n(n-1)/2.
 
+use crate::film::fixed::{self, MOMENT_SCALE};
 use crate::path::Strategy;
 use std::ops::AddAssign;
 
@@ -22,23 +23,56 @@ impl AddAssign for StrategyCounts {
     }
 }
 
+/// What is counted of a strategy where the film keeps images of strategies: integers, so that no
+/// order of adding can matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LayerCounts {
+    /// Σ Y², with Y the luminance that one sample added to the strategy's weighted image, in
+    /// [`MOMENT_SCALE`]; of a splat before it is divided by the number of light paths.
+    squares: i128,
+    /// Values that could be summed, but not without their weight: they are in no raw image.
+    pub raw_dropped: u64,
+}
+
+impl LayerCounts {
+    /// Counts what one sample added.
+    #[inline]
+    pub(super) fn add_square(&mut self, luminance: f64) {
+        let square = fixed::from_f64(luminance * luminance, MOMENT_SCALE);
+        // Squares are positive, so that stopping at the top depends on no order.
+        self.squares = self.squares.saturating_add(square);
+    }
+
+    /// The sum of squares.
+    pub fn squares(&self) -> f64 {
+        fixed::to_f64(self.squares, MOMENT_SCALE)
+    }
+}
+
+impl AddAssign for LayerCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.squares = self.squares.saturating_add(other.squares);
+        self.raw_dropped += other.raw_dropped;
+    }
+}
+
 /// Paths of more vertices are counted together: without a limit of depth there may be half a
 /// million strategies.
 const MAX_ROW: usize = 32;
 
 /// The counts of each strategy; adding tables in any order gives the same.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct StrategyTable {
+pub struct StrategyTable<T = StrategyCounts> {
     /// Rows of n = 1, 2, … vertices, by s; as far as was counted.
-    rows: Vec<StrategyCounts>,
+    rows: Vec<T>,
     /// All strategies of more than [`MAX_ROW`] vertices.
-    longer: StrategyCounts,
+    longer: T,
 }
 
-impl StrategyTable {
+impl<T: Copy + Default + PartialEq> StrategyTable<T> {
     /// The counts of a strategy, to be raised.
     #[inline]
-    pub(super) fn of(&mut self, strategy: Strategy) -> &mut StrategyCounts {
+    pub(super) fn of(&mut self, strategy: Strategy) -> &mut T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let n = s + t;
         if n > MAX_ROW {
@@ -46,26 +80,37 @@ impl StrategyTable {
         }
         let i = n * n.saturating_sub(1) / 2 + s;
         if i >= self.rows.len() {
-            self.rows.resize(i + 1, StrategyCounts::default());
+            self.rows.resize(i + 1, T::default());
         }
         &mut self.rows[i]
     }
 
+    /// The counts of a strategy; together with others where paths are too long to be told apart.
+    pub fn get(&self, strategy: Strategy) -> T {
+        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+        let n = s + t;
+        if n > MAX_ROW {
+            return self.longer;
+        }
+        let i = n * n.saturating_sub(1) / 2 + s;
+        self.rows.get(i).copied().unwrap_or_default()
+    }
+
     /// Every strategy of which something was counted, shorter paths first.
-    pub fn rows(&self) -> impl Iterator<Item = (Strategy, StrategyCounts)> {
+    pub fn rows(&self) -> impl Iterator<Item = (Strategy, T)> {
         let strategies = (1..).flat_map(|n| (0..n).map(move |s| Strategy::new(s, n - s)));
         strategies
             .zip(self.rows.iter().copied())
-            .filter(|(_, counts)| *counts != StrategyCounts::default())
+            .filter(|(_, counts)| *counts != T::default())
     }
 
     /// The counts of all strategies of paths that are too long for a row of their own.
-    pub fn longer(&self) -> StrategyCounts {
+    pub fn longer(&self) -> T {
         self.longer
     }
 }
 
-impl AddAssign<&Self> for StrategyTable {
+impl<T: AddAssign + Copy + Default + PartialEq> AddAssign<&Self> for StrategyTable<T> {
     fn add_assign(&mut self, other: &Self) {
         for (strategy, counts) in other.rows() {
             *self.of(strategy) += counts;
@@ -79,7 +124,7 @@ mod tests {
     use super::*;
 
     fn table(strategies: &[(usize, usize)]) -> StrategyTable {
-        let mut table = StrategyTable::default();
+        let mut table = StrategyTable::<StrategyCounts>::default();
         for &(s, t) in strategies {
             table.of(Strategy::new(s, t)).candidates += 1;
         }

@@ -114,16 +114,53 @@ pub(super) struct StrategyReport {
     t: u16,
     #[serde(flatten)]
     counts: CountsReport,
+    /// The blocked part of the traced rays.
+    blocked_share: Option<f64>,
+    /// Of the luminance of its weighted image; where the film keeps one, as all that follows.
+    mean: Option<f64>,
+    /// Of what a pass adds to a pixel, in the mean pixel.
+    variance: Option<f64>,
+    /// Values that are in the weighted image, but too large for the raw one.
+    pub(super) raw_dropped: Option<u64>,
 }
 
-impl From<(Strategy, StrategyCounts)> for StrategyReport {
-    fn from((strategy, counts): (Strategy, StrategyCounts)) -> Self {
-        Self {
-            s: strategy.s,
-            t: strategy.t,
-            counts: CountsReport::from(counts),
-        }
+impl StrategyReport {
+    /// All strategies that something was counted of, shorter paths first.
+    pub(super) fn all(session: &Session<'_>) -> Vec<Self> {
+        let moments: Vec<_> = session.strategy_moments().collect();
+        let stats = session.stats();
+        let rows = stats.strategies.rows().map(|(strategy, counts)| {
+            let told = moments.iter().find(|told| told.strategy == strategy);
+            let images = stats.strategy_images.get(strategy);
+            Self {
+                s: strategy.s,
+                t: strategy.t,
+                counts: CountsReport::from(counts),
+                blocked_share: (counts.traced > 0)
+                    .then(|| counts.blocked as f64 / counts.traced as f64),
+                mean: told.map(|told| told.mean),
+                variance: told.and_then(|told| told.variance),
+                raw_dropped: told.map(|_| images.raw_dropped),
+            }
+        });
+        rows.collect()
     }
+}
+
+/// The strategies that the film keeps images of, in columns.
+pub(super) fn strategy_table(strategies: &[StrategyReport], samples: u64) -> String {
+    let head = "strategy  rays/sample  blocked        mean    variance\n".to_owned();
+    let kept = strategies.iter().filter(|row| row.mean.is_some());
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3e}"));
+    kept.fold(head, |table, row| {
+        let name = Strategy { s: row.s, t: row.t };
+        let rays = row.counts.traced as f64 / samples.max(1) as f64;
+        let blocked = row.blocked_share;
+        let blocked = blocked.map_or("-".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+        let [mean, variance] = [row.mean, row.variance].map(number);
+        let name = name.to_string();
+        table + &format!("{name:<8} {rays:>12.3} {blocked:>8} {mean:>11} {variance:>11}\n")
+    })
 }
 
 #[derive(Clone, Debug, Serialize)]

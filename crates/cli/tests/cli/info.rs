@@ -14,6 +14,7 @@ fn a_scene_is_described() {
         serde_json::json!({ "mesh": 3, "sphere": 1 })
     );
     assert_eq!(info["lights"], serde_json::json!({ "area": 1, "point": 1 }));
+    assert_eq!(info["light_groups"], serde_json::json!({ "default": 2 }));
     assert_eq!(info["settings"]["integrator"], "bdpt");
     assert_eq!((&info["spp"], &info["triangles"]), (&2.into(), &6.into()));
     assert_eq!(info["bounds"][1], serde_json::json!([2.0, 3.0, 2.0]));

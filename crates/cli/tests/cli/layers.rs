@@ -109,6 +109,85 @@ fn the_picture_does_not_depend_on_layers() {
         .expect(0);
 }
 
+/// All files of a pyramid of paths of four vertices.
+const PYRAMID: &str = "--pyramid p --strategy-layers 4 --spp 4";
+
+#[test]
+fn a_pyramid_is_an_exr_and_two_sheets() {
+    let workplace = workplace();
+    let render = format!("{ROOM} {PYRAMID} -o a.png --stats a.json");
+    let ran = workplace.run(&render).expect(0);
+    ran.says("p/weighted.png").says("rays/sample").says("s1t2");
+    let layers = workplace.layers("p/pyramid.exr");
+    let mut names: Vec<_> = layers.names().filter(|name| name.ends_with('R')).collect();
+    names.sort();
+    let mut expected = vec!["R".to_owned(), "longer.R".to_owned()];
+    for n in 2..=4 {
+        for s in 0..n {
+            expected.push(format!("s{s}t{}.R", n - s));
+            expected.push(format!("raw.s{s}t{}.R", n - s));
+        }
+    }
+    expected.sort();
+    assert_eq!(names, expected);
+    // Weighted layers add up to the picture, and raw ones are what weights are taken of.
+    let channel = |name: &str| layers.channel(name).unwrap();
+    let parts = expected
+        .iter()
+        .filter(|name| *name != "R" && !name.starts_with("raw"));
+    let parts: Vec<_> = parts.map(|name| channel(name)).collect();
+    for (i, pixel) in channel("R").iter().enumerate() {
+        let sum: f32 = parts.iter().map(|part| part[i]).sum();
+        assert!((sum - pixel).abs() <= 1e-5 * pixel + 1e-9);
+    }
+    let (weighted, raw) = (channel("s1t2.R"), channel("raw.s1t2.R"));
+    assert!(weighted.iter().zip(&raw).all(|(w, raw)| *w <= raw * 1.0001));
+    assert!(weighted.iter().zip(&raw).any(|(w, raw)| w < raw));
+    for sheet in ["p/weighted.png", "p/raw.png"] {
+        let image = formats::image::read(&workplace.path(sheet), None).unwrap();
+        assert!(image.width >= 640 && image.height > 4 * 135, "{sheet}");
+    }
+    let stats: serde_json::Value = serde_json::from_str(&workplace.read("a.json")).unwrap();
+    let rows = stats["strategies"].as_array().unwrap();
+    let row = rows
+        .iter()
+        .find(|row| row["s"] == 1 && row["t"] == 2)
+        .unwrap();
+    for number in ["blocked_share", "mean", "variance", "raw_dropped"] {
+        assert!(row[number].is_number(), "{number}: {row}");
+    }
+}
+
+#[test]
+fn a_pyramid_is_gone_on_from() {
+    let workplace = workplace();
+    let render = format!("{ROOM} {PYRAMID} -o a.exr");
+    workplace.run(&render).expect(0);
+    let whole = workplace.layers("p/pyramid.exr");
+    let render = format!("{ROOM} --strategy-layers 4 -o b.exr --checkpoint b.film --resume");
+    let film = format!("{render} --pyramid q");
+    workplace.run(&format!("{film} --spp 2")).expect(0);
+    workplace
+        .run(&format!("{render} --spp 4"))
+        .expect(5)
+        .says("raw-strategies");
+    workplace.run(&format!("{film} --spp 4")).expect(0);
+    let resumed = workplace.layers("q/pyramid.exr");
+    for name in whole.names() {
+        assert_eq!(whole.channel(&name), resumed.channel(&name), "{name}");
+    }
+}
+
+#[test]
+fn a_pyramid_needs_a_folder() {
+    let workplace = workplace();
+    let ran = workplace.run(&format!("{ROOM} --spp 1 --pyramid no/such"));
+    ran.expect(4).says("no/such");
+    workplace.write("taken", "");
+    let ran = workplace.run(&format!("{ROOM} --spp 1 --pyramid taken"));
+    ran.expect(4).says("taken");
+}
+
 #[test]
 fn what_cannot_be_kept_is_told() {
     let workplace = workplace();

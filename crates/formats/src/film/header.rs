@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// How the number of passes was decided. What looks at noise or at a clock may depend on the
 /// picture, which makes its mean slightly biased.
@@ -90,6 +91,15 @@ impl FilmHeader {
             seconds: 0.0,
             counts: Value::Null,
         }
+    }
+
+    /// The name of the scene file without its folders, which are of no interest to others.
+    pub fn scene_name(&self) -> String {
+        let name = Path::new(&self.scene).file_name();
+        name.map_or_else(
+            || self.scene.clone(),
+            |name| name.to_string_lossy().into_owned(),
+        )
     }
 
     /// The header of both films: time and counts are added.

@@ -10,7 +10,6 @@ use bidir::driver::{Session, Settings, Training};
 use bidir::film::FilmSettings;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::Duration;
 
 /// The version of the program that writes.
@@ -141,7 +140,7 @@ pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
         ("renderTimeSeconds", MetadataValue::Float(seconds)),
     ];
     let own = [
-        ("scene", file_name(&header.scene)),
+        ("scene", header.scene_name()),
         ("identity", header.identity.clone()),
         ("passes", header.passes.to_string()),
         ("stopping", header.stopping.name().to_owned()),
@@ -152,13 +151,4 @@ pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
     let texts = texts.map(|(name, text)| (format!("bidir/{name}"), MetadataValue::Text(text)));
     let pbrt = pbrt.map(|(name, value)| (name.to_owned(), value));
     pbrt.into_iter().chain(texts).collect()
-}
-
-/// The name of a file without its folders, which are of no interest to others.
-fn file_name(path: &str) -> String {
-    let name = Path::new(path).file_name();
-    name.map_or_else(
-        || path.to_owned(),
-        |name| name.to_string_lossy().into_owned(),
-    )
 }

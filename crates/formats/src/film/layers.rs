@@ -1,6 +1,6 @@
 //! What a film keeps beside the picture, by name.
 
-use bidir::film::{Aov, Layers};
+use bidir::film::{Aov, Layers, StrategyImages};
 use serde::{Deserialize, Serialize};
 
 /// [`Layers`] as text.
@@ -12,6 +12,25 @@ pub struct LayerNames {
     pub light_groups: Vec<String>,
     /// The most vertices of paths whose strategies have images.
     pub strategy_vertices: usize,
+    /// Whether these have raw images too.
+    #[serde(default, skip_serializing_if = "is_weighted")]
+    pub strategy_images: StrategyImagesName,
+}
+
+/// [`StrategyImages`] as a word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StrategyImagesName {
+    /// Weighted ones alone; films that say nothing have these.
+    #[default]
+    Weighted,
+    /// Weighted and raw ones.
+    WeightedAndRaw,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks by reference")]
+fn is_weighted(images: &StrategyImagesName) -> bool {
+    *images == StrategyImagesName::Weighted
 }
 
 impl LayerNames {
@@ -26,6 +45,10 @@ impl LayerNames {
         let aovs = self.aovs.iter().map(|name| Some(find(name)?.1));
         let aovs: Vec<_> = aovs.collect::<Option<_>>()?;
         let layers = Layers::new(&aovs, &self.light_groups, self.strategy_vertices);
+        let layers = match self.strategy_images {
+            StrategyImagesName::Weighted => layers,
+            StrategyImagesName::WeightedAndRaw => layers.with_raw(),
+        };
         (*self == Self::from(&layers)).then_some(layers)
     }
 }
@@ -42,6 +65,10 @@ impl From<&Layers> for LayerNames {
             aovs: layers.aovs().iter().filter_map(name).collect(),
             light_groups: layers.light_groups().to_vec(),
             strategy_vertices: layers.strategy_vertices(),
+            strategy_images: match layers.strategy_images() {
+                StrategyImages::Weighted => StrategyImagesName::Weighted,
+                StrategyImages::WeightedAndRaw => StrategyImagesName::WeightedAndRaw,
+            },
         }
     }
 }

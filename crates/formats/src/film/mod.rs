@@ -31,7 +31,7 @@ mod tests;
 
 pub use header::{FilmHeader, Stopping};
 pub use identity::{SceneIdentity, counts_by_name, metadata, of_run, program, untrained};
-pub use layers::LayerNames;
+pub use layers::{LayerNames, StrategyImagesName};
 pub use settings::{SettingsText, name_of, settings_from_flags};
 
 use crate::bytes;

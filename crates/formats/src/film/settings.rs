@@ -1,7 +1,7 @@
 //! The settings of a render as flags write them: identities of films are made of these.
 
 use bidir::driver::Settings;
-use bidir::film::Aov;
+use bidir::film::{Aov, StrategyImages};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
@@ -37,6 +37,9 @@ pub struct SettingsText {
     pub light_groups: String,
     /// The most vertices of paths whose strategies have images of their own.
     pub strategy_layers: usize,
+    /// True where strategies have raw images too; left out where they have none.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub raw_strategies: bool,
 }
 
 impl SettingsText {
@@ -147,6 +150,7 @@ impl From<&Settings> for SettingsText {
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),
             light_groups: list(layers.light_groups().iter().map(String::as_str)),
             strategy_layers: layers.strategy_vertices(),
+            raw_strategies: layers.strategy_images() == StrategyImages::WeightedAndRaw,
         }
     }
 }

@@ -7,7 +7,7 @@ use serde_json::json;
 fn film(first_pass: u64) -> Film {
     let settings = FilmSettings::new([100, 90], Filter::default());
     let groups = ["lamp", "sky"].map(str::to_owned);
-    let layers = Layers::new(&[Aov::Depth], &groups, 0);
+    let layers = Layers::new(&[Aov::Depth], &groups, 2).with_raw();
     let mut film = Film::with_layers(settings, layers, u64::MAX).unwrap();
     for pass in first_pass..first_pass + 2 {
         let buffer = PassBuffer::new(film.settings(), film.layers());

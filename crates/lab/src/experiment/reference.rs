@@ -185,4 +185,8 @@ impl Host for Watch<'_> {
             observer.should_stop()
         })
     }
+
+    fn found(&self, samples: u64) {
+        self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
 }

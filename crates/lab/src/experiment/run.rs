@@ -61,7 +61,7 @@ pub enum Event<'a> {
     Reference {
         /// The scene.
         scene: &'a str,
-        /// Passes that were done since it was begun or gone on with.
+        /// Passes that are done.
         passes: u64,
         /// Passes in all.
         of: u64,

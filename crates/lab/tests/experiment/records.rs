@@ -29,6 +29,8 @@ fn every_cell_has_a_record() {
             .map(|image| place.path("out").join(image));
         assert!(images.into_iter().all(|image| image.exists()));
     }
+    let rmse = |record: usize| results.records[record].metrics["rmse"].to_bits();
+    assert_ne!(rmse(0), rmse(2), "seeds are not used");
     assert_eq!(results.scenes[0].size, [16, 12]);
     assert_eq!(results.methods[1].settings["shadow-rays"], "per-pair");
     let text = fs::read_to_string(place.path("out/results.json")).unwrap();

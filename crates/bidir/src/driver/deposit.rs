@@ -1,0 +1,226 @@
+//! From a sample's workspace to the running pass: the picture, its parts, and raw images.
+
+use crate::film::{Layers, PassBuffer};
+use crate::integrator::{Contribution, Splat, Workspace};
+use crate::path::PathContext;
+use crate::spectrum::{Rgb, Spectrum, luminance};
+use crate::stats::Stats;
+
+/// Where the contributions of a sample go.
+pub(super) struct Deposit<'a> {
+    pub(super) context: &'a PathContext<'a>,
+    pub(super) layers: &'a Layers,
+    pub(super) buffer: &'a PassBuffer,
+    pub(super) pixel: usize,
+}
+
+impl Deposit<'_> {
+    /// Moves the contributions of the last sample to the pass.
+    pub(super) fn take(&self, workspace: &mut Workspace) {
+        self.buffer
+            .set_camera_sample(self.pixel, self.rgb(workspace.value));
+        if self.layers.parts() > 0 {
+            for contribution in &workspace.contributions {
+                self.part_of_pixel(contribution);
+            }
+        }
+        for splat in &workspace.splats {
+            let contribution = &splat.contribution;
+            let (place, value) = ((splat.raster, splat.u), self.rgb(contribution.value));
+            let parts = self.parts_of(contribution);
+            let film = self.context.scene.film();
+            self.buffer.splat(film, place, value, parts);
+        }
+        if self.layers.strategy_vertices() > 0 {
+            self.strategies(workspace);
+        }
+    }
+
+    fn rgb(&self, value: Spectrum) -> Rgb {
+        let color = self.context.scene.color();
+        color.to_rgb(value, &self.context.wavelengths)
+    }
+
+    /// Adds to the parts of the sample's own pixel.
+    fn part_of_pixel(&self, contribution: &Contribution) {
+        let value = self.rgb(contribution.value);
+        for part in self.parts_of(contribution) {
+            self.buffer.add_to_part(self.pixel, part, value);
+        }
+    }
+
+    /// The parts of the picture that a contribution is in.
+    fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
+        let group = self.context.scene.light_group(contribution.light);
+        self.layers.parts_of(contribution.strategy, group)
+    }
+
+    /// Adds to raw images, and counts squares.
+    fn strategies(&self, workspace: &mut Workspace) {
+        let Workspace {
+            contributions,
+            splats,
+            stats,
+            ..
+        } = workspace;
+        // Environments that a walk escapes to come one after the other, all by one strategy.
+        for group in contributions.chunk_by(|a, b| a.strategy == b.strategy) {
+            let luminances = group.iter().map(|one| self.luminance(one));
+            self.count_square(&group[0], luminances.sum(), stats);
+            for contribution in group {
+                let raw = self.raw(contribution, stats);
+                if let Some((part, value)) = raw {
+                    self.buffer.add_to_part(self.pixel, part, value);
+                }
+            }
+        }
+        for splat in splats.iter() {
+            self.splat(splat, stats);
+        }
+    }
+
+    /// The same for a splat, where it reaches the film.
+    fn splat(&self, splat: &Splat, stats: &mut Stats) {
+        let (film, contribution) = (self.context.scene.film(), &splat.contribution);
+        let Some((_, weight)) = film.pick_pixel(splat.raster, splat.u) else {
+            return;
+        };
+        let luminance = self.luminance(contribution) * f64::from(weight);
+        self.count_square(contribution, luminance, stats);
+        if let Some((part, value)) = self.raw(contribution, stats) {
+            let place = (splat.raster, splat.u);
+            self.buffer.splat_to_part(film, place, value, part);
+        }
+    }
+
+    fn luminance(&self, contribution: &Contribution) -> f64 {
+        f64::from(luminance(self.rgb(contribution.value)))
+    }
+
+    /// Counts the square of what a sample adds to a weighted image, if there is one.
+    fn count_square(&self, contribution: &Contribution, luminance: f64, stats: &mut Stats) {
+        let strategy = contribution.strategy;
+        if self.layers.weighted_part(strategy).is_some() {
+            stats.add_square(strategy, luminance);
+        }
+    }
+
+    /// What a contribution adds to which raw image. None: it has none, or the value is counted as
+    /// dropped from it.
+    fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
+        let part = self.layers.raw_part(contribution.strategy)?;
+        let Some(value) = contribution.unweighted() else {
+            stats.drop_raw(contribution.strategy);
+            return None;
+        };
+        Some((part, self.rgb(value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Camera, Perspective, PerspectiveSettings};
+    use crate::film::{Film, FilmSettings, Filter};
+    use crate::light::{InfiniteLight, Light};
+    use crate::math::{Affine3A, Vec2};
+    use crate::path::{PathSettings, Strategy};
+    use crate::scene::{Scene, SceneBuilder};
+    use crate::spectrum::Wavelengths;
+
+    /// A sky over one pixel.
+    fn scene() -> Scene {
+        let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
+        let camera = Perspective::new(&PerspectiveSettings {
+            world_from_camera: Affine3A::IDENTITY,
+            resolution: Vec2::ONE,
+            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+            lens_radius: 0.0,
+            focal_distance: 1.0,
+        });
+        builder.camera(Camera::Perspective(camera.unwrap()));
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        builder.build().unwrap()
+    }
+
+    fn contribution((s, t): (usize, usize), value: f32, weight: f32) -> Contribution {
+        Contribution {
+            strategy: Strategy::new(s, t),
+            light: 0,
+            value: Spectrum::splat(value),
+            weight,
+        }
+    }
+
+    /// The film and the counters after one sample that leaves these behind, the last as a splat.
+    fn deposit(contributions: &[Contribution], splat: Contribution) -> (Film, Stats) {
+        let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
+        let mut film = Film::with_layers(scene.film().clone(), layers, u64::MAX).unwrap();
+        let buffer = PassBuffer::new(film.settings(), film.layers());
+        let mut workspace = Workspace::default();
+        workspace.contributions.extend(contributions);
+        workspace.splats.push(Splat {
+            contribution: splat,
+            raster: Vec2::splat(0.5),
+            u: Vec2::splat(0.5),
+        });
+        let context = PathContext {
+            scene: &scene,
+            settings: &PathSettings::default(),
+            wavelengths: Wavelengths::default(),
+        };
+        Deposit {
+            context: &context,
+            layers: film.layers(),
+            buffer: &buffer,
+            pixel: 0,
+        }
+        .take(&mut workspace);
+        film.add_pass(0, &buffer);
+        (film, workspace.stats)
+    }
+
+    #[track_caller]
+    fn check_image(film: &Film, part: Option<usize>, value: f32) {
+        let pixel = film.part_pixels(part.unwrap()).next().unwrap();
+        assert!((pixel[0] - value).abs() <= 1e-6 * value, "{pixel:?}");
+    }
+
+    #[test]
+    fn raw_values_that_are_too_large_are_counted_and_harm_nothing() {
+        let fine = contribution((1, 2), 0.5, 0.25);
+        let large = contribution((0, 3), 3.0, 1e-30);
+        let splat = contribution((2, 1), 7.0, 1e-30);
+        let (film, stats) = deposit(&[fine, large], splat);
+        let layers = film.layers();
+        check_image(&film, layers.raw_part(fine.strategy), 2.0);
+        for (contribution, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
+            check_image(&film, layers.weighted_part(contribution.strategy), weighted);
+        }
+        for contribution in [large, splat] {
+            check_image(&film, layers.raw_part(contribution.strategy), 0.0);
+            let counts = stats.strategy_images.get(contribution.strategy);
+            assert_eq!(counts.raw_dropped, 1);
+        }
+        assert_eq!(stats.strategy_images.get(fine.strategy).raw_dropped, 0);
+    }
+
+    #[test]
+    fn environments_of_one_escape_are_one_square() {
+        let two = [2.0, 3.0].map(|value| contribution((0, 3), value, 1.0));
+        let other = contribution((1, 2), 4.0, 1.0);
+        let (_, stats) = deposit(&[two[0], two[1], other], contribution((2, 1), 5.0, 1.0));
+        for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
+            let counts = stats
+                .strategy_images
+                .get(Strategy::new(strategy.0, strategy.1));
+            assert!((counts.squares() - square).abs() < 1e-5, "{strategy:?}");
+        }
+    }
+
+    #[test]
+    fn a_weight_of_zero_leaves_nothing() {
+        let nothing = contribution((1, 2), 0.0, 0.0);
+        assert_eq!(nothing.unweighted(), Some(Spectrum::ZERO));
+    }
+}

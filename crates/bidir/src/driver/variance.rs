@@ -1,0 +1,68 @@
+//! How much each strategy's weighted contribution varies.
+//!
+//! Y is the luminance that a pass adds to a pixel by one strategy, and m its mean. The variance is
+//! that of a pass in the mean pixel: V = mean over pixels of E\[Y²\] - m². Σ y² is counted over the n
+//! samples of this session, m is the pixel of the strategy's image of all P passes.
+//!
+//! - t ≥ 2: a sample adds y to its own pixel alone, so V = Σ y² / n - mean m².
+//! - t = 1: each of the pass's N light paths adds y/N to one of the N pixels, so the mean of E\[y²\]
+//!   over pixels is Σ y² / (n N) for each path, and V = (Σ y² / (n N) - mean m²) / N.
+//!
+//! Both are one formula, with N = 1 for t ≥ 2. The mean m̂ of the image has the variance V/P, so
+//! that m̂² is too large by it on average, and the result is divided by 1 - 1/(P N). Stratified
+//! passes are taken as independent, so V is rather too large than too small.
+
+use super::Session;
+use crate::path::Strategy;
+use crate::spectrum::luminance;
+
+/// What a strategy adds to the picture in one pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrategyMoments {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// The luminance of its weighted image, of all passes, exposed.
+    pub mean: f64,
+    /// The variance V, exposed. None: less than two passes, or none of them in this session.
+    pub variance: Option<f64>,
+}
+
+impl Session<'_> {
+    /// The moments of each strategy that the film keeps an image of, in the order of their images.
+    pub fn strategy_moments(&self) -> impl Iterator<Item = StrategyMoments> {
+        let layers = self.film().layers();
+        let parts = layers.kept_strategies();
+        parts.filter_map(move |strategy| {
+            let part = self.film().layers().weighted_part(strategy)?;
+            let pixels = self.film().part_pixels(part);
+            let pixels = pixels.map(|pixel| f64::from(luminance(pixel)));
+            let (count, sum, squares) = pixels.fold((0.0, 0.0, 0.0), |(n, sum, squares), y| {
+                (n + 1.0, sum + y, squares + y * y)
+            });
+            Some(StrategyMoments {
+                strategy,
+                mean: sum / count,
+                variance: self.variance(strategy, squares / count),
+            })
+        })
+    }
+
+    /// V, where the squares of the image's pixels have the mean `mean_square`.
+    fn variance(&self, strategy: Strategy, mean_square: f64) -> Option<f64> {
+        let (passes, samples) = (self.film().passes().len(), self.stats().samples);
+        if passes < 2 || samples == 0 {
+            return None;
+        }
+        let film = self.film().settings();
+        let exposure = f64::from(film.exposure);
+        let squares = self.stats().strategy_images.get(strategy).squares();
+        let of_sample = squares * exposure * exposure / samples as f64;
+        let paths = match strategy.t {
+            1 => film.light_paths().max(1) as f64,
+            _ => 1.0,
+        };
+        let variance = (of_sample / paths - mean_square) / paths;
+        let of_estimate = 1.0 - 1.0 / (passes as f64 * paths);
+        Some((variance / of_estimate).max(0.0))
+    }
+}
