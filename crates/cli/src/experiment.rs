@@ -1,5 +1,6 @@
 //! `bidir experiment`: methods are compared, from a description to a report.
 
+mod claims;
 mod tables;
 mod watch;
 
@@ -12,31 +13,51 @@ use crate::render::set_threads;
 use crate::scene_io;
 use crate::signals::Signals;
 use lab::experiment::{self, End, Experiment, ExperimentError, Outcome, Setup, Start, analysis};
+use lab::paper::{self, Effort, Options};
 use lab::report::{self, ImageKind, Report, ReportImage};
 use lab::results::{Machine, Results};
 use std::path::Path;
 use watch::Watch;
 
-/// The names of experiments that the program brings.
-const BUILT_IN: [&str; 1] = ["paper"];
+/// The name of the experiment that the program brings.
+const PAPER: &str = "paper";
 
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     set_threads(args.threads)?;
-    let mut experiment = read(&args.description)?;
-    if args.quick {
-        experiment = experiment.quick();
-    }
-    experiment.threads = threads(args, &experiment);
-    let outcome = execute(&experiment, args, console, &signals)?;
+    let is_paper = args.description == Path::new(PAPER);
+    let outcome = if is_paper {
+        let options = Options {
+            effort: if args.quick {
+                Effort::Quick
+            } else {
+                Effort::Full
+            },
+            threads: threads(args, 0),
+        };
+        let run = |setup: &Setup, watch: &mut Watch<'_>| paper::run(options, setup, watch);
+        execute(args, console, &signals, run)?
+    } else {
+        let experiment = read(args)?;
+        let run = |setup: &Setup, watch: &mut Watch<'_>| experiment::run(&experiment, setup, watch);
+        execute(args, console, &signals, run)?
+    };
     let Some(results) = &outcome.results else {
         return Ok(stopped(args));
     };
-    write_report(args, results)?;
-    let sections = analysis::sections(results);
-    let found = sections.iter().flat_map(|section| &section.tables);
-    print(&found.map(tables::text).collect::<Vec<_>>().join("\n"))?;
+    // The claims of the paper have all its tables.
+    let sections = if is_paper {
+        Vec::new()
+    } else {
+        analysis::sections(results)
+    };
+    write_report(args, results, &sections)?;
+    let mut found: Vec<_> = results.claims.iter().map(claims::text).collect();
+    let of_sections = sections.iter().flat_map(|section| &section.tables);
+    found.extend(of_sections.map(tables::text));
+    found.extend(claims::summary(&results.claims));
+    print(&found.join("\n"))?;
     if outcome.end == End::Stopped {
         return Ok(stopped(args));
     }
@@ -55,20 +76,21 @@ fn stopped(args: &ExperimentArgs) -> Exit {
 }
 
 /// Reads a description.
-fn read(file: &Path) -> Result<Experiment, Failure> {
-    if BUILT_IN.iter().any(|name| file == Path::new(name)) {
-        let message = format!("the experiment `{}` is not built in yet", file.display());
-        let hint = format!("a file of this name is ./{}", file.display());
-        return Err(Failure::usage(message).with_hint(hint));
-    }
+fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
+    let file = &args.description;
     let text = std::fs::read_to_string(file);
     let text = text.map_err(|error| Failure::io(file, "read", &error))?;
-    Experiment::read(&text, file).map_err(failure)
+    let mut experiment = Experiment::read(&text, file).map_err(failure)?;
+    if args.quick {
+        experiment = experiment.quick();
+    }
+    experiment.threads = threads(args, experiment.threads);
+    Ok(experiment)
 }
 
 /// As many as are asked for, or as there are processors: records tell the number.
-fn threads(args: &ExperimentArgs, experiment: &Experiment) -> usize {
-    match (args.threads, experiment.threads) {
+fn threads(args: &ExperimentArgs, own: usize) -> usize {
+    match (args.threads, own) {
         (0, 0) => std::thread::available_parallelism().map_or(1, usize::from),
         (0, own) => own,
         (asked, _) => asked.into(),
@@ -77,10 +99,10 @@ fn threads(args: &ExperimentArgs, experiment: &Experiment) -> usize {
 
 /// Renders what is missing, alone in its folder.
 fn execute(
-    experiment: &Experiment,
     args: &ExperimentArgs,
     console: Console,
     signals: &Signals,
+    run: impl FnOnce(&Setup, &mut Watch<'_>) -> Result<Outcome, ExperimentError>,
 ) -> Result<Outcome, Failure> {
     let folder = &args.output;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "make", &error))?;
@@ -101,7 +123,7 @@ fn execute(
         Display::Bar
     };
     let mut watch = Watch::new(console, wanted, signals);
-    let outcome = experiment::run(experiment, &setup, &mut watch);
+    let outcome = run(&setup, &mut watch);
     watch.finish();
     outcome.map_err(failure)
 }
@@ -148,12 +170,15 @@ fn failure(error: ExperimentError) -> Failure {
 const REPORT: &str = "report.html";
 
 /// Writes the page for people.
-fn write_report(args: &ExperimentArgs, results: &Results) -> Result<(), Failure> {
-    let sections = analysis::sections(results);
+fn write_report(
+    args: &ExperimentArgs,
+    results: &Results,
+    sections: &[analysis::Section],
+) -> Result<(), Failure> {
     let (mut tables, mut plots) = (Vec::new(), Vec::new());
     for section in sections {
-        tables.extend(section.tables);
-        plots.extend(section.plots);
+        tables.extend(section.tables.iter().cloned());
+        plots.extend(section.plots.iter().cloned());
     }
     let description = args.description.display();
     let quick = if args.quick { " --quick" } else { "" };

@@ -3,6 +3,7 @@
 //! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
+//! - [`paper`]: the experiment of 1995, claim by claim.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
 //! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
 //! - [`report`]: what an experiment found, as a page for people.
@@ -17,6 +18,7 @@ pub mod experiment;
 pub mod flip;
 pub mod image;
 pub mod metric;
+pub mod paper;
 pub mod reference;
 pub mod report;
 pub mod results;

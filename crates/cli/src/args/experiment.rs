@@ -37,10 +37,12 @@ Examples:
   bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
       every method under every budget and seed; the same again goes on where it was stopped
   bidir experiment room.toml -o out/quick --quick
-      small and coarse, to see whether it works")]
+      small and coarse, to see whether it works
+  bidir experiment paper --quick -o out/paper
+      the statements of the 1995 paper, each with a verdict")]
 pub(crate) struct ExperimentArgs {
-    /// The description, a file of TOML. The name `paper` is kept for an experiment that the program
-    /// brings: a file of that name is ./paper.
+    /// The description, a file of TOML; or `paper`, the experiment of Lafortune and Willems (1995) claim
+    /// by claim, which needs no file (one of that name is ./paper).
     #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
     pub(crate) description: PathBuf,
     /// The folder of the results, which is made where it is not there.
@@ -50,7 +52,8 @@ pub(crate) struct ExperimentArgs {
     /// those of another are refused. References of the same scene and settings stay.
     #[arg(long)]
     pub(crate) restart: bool,
-    /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references.
+    /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references. Of
+    /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Threads of each render, instead of the description's [default: its own, or one per processor].

@@ -1,0 +1,135 @@
+//! Claims as text: verdicts, what was found, tables, and histograms as bars.
+
+use super::tables;
+use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
+
+/// A claim with its figures. Curves have their numbers in tables, so only histograms are drawn.
+pub(super) fn text(claim: &Claim) -> String {
+    let mut text = format!(
+        "{}: {}\n  {}: {}\n  {}\n  {}\n",
+        claim.id,
+        verdict(claim.verdict),
+        claim.source,
+        claim.claim,
+        claim.found,
+        claim.method
+    );
+    for table in &claim.tables {
+        text += &format!("\n{}", tables::text(table));
+    }
+    let plots = claim.plots.iter();
+    for plot in plots.filter(|plot| plot.kind == PlotKind::Histogram) {
+        text += &format!("\n{}", histogram(plot));
+    }
+    text
+}
+
+/// All verdicts at a glance. None: nothing was claimed.
+pub(super) fn summary(claims: &[Claim]) -> Option<String> {
+    let row = |claim: &Claim| {
+        let words = [verdict(claim.verdict), &claim.id, &claim.claim];
+        words.map(|words| Cell::Text(words.to_owned())).into()
+    };
+    let table = Table {
+        caption: "Verdicts.".to_owned(),
+        columns: ["verdict", "id", "claim"].map(str::to_owned).into(),
+        rows: claims.iter().map(row).collect(),
+    };
+    (!claims.is_empty()).then(|| tables::text(&table))
+}
+
+fn verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Reproduced => "reproduced",
+        Verdict::NotReproduced => "not reproduced",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// The longest bar.
+const BAR: f64 = 20.0;
+
+/// Bars side by side, a row for each bin.
+fn histogram(plot: &Plot) -> String {
+    let points = || plot.series.iter().flat_map(|series| &series.points);
+    let mut edges: Vec<f64> = points().map(|point| point[0]).collect();
+    edges.sort_unstable_by(f64::total_cmp);
+    edges.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    let highest = points().map(|point| point[1]).fold(0.0, f64::max);
+    let bar = |series: &Series, edge: f64| {
+        let point = series
+            .points
+            .iter()
+            .find(|point| (point[0] - edge).abs() < 1e-9);
+        let length = point.map_or(0.0, |point| BAR * point[1] / highest);
+        // What is there is seen.
+        let length = if length > 0.0 { length.max(1.0) } else { 0.0 };
+        Cell::Text("#".repeat(length.round() as usize))
+    };
+    let row = |edge: f64| {
+        let bars = plot.series.iter().map(|series| bar(series, edge));
+        std::iter::once(Cell::Number(edge)).chain(bars).collect()
+    };
+    let names = plot.series.iter().map(|series| series.name.clone());
+    tables::text(&Table {
+        caption: plot.caption.clone(),
+        columns: std::iter::once(plot.x.label.clone()).chain(names).collect(),
+        rows: edges.into_iter().map(row).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lab::results::{Axis, Scale};
+
+    fn claim() -> Claim {
+        let axis = |label: &str| Axis {
+            label: label.to_owned(),
+            scale: Scale::Linear,
+        };
+        let series = |name: &str, points: &[[f64; 2]]| Series {
+            name: name.to_owned(),
+            points: points.to_vec(),
+            intervals: Vec::new(),
+        };
+        Claim {
+            id: "figure".to_owned(),
+            claim: "It is so.".to_owned(),
+            source: "Figure 2".to_owned(),
+            verdict: Verdict::NotReproduced,
+            found: "It is not.".to_owned(),
+            method: "By looking.".to_owned(),
+            tables: Vec::new(),
+            plots: vec![Plot {
+                caption: "Bars.".to_owned(),
+                kind: PlotKind::Histogram,
+                x: axis("size"),
+                y: axis("part"),
+                series: vec![
+                    series("one", &[[-1.0, 0.5], [0.0, 0.25]]),
+                    series("two", &[[0.0, 0.001]]),
+                ],
+            }],
+        }
+    }
+
+    #[test]
+    fn a_claim_is_told_with_its_histogram() {
+        let expected = "figure: not reproduced\n  Figure 2: It is so.\n  It is not.\n  By looking.\n\
+                        \nBars.\n\
+                        size  one                   two\n\
+                        -1    ####################\n\
+                        0     ##########            #\n";
+        assert_eq!(text(&claim()), expected);
+    }
+
+    #[test]
+    fn verdicts_stand_in_a_table() {
+        let expected = "Verdicts.\n\
+                        verdict         id      claim\n\
+                        not reproduced  figure  It is so.\n";
+        assert_eq!(summary(&[claim()]).unwrap(), expected);
+        assert_eq!(summary(&[]), None);
+    }
+}

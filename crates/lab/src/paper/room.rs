@@ -1,0 +1,229 @@
+//! Rooms that are made, not read: the same light with any number of triangles, and of any albedo.
+//!
+//! All faces of a furnished room are flat, and each is divided into k × k squares of two triangles.
+//! So the light is the same for every k, as are the paths, the contributions and the errors; what
+//! grows is the tree that rays go through, and with it the cost of a ray. Anything that is added
+//! (objects in a corner, bumps) would change the light too, and with it what is compared. The price:
+//! flat faces are the kindest way to have many triangles, since a ray meets few of their boxes. Where
+//! optimisations begin to pay is therefore an upper bound, in triangles.
+
+use std::fmt::Write;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Where the light is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lamp {
+    /// A panel below the ceiling, as in scene A.
+    Panel,
+    /// Deep in an opaque bowl, as in scene B.
+    Bowl,
+}
+
+impl Lamp {
+    pub(super) const ALL: [Self; 2] = [Self::Panel, Self::Bowl];
+
+    /// The word in names of scenes.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Panel => "direct",
+            Self::Bowl => "indirect",
+        }
+    }
+
+    /// Radiance, height, half width, and the order of corners that makes it face down or up.
+    fn emitter(self) -> (f32, [f32; 3], f32, &'static str) {
+        match self {
+            Self::Panel => (25.0, [2.2, 2.95, 2.6], 0.5, "0 1 2 0 2 3"),
+            Self::Bowl => (4000.0, [0.5, 1.75, 4.5], 0.06, "0 2 1 0 3 2"),
+        }
+    }
+}
+
+/// A room.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    pub(super) lamp: Lamp,
+    /// What every surface reflects.
+    pub(super) albedo: f32,
+    /// About how many triangles there are.
+    pub(super) triangles: usize,
+}
+
+/// A parallelogram: a corner and two edges.
+type Face = [[f32; 3]; 3];
+
+impl Room {
+    /// Squares along an edge of a face.
+    fn division(self) -> usize {
+        let whole = 2 * faces().len();
+        ((self.triangles as f64 / whole as f64).sqrt().round() as usize).max(1)
+    }
+
+    /// How many triangles there are, but those of the light.
+    pub(super) fn count(self) -> usize {
+        2 * faces().len() * self.division() * self.division()
+    }
+
+    /// Writes the room into a folder, as a scene file with its mesh, and returns the scene file.
+    pub(super) fn write(self, folder: &Path, name: &str) -> io::Result<PathBuf> {
+        let mesh = format!("room-{}.ply", self.count());
+        if !folder.join(&mesh).exists() {
+            std::fs::write(folder.join(&mesh), ply(&faces(), self.division()))?;
+        }
+        let path = folder.join(format!("{name}.pbrt"));
+        std::fs::write(&path, self.text(&mesh))?;
+        Ok(path)
+    }
+
+    fn text(self, mesh: &str) -> String {
+        let (radiance, [x, y, z], half, indices) = self.lamp.emitter();
+        let albedo = self.albedo;
+        format!(
+            "LookAt 3.6 1.5 0.3  1.62 0.86 4  0 1 0\n\
+             Camera \"perspective\" \"float fov\" 56\n\
+             Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 48\n\
+             PixelFilter \"gaussian\"\n\
+             Sampler \"independent\"\n\
+             Integrator \"bdpt\"\n\
+             WorldBegin\n\
+             Material \"diffuse\" \"rgb reflectance\" [{albedo} {albedo} {albedo}]\n\
+             Shape \"plymesh\" \"string filename\" \"{mesh}\"\n\
+             AttributeBegin\n\
+             AreaLightSource \"diffuse\" \"rgb L\" [{radiance} {radiance} {radiance}]\n\
+             Translate {x} {y} {z}\n\
+             Scale {half} 1 {half}\n\
+             Shape \"trianglemesh\" \"integer indices\" [{indices}]\n\
+             \"point3 P\" [-1 0 -1  1 0 -1  1 0 1  -1 0 1]\n\
+             AttributeEnd\n"
+        )
+    }
+}
+
+/// Walls, furniture, and the bowl.
+fn faces() -> Vec<Face> {
+    let mut faces = Vec::new();
+    let boxes = [
+        // The room itself.
+        [[0.0, 0.0, 0.0], [4.0, 3.0, 5.0]],
+        // A table with four legs.
+        [[1.3, 0.7, 2.4], [2.7, 0.75, 3.3]],
+        [[1.35, 0.0, 2.45], [1.42, 0.7, 2.52]],
+        [[2.58, 0.0, 2.45], [2.65, 0.7, 2.52]],
+        [[1.35, 0.0, 3.18], [1.42, 0.7, 3.25]],
+        [[2.58, 0.0, 3.18], [2.65, 0.7, 3.25]],
+        // Seat and back of a sofa, a cupboard, and two things on the table.
+        [[0.9, 0.0, 4.1], [2.9, 0.42, 4.9]],
+        [[0.9, 0.42, 4.7], [2.9, 0.95, 4.9]],
+        [[0.02, 0.0, 1.2], [0.5, 1.9, 2.3]],
+        [[1.7, 0.75, 2.7], [1.85, 0.98, 2.85]],
+        [[2.1, 0.75, 2.8], [2.4, 0.8, 3.05]],
+    ];
+    for [low, high] in boxes {
+        for axis in 0..3 {
+            for end in [low, high] {
+                let mut corner = low;
+                corner[axis] = end[axis];
+                faces.push(face(corner, low, high, axis));
+            }
+        }
+    }
+    // The bowl: a box without its top.
+    let (low, high) = ([0.35, 1.7, 4.35], [0.65, 2.0, 4.65]);
+    for (axis, at) in [(0, 0.35), (0, 0.65), (1, 1.7), (2, 4.35), (2, 4.65)] {
+        let mut corner = low;
+        corner[axis] = at;
+        faces.push(face(corner, low, high, axis));
+    }
+    faces
+}
+
+/// The face of a box at `corner`, across `axis`.
+fn face(corner: [f32; 3], low: [f32; 3], high: [f32; 3], axis: usize) -> Face {
+    let edge = |k: usize| {
+        let along = (axis + k) % 3;
+        let mut edge = [0.0; 3];
+        edge[along] = high[along] - low[along];
+        edge
+    };
+    [corner, edge(1), edge(2)]
+}
+
+/// The faces, each divided into k × k squares, as binary PLY.
+fn ply(faces: &[Face], k: usize) -> Vec<u8> {
+    let row = k + 1;
+    let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
+    // Writing to a string cannot fail.
+    let _ = write!(
+        head,
+        "element vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        faces.len() * row * row,
+        faces.len() * k * k * 2
+    );
+    let mut bytes = head.into_bytes();
+    for [corner, a, b] in faces {
+        for at in 0..row * row {
+            let [u, v] = [at % row, at / row].map(|i| i as f32 / k as f32);
+            for axis in 0..3 {
+                let x = corner[axis] + u * a[axis] + v * b[axis];
+                bytes.extend(x.to_le_bytes());
+            }
+        }
+    }
+    for face in 0..faces.len() {
+        for cell in 0..k * k {
+            let first = face * row * row + cell / k * row + cell % k;
+            let square = [first, first + 1, first + row + 1, first + row];
+            for triangle in [[0, 1, 2], [0, 2, 3]] {
+                bytes.push(3);
+                for corner in triangle {
+                    bytes.extend((square[corner] as u32).to_le_bytes());
+                }
+            }
+        }
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bidir::driver::{Resources, Settings, render};
+    use formats::pbrt::{LoadOptions, load};
+
+    fn image(room: Room, folder: &Path) -> (u64, Vec<[f32; 3]>) {
+        let path = room.write(folder, room.lamp.name()).unwrap();
+        let options = LoadOptions {
+            resolution: Some([8, 6]),
+            ..LoadOptions::default()
+        };
+        let loaded = load(&path, &options).unwrap();
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        let settings = super::super::setting().apply(&Settings::default());
+        let film = render(&loaded.scene, &settings, 16, &Resources::default()).unwrap();
+        (loaded.summary.primitives, film.develop().pixels)
+    }
+
+    /// The same random numbers make the same paths, to rounding.
+    #[test]
+    fn dividing_faces_changes_no_light() {
+        let folder = tempfile::tempdir().unwrap();
+        for lamp in Lamp::ALL {
+            let room = |triangles| Room {
+                lamp,
+                albedo: 0.7,
+                triangles,
+            };
+            let (few, coarse) = image(room(100), folder.path());
+            let (many, fine) = image(room(4000), folder.path());
+            assert_eq!(few, room(100).count() as u64 + 2);
+            assert_eq!(many, room(4000).count() as u64 + 2);
+            assert!(many > 3000 && many < 5000, "{many}");
+            let sum = |pixels: &[[f32; 3]]| pixels.iter().flatten().sum::<f32>();
+            assert!(sum(&coarse) > 0.0);
+            let ratio = sum(&fine) / sum(&coarse);
+            assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+        }
+    }
+}
