@@ -70,7 +70,11 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
 /// Says how to go on.
 fn stopped(args: &ExperimentArgs) -> Exit {
     if !args.quiet {
-        say("stopped: the same command goes on");
+        say(if args.restart {
+            "stopped: the same command without --restart goes on"
+        } else {
+            "stopped: the same command goes on"
+        });
     }
     Exit::Checkpoint
 }

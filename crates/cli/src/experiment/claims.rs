@@ -14,12 +14,12 @@ pub(super) fn text(claim: &Claim) -> String {
         claim.found,
         claim.method
     );
-    for table in &claim.tables {
-        text += &format!("\n{}", tables::text(table));
-    }
+    let figures = claim.tables.iter().map(tables::text);
     let plots = claim.plots.iter();
-    for plot in plots.filter(|plot| plot.kind == PlotKind::Histogram) {
-        text += &format!("\n{}", histogram(plot));
+    let histograms = plots.filter(|plot| plot.kind == PlotKind::Histogram);
+    for figure in figures.chain(histograms.map(histogram)) {
+        text.push('\n');
+        text.push_str(&figure);
     }
     text
 }

@@ -20,14 +20,14 @@ impl Experiment {
     /// Errors: [`ExperimentError::Description`], with line and column.
     pub fn read(text: &str, file: &Path) -> Result<Self> {
         let mut top = Source { file, text }.parse()?;
-        let defaults = match top.sections("settings")?.pop() {
-            Some(mut section) => {
-                let changes = changes(&mut section)?;
-                section.finish()?;
-                changes
+        let mut defaults = Changes::default();
+        for (i, mut section) in top.sections("settings")?.into_iter().enumerate() {
+            if i > 0 {
+                return Err(section.fault("there are settings of all methods already"));
             }
-            None => Changes::default(),
-        };
+            defaults = changes(&mut section)?;
+            section.finish()?;
+        }
         let folder = formats::file::folder_of(file);
         let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
         let method = |section: &mut Section<'_>| method(section, &defaults);

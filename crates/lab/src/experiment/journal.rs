@@ -31,8 +31,16 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// A journal without records; what is there is replaced with the first one.
-    pub(super) fn begin(folder: &Path, experiment: &str) -> Self {
+    /// A journal without records, in place of what is there.
+    ///
+    /// Errors: it cannot be written.
+    pub(super) fn begin(folder: &Path, experiment: &str) -> Result<Self, ExperimentError> {
+        let journal = Self::new(folder, experiment);
+        journal.write()?;
+        Ok(journal)
+    }
+
+    fn new(folder: &Path, experiment: &str) -> Self {
         let head = Head {
             format: FORMAT,
             experiment: experiment.to_owned(),
@@ -48,7 +56,7 @@ impl Journal {
     ///
     /// Errors: it cannot be read, or is of another experiment.
     pub(super) fn open(folder: &Path, experiment: &str) -> Result<Self, ExperimentError> {
-        let mut journal = Self::begin(folder, experiment);
+        let mut journal = Self::new(folder, experiment);
         let text = match std::fs::read_to_string(&journal.path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
@@ -80,6 +88,10 @@ impl Journal {
     pub(super) fn add(&mut self, record: Record) -> Result<(), ExperimentError> {
         self.text += &line(&record);
         self.records.push(record);
+        self.write()
+    }
+
+    fn write(&self) -> Result<(), ExperimentError> {
         formats::file::replace(&self.path, self.text.as_bytes())?;
         Ok(())
     }

@@ -159,25 +159,30 @@ impl Experiment {
     #[must_use]
     pub fn quick(mut self) -> Self {
         self.seeds.count = self.seeds.count.min(3);
-        let own = self.size;
-        self.size = Some(small(own.unwrap_or([64, 48])));
         for scene in &mut self.scenes {
+            let size = scene.size.or(self.size);
             match &mut scene.reference {
                 // An image that is there has the size that it has.
-                ReferenceSpec::There(_) => scene.size = scene.size.or(own),
+                ReferenceSpec::There(_) => scene.size = size,
                 ReferenceSpec::Make { spp, .. } => {
-                    scene.size = scene.size.map(small);
+                    scene.size = Some(small(size.unwrap_or([64, 48])));
                     *spp = spp.div_ceil(8);
                 }
             }
         }
+        self.size = None;
         let budgets = self.budgets.iter().map(|budget| {
             let amount = budget.amount / 8.0;
             let is_whole = budget.kind == BudgetKind::Samples;
             BudgetSpec::new(budget.kind, if is_whole { amount.ceil() } else { amount })
         });
-        self.budgets = budgets.collect();
-        self.budgets.dedup();
+        let mut all: Vec<BudgetSpec> = Vec::new();
+        for budget in budgets {
+            if !all.contains(&budget) {
+                all.push(budget);
+            }
+        }
+        self.budgets = all;
         self
     }
 }

@@ -155,7 +155,8 @@ impl<'a> Entry<'a> {
     /// A text, or a number as it is written: what a flag takes.
     pub(super) fn written(&self) -> Result<&str> {
         match &self.value {
-            DeValue::Integer(number) => Ok(number.as_str()),
+            DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str()),
+            DeValue::Integer(_) => Err(self.fault("expected a decimal number")),
             DeValue::Float(number) => Ok(number.as_str()),
             _ => self.text(),
         }

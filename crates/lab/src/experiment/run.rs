@@ -112,7 +112,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     let identity = hash(&identity(experiment, &stages));
     let mut journal = match setup.start {
         Start::Resume => Journal::open(&setup.folder, &identity)?,
-        Start::Anew => Journal::begin(&setup.folder, &identity),
+        Start::Anew => Journal::begin(&setup.folder, &identity)?,
     };
     let mut references = Vec::new();
     for stage in &stages {

@@ -4,6 +4,7 @@
 //! with its weight. Beside them stand the contributions without weights, f / p. Both are luminances
 //! of the terms that are not zero; the others need no ray.
 
+use crate::statistics::{Interval, mean_interval};
 use bidir::driver::Settings;
 use bidir::integrator::{IntegratorKind, Journal, Link, Sample, Workspace};
 use bidir::path::PathContext;
@@ -12,13 +13,40 @@ use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use rayon::prelude::*;
 
+/// Numbers of passes that are independent of each other.
+#[derive(Clone, Debug, Default)]
+pub struct Values {
+    /// All of them, in ascending order.
+    pub all: Vec<f64>,
+    /// Those of each pass, in ascending order.
+    pub passes: Vec<Vec<f64>>,
+}
+
+impl Values {
+    /// The numbers of these passes.
+    pub fn new(mut passes: Vec<Vec<f64>>) -> Self {
+        for pass in &mut passes {
+            pass.sort_unstable_by(f64::total_cmp);
+        }
+        let mut all = passes.concat();
+        all.sort_unstable_by(f64::total_cmp);
+        Self { all, passes }
+    }
+
+    /// The mean of a statistic over passes. None: of a single pass.
+    pub fn interval(&self, statistic: impl Fn(&[f64]) -> f64, confidence: f64) -> Option<Interval> {
+        let values: Vec<f64> = self.passes.iter().map(|pass| statistic(pass)).collect();
+        mean_interval(&values, confidence)
+    }
+}
+
 /// The contributions of all connections of some samples.
 #[derive(Clone, Debug)]
 pub struct Contributions {
-    /// With weights, in ascending order.
-    pub weighted: Vec<f64>,
-    /// Without weights, in ascending order.
-    pub unweighted: Vec<f64>,
+    /// With weights.
+    pub weighted: Values,
+    /// Without weights.
+    pub unweighted: Values,
     /// Samples taken.
     pub samples: u64,
 }
@@ -31,16 +59,13 @@ impl Contributions {
             .into_par_iter()
             .map(|pass| pass_of(scene, settings, pass))
             .collect();
-        let (mut weighted, mut unweighted) = (Vec::new(), Vec::new());
-        for terms in &parts {
-            unweighted.extend(terms.iter().map(|term| term[0]));
-            weighted.extend(terms.iter().map(|term| term[1]));
-        }
-        weighted.sort_unstable_by(f64::total_cmp);
-        unweighted.sort_unstable_by(f64::total_cmp);
+        let values = |i: usize| {
+            let pass = |terms: &Vec<[f64; 2]>| terms.iter().map(|term| term[i]).collect();
+            Values::new(parts.iter().map(pass).collect())
+        };
         Self {
-            weighted,
-            unweighted,
+            weighted: values(1),
+            unweighted: values(0),
             samples: passes * crop.area(),
         }
     }

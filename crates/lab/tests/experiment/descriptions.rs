@@ -54,6 +54,16 @@ fn what_is_wrong_is_told_with_its_place() {
         None,
     );
     check(
+        &all.replace("shadow-rays = \"per-pair\"", "max-depth = 0x10"),
+        ":11:13: expected a decimal number",
+        None,
+    );
+    check(
+        &("[[settings]]\nmis = \"power\"\n[[settings]]\n".to_owned() + &all),
+        ":3:1: there are settings of all methods already",
+        None,
+    );
+    check(
         &all.replace("reference-spp = 16", ""),
         ":4:1: `reference` or `reference-spp` is missing",
         None,
@@ -88,10 +98,14 @@ fn methods_have_the_common_settings() {
 fn a_quick_one_has_the_same_methods() {
     let place = Workplace::new();
     let text = DESCRIPTION.replace("seeds = 2", "seeds = 20\nsize = \"640x480\"")
-        + "[[budget]]\nsamples = 64\n[[budget]]\nsamples = 1\n[[budget]]\nsamples = 2\n";
+        + "[[budget]]\nsamples = 1\n[[budget]]\nsamples = 64\n[[budget]]\nsamples = 2\n\
+           [[scene]]\nname = \"there\"\nfile = \"room.pbrt\"\nreference = \"room.exr\"\n";
     let quick = place.read(&text).unwrap().quick();
-    assert_eq!((quick.seeds.count, quick.size), (3, Some([64, 48])));
+    let sizes: Vec<_> = quick.scenes.iter().map(|scene| scene.size).collect();
+    assert_eq!((quick.seeds.count, quick.size), (3, None));
+    // An image that is there is not made smaller.
+    assert_eq!(sizes, [Some([64, 48]), Some([640, 480])]);
     let names: Vec<_> = quick.budgets.iter().map(|budget| &*budget.name).collect();
-    assert_eq!(names, ["8 spp", "1 spp"]);
+    assert_eq!(names, ["1 spp", "8 spp"]);
     assert_eq!(quick.methods.len(), 2);
 }

@@ -10,6 +10,7 @@
 
 mod beyond;
 mod complexity;
+mod figure_2;
 mod records;
 mod sweep;
 mod table_1;
@@ -19,9 +20,10 @@ mod verdict;
 
 pub use beyond::beyond;
 pub use complexity::complexity;
+pub use figure_2::figure_2;
 pub use sweep::albedo;
 pub use table_1::table_1;
-pub use theory::{figure_2, section_3};
+pub use theory::section_3;
 pub use time::{rooms, times};
 pub use verdict::{Expected, all, judge};
 

@@ -1,11 +1,8 @@
-//! Section 3's formulas, and figure 2.
+//! Section 3's formulas.
 
-use super::super::contributions::{
-    Contributions, decades, histogram, part_with, quantile, share_of_largest,
-};
 use super::super::depths::Depths;
-use super::{Expected, all, axis, cell, claim, judge, lines, series, table, text};
-use crate::results::{Cell, Claim, Plot, PlotKind, Scale, Series};
+use super::{Expected, all, axis, cell, claim, judge, lines, series, table};
+use crate::results::{Cell, Claim, Plot, Scale, Series};
 use crate::statistics::Interval;
 
 /// How close a mean has to be to its formula.
@@ -107,104 +104,6 @@ fn depth_plot(rooms: &[Depths]) -> Plot {
     )
 }
 
-/// The least range of "several orders of magnitude", between the quantiles 1 % and 99 %.
-const DECADES: f64 = 3.0;
-/// The largest contributions overwhelm the others if this part of them ...
-const FEW: f64 = 0.1;
-/// ... has more than this share of the sum.
-const MOST: f64 = 0.5;
-
-/// How large contributions of a scene are, under each kind of weights.
-pub fn figure_2(scene: &str, weights: &[(&str, Contributions)]) -> Claim {
-    let mut rows = Vec::new();
-    let mut curves = Vec::new();
-    let mut verdicts = Vec::new();
-    let mut found = Vec::new();
-    let plain = weights.iter().take(1);
-    let plain = plain.map(|(_, all)| ("no", &all.unweighted, all.samples));
-    let weighted = weights
-        .iter()
-        .map(|(name, all)| (*name, &all.weighted, all.samples));
-    for (name, values, samples) in plain.chain(weighted) {
-        let range = decades(values, 0.01);
-        let share = share_of_largest(values, FEW);
-        for (number, least) in [(range.unwrap_or(f64::NAN), DECADES), (share, MOST)] {
-            verdicts.push(judge(Some(certain(number)), Expected::Above(least)));
-        }
-        found.push(format!(
-            "{name} weights: {:.1} orders, {:.0} %",
-            range.unwrap_or(f64::NAN),
-            100.0 * share
-        ));
-        let log = |part| Cell::Number(quantile(values, part).map_or(f64::NAN, libm::log10));
-        rows.push(vec![
-            text(name),
-            Cell::Number(values.len() as f64 / samples as f64),
-            log(0.0),
-            log(0.01),
-            log(0.5),
-            log(0.99),
-            log(1.0),
-            Cell::Number(100.0 * share),
-            Cell::Number(100.0 * part_with(values, 0.9)),
-        ]);
-        curves.push(Series {
-            name: format!("{name} weights"),
-            points: histogram(values, 2),
-            intervals: Vec::new(),
-        });
-    }
-    let mut claim = claim(
-        &format!("figure-2-{}", scene.to_lowercase()),
-        "Figure 2",
-        &format!(
-            "Scene {scene}: contributions span several orders of magnitude, and the larger ones \
-             overwhelm the smaller."
-        ),
-        all(verdicts),
-        format!(
-            "Between the quantiles 1 % and 99 %, and the share of the largest tenth: {}.",
-            found.join("; ")
-        ),
-    );
-    "Luminances of all connections that are not black, of 16 samples per pixel; several orders are at \
-     least 3, and to overwhelm is that the largest tenth has more than half of the sum. With more than \
-     10^5 values the sampling error is far below the margins."
-        .clone_into(&mut claim.method);
-    claim.tables.push(table(
-        format!("Scene {scene}: contributions C_ij before visibility; log10 of quantiles."),
-        &[
-            "weights",
-            "per sample",
-            "least",
-            "1 %",
-            "50 %",
-            "99 %",
-            "most",
-            "largest tenth: % of sum",
-            "90 % of sum: % of contributions",
-        ],
-        rows,
-    ));
-    claim.plots.push(Plot {
-        caption: format!("Scene {scene}: distribution of contributions before visibility."),
-        kind: PlotKind::Histogram,
-        x: axis("log10 of the contribution", Scale::Linear),
-        y: axis("part of all contributions", Scale::Linear),
-        series: curves,
-    });
-    claim
-}
-
-/// A number as an interval without width.
-fn certain(value: f64) -> Interval {
-    Interval {
-        value,
-        low: value,
-        high: value,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,25 +135,5 @@ mod tests {
         check_depths(0.009, 0.003, Undecided);
         check_depths(-0.02, 0.003, NotReproduced);
         assert_eq!(section_3(&[])[0].verdict, Undecided);
-    }
-
-    #[track_caller]
-    fn check_range(decades: i32, expected: Verdict) {
-        let value = |i: i32| libm::pow(10.0, f64::from(decades * i) / 1000.0);
-        let values: Vec<f64> = (0..1000).map(value).collect();
-        let contributions = Contributions {
-            weighted: values.clone(),
-            unweighted: values,
-            samples: 100,
-        };
-        let claim = figure_2("A", &[("uniform", contributions)]);
-        assert_eq!(claim.verdict, expected, "{}", claim.found);
-        assert_eq!(claim.plots[0].series.len(), 2);
-    }
-
-    #[test]
-    fn ranges_decide() {
-        check_range(8, Reproduced);
-        check_range(1, NotReproduced);
     }
 }
