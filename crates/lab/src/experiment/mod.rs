@@ -1,7 +1,7 @@
 //! An experiment: scenes × methods × budgets × seeds, each rendered and compared with a reference.
 //!
 //! - [`Experiment`]: the description, from TOML by [`Experiment::read`] or made by hand.
-//! - [`run`]: renders what no record has yet, and gives [`Results`](crate::results::Results).
+//! - [`run()`]: renders what no record has yet, and gives [`Results`](crate::results::Results).
 //! - [`analysis`]: what the records say, as tables and plots.
 //!
 //! # The folder of the results

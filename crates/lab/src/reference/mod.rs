@@ -23,7 +23,7 @@
 //! | `picture.exr` | the picture, with the layers `Variance`, `RelativeVariance` and `Samples` |
 //! | `against.exr` | the same of the second estimator |
 //! | `provenance.json` | [`Provenance`]: how it was made, and whether the estimators agree |
-//! | `films/*.film` | the film of each replicate, by which [`make`] goes on |
+//! | `films/*.film` | the film of each replicate, by which [`make()`] goes on |
 //!
 //! The films are needed to add samples only. As each holds whole passes, a reference that was
 //! extended, or stopped and gone on with, has the bits of one that was made at once.
