@@ -25,8 +25,6 @@ use bidir::stats::Stats;
 use bidir::texture::ColorTexture;
 use rayon::prelude::*;
 
-/// How sure intervals are.
-const CONFIDENCE: f64 = 0.95;
 /// Walks are split into so many parts, whose means are independent.
 const PARTS: u64 = 40;
 /// Width and height of the film. Unit: pixels.
@@ -56,11 +54,11 @@ impl Depths {
         (2.0 - self.albedo) / ((1.0 - self.albedo) * (1.0 - self.albedo))
     }
 
-    /// Walks in a room of this albedo, so many from each end. None: of fewer than two parts no
-    /// interval can be told.
+    /// Walks in a room of this albedo, so many from each end; intervals hold with `confidence`. None:
+    /// it is not in (0, 1).
     ///
     /// Errors: no thread can be started.
-    pub fn measure(albedo: f32, walks: u64) -> Result<Option<Self>, SessionError> {
+    pub fn measure(albedo: f32, walks: u64, confidence: f64) -> Result<Option<Self>, SessionError> {
         let Ok(scene) = room(albedo) else {
             return Ok(None);
         };
@@ -70,7 +68,7 @@ impl Depths {
             .collect();
         let interval = |which: usize| {
             let values: Vec<f64> = parts.iter().map(|means| means[which]).collect();
-            mean_interval(&values, CONFIDENCE)
+            mean_interval(&values, confidence)
         };
         let (Some(camera), Some(connections)) = (interval(0), interval(1)) else {
             return Ok(None);
@@ -195,7 +193,7 @@ mod tests {
     /// Seeds are fixed; intervals of the few walks here are about 2 % wide.
     #[test]
     fn walks_are_as_long_as_the_formulas_say() {
-        let depths = Depths::measure(0.5, 40_000).unwrap().unwrap();
+        let depths = Depths::measure(0.5, 40_000, 0.95).unwrap().unwrap();
         let near = |interval: Interval, expected: f64| (interval.value / expected - 1.0).abs();
         assert!(near(depths.camera, 2.0) < 0.02, "{depths:?}");
         assert!(near(depths.connections, 6.0) < 0.03, "{depths:?}");

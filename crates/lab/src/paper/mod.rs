@@ -23,7 +23,8 @@
 //!
 //! Renders end after whole passes, so costs are equal to half a pass. As samples are independent,
 //! E(error²) · samples is a constant, and so is error² · cost: √(error² · rays) and √(error² · seconds)
-//! are compared, which is the error at exactly equal cost. Ratios are paired by seed.
+//! are compared, which is the error at exactly equal cost. Ratios are paired by seed. Under uniform
+//! weights, whose variance is infinite near edges, errors without the worst pixels decide.
 
 pub mod claims;
 pub mod contributions;
@@ -43,7 +44,7 @@ use bidir::driver::Settings;
 use contributions::Contributions;
 use depths::Depths;
 use formats::pbrt::LoadOptions;
-use plans::{Complexity, WEIGHTS};
+use plans::{ALBEDOS, Complexity, WEIGHTS};
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -88,12 +89,7 @@ pub(crate) fn setting() -> Changes {
 
 /// Runs everything that has no record yet, judges, and writes `results.json`.
 pub fn run(options: Options, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
-    let Options { effort, threads } = options;
-    let amounts = effort.amounts();
-    let part = |plan, name, observer: &mut dyn Observer| {
-        let plan = Experiment { threads, ..plan };
-        part(&plan, name, setup, observer)
-    };
+    let amounts = options.effort.amounts();
     let folder = setup.folder.join("scenes");
     scenes::unpack(&folder).map_err(|error| ExperimentError::Folder {
         path: folder.clone(),
@@ -101,38 +97,14 @@ pub fn run(options: Options, setup: &Setup, observer: &mut dyn Observer) -> Resu
     })?;
     let mut claims = section_3(amounts.walks)?;
     claims.extend(figure_2(&folder)?);
-    let mut parts = Vec::new();
-    let plan = plans::table_1(&amounts, &folder);
-    let Some(table) = part(plan, "table-1", observer)? else {
-        return Ok(STOPPED);
+    let Some(parts) = Parts::render(options, &folder, setup, observer)? else {
+        return Ok(Outcome {
+            end: End::Stopped,
+            results: None,
+        });
     };
-    parts.push(("table-1", table));
-    let complexity = Complexity::write(&amounts, &folder)?;
-    let plan = complexity.references();
-    let Some(references) = part(plan, "complexity-references", observer)? else {
-        return Ok(STOPPED);
-    };
-    let at = setup.folder.join("complexity-references");
-    let plan = complexity.plan(&amounts, &references, &at);
-    let Some(sweep) = part(plan, "complexity", observer)? else {
-        return Ok(STOPPED);
-    };
-    parts.push(("complexity", sweep));
-    let plan = plans::albedo(&amounts, &folder)?;
-    let Some(albedo) = part(plan, "albedo", observer)? else {
-        return Ok(STOPPED);
-    };
-    parts.push(("albedo", albedo));
-    claims.extend(claims::table_1(&parts[0].1.records));
-    claims.extend(claims::times(&parts[0].1.records));
-    claims.extend(claims::complexity(
-        &parts[1].1.records,
-        &complexity.levels(),
-    ));
-    claims.extend(claims::rooms(&parts[0].1.records));
-    claims.extend(claims::albedo(&parts[2].1.records));
-    claims.extend(claims::beyond(&parts[0].1.records));
-    let results = merge(parts, claims, setup);
+    claims.extend(parts.claims());
+    let results = merge(parts.named(), claims, setup);
     write_results(&setup.folder, &results)?;
     Ok(Outcome {
         end: End::Complete,
@@ -140,10 +112,77 @@ pub fn run(options: Options, setup: &Setup, observer: &mut dyn Observer) -> Resu
     })
 }
 
-const STOPPED: Outcome = Outcome {
-    end: End::Stopped,
-    results: None,
-};
+/// What the three experiments found.
+struct Parts {
+    table_1: Results,
+    complexity: Results,
+    /// Numbers of triangles, ascending.
+    levels: Vec<usize>,
+    albedo: Results,
+}
+
+impl Parts {
+    /// Renders what has no record yet, of the scenes in `folder`. None: the observer stopped it.
+    fn render(
+        options: Options,
+        folder: &Path,
+        setup: &Setup,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Self>> {
+        let amounts = options.effort.amounts();
+        let mut part = |plan, name| {
+            let plan = Experiment {
+                threads: options.threads,
+                ..plan
+            };
+            part(&plan, name, setup, observer)
+        };
+        let Some(table_1) = part(plans::table_1(&amounts, folder), "table-1")? else {
+            return Ok(None);
+        };
+        let rooms = Complexity::write(&amounts, folder)?;
+        let Some(references) = part(rooms.references(), REFERENCES)? else {
+            return Ok(None);
+        };
+        let plan = rooms.plan(&amounts, &references, &setup.folder.join(REFERENCES));
+        let Some(complexity) = part(plan, "complexity")? else {
+            return Ok(None);
+        };
+        let albedo = part(plans::albedo(&amounts, folder)?, "albedo")?;
+        Ok(albedo.map(|albedo| Self {
+            table_1,
+            complexity,
+            levels: rooms.levels(),
+            albedo,
+        }))
+    }
+
+    /// What their records say.
+    fn claims(&self) -> Vec<Claim> {
+        let table_1 = &self.table_1.records;
+        [
+            claims::table_1(table_1),
+            claims::times(table_1),
+            claims::complexity(&self.complexity.records, &self.levels),
+            claims::rooms(table_1),
+            claims::albedo(&self.albedo.records),
+            claims::beyond(table_1),
+        ]
+        .concat()
+    }
+
+    /// With the names of their folders.
+    fn named(self) -> [(&'static str, Results); 3] {
+        [
+            ("table-1", self.table_1),
+            ("complexity", self.complexity),
+            ("albedo", self.albedo),
+        ]
+    }
+}
+
+/// The folder of the references of the sweep of triangles.
+const REFERENCES: &str = "complexity-references";
 
 /// Runs one of the experiments in a folder of its own. None: it was stopped.
 fn part(
@@ -162,9 +201,10 @@ fn part(
 
 /// Walks in closed rooms.
 fn section_3(walks: u64) -> Result<Vec<Claim>> {
+    let confidence = claims::shared(ALBEDOS.len());
     let mut rooms = Vec::new();
-    for albedo in [0.3, 0.5, 0.7, 0.8] {
-        let depths = Depths::measure(albedo, walks);
+    for albedo in ALBEDOS {
+        let depths = Depths::measure(albedo, walks, confidence);
         let depths = depths.map_err(|error| ExperimentError::Render {
             scene: format!("closed room of albedo {albedo}"),
             error,
@@ -196,7 +236,7 @@ fn figure_2(folder: &Path) -> Result<Vec<Claim>> {
 }
 
 /// One for all: images are found from the common folder.
-fn merge(parts: Vec<(&str, Results)>, claims: Vec<Claim>, setup: &Setup) -> Results {
+fn merge(parts: [(&str, Results); 3], claims: Vec<Claim>, setup: &Setup) -> Results {
     let mut all = Results {
         format: FORMAT,
         title: "Reducing the number of shadow rays, 1995 and now".to_owned(),

@@ -9,8 +9,10 @@ use crate::metric::Metric;
 use crate::results::{BudgetKind, Results};
 use std::path::{Path, PathBuf};
 
-/// The names of weights, the first those that need no densities.
-pub(super) const WEIGHTS: [&str; 3] = ["uniform", "balance", "power"];
+/// Weights that need no densities.
+pub(super) const UNIFORM: &str = "uniform";
+/// The names of all weights.
+pub(super) const WEIGHTS: [&str; 3] = [UNIFORM, "balance", "power"];
 /// What was there before, and the optimisations 1, 2 and 3 of the paper.
 pub(super) const RULES: [&str; 4] = ["all", "per-light-vertex", "per-camera-vertex", "per-pair"];
 /// Rules that the paper does not have.
@@ -45,7 +47,7 @@ pub(super) struct Amounts {
     rays: f64,
     /// The largest power of ten of triangles.
     largest: u32,
-    /// Samples per pixel of the sweeps.
+    /// Samples per pixel of the sweep of triangles.
     samples: f64,
 }
 
@@ -55,6 +57,11 @@ impl Amounts {
             first: 1,
             count: self.seeds,
         }
+    }
+
+    /// Rays per pixel of the sweep of albedo: the brightest rooms need many for a sample.
+    fn albedo_rays(&self) -> f64 {
+        2.0 * self.rays
     }
 
     /// Width and height of the images of the sweep of triangles, whose references are few.
@@ -300,7 +307,7 @@ pub(super) fn albedo(amounts: &Amounts, folder: &Path) -> Result<Experiment> {
         seeds: amounts.seeds(),
         scenes,
         methods: methods(&WEIGHTS),
-        budgets: vec![BudgetSpec::new(BudgetKind::Samples, amounts.samples)],
+        budgets: vec![BudgetSpec::new(BudgetKind::Rays, amounts.albedo_rays())],
         ..experiment("Albedo", "The same room with ever brighter surfaces.")
     })
 }

@@ -1,8 +1,8 @@
 //! What the paper does not have: more than one well-chosen ray for a pair of subpaths.
 
-use super::super::plans::{APARTMENT, BEYOND, ROOMS, RULES, WEIGHTS, method_name};
-use super::records::{Measured, trimmed_by_rays};
-use super::{Expected, NONE, claim, judge, words};
+use super::super::plans::{APARTMENT, BEYOND, ROOMS, RULES, WEIGHTS};
+use super::records::{Judged, Measured, judged};
+use super::{CONFIDENCE, Expected, NONE, claim, judge, words};
 use crate::results::{Claim, Record};
 
 /// A claim for each scene and each kind of weights.
@@ -15,10 +15,9 @@ pub fn beyond(records: &[Record]) -> Vec<Claim> {
 /// Two rays against one.
 fn more_rays(measured: &Measured<'_>, weights: &str) -> Claim {
     let scene = measured.scene;
-    let ratio = |rule: &str, other: &str| {
-        let methods = [rule, other].map(|rule| method_name(weights, rule));
-        measured.ratio([&methods[0], &methods[1]], trimmed_by_rays, 0.95)
-    };
+    let Judged { by_rays, name, .. } = judged(weights);
+    let ratio =
+        |rule: &str, other: &str| measured.ratio(weights, [rule, other], by_rays, CONFIDENCE);
     let step = ratio("budget:2", RULES[3]);
     let all: Vec<_> = BEYOND
         .iter()
@@ -33,7 +32,7 @@ fn more_rays(measured: &Measured<'_>, weights: &str) -> Claim {
         ),
         judge(step, Expected::Below(1.0)),
         format!(
-            "Errors without the worst 0.1 % of pixels, over optimisation 3: {}; relative to none: {}.",
+            "{name} over that of optimisation 3: {}; relative to none: {}.",
             words(step),
             all.join("; ")
         ),

@@ -1,118 +1,186 @@
 //! "For complex scenes the benefit of the reduction of shadow rays will be more important."
 
-use super::super::plans::{complexity_name, method_name};
+use super::super::plans::complexity_name;
 use super::super::room::Lamp;
-use super::records::{Measured, seconds_per_ray, trimmed_by_rays, trimmed_by_seconds};
+use super::records::{BySeed, Judged, Measured, judged, ratio_of, seconds_per_ray};
 use super::{
     CONFIDENCE, Expected, NONE, all, axis, cell, claim, judge, lines, optimisations, series,
     shared, table, text, words,
 };
-use crate::results::{Cell, Claim, Record, Scale};
-use crate::statistics::{Interval, ratio_interval};
+use crate::results::{Cell, Claim, Plot, Record, Scale, Table};
+use crate::statistics::Interval;
 
 /// The weights of the sweep.
 const WEIGHTS: &str = "balance";
 
-/// The errors in equal time of the three optimisations in a room.
-#[derive(Clone, Debug)]
-struct Level {
-    triangles: f64,
-    gains: Vec<Option<Interval>>,
-}
-
 /// A claim for each lamp; `levels` are the numbers of triangles, ascending.
 pub fn complexity(records: &[Record], levels: &[usize]) -> Vec<Claim> {
-    let claims = Lamp::ALL.iter().map(|lamp| of_lamp(records, *lamp, levels));
+    let claims = Lamp::ALL
+        .iter()
+        .map(|lamp| Sweep::new(records, *lamp, levels).claim());
     claims.collect()
 }
 
-fn of_lamp(records: &[Record], lamp: Lamp, triangles: &[usize]) -> Claim {
-    let base = method_name(WEIGHTS, NONE);
-    let levels: Vec<_> = triangles
-        .iter()
-        .map(|&triangles| {
-            let scene = complexity_name(lamp.name(), triangles);
-            let measured = Measured {
-                records,
-                scene: &scene,
-            };
-            let gain = |(_, rule): (usize, &str)| {
-                let method = method_name(WEIGHTS, rule);
-                measured.ratio([&method, &base], trimmed_by_seconds, CONFIDENCE)
-            };
-            Level {
-                triangles: triangles as f64,
-                gains: optimisations().map(gain).collect(),
-            }
-        })
-        .collect();
-    let growth: Vec<_> = optimisations()
-        .map(|(_, rule)| growth(records, lamp, triangles, rule))
-        .collect();
-    let parts: Vec<_> = optimisations()
-        .zip(&growth)
-        .map(|((number, _), growth)| {
-            let crossing = crossing(&levels, number - 1);
-            format!("optimisation {number}: {}, {crossing}", words(*growth))
-        })
-        .collect();
-    let mut claim = claim(
-        &format!("section-4-complexity-{}", lamp.name()),
-        "Section 4",
-        &format!(
-            "Room with {} light: the more triangles, the lower the error of each optimisation in \
-             equal time, relative to tracing all.",
-            lamp.name()
-        ),
-        all(growth
-            .iter()
-            .map(|growth| judge(*growth, Expected::Below(1.0)))),
-        format!(
-            "Relative error with the most triangles over that with the fewest: {}.",
-            parts.join("; ")
-        ),
-    );
-    claim.tables.push(whole(records, lamp, triangles, &levels));
-    let curve = |(number, _): (usize, &str)| {
-        let points: Vec<_> = levels
-            .iter()
-            .map(|level| (level.triangles, level.gains[number - 1]))
-            .collect();
-        series(format!("optimisation {number}"), &points)
-    };
-    claim.plots.push(lines(
-        format!("Room with {} light: errors in equal time.", lamp.name()),
-        axis("triangles", Scale::Log),
-        axis("error relative to none", Scale::Linear),
-        optimisations().map(curve).collect(),
-    ));
-    claim
+/// A room of ever more triangles.
+struct Sweep<'a> {
+    records: &'a [Record],
+    lamp: &'static str,
+    levels: Vec<Level>,
 }
 
-/// How the relative error of a rule changes from the fewest triangles to the most.
-fn growth(records: &[Record], lamp: Lamp, triangles: &[usize], rule: &str) -> Option<Interval> {
-    let methods = [rule, NONE].map(|rule| method_name(WEIGHTS, rule));
-    let gains = |triangles: usize| {
-        let scene = complexity_name(lamp.name(), triangles);
-        let measured = Measured {
+/// The errors in equal time of the three optimisations in a room.
+#[derive(Clone, Debug)]
+struct Level {
+    triangles: usize,
+    gains: Vec<Option<Interval>>,
+}
+
+impl<'a> Sweep<'a> {
+    fn new(records: &'a [Record], lamp: Lamp, triangles: &[usize]) -> Self {
+        let mut sweep = Self {
             records,
-            scene: &scene,
+            lamp: lamp.name(),
+            levels: Vec::new(),
         };
-        measured.ratios([&methods[0], &methods[1]], trimmed_by_seconds)
-    };
-    let [first, last] = [triangles.first()?, triangles.last()?];
-    ratio_interval(
-        &gains(*last),
-        &gains(*first),
-        shared(optimisations().count()),
-    )
+        let level = |&triangles: &usize| Level {
+            triangles,
+            gains: sweep.gains(triangles),
+        };
+        sweep.levels = triangles.iter().map(level).collect();
+        sweep
+    }
+
+    /// What was measured in the room of so many triangles.
+    fn with<T>(&self, triangles: usize, get: impl FnOnce(&Measured<'_>) -> T) -> T {
+        let scene = complexity_name(self.lamp, triangles);
+        get(&Measured {
+            records: self.records,
+            scene: &scene,
+        })
+    }
+
+    /// Errors in equal time, relative to none.
+    fn gains(&self, triangles: usize) -> Vec<Option<Interval>> {
+        let by_seconds = judged(WEIGHTS).by_seconds;
+        let gain = |measured: &Measured<'_>, rule| {
+            measured.ratio(WEIGHTS, [rule, NONE], by_seconds, CONFIDENCE)
+        };
+        let gains = |measured: &Measured<'_>| {
+            let gains = optimisations().map(|(_, rule)| gain(measured, rule));
+            gains.collect()
+        };
+        self.with(triangles, gains)
+    }
+
+    /// How the relative error of a rule changes from the fewest triangles to the most.
+    fn growth(&self, rule: &str) -> Option<Interval> {
+        let by_seconds = judged(WEIGHTS).by_seconds;
+        let gains = |level: &Level| -> BySeed {
+            self.with(level.triangles, |measured| {
+                measured.ratios(WEIGHTS, [rule, NONE], by_seconds)
+            })
+        };
+        let [first, last] = [self.levels.first()?, self.levels.last()?];
+        ratio_of(&gains(last), &gains(first), shared(optimisations().count()))
+    }
+
+    fn claim(&self) -> Claim {
+        let growths: Vec<_> = optimisations()
+            .map(|(number, rule)| (number, self.growth(rule)))
+            .collect();
+        let parts: Vec<_> = growths
+            .iter()
+            .map(|(number, growth)| {
+                let crossing = crossing(&self.levels, number - 1);
+                format!("optimisation {number}: {}, {crossing}", words(*growth))
+            })
+            .collect();
+        let verdicts = growths
+            .iter()
+            .map(|(_, growth)| judge(*growth, Expected::Below(1.0)));
+        let mut claim = claim(
+            &format!("section-4-complexity-{}", self.lamp),
+            "Section 4",
+            &format!(
+                "Room with {} light: the more triangles, the lower the error of each optimisation \
+                 in equal time, relative to tracing all.",
+                self.lamp
+            ),
+            all(verdicts),
+            format!(
+                "{}, relative to none, with the most triangles over that with the fewest: {}.",
+                judged(WEIGHTS).name,
+                parts.join("; ")
+            ),
+        );
+        claim.tables.push(self.table());
+        claim.plots.push(self.plot());
+        claim
+    }
+
+    fn plot(&self) -> Plot {
+        let curve = |(number, _): (usize, &str)| {
+            let point = |level: &Level| (level.triangles as f64, level.gains[number - 1]);
+            let points: Vec<_> = self.levels.iter().map(point).collect();
+            series(format!("optimisation {number}"), &points)
+        };
+        lines(
+            format!("Room with {} light: errors in equal time.", self.lamp),
+            axis("triangles", Scale::Log),
+            axis("error relative to none", Scale::Linear),
+            optimisations().map(curve).collect(),
+        )
+    }
+
+    fn table(&self) -> Table {
+        table(
+            format!(
+                "Room with {} light, {WEIGHTS} weights: time for a ray, all other work included, and \
+                 errors relative to none (95 % intervals).",
+                self.lamp
+            ),
+            &[
+                "triangles",
+                "ns per ray, none",
+                "1",
+                "2",
+                "3",
+                "equal time: 1",
+                "2",
+                "3",
+                "equal rays: 1",
+                "2",
+                "3",
+            ],
+            self.levels.iter().map(|level| self.row(level)).collect(),
+        )
+    }
+
+    fn row(&self, level: &Level) -> Vec<Cell> {
+        let Judged { by_rays, .. } = judged(WEIGHTS);
+        let nanoseconds = |rule: &str| {
+            let mean = |measured: &Measured<'_>| measured.mean(WEIGHTS, rule, seconds_per_ray);
+            Cell::Number(1e9 * self.with(level.triangles, mean))
+        };
+        let relative = |rule: &str| {
+            let ratio = |measured: &Measured<'_>| {
+                measured.ratio(WEIGHTS, [rule, NONE], by_rays, CONFIDENCE)
+            };
+            cell(self.with(level.triangles, ratio))
+        };
+        let mut row = vec![text(level.triangles.to_string()), nanoseconds(NONE)];
+        row.extend(optimisations().map(|(_, rule)| nanoseconds(rule)));
+        row.extend(level.gains.iter().map(|gain| cell(*gain)));
+        row.extend(optimisations().map(|(_, rule)| relative(rule)));
+        row
+    }
 }
 
 /// From how many triangles on an optimisation pays, in words.
 fn crossing(levels: &[Level], optimisation: usize) -> String {
     let known: Vec<_> = levels
         .iter()
-        .filter_map(|level| Some((level.triangles, level.gains[optimisation]?.value)))
+        .filter_map(|level| Some((level.triangles as f64, level.gains[optimisation]?.value)))
         .collect();
     if known.iter().all(|(_, gain)| *gain < 1.0) {
         return "pays everywhere".to_owned();
@@ -129,56 +197,6 @@ fn crossing(levels: &[Level], optimisation: usize) -> String {
         }
         None => "pays for few triangles and not for many".to_owned(),
     }
-}
-
-fn whole(
-    records: &[Record],
-    lamp: Lamp,
-    triangles: &[usize],
-    levels: &[Level],
-) -> crate::results::Table {
-    let base = method_name(WEIGHTS, NONE);
-    let rows = triangles.iter().zip(levels).map(|(&triangles, level)| {
-        let scene = complexity_name(lamp.name(), triangles);
-        let measured = Measured {
-            records,
-            scene: &scene,
-        };
-        let nanoseconds = |rule: &str| {
-            let method = method_name(WEIGHTS, rule);
-            Cell::Number(1e9 * measured.mean(&method, seconds_per_ray))
-        };
-        let by_rays = |(_, rule): (usize, &str)| {
-            let method = method_name(WEIGHTS, rule);
-            cell(measured.ratio([&method, &base], trimmed_by_rays, CONFIDENCE))
-        };
-        let mut row = vec![text(triangles.to_string()), nanoseconds(NONE)];
-        row.extend(optimisations().map(|(_, rule)| nanoseconds(rule)));
-        row.extend(level.gains.iter().map(|gain| cell(*gain)));
-        row.extend(optimisations().map(by_rays));
-        row
-    });
-    table(
-        format!(
-            "Room with {} light, {WEIGHTS} weights: time for a ray, all other work included, and \
-             errors relative to none (95 % intervals).",
-            lamp.name()
-        ),
-        &[
-            "triangles",
-            "ns per ray, none",
-            "1",
-            "2",
-            "3",
-            "equal time: 1",
-            "2",
-            "3",
-            "equal rays: 1",
-            "2",
-            "3",
-        ],
-        rows.collect(),
-    )
 }
 
 #[cfg(test)]

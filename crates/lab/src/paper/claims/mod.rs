@@ -35,7 +35,7 @@ use crate::statistics::Interval;
 const CONFIDENCE: f64 = 0.95;
 
 /// The confidence of each of `parts` intervals that a statement needs all of.
-fn shared(parts: usize) -> f64 {
+pub(super) fn shared(parts: usize) -> f64 {
     1.0 - (1.0 - CONFIDENCE) / parts.max(1) as f64
 }
 

@@ -2,51 +2,53 @@
 
 use super::super::depths::Depths;
 use super::{Expected, all, axis, cell, claim, judge, lines, series, table};
-use crate::results::{Cell, Claim, Plot, Scale, Series};
+use crate::results::{Cell, Claim, Plot, Scale, Series, Table};
 use crate::statistics::Interval;
 
 /// How close a mean has to be to its formula.
 const TOLERANCE: Expected = Expected::Within(0.99, 1.01);
 
+/// How it was measured, in words.
+const METHOD: &str = "Independent walks in a closed cube of one albedo; Student's intervals from 40 \
+     parts, which hold together with 95 % in all rooms; reproduced where each lies within 1 % of \
+     its formula.";
+
 /// What N_e and N_l N_e are in closed rooms.
 pub fn section_3(rooms: &[Depths]) -> Vec<Claim> {
-    let method = "Independent walks in a closed cube of one albedo; Student's intervals of 95 % from \
-                  40 parts; reproduced where each lies within 1 % of its formula.";
-    let camera = |room: &Depths| relative(room.camera, room.expected_camera());
-    let connections = |room: &Depths| relative(room.connections, room.expected_connections());
-    let judged = |id: &str, words: &str, of: &dyn Fn(&Depths) -> Interval| {
-        let verdict = all(rooms.iter().map(|room| judge(Some(of(room)), TOLERANCE)));
-        let parts: Vec<_> = rooms
-            .iter()
-            .map(|room| {
-                let Interval { value, low, high } = of(room);
-                let [value, low, high] = [value, low, high].map(|ratio| 100.0 * (ratio - 1.0));
-                format!("{:.1}: {value:+.2} % [{low:+.2}, {high:+.2}]", room.albedo)
-            })
-            .collect();
-        Claim {
-            method: method.to_owned(),
-            ..claim(
-                id,
-                "Section 3",
-                words,
-                verdict,
-                format!("Off the formula by, at albedo {}.", parts.join("; ")),
-            )
-        }
-    };
-    let mut claims = vec![
-        judged(
-            "section-3-camera",
-            "A camera walk meets E(N_e) = 1 / (1 - rho) surfaces.",
-            &camera,
-        ),
-        judged(
-            "section-3-connections",
-            "A sample has E(N_l N_e) = (2 - rho) / (1 - rho)^2 connections.",
-            &connections,
-        ),
-    ];
+    let camera = judged(
+        "section-3-camera",
+        "A camera walk meets E(N_e) = 1 / (1 - rho) surfaces.",
+        rooms,
+        |room| relative(room.camera, room.expected_camera()),
+    );
+    let mut connections = judged(
+        "section-3-connections",
+        "A sample has E(N_l N_e) = (2 - rho) / (1 - rho)^2 connections.",
+        rooms,
+        |room| relative(room.connections, room.expected_connections()),
+    );
+    connections.tables.push(depth_table(rooms));
+    connections.plots.push(depth_plot(rooms));
+    vec![camera, connections]
+}
+
+/// A claim that a number over its formula, `of`, is 1 in all rooms.
+fn judged(id: &str, words: &str, rooms: &[Depths], of: fn(&Depths) -> Interval) -> Claim {
+    let parts = rooms.iter().map(|room| {
+        let Interval { value, low, high } = of(room);
+        let [value, low, high] = [value, low, high].map(|ratio| 100.0 * (ratio - 1.0));
+        format!("{:.1}: {value:+.2} % [{low:+.2}, {high:+.2}]", room.albedo)
+    });
+    let parts: Vec<_> = parts.collect();
+    let verdicts = rooms.iter().map(|room| judge(Some(of(room)), TOLERANCE));
+    let found = format!("Off the formula by, at albedo {}.", parts.join("; "));
+    Claim {
+        method: METHOD.to_owned(),
+        ..claim(id, "Section 3", words, all(verdicts), found)
+    }
+}
+
+fn depth_table(rooms: &[Depths]) -> Table {
     let row = |room: &Depths| {
         vec![
             Cell::Number((room.albedo * 100.0).round() / 100.0),
@@ -57,7 +59,7 @@ pub fn section_3(rooms: &[Depths]) -> Vec<Claim> {
             Cell::Number(room.traced),
         ]
     };
-    claims[1].tables.push(table(
+    table(
         "Walks in a closed cube; black connections, such as those along a wall, need no ray.",
         &[
             "albedo",
@@ -68,9 +70,7 @@ pub fn section_3(rooms: &[Depths]) -> Vec<Claim> {
             "shadow rays traced",
         ],
         rooms.iter().map(row).collect(),
-    ));
-    claims[1].plots.push(depth_plot(rooms));
-    claims
+    )
 }
 
 fn relative(interval: Interval, expected: f64) -> Interval {

@@ -1,15 +1,12 @@
 //! Section 4's remarks about computation times, and about rooms with lights of their own.
 
-use super::super::plans::{APARTMENT, ROOMS, RULES, WEIGHTS, method_name};
-use super::records::{
-    Measured, Quantity, seconds, seconds_per_ray, trimmed_by_rays, trimmed_by_seconds,
-};
+use super::super::plans::{APARTMENT, ROOMS, RULES, WEIGHTS};
+use super::records::{Measured, judged, ratio_of, seconds, seconds_per_ray};
 use super::{
     CONFIDENCE, Expected, NONE, all, cell, claim, judge, optimisations, shared, table, table_1,
     text, words,
 };
 use crate::results::{Cell, Claim, Record, Table};
-use crate::statistics::{Interval, ratio_interval};
 
 /// Computation times at equal rays, for each scene of the paper; the first claim has the table of
 /// errors in equal time.
@@ -28,8 +25,10 @@ fn increase(measured: &Measured<'_>) -> Claim {
         .iter()
         .flat_map(|weights| {
             optimisations().map(move |(number, rule)| {
-                let interval = of_rules(measured, weights, [rule, NONE], seconds_per_ray);
-                (format!("{weights} {number}"), interval)
+                let parts = WEIGHTS.len() * (RULES.len() - 1);
+                let rules = [rule, NONE];
+                let ratio = measured.ratio(weights, rules, seconds_per_ray, shared(parts));
+                (format!("{weights} {number}"), ratio)
             })
         })
         .collect();
@@ -51,18 +50,6 @@ fn increase(measured: &Measured<'_>) -> Claim {
     )
 }
 
-/// The ratio of two rules under these weights.
-fn of_rules(
-    measured: &Measured<'_>,
-    weights: &str,
-    rules: [&str; 2],
-    quantity: Quantity,
-) -> Option<Interval> {
-    let methods = rules.map(|rule| method_name(weights, rule));
-    let methods = [methods[0].as_str(), methods[1].as_str()];
-    measured.ratio(methods, quantity, shared(WEIGHTS.len() * (RULES.len() - 1)))
-}
-
 /// Errors in equal time, of all scenes.
 fn equal_time(records: &[Record]) -> Table {
     let mut rows = Vec::new();
@@ -70,22 +57,22 @@ fn equal_time(records: &[Record]) -> Table {
     for scene in scenes {
         let measured = Measured { records, scene };
         for weights in WEIGHTS {
-            let base = method_name(weights, NONE);
+            let by_seconds = judged(weights).by_seconds;
             let relative = |(_, rule): (usize, &str)| {
-                let method = method_name(weights, rule);
-                cell(measured.ratio([&method, &base], trimmed_by_seconds, CONFIDENCE))
+                cell(measured.ratio(weights, [rule, NONE], by_seconds, CONFIDENCE))
             };
             let mut row = vec![
                 text(scene),
                 text(weights),
-                Cell::Number(measured.mean(&base, seconds)),
+                Cell::Number(measured.mean(weights, NONE, seconds)),
             ];
             row.extend(optimisations().map(relative));
             rows.push(row);
         }
     }
     table(
-        "Errors without the worst 0.1 % of pixels in equal time, relative to none (95 % intervals).",
+        "RMS errors in equal time, relative to none (95 % intervals); under uniform weights without the \
+         worst 0.1 % of pixels.",
         &["scene", "weights", "seconds of none", "1", "2", "3"],
         rows,
     )
@@ -108,14 +95,14 @@ pub fn rooms(records: &[Record]) -> Vec<Claim> {
 }
 
 fn rooms_under(records: &[Record], weights: &str) -> Claim {
-    let methods = [RULES[3], NONE].map(|rule| method_name(weights, rule));
-    let methods = [methods[0].as_str(), methods[1].as_str()];
-    let gains = |scene| Measured { records, scene }.ratios(methods, trimmed_by_rays);
+    let rules = [RULES[3], NONE];
+    let by_rays = judged(weights).by_rays;
+    let gains = |scene| Measured { records, scene }.ratios(weights, rules, by_rays);
     let apartment = gains(APARTMENT);
     let ratios: Vec<_> = ROOMS
         .iter()
         .map(|(scene, _)| {
-            let ratio = ratio_interval(&apartment, &gains(scene), shared(ROOMS.len()));
+            let ratio = ratio_of(&apartment, &gains(scene), shared(ROOMS.len()));
             (*scene, ratio)
         })
         .collect();
@@ -123,7 +110,7 @@ fn rooms_under(records: &[Record], weights: &str) -> Claim {
         records,
         scene: APARTMENT,
     };
-    let own = own.ratio(methods, trimmed_by_rays, CONFIDENCE);
+    let own = own.ratio(weights, rules, by_rays, CONFIDENCE);
     let parts: Vec<_> = ratios
         .iter()
         .map(|(scene, ratio)| format!("over that in scene {scene}: {}", words(*ratio)))
@@ -139,7 +126,8 @@ fn rooms_under(records: &[Record], weights: &str) -> Claim {
             .iter()
             .map(|(_, ratio)| judge(*ratio, Expected::Below(1.0)))),
         format!(
-            "Error of optimisation 3 in the apartment at equal rays, relative to none: {}; {}.",
+            "{} of optimisation 3 in the apartment at equal rays, relative to none: {}; {}.",
+            judged(weights).name,
             words(own),
             parts.join("; ")
         ),
