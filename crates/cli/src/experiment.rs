@@ -150,16 +150,16 @@ fn machine() -> Machine {
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_) => Exit::Scene,
-        ExperimentError::Mismatch(_) => Exit::FilmMismatch,
+        ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,
     };
     let text = error.to_string();
     match (error.hint().map(str::to_owned), error) {
-        (_, ExperimentError::Reference { error, .. }) => {
+        (hint, ExperimentError::Reference { error, .. }) => {
             let exit = reference::failure(error).exit();
-            let hint = "make it anew with `bidir reference`, or all of it with --restart";
-            Failure::new(exit, text).with_hint(hint)
+            let anew = "make it anew with `bidir reference`, or all of it with --restart";
+            Failure::new(exit, text).with_hint(hint.unwrap_or_else(|| anew.to_owned()))
         }
         // These can show their lines.
         (_, ExperimentError::File(error)) => {

@@ -246,6 +246,11 @@ pub(crate) fn failure(error: Error) -> Failure {
             let hint = "make one anew with `bidir reference`, in another folder or with --restart";
             Failure::new(Exit::Validation, text).with_hint(hint)
         }
+        Error::Disagree { .. } => {
+            let hint =
+                "see what more samples say, with --extend, or other estimators, with --against";
+            Failure::new(Exit::Validation, text).with_hint(hint)
+        }
         Error::TooLong { found, .. } => Failure::new(Exit::FilmMismatch, text).with_hint(format!(
             "ask for --spp {found}, or begin anew with --restart"
         )),

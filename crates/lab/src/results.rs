@@ -63,6 +63,10 @@ pub struct SceneInfo {
     pub reference: String,
     /// The reference image, relative to the folder of the results.
     pub reference_image: Option<String>,
+    /// The mean square error that the reference's own noise makes, and that is in every error: the mean
+    /// variance of its pixels and channels. None: nobody knows, as of an image without variances.
+    #[serde(default)]
+    pub reference_mse: Option<f64>,
 }
 
 /// A method: how scenes are rendered.
@@ -140,9 +144,9 @@ pub struct Record {
     pub connections_blocked: u64,
     /// Distances from the reference, by the names of [`Metric::NAMES`](crate::metric::Metric::NAMES).
     pub metrics: BTreeMap<String, f64>,
-    /// 1 / (MSE · rays).
+    /// 1 / (MSE · rays), training included.
     pub efficiency_rays: f64,
-    /// 1 / (MSE · seconds).
+    /// 1 / (MSE · seconds), training included.
     pub efficiency_seconds: f64,
     /// The image, relative to the folder of the results, where it was kept.
     pub image: Option<String>,

@@ -49,7 +49,8 @@ pub(crate) struct ExperimentArgs {
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) output: PathBuf,
     /// Begin anew; without it, records of the same experiment in the folder are gone on from, and
-    /// those of another are refused. References of the same scene and settings stay.
+    /// those of another are refused, and those of another machine, program or number of threads.
+    /// References of the same scene and settings stay.
     #[arg(long)]
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references. Of

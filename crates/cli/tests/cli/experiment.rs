@@ -148,6 +148,14 @@ fn another_experiment_needs_to_begin_anew() {
         .run("experiment test.toml -o out")
         .expect(5)
         .says("--restart");
-    place.run("experiment test.toml -o out --restart").expect(0);
+    place
+        .run("experiment test.toml -o out --restart --threads 1")
+        .expect(0);
     assert_eq!(records(&place, "out").len(), 12);
+    // Times of other threads are other times.
+    place
+        .run("experiment test.toml -o out --threads 2")
+        .expect(5)
+        .says("1 threads, here 2 threads")
+        .says("--threads");
 }

@@ -86,6 +86,7 @@ fn scene(name: &str) -> SceneInfo {
                     each, whose means agree in all 48 blocks at the level 0.001"
                 .into(),
         reference_image: Some(format!("references/{name}.exr")),
+        reference_mse: Some(2.5e-7),
     }
 }
 

@@ -26,6 +26,15 @@ pub enum ExperimentError {
     /// The folder has the records of another experiment.
     #[error("{}: the records are of another experiment", .0.display())]
     Mismatch(PathBuf),
+    /// The folder has records of another machine, or of another program or number of threads.
+    #[error("{}: the records were made elsewhere, and times of both cannot be compared: {difference}",
+        folder.display())]
+    Elsewhere {
+        /// The folder.
+        folder: PathBuf,
+        /// Where, and where this is.
+        difference: String,
+    },
     /// An image has another size than its reference.
     #[error("{}: the reference of `{scene}` has {} x {} pixels, its images have {} x {}",
         path.display(), found[0], found[1], expected[0], expected[1])]
@@ -38,6 +47,19 @@ pub enum ExperimentError {
         found: [usize; 2],
         /// Width and height of the images.
         expected: [usize; 2],
+    },
+    /// A reference has pixels with which nothing can be compared.
+    #[error("{}: the reference of `{scene}` has {count} pixels that are not finite, the first at {},{}",
+        path.display(), first[0], first[1])]
+    NotFinite {
+        /// The reference.
+        path: PathBuf,
+        /// The scene.
+        scene: String,
+        /// How many such pixels there are.
+        count: usize,
+        /// The first in reading order, from the left and from the top.
+        first: [usize; 2],
     },
     /// A reference cannot be made or used.
     #[error("the reference of scene `{scene}`: {error}")]
@@ -66,6 +88,18 @@ impl ExperimentError {
             Self::Mismatch(_) => {
                 Some("give another folder with -o, or begin anew in this one with --restart")
             }
+            Self::Elsewhere { .. } => Some(
+                "go on there, or with the same --threads; else give another folder with -o, or begin \
+                 anew in this one with --restart",
+            ),
+            Self::NotFinite { .. } => Some("render it anew, or give these pixels a colour"),
+            Self::Reference {
+                error: reference::Error::Disagree { .. },
+                ..
+            } => Some(
+                "it stays where it is; see what more samples say (`reference-spp`), or name as \
+                 `reference` one of other estimators, by `bidir reference --estimator … --against …`",
+            ),
             Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,
         }

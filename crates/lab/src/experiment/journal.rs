@@ -1,25 +1,58 @@
 //! The records so far, on the disk.
 //!
-//! The first line says whose they are; every other line is a record. The file is replaced as a whole.
+//! The first line says whose they are, and of which machine; every other line is a record. The file is
+//! replaced as a whole.
 
 use super::error::ExperimentError;
-use crate::results::Record;
+use crate::results::{Machine, Record};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The name of the file.
 const FILE: &str = "records.ndjson";
 /// The version of its format.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// The first line.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Head {
     format: u32,
-    /// The hash of everything that records depend on.
-    experiment: String,
+    #[serde(flatten)]
+    owner: Owner,
+}
+
+/// Whose records they are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Owner {
+    /// The hash of everything that records depend on, but for their times.
+    pub(super) experiment: String,
+    /// The program with its version.
+    pub(super) program: String,
+    /// What it ran on.
+    pub(super) machine: Machine,
+}
+
+impl Owner {
+    /// In what else than the experiment this one differs from another, on which times depend. None: in
+    /// nothing.
+    fn difference(&self, here: &Self) -> Option<String> {
+        let parts = |owner: &Self| {
+            let Machine {
+                processor,
+                threads,
+                isa,
+                system,
+            } = owner.machine.clone();
+            let threads = format!("{threads} threads");
+            [owner.program.clone(), processor, threads, isa, system]
+        };
+        let pairs = parts(self).into_iter().zip(parts(here));
+        let different = pairs.filter(|(there, here)| there != here);
+        let words: Vec<_> = different
+            .map(|(there, here)| format!("{there}, here {here}"))
+            .collect();
+        (!words.is_empty()).then(|| words.join("; "))
+    }
 }
 
 /// The records of an experiment.
@@ -34,16 +67,16 @@ impl Journal {
     /// A journal without records, in place of what is there.
     ///
     /// Errors: it cannot be written.
-    pub(super) fn begin(folder: &Path, experiment: &str) -> Result<Self, ExperimentError> {
-        let journal = Self::new(folder, experiment);
+    pub(super) fn begin(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
+        let journal = Self::new(folder, owner);
         journal.write()?;
         Ok(journal)
     }
 
-    fn new(folder: &Path, experiment: &str) -> Self {
+    fn new(folder: &Path, owner: &Owner) -> Self {
         let head = Head {
             format: FORMAT,
-            experiment: experiment.to_owned(),
+            owner: owner.clone(),
         };
         Self {
             path: folder.join(FILE),
@@ -54,9 +87,10 @@ impl Journal {
 
     /// The journal that is there, or an empty one.
     ///
-    /// Errors: it cannot be read, or is of another experiment.
-    pub(super) fn open(folder: &Path, experiment: &str) -> Result<Self, ExperimentError> {
-        let mut journal = Self::new(folder, experiment);
+    /// Errors: it cannot be read, is of another experiment, or of another machine or program: times
+    /// that are compared are of one.
+    pub(super) fn open(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
+        let mut journal = Self::new(folder, owner);
         let text = match std::fs::read_to_string(&journal.path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
@@ -67,16 +101,15 @@ impl Journal {
         };
         let others = || ExperimentError::Mismatch(folder.to_owned());
         let mut lines = text.lines();
-        let head = lines
+        let head: Option<Head> = lines
             .next()
             .and_then(|line| serde_json::from_str(line).ok());
-        if head
-            != Some(Head {
-                format: FORMAT,
-                experiment: experiment.to_owned(),
-            })
-        {
-            return Err(others());
+        let is_same =
+            |head: &Head| head.format == FORMAT && head.owner.experiment == owner.experiment;
+        let there = head.filter(is_same).ok_or_else(others)?.owner;
+        if let Some(difference) = there.difference(owner) {
+            let folder = folder.to_owned();
+            return Err(ExperimentError::Elsewhere { folder, difference });
         }
         let records = lines.map(serde_json::from_str).collect::<Result<_, _>>();
         journal.records = records.map_err(|_| others())?;
@@ -113,14 +146,4 @@ impl Journal {
 fn line(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value);
     text.expect("texts and numbers have a JSON") + "\n"
-}
-
-/// SHA-256 in hexadecimal.
-pub(super) fn hash(text: &str) -> String {
-    let mut hash = String::new();
-    for byte in Sha256::digest(text.as_bytes()) {
-        // Writing to a string cannot fail.
-        let _ = write!(hash, "{byte:02x}");
-    }
-    hash
 }

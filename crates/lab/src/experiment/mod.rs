@@ -8,14 +8,15 @@
 //!
 //! | file | is |
 //! |---|---|
-//! | `records.ndjson` | whose records these are, and a record per line; replaced after each render |
+//! | `records.ndjson` | whose records these are and of which machine, and a record per line; replaced after each render |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
 //! | `images/` | the pictures of the first seed, EXR |
 //! | `references/` | references that were made here |
 //!
 //! # Budgets
 //!
-//! With r̄ the mean cost of the passes so far, of training too, a render of the cost c goes on
+//! With c the cost so far, that of training included, and r̄ the mean cost of a pass, without it, a render
+//! goes on
 //!
 //! - to equal *samples* n: while there are fewer than n passes;
 //! - to equal *rays* R: while c + r̄ is nearer to R than c is. Rays are functions of scene, settings and
@@ -34,6 +35,7 @@ pub mod analysis;
 mod cell;
 mod description;
 mod error;
+mod identity;
 mod journal;
 mod names;
 mod reader;
@@ -100,10 +102,11 @@ pub struct SceneSpec {
 /// What images are compared with.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceSpec {
-    /// The folder of a [reference](mod@crate::reference) that is there, or an image.
+    /// The folder of a [reference](mod@crate::reference) that is there, or an image; its pixels are finite.
+    /// It is what its pixels are: another folder with the same ones makes no other experiment.
     There(PathBuf),
     /// A reference that is made first, and kept in the folder of the results: by `bdpt` that traces
-    /// every connection, with a witness.
+    /// every connection, with a witness; where they disagree, nothing is compared with it.
     Make {
         /// Samples per pixel.
         spp: u64,

@@ -2,13 +2,13 @@
 
 use super::ReferenceSpec;
 use super::error::ExperimentError;
-use super::journal::hash;
+use super::identity::hash;
 use super::names::file_name;
 use super::run::{Event, Observer, Setup};
 use super::settings::{Changes, texts};
 use super::stage::{Reference, Stage};
 use crate::image::Pixels;
-use crate::reference::{self as references, Host, Made, Plan, Provenance, Subject};
+use crate::reference::{self as references, Host, Made, Plan, Subject};
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
@@ -19,24 +19,38 @@ use std::sync::{Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The reference of a scene. None: the observer stopped its making.
-pub(super) fn obtain(
-    stage: &Stage<'_>,
-    setup: &Setup,
-    threads: usize,
-    observer: &mut dyn Observer,
-) -> Result<Option<Reference>> {
+/// The reference of a scene, where it is there already.
+///
+/// Errors: it cannot be read, is damaged or stale, its estimators disagree, it is of another scene or
+/// size, or it has pixels that are not finite.
+pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
     match &stage.spec.reference {
         ReferenceSpec::There(path) if path.is_dir() => load(stage, path, None).map(Some),
         ReferenceSpec::There(path) => Ok(Some(Reference {
             pixels: read(path, stage)?,
             words: format!("the image {}", path.display()),
             image: None,
+            mse: stored_mse(path),
         })),
-        ReferenceSpec::Make { spp, changes } => {
-            make(stage, &plan(stage, *spp, changes), setup, threads, observer)
-        }
+        ReferenceSpec::Make { .. } => Ok(None),
     }
+}
+
+/// The reference of a scene: the [`given`] one, or else it is made. None: the observer stopped that.
+///
+/// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
+/// it.
+pub(super) fn obtain(
+    stage: &Stage<'_>,
+    given: Option<Reference>,
+    setup: &Setup,
+    threads: usize,
+    observer: &mut dyn Observer,
+) -> Result<Option<Reference>> {
+    let ReferenceSpec::Make { spp, changes } = &stage.spec.reference else {
+        return Ok(given);
+    };
+    make(stage, &plan(stage, *spp, changes), setup, threads, observer)
 }
 
 /// A reference that is there; `name` is its folder in that of the results, if it lies there.
@@ -45,15 +59,20 @@ fn load(stage: &Stage<'_>, folder: &Path, name: Option<&str>) -> Result<Referenc
     let loaded = references::Reference::load(folder).map_err(of_scene)?;
     let checked = loaded.check(&stage.digest, stage.scene.film());
     checked.map_err(of_scene)?;
-    Ok(new(loaded.picture, &loaded.provenance, name))
+    new(stage, loaded, name)
 }
 
-fn new(pixels: Pixels, provenance: &Provenance, name: Option<&str>) -> Reference {
-    Reference {
-        pixels,
-        words: provenance.summary(),
+fn new(
+    stage: &Stage<'_>,
+    reference: references::Reference,
+    name: Option<&str>,
+) -> Result<Reference> {
+    Ok(Reference {
+        mse: reference.mse(),
+        words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
-    }
+        pixels: finite(reference.picture, &reference.folder, stage)?,
+    })
 }
 
 fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
@@ -74,7 +93,32 @@ fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
             expected: stage.size(),
         });
     }
-    Ok(pixels)
+    finite(pixels, path, stage)
+}
+
+/// Refuses pixels that are not finite: no error is a number there.
+fn finite(pixels: Pixels, path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+    let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
+    let Some(first) = pixels.data.iter().position(is_bad) else {
+        return Ok(pixels);
+    };
+    let width = pixels.size[0];
+    Err(ExperimentError::NotFinite {
+        path: path.to_owned(),
+        scene: stage.spec.name.clone(),
+        count: pixels.data.iter().filter(|pixel| is_bad(pixel)).count(),
+        first: [first % width, first / width],
+    })
+}
+
+/// The mean square error of an image that has the variances of its pixels beside it.
+fn stored_mse(path: &Path) -> Option<f64> {
+    let layers = formats::image::read_layers(path).ok()?;
+    let variance = Pixels {
+        size: layers.size(),
+        data: layers.triples(["Variance.R", "Variance.G", "Variance.B"])?,
+    };
+    variance.mean().filter(|mse| mse.is_finite())
 }
 
 /// How a reference is made: as usual, where all strategies take part. Else paths may be missing, which
@@ -129,12 +173,9 @@ fn make(
     let Made::Whole(reference) = made.map_err(|error| failed(stage, error))? else {
         return Ok(None);
     };
-    if !reference.provenance.agreement.agree {
-        let warning = format!("{name}: the estimators of the reference disagree");
-        observer.tell(Event::Warning(&warning));
-    }
-    let reference = new(reference.picture, &reference.provenance, Some(&name));
-    Ok(Some(reference))
+    let usable = reference.provenance.check_usable(&path);
+    usable.map_err(|error| failed(stage, error))?;
+    new(stage, *reference, Some(&name)).map(Some)
 }
 
 /// Tells an observer of a reference that is made.

@@ -1,15 +1,16 @@
 //! From a description to results.
 
 use super::Experiment;
+use super::analysis::reference_noise;
 use super::cell::Cell;
 use super::error::ExperimentError;
-use super::journal::{Journal, hash};
+use super::identity::identity;
+use super::journal::{Journal, Owner};
+use super::reference;
 use super::settings::texts;
 use super::stage::{Reference, Stage};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
-use bidir::ESTIMATOR_VERSION;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -30,7 +31,8 @@ pub struct Setup {
 /// What becomes of records that are there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// They stay, and what is missing is rendered.
+    /// They stay, and what is missing is rendered. Those of another experiment, machine or program are
+    /// refused.
     Resume,
     /// They go; references of the same scene and settings stay.
     Anew,
@@ -55,7 +57,7 @@ pub trait Observer: Send {
 /// What happens.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// Something is odd with a scene or its reference.
+    /// Something is odd with a scene or its reference, such as much noise.
     Warning(&'a str),
     /// A pass of a reference begins, of one of its two estimators.
     Reference {
@@ -109,14 +111,20 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));
     }
-    let identity = hash(&identity(experiment, &stages));
+    let given = stages.iter().map(reference::given);
+    let given = given.collect::<Result<Vec<_>>>()?;
+    let owner = Owner {
+        experiment: identity(experiment, &stages, &given),
+        program: setup.program.clone(),
+        machine: machine(experiment, setup),
+    };
     let mut journal = match setup.start {
-        Start::Resume => Journal::open(&setup.folder, &identity)?,
-        Start::Anew => Journal::begin(&setup.folder, &identity)?,
+        Start::Resume => Journal::open(&setup.folder, &owner)?,
+        Start::Anew => Journal::begin(&setup.folder, &owner)?,
     };
     let mut references = Vec::new();
-    for stage in &stages {
-        match stage.reference(setup, experiment.threads, observer)? {
+    for (stage, given) in stages.iter().zip(given) {
+        match reference::obtain(stage, given, setup, experiment.threads, observer)? {
             Some(reference) => references.push(reference),
             None => {
                 return Ok(Outcome {
@@ -134,11 +142,22 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     };
     let end = work.render(&mut journal, observer)?;
     let results = work.results(journal.records());
+    for noise in reference_noise(&results).filter(|noise| noise.is_large()) {
+        observer.tell(Event::Warning(&noise.words()));
+    }
     write_results(&setup.folder, &results)?;
     Ok(Outcome {
         end,
         results: Some(results),
     })
+}
+
+/// What an experiment runs on.
+fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
+    Machine {
+        threads: experiment.threads,
+        ..setup.machine.clone()
+    }
 }
 
 /// Writes `results.json` into the folder of the results.
@@ -150,31 +169,6 @@ pub fn write_results(folder: &Path, results: &Results) -> Result<()> {
 fn json(results: &Results) -> String {
     let text = serde_json::to_string_pretty(results);
     text.expect("texts and numbers have a JSON") + "\n"
-}
-
-/// All that records depend on.
-fn identity(experiment: &Experiment, stages: &[Stage<'_>]) -> String {
-    let mut text = format!(
-        "estimator {ESTIMATOR_VERSION}\nseeds {:?}\nthreads {}\nmetrics {:?}\nbudgets {:?}\n",
-        experiment.seeds, experiment.threads, experiment.metrics, experiment.budgets
-    );
-    for stage in stages {
-        let spec = stage.spec;
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "scene {:?} {} {:?} {:?}",
-            spec.name,
-            stage.digest,
-            stage.size(),
-            spec.reference
-        );
-        for method in &experiment.methods {
-            let settings = texts(&method.changes.apply(&stage.settings));
-            let _ = writeln!(text, "method {:?} {settings:?}", method.name);
-        }
-    }
-    text
 }
 
 /// What is rendered and compared.
@@ -264,10 +258,7 @@ impl Work<'_> {
             title: experiment.title.clone(),
             description: experiment.description.clone(),
             program: setup.program.clone(),
-            machine: Machine {
-                threads: experiment.threads,
-                ..setup.machine.clone()
-            },
+            machine: machine(experiment, setup),
             scenes: scenes
                 .map(|(stage, reference)| stage.info(reference))
                 .collect(),

@@ -1,8 +1,6 @@
 //! A scene that is ready to be rendered and compared.
 
 use super::error::ExperimentError;
-use super::reference;
-use super::run::{Observer, Setup};
 use super::{Experiment, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
@@ -28,6 +26,8 @@ pub(super) struct Reference {
     pub(super) words: String,
     /// The image, relative to the folder of the results, if it lies there.
     pub(super) image: Option<String>,
+    /// The mean square error of its own. None: nobody knows.
+    pub(super) mse: Option<f64>,
 }
 
 impl<'a> Stage<'a> {
@@ -79,16 +79,6 @@ impl<'a> Stage<'a> {
         [crop.width() as usize, crop.height() as usize]
     }
 
-    /// The reference; it is rendered where there is none yet. None: the observer stopped it.
-    pub(super) fn reference(
-        &self,
-        setup: &Setup,
-        threads: usize,
-        observer: &mut dyn Observer,
-    ) -> Result<Option<Reference>, ExperimentError> {
-        reference::obtain(self, setup, threads, observer)
-    }
-
     pub(super) fn info(&self, reference: &Reference) -> SceneInfo {
         SceneInfo {
             name: self.spec.name.clone(),
@@ -97,6 +87,7 @@ impl<'a> Stage<'a> {
             size: self.size(),
             reference: reference.words.clone(),
             reference_image: reference.image.clone(),
+            reference_mse: reference.mse,
         }
     }
 }

@@ -8,6 +8,7 @@ mod resample;
 pub use resample::resample;
 
 use formats::image::ImageData;
+use sha2::{Digest, Sha256};
 
 /// Linear colours, row by row from the top left.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +72,22 @@ impl<'a> Pair<'a> {
     }
 }
 
+/// The SHA-256 of the sizes and numbers of images, in hexadecimal.
+pub fn digest(images: &[&Pixels]) -> String {
+    let mut hash = Sha256::new();
+    for pixels in images {
+        for side in pixels.size {
+            hash.update((side as u64).to_le_bytes());
+        }
+        for channel in pixels.data.iter().flatten() {
+            hash.update(channel.to_le_bytes());
+        }
+    }
+    let bytes = hash.finalize();
+    let digits = bytes.iter().map(|byte| format!("{byte:02x}"));
+    digits.collect()
+}
+
 /// True where both have the same size, and the same bits in every channel.
 pub fn identical(a: &Pixels, b: &Pixels) -> bool {
     let bits = |pixel: &[f32; 3]| pixel.map(f32::to_bits);
@@ -96,6 +113,19 @@ mod tests {
         let mut turned = image(&[[0.0; 3], [0.0; 3]]);
         turned.size = [1, 2];
         assert!(!identical(&turned, &image(&[[0.0; 3], [0.0; 3]])));
+    }
+
+    #[test]
+    fn digests_are_of_sizes_and_bits() {
+        let (one, two) = (image(&[[1.0; 3]]), image(&[[1.0; 3]; 2]));
+        assert_eq!(digest(&[&one]), digest(&[&one.clone()]));
+        let others = [
+            digest(&[&two]),
+            digest(&[&one, &one]),
+            digest(&[&image(&[[-0.0; 3]])]),
+        ];
+        assert!(others.iter().all(|other| *other != digest(&[&one])));
+        assert_ne!(digest(&[&image(&[[0.0; 3]])]), others[2]);
     }
 
     #[test]

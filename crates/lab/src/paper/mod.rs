@@ -24,7 +24,9 @@
 //! Renders end after whole passes, so costs are equal to half a pass. As samples are independent,
 //! E(error²) · samples is a constant, and so is error² · cost: √(error² · rays) and √(error² · seconds)
 //! are compared, which is the error at exactly equal cost. Ratios are paired by seed. Under uniform
-//! weights, whose variance is infinite near edges, errors without the worst pixels decide.
+//! weights, whose variance is infinite near edges, errors without the worst pixels decide. Training, of
+//! ray roulette alone, is in the rays of the budget and in the seconds, and not in the rays that errors
+//! are scaled by: it is as long however many samples follow.
 
 pub mod claims;
 pub mod contributions;

@@ -4,6 +4,7 @@ use super::agreement::agreement;
 use super::provenance::{EstimatorRecord, FORMAT, Provenance};
 use super::replicate::{Estimator, Replicates, film};
 use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
+use crate::image::digest;
 use crate::results::Rays;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Settings};
@@ -200,7 +201,7 @@ fn finish(
         crop: header.crop,
         estimators: [0, 1].map(|i| record(&plan.estimators[i], i as u64, &made[i].header)),
         agreement,
-        picture: picture::digest(&picture, &variance),
+        picture: digest(&[&picture, &variance]),
     };
     provenance.write(folder)?;
     Ok(Reference {

@@ -40,7 +40,7 @@ pub use agreement::{Agreement, Comparison};
 pub use make::{Host, Made, Plan, Subject, clear, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
-use crate::image::Pixels;
+use crate::image::{Pixels, digest};
 use crate::statistics::Estimated;
 use bidir::driver::SessionError;
 use bidir::film::{FilmSettings, MergeError};
@@ -91,6 +91,14 @@ pub enum Error {
         folder: PathBuf,
         /// What is wrong.
         reason: String,
+    },
+    /// Its estimators disagree.
+    #[error("{}: refused: its estimators disagree (p = {p:e} at level {LEVEL})", folder.display())]
+    Disagree {
+        /// The folder of the reference.
+        folder: PathBuf,
+        /// The probability of a difference at least as large where there is none.
+        p: f64,
     },
     /// A film has more passes than are asked for.
     #[error(
@@ -154,14 +162,10 @@ impl Reference {
     /// estimators disagree. Of which scene it has to be, [`Self::check`] asks.
     pub fn load(folder: &Path) -> Result<Self, Error> {
         let provenance = Provenance::read(folder)?;
-        let refused = |reason| Error::Refused {
-            folder: folder.to_owned(),
-            reason,
-        };
-        provenance.check_usable().map_err(refused)?;
+        provenance.check_usable(folder)?;
         let file = folder.join(PICTURE);
         let [picture, variance] = picture::read(&file)?;
-        if picture::digest(&picture, &variance) != provenance.picture {
+        if digest(&[&picture, &variance]) != provenance.picture {
             let reason = format!("it is not the picture that {PROVENANCE} is about");
             return Err(Error::damaged(&file, reason));
         }
@@ -176,6 +180,13 @@ impl Reference {
     /// Refuses it for another scene than the one with this digest, and for another film.
     pub fn check(&self, digest: &str, film: &FilmSettings) -> Result<(), Error> {
         self.provenance.check(&self.folder, digest, film)
+    }
+
+    /// The mean square error that its noise makes: the mean variance of pixels and channels.
+    ///
+    /// None: it is not a number, or there are no pixels.
+    pub fn mse(&self) -> Option<f64> {
+        self.variance.mean().filter(|mse| mse.is_finite())
     }
 
     /// The picture with its variances, to be tested against.

@@ -5,7 +5,6 @@ use crate::image::Pixels;
 use bidir::film::{Film, Picture};
 use formats::film::FilmHeader;
 use formats::image::{ExrImage, ExrLayer, read_layers, write_exr};
-use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// The picture and its variances of a developed film.
@@ -53,20 +52,4 @@ pub(super) fn read(path: &Path) -> Result<[Pixels; 2], Error> {
         image(["R", "G", "B"])?,
         image(["Variance.R", "Variance.G", "Variance.B"])?,
     ])
-}
-
-/// The SHA-256 of the numbers of a picture and its variances.
-pub(super) fn digest(picture: &Pixels, variance: &Pixels) -> String {
-    let mut hash = Sha256::new();
-    for pixels in [picture, variance] {
-        for side in pixels.size {
-            hash.update((side as u64).to_le_bytes());
-        }
-        for channel in pixels.data.iter().flatten() {
-            hash.update(channel.to_le_bytes());
-        }
-    }
-    let bytes = hash.finalize();
-    let digits = bytes.iter().map(|byte| format!("{byte:02x}"));
-    digits.collect()
 }

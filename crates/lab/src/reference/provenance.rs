@@ -119,23 +119,24 @@ impl Provenance {
         format!("{first}; {agree} with {second} (p = {p:.3}, level {level})")
     }
 
-    /// Fails, with the reason, where nothing should be measured against it, whatever the scene.
-    pub(super) fn check_usable(&self) -> Result<(), String> {
+    /// Refuses the reference in `folder` where nothing should be measured against it, whatever the
+    /// scene: its estimators disagree, or another version of them made it.
+    pub fn check_usable(&self, folder: &Path) -> Result<(), Error> {
+        let folder = folder.to_owned();
         let version = self.estimator_version;
         if version != ESTIMATOR_VERSION {
-            return Err(format!(
+            let reason = format!(
                 "stale: made by version {version} of the estimators, this program has \
                  {ESTIMATOR_VERSION}"
-            ));
+            );
+            return Err(Error::Refused { folder, reason });
         }
         let Agreement { agree, p, .. } = &self.agreement;
         // A reference of a laxer level is no reference here.
         if *agree && *p >= LEVEL {
             return Ok(());
         }
-        Err(format!(
-            "its estimators disagree (p = {p:e} at level {LEVEL})"
-        ))
+        Err(Error::Disagree { folder, p: *p })
     }
 
     /// Refuses the reference in `folder` for another scene than the one with this digest, and for

@@ -3,6 +3,7 @@
 use super::markup::{Element, element};
 use super::{Report, definitions};
 use crate::metric::Metric;
+use crate::statistics::RATIOS;
 
 /// How to make all of it again.
 pub(super) fn again(report: &Report<'_>) -> Element {
@@ -63,17 +64,19 @@ fn meaning(metric: Metric) -> &'static str {
     }
 }
 
-const WORDS: [(&str, &str); 8] = [
+const WORDS: [(&str, &str); 9] = [
     (
         "efficiency",
         "1 / (mean square error · cost), with the cost in rays or in seconds. Twice the efficiency \
-         gives the same error for half the cost.",
+         gives the same error for half the cost. Training is part of both costs.",
     ),
     (
         "interval [low, high]",
         "Such intervals contain the true value in the stated share of repetitions of the whole \
-         experiment; 95 of 100 where nothing else is said. They are taken over independent seeds.",
+         experiment; 95 of 100 where nothing else is said. They are taken over independent \
+         seeds; those of means are Student's.",
     ),
+    ("ratio", RATIOS),
     (
         "reproduced, not reproduced, undecided",
         "What is claimed is what was found, or is not, and the intervals leave no doubt; or they do.",
@@ -81,7 +84,7 @@ const WORDS: [(&str, &str); 8] = [
     (
         "reference",
         "An image that is as good as exact: rendered with far more samples than what is compared \
-         with it, as described for each scene.",
+         with it, as described for each scene. Its own noise is in all errors.",
     ),
     (
         "samples per pixel, spp",
@@ -90,7 +93,7 @@ const WORDS: [(&str, &str); 8] = [
     (
         "rays",
         "Rays of all kinds: those of both walks, shadow rays between them, shadow rays to the \
-         camera, and those of training.",
+         camera, and those of training, which the claims on the 1995 paper leave out.",
     ),
     (
         "seed",

@@ -4,6 +4,7 @@ use super::definitions;
 use super::markup::{Element, element};
 use super::number::number;
 use super::table::table;
+use crate::experiment::analysis::reference_noise;
 use crate::results::{BudgetInfo, BudgetKind, Cell, MethodInfo, Results, SceneInfo, Table};
 use std::collections::BTreeSet;
 
@@ -14,7 +15,7 @@ pub(super) fn section(results: &Results) -> Element {
         .children(methods(&results.methods))
         .child(element("h3").text("Scenes"))
         .child(table(&scenes(&results.scenes)))
-        .children(results.scenes.iter().map(reference))
+        .children(results.scenes.iter().map(|scene| reference(results, scene)))
         .child(element("h3").text("Budgets"))
         .child(table(&budgets(&results.budgets)))
         .child(element("h3").text("Machine and seeds"))
@@ -119,13 +120,32 @@ fn scenes(scenes: &[SceneInfo]) -> Table {
 }
 
 /// What the images of a scene are compared with.
-fn reference(scene: &SceneInfo) -> Element {
+fn reference(results: &Results, scene: &SceneInfo) -> Element {
     let stored = scene.reference_image.as_ref();
     let stored = stored.map_or(String::new(), |file| format!(" ({file})"));
     element("p")
         .child(element("b").text(format!("Reference of {}: ", scene.name)))
         .text(&scene.reference)
         .text(stored)
+        .text(noise(results, scene))
+}
+
+/// How far the reference itself is from the truth. Empty where nobody knows.
+fn noise(results: &Results, scene: &SceneInfo) -> String {
+    let Some(mse) = scene.reference_mse else {
+        return String::new();
+    };
+    let mut noises = reference_noise(results);
+    let part = noises.find(|noise| noise.scene == scene.name);
+    let part = part.map_or(String::new(), |noise| {
+        let percent = number(100.0 * noise.share);
+        format!(
+            ", {percent} % of the smallest ({}, {})",
+            noise.method, noise.budget
+        )
+    });
+    let mse = number(mse);
+    format!(". The mean square error of its own is {mse}; it is in that of every image{part}.")
 }
 
 fn budgets(budgets: &[BudgetInfo]) -> Table {

@@ -72,6 +72,7 @@ fn results() -> Results {
             size: [2, 1],
             reference: "made with care".into(),
             reference_image: None,
+            reference_mse: None,
         }],
         methods: vec![method("first", "all"), method(HOSTILE, "per-pair")],
         budgets: vec![BudgetInfo {

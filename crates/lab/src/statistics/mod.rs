@@ -12,10 +12,11 @@
 mod blocks;
 mod bootstrap;
 mod interval;
+mod ratio;
 mod welch;
 
-pub use bootstrap::ratio_interval;
 pub use interval::{Interval, mean_interval};
+pub use ratio::{RATIOS, ratio_interval};
 pub use welch::{Difference, Estimated, WHOLE, smallest_bias, welch_test, z_test};
 
 use statrs::distribution::{ContinuousCDF, StudentsT};

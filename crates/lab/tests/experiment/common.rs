@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// A floor and a wall with a small light above them.
-const SCENE: &str = r#"
+pub(crate) const SCENE: &str = r#"
 LookAt 0 1 -4  0 1 0  0 1 0
 Camera "perspective" "float fov" 40
 Film "rgb" "integer xresolution" 16 "integer yresolution" 12
@@ -64,11 +64,22 @@ impl Workplace {
         out: &str,
         observer: &mut Watch,
     ) -> Result<Outcome, ExperimentError> {
+        self.run_on(&Machine::default(), text, out, observer)
+    }
+
+    /// Runs a description on a machine.
+    pub(crate) fn run_on(
+        &self,
+        machine: &Machine,
+        text: &str,
+        out: &str,
+        observer: &mut Watch,
+    ) -> Result<Outcome, ExperimentError> {
         let setup = Setup {
             folder: self.path(out),
             start: Start::Resume,
             program: "test".to_owned(),
-            machine: Machine::default(),
+            machine: machine.clone(),
         };
         experiment::run(&self.read(text)?, &setup, observer)
     }
@@ -79,6 +90,12 @@ impl Workplace {
         assert_eq!(outcome.end, End::Complete);
         outcome.results.unwrap()
     }
+
+    /// Why a description is refused.
+    #[track_caller]
+    pub(crate) fn refusal(&self, text: &str, out: &str) -> ExperimentError {
+        self.run(text, out, &mut Watch::default()).unwrap_err()
+    }
 }
 
 /// Stops after a number of renders, and has a clock that is one tick further at every look.
@@ -87,6 +104,7 @@ pub(crate) struct Watch {
     pub(crate) renders: usize,
     most: Option<usize>,
     pub(crate) resumed: usize,
+    pub(crate) warnings: Vec<String>,
     looks: std::cell::Cell<u32>,
 }
 
@@ -104,7 +122,8 @@ impl Observer for Watch {
         match event {
             Event::Record(_) => self.renders += 1,
             Event::Begin { done, .. } => self.resumed = done,
-            _ => {}
+            Event::Warning(text) => self.warnings.push(text.to_owned()),
+            Event::Reference { .. } => {}
         }
     }
 

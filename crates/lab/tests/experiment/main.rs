@@ -5,3 +5,4 @@
 mod common;
 mod descriptions;
 mod records;
+mod references;

@@ -1,6 +1,6 @@
 use crate::common::{DESCRIPTION, Watch, Workplace, without_times};
 use bidir_lab::experiment::{End, ExperimentError};
-use bidir_lab::results::Results;
+use bidir_lab::results::{Machine, Results};
 use std::fs;
 
 fn with_budget(budget: &str) -> String {
@@ -72,6 +72,31 @@ fn another_experiment_is_refused() {
     fs::write(place.path("room.pbrt"), scene + "# another\n").unwrap();
     let error = place.run(&text, "out", &mut Watch::default()).unwrap_err();
     assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
+}
+
+/// Of another machine, of another number of threads.
+#[test]
+fn times_are_of_one_machine() {
+    let place = Workplace::new();
+    let text = with_budget("samples = 1");
+    place.run(&text, "out", &mut Watch::until(2)).unwrap();
+    let other = Machine {
+        processor: "another one".to_owned(),
+        ..Machine::default()
+    };
+    let mut watch = Watch::default();
+    let error = place.run_on(&other, &text, "out", &mut watch).unwrap_err();
+    assert!(
+        matches!(error, ExperimentError::Elsewhere { .. }),
+        "{error}"
+    );
+    let message = error.to_string();
+    assert!(message.contains("here another one"), "{message}");
+    assert!(error.hint().unwrap().contains("--restart"));
+    let error = place.refusal(&text.replace("threads = 1", "threads = 2"), "out");
+    let message = error.to_string();
+    assert!(message.ends_with("1 threads, here 2 threads"), "{message}");
+    assert_eq!(place.complete(&text, "out").records.len(), 4);
 }
 
 /// The number of passes whose rays come nearest to the budget.

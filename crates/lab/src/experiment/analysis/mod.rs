@@ -4,14 +4,20 @@
 //! [`mean_interval`]. The second has ratios to the first method, paired by seed, with
 //! [`ratio_interval`]: of errors, and of the efficiencies
 //!
-//!   1 / (MSE · rays)  and  1 / (MSE · seconds).
+//!   1 / (MSE · rays)  and  1 / (MSE · seconds),
 //!
+//! whose costs have training in them, as the columns of rays and of seconds have.
+//!
+//! How much of the errors is the reference's is told by [`reference_noise`].
 //! Where several budgets are of one kind there is a plot of each metric over them. All intervals are
 //! of 95 %; a single seed has a number and no interval.
 
 mod curves;
+mod noise;
 #[cfg(test)]
 mod tests;
+
+pub use noise::{ReferenceNoise, reference_noise};
 
 use crate::results::{Cell, Plot, Record, Results, SceneInfo, Table};
 use crate::statistics::{Interval, mean_interval, ratio_interval};

@@ -54,6 +54,7 @@ fn results(seeds: u64) -> Results {
             size: [5, 10],
             reference: String::new(),
             reference_image: None,
+            reference_mse: None,
         }],
         methods: vec![method("first"), method("second"), method("not run")],
         budgets: vec![budget(64.0), budget(16.0)],
@@ -142,6 +143,30 @@ fn curves_go_over_all_budgets_of_a_kind() {
             .iter()
             .all(|[low, high]| *low > 0.0 && high > low)
     );
+}
+
+#[test]
+fn noise_of_the_reference_is_a_part_of_the_smallest_error() {
+    let mut results = results(3);
+    assert_eq!(reference_noise(&results).count(), 0);
+    // Of the second method with 64 samples: 0.5 · [1, 4, 0.5] / 64.
+    let least = 0.25 * (1.0 + 16.0 + 0.25) / 3.0 / (64.0 * 64.0);
+    for (part, share, is_large) in [(0.05, 0.05, false), (0.2, 0.2, true), (3.0, 1.0, true)] {
+        results.scenes[0].reference_mse = Some(part * least);
+        let noise = reference_noise(&results).next().unwrap();
+        assert_eq!((noise.method, noise.budget), ("second", "64 spp"));
+        assert!((noise.share - share).abs() < 1e-12, "{noise:?}");
+        assert_eq!(noise.is_large(), is_large);
+    }
+    assert!(
+        reference_noise(&results)
+            .next()
+            .unwrap()
+            .words()
+            .contains("100 % noise")
+    );
+    results.records.clear();
+    assert_eq!(reference_noise(&results).count(), 0);
 }
 
 #[test]

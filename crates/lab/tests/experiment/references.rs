@@ -1,0 +1,174 @@
+use crate::common::{DESCRIPTION, SCENE, Watch, Workplace};
+use bidir_lab::experiment::ExperimentError;
+use bidir_lab::reference::Error;
+use bidir_lab::results::Results;
+use formats::image::{ExrImage, ExrLayer, read_layers, write_exr};
+use std::fs;
+
+const MADE: &str = "reference-spp = 16";
+const BUDGET: &str = "[[budget]]\nsamples = 1\n";
+
+/// A workplace, the results of an experiment there, and its description with another reference.
+fn place() -> (Workplace, Results, impl Fn(&str) -> String) {
+    let place = Workplace::new();
+    let results = place.complete(&format!("{DESCRIPTION}{BUDGET}"), "made");
+    let given = |name: &str| {
+        let description = DESCRIPTION.replace(MADE, &format!("reference = \"{name}\""));
+        description + BUDGET
+    };
+    (place, results, given)
+}
+
+/// Writes the reference of an experiment as `name`, with other pixels.
+fn write_changed(
+    place: &Workplace,
+    results: &Results,
+    name: &str,
+    change: impl Fn(&mut [[f32; 3]]),
+) {
+    let image = results.scenes[0].reference_image.as_ref().unwrap();
+    let layers = read_layers(&place.path("made").join(image)).unwrap();
+    let mut pixels = layers.triples(["R", "G", "B"]).unwrap();
+    change(&mut pixels);
+    let [width, height] = layers.size();
+    let layer = ExrLayer {
+        name: "",
+        channels: &["R", "G", "B"],
+        data: pixels.as_flattened(),
+    };
+    let image = ExrImage {
+        resolution: [width, height],
+        crop: [0, 0, width, height],
+        layers: &[layer],
+        metadata: &[],
+    };
+    write_exr(&place.path(name), &image).unwrap();
+}
+
+#[test]
+fn an_image_is_its_pixels() {
+    let (place, results, given) = place();
+    let text = given("image.exr");
+    write_changed(&place, &results, "image.exr", |_| {});
+    let compared = place.complete(&text, "out");
+    let metrics = |results: &Results| {
+        let records = results.records.iter();
+        records.map(|r| r.metrics.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(metrics(&compared), metrics(&results));
+    write_changed(&place, &results, "image.exr", |pixels| pixels[7][1] += 0.5);
+    let error = place.refusal(&text, "out");
+    assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
+    // The same pixels are the same experiment wherever they lie: as an image, in a folder.
+    write_changed(&place, &results, "moved.exr", |_| {});
+    let image = results.scenes[0].reference_image.as_ref().unwrap();
+    let folder = format!("made/{}", image.trim_end_matches("/picture.exr"));
+    for name in ["moved.exr", &folder] {
+        let mut watch = Watch::default();
+        place.run(&given(name), "out", &mut watch).unwrap();
+        assert_eq!((watch.resumed, watch.renders), (4, 0), "{name}");
+    }
+}
+
+#[test]
+fn pixels_that_are_not_finite_are_refused() {
+    let (place, results, given) = place();
+    write_changed(&place, &results, "image.exr", |pixels| {
+        (pixels[16 + 3][2], pixels[100][0]) = (f32::NAN, f32::INFINITY);
+    });
+    let error = place.refusal(&given("image.exr"), "out");
+    let message = error.to_string();
+    assert!(
+        message.contains("image.exr: the reference of `room` has 2 pixels"),
+        "{message}"
+    );
+    assert!(
+        message.ends_with("the first at 3,1") && error.hint().is_some(),
+        "{message}"
+    );
+}
+
+/// The noise of a reference is known where it has variances.
+#[test]
+fn noise_is_told_where_it_is_known() {
+    let (place, results, given) = place();
+    let mse = results.scenes[0].reference_mse.unwrap();
+    write_changed(&place, &results, "image.exr", |_| {});
+    let plain = place.complete(&given("image.exr"), "plain");
+    assert_eq!(plain.scenes[0].reference_mse, None);
+    let picture = format!(
+        "made/{}",
+        results.scenes[0].reference_image.as_ref().unwrap()
+    );
+    let with_layers = place.complete(&given(&picture), "with-layers");
+    assert!((with_layers.scenes[0].reference_mse.unwrap() - mse).abs() < 1e-9 * mse);
+    // As many samples as the reference has: half of the mean error is its noise.
+    let many = "[[budget]]\nsamples = 128\n[settings]\nmax-depth = 1\n";
+    let text = format!("{DESCRIPTION}{many}").replace(MADE, "reference-spp = 128");
+    let text = text.replace("seeds = 2", "seeds = 24");
+    let mut watch = Watch::default();
+    place.run(&text, "many", &mut watch).unwrap();
+    let [warning] = &watch.warnings[..] else {
+        panic!("{:?}", watch.warnings);
+    };
+    let percent = warning
+        .split(" %")
+        .next()
+        .unwrap()
+        .rsplit(' ')
+        .next()
+        .unwrap();
+    let percent: f64 = percent.parse().unwrap();
+    assert!((25.0..75.0).contains(&percent), "{warning}");
+}
+
+/// A mirror throws the light of a point on the floor, which path tracing never finds.
+#[test]
+fn nothing_is_compared_with_a_reference_whose_estimators_disagree() {
+    let place = Workplace::new();
+    let begin = SCENE.find("AttributeBegin").unwrap();
+    let light = "LightSource \"point\" \"rgb I\" [9 8 7] \"point3 from\" [0 2 0.3]\n";
+    let scene = SCENE[..begin].replace(
+        "Shape \"sphere\"",
+        "Material \"conductor\"\nShape \"sphere\"",
+    );
+    fs::write(place.path("room.pbrt"), scene + light).unwrap();
+    let text = format!("{DESCRIPTION}{BUDGET}").replace(MADE, "reference-spp = 1024");
+    // The second time it is there already.
+    for _ in 0..2 {
+        let mut watch = Watch::default();
+        let error = place.run(&text, "out", &mut watch).unwrap_err();
+        let ExperimentError::Reference {
+            scene,
+            error: Error::Disagree { folder, p },
+        } = &error
+        else {
+            panic!("{error}");
+        };
+        assert!(scene == "room" && *p < 1e-3 && folder.join("picture.exr").exists());
+        let message = error.to_string();
+        assert!(message.contains("room") && message.contains("its estimators disagree (p = "));
+        assert!(error.hint().unwrap().contains("--against"));
+        assert_eq!(watch.renders, 0);
+    }
+    let folder = fs::read_dir(place.path("out/references"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap();
+    let given = format!(
+        "reference = \"out/references/{}\"",
+        folder.file_name().display()
+    );
+    let error = place.refusal(&text.replace("reference-spp = 1024", &given), "other");
+    assert!(
+        matches!(
+            error,
+            ExperimentError::Reference {
+                error: Error::Disagree { .. },
+                ..
+            }
+        ),
+        "{error}"
+    );
+}
