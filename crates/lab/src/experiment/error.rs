@@ -47,6 +47,16 @@ pub enum ExperimentError {
         /// Why.
         error: reference::Error,
     },
+    /// Strategies are to be shown of a method that has none in a scene.
+    #[error(
+        "scene `{scene}`: the method `{method}`, whose strategies are to be shown, is not bidirectional there"
+    )]
+    Pyramid {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+    },
     /// A render cannot begin.
     #[error("scene `{scene}`: {error}")]
     Render {
@@ -66,6 +76,7 @@ impl ExperimentError {
             Self::Mismatch(_) => {
                 Some("give another folder with -o, or begin anew in this one with --restart")
             }
+            Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
             Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,
         }

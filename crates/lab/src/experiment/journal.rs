@@ -1,9 +1,10 @@
 //! The records so far, on the disk.
 //!
-//! The first line says whose they are; every other line is a record. The file is replaced as a whole.
+//! The first line says whose they are; every other line is a record, or `{"pyramid": ...}`: what was
+//! found of strategies. The file is replaced as a whole.
 
 use super::error::ExperimentError;
-use crate::results::Record;
+use crate::results::{Pyramid, Record};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -22,12 +23,19 @@ struct Head {
     experiment: String,
 }
 
+/// A line of what was found of strategies.
+#[derive(Serialize, Deserialize)]
+struct PyramidLine {
+    pyramid: Pyramid,
+}
+
 /// The records of an experiment.
 #[derive(Debug)]
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
     records: Vec<Record>,
+    pyramids: Vec<Pyramid>,
 }
 
 impl Journal {
@@ -49,6 +57,7 @@ impl Journal {
             path: folder.join(FILE),
             text: line(&head),
             records: Vec::new(),
+            pyramids: Vec::new(),
         }
     }
 
@@ -78,8 +87,15 @@ impl Journal {
         {
             return Err(others());
         }
-        let records = lines.map(serde_json::from_str).collect::<Result<_, _>>();
-        journal.records = records.map_err(|_| others())?;
+        for line in lines {
+            match serde_json::from_str(line) {
+                Ok(PyramidLine { pyramid }) => journal.pyramids.push(pyramid),
+                Err(_) => {
+                    let record = serde_json::from_str(line).map_err(|_| others())?;
+                    journal.records.push(record);
+                }
+            }
+        }
         journal.text = text;
         Ok(journal)
     }
@@ -91,6 +107,14 @@ impl Journal {
         self.write()
     }
 
+    /// Adds what was found of strategies.
+    pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<(), ExperimentError> {
+        let found = PyramidLine { pyramid };
+        self.text += &line(&found);
+        self.pyramids.push(found.pyramid);
+        self.write()
+    }
+
     fn write(&self) -> Result<(), ExperimentError> {
         formats::file::replace(&self.path, self.text.as_bytes())?;
         Ok(())
@@ -98,6 +122,10 @@ impl Journal {
 
     pub(super) fn records(&self) -> &[Record] {
         &self.records
+    }
+
+    pub(super) fn pyramids(&self) -> &[Pyramid] {
+        &self.pyramids
     }
 
     pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {

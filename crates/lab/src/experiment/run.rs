@@ -4,6 +4,7 @@ use super::Experiment;
 use super::cell::Cell;
 use super::error::ExperimentError;
 use super::journal::{Journal, hash};
+use super::pyramid;
 use super::settings::texts;
 use super::stage::{Reference, Stage};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
@@ -66,7 +67,16 @@ pub enum Event<'a> {
         /// Passes in all.
         of: u64,
     },
-    /// References are there, and so are `done` of all renders.
+    /// A pass begins of the images of strategies.
+    Pyramid {
+        /// The scene.
+        scene: &'a str,
+        /// Passes that are done.
+        passes: u64,
+        /// Passes in all.
+        of: u64,
+    },
+    /// References and images of strategies are there, and so are `done` of all renders.
     Begin {
         /// Renders that are done.
         done: usize,
@@ -109,6 +119,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));
     }
+    pyramid::check(experiment, &stages)?;
     let identity = hash(&identity(experiment, &stages));
     let mut journal = match setup.start {
         Start::Resume => Journal::open(&setup.folder, &identity)?,
@@ -132,8 +143,13 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
         stages: &stages,
         references: &references,
     };
-    let end = work.render(&mut journal, observer)?;
-    let results = work.results(journal.records());
+    let shown = pyramid::complete(experiment, &stages, setup, &mut journal, observer)?;
+    let end = match shown {
+        End::Complete => work.render(&mut journal, observer)?,
+        End::Stopped => shown,
+    };
+    let mut results = work.results(journal.records());
+    results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
     write_results(&setup.folder, &results)?;
     Ok(Outcome {
         end,
@@ -274,6 +290,7 @@ impl Work<'_> {
             methods: self.methods(),
             budgets: budgets.collect(),
             records: records.to_vec(),
+            pyramids: Vec::new(),
             claims: Vec::new(),
         }
     }

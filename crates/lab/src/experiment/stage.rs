@@ -1,6 +1,8 @@
 //! A scene that is ready to be rendered and compared.
 
+use super::cell::write_image;
 use super::error::ExperimentError;
+use super::names::file_name;
 use super::reference;
 use super::run::{Observer, Setup};
 use super::{Experiment, SceneSpec};
@@ -79,14 +81,21 @@ impl<'a> Stage<'a> {
         [crop.width() as usize, crop.height() as usize]
     }
 
-    /// The reference; it is rendered where there is none yet. None: the observer stopped it.
+    /// The reference; it is rendered where there is none yet, and one that lies elsewhere is copied, so
+    /// that the folder of the results has all that it shows. None: the observer stopped it.
     pub(super) fn reference(
         &self,
         setup: &Setup,
         threads: usize,
         observer: &mut dyn Observer,
     ) -> Result<Option<Reference>, ExperimentError> {
-        reference::obtain(self, setup, threads, observer)
+        let mut obtained = reference::obtain(self, setup, threads, observer)?;
+        if let Some(reference @ Reference { image: None, .. }) = &mut obtained {
+            let name = format!("references/{}.exr", file_name(&self.spec.name));
+            write_image(&setup.folder.join(&name), &reference.pixels)?;
+            reference.image = Some(name);
+        }
+        Ok(obtained)
     }
 
     pub(super) fn info(&self, reference: &Reference) -> SceneInfo {

@@ -64,7 +64,11 @@ impl Figures {
 
 /// The mean luminance of a part of a film's picture.
 pub(super) fn mean(film: &Film, part: usize) -> f64 {
-    let pixels = film.part_pixels(part);
+    mean_of(film, film.part_pixels(part))
+}
+
+/// The mean luminance of an image of a film.
+pub(super) fn mean_of(film: &Film, pixels: impl Iterator<Item = [f32; 3]>) -> f64 {
     let sum: f64 = pixels.map(|pixel| f64::from(luminance(pixel))).sum();
     sum / film.settings().crop.area().max(1) as f64
 }

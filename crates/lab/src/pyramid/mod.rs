@@ -105,6 +105,11 @@ fn whole(film: &Film) -> Row {
     }
 }
 
+/// The mean luminance of a film's picture.
+pub fn mean(film: &Film) -> f64 {
+    figures::mean_of(film, film.develop().pixels.into_iter())
+}
+
 /// The mean luminance of what paths add that are longer than those with images of their own.
 pub fn mean_of_longer(film: &Film) -> f64 {
     longer(film).map_or(0.0, |part| figures::mean(film, part))

@@ -63,7 +63,7 @@ fn meaning(metric: Metric) -> &'static str {
     }
 }
 
-const WORDS: [(&str, &str); 8] = [
+const WORDS: [(&str, &str); 10] = [
     (
         "efficiency",
         "1 / (mean square error · cost), with the cost in rays or in seconds. Twice the efficiency \
@@ -91,6 +91,16 @@ const WORDS: [(&str, &str); 8] = [
         "rays",
         "Rays of all kinds: those of both walks, shadow rays between them, shadow rays to the \
          camera, and those of training.",
+    ),
+    (
+        "strategy (s, t)",
+        "A way to make a path: s vertices are walked from a light and t from the camera, and the two \
+         ends are joined. A path of n vertices has n strategies, from s = 0 to t = 1.",
+    ),
+    (
+        "weighted, raw",
+        "Of a contribution, with the weight by which strategies share the paths that several of them \
+         can make, and without it.",
     ),
     (
         "seed",
