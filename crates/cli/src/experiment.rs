@@ -14,7 +14,7 @@ use crate::scene_io;
 use crate::signals::Signals;
 use lab::experiment::{self, End, Experiment, ExperimentError, Outcome, Setup, Start, analysis};
 use lab::paper::{self, Effort, Options};
-use lab::report::{self, ImageKind, Report, ReportImage};
+use lab::report::{self, ImageKind, Report, ReportImage, Sheet};
 use lab::results::{Machine, Results};
 use std::path::Path;
 use watch::Watch;
@@ -149,7 +149,7 @@ fn machine() -> Machine {
 /// What an error is to the shell.
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
-        ExperimentError::Description(_) => Exit::Scene,
+        ExperimentError::Description(_) | ExperimentError::Pyramid { .. } => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,
@@ -191,14 +191,32 @@ fn write_report(
         tables: &tables,
         plots: &plots,
         images: &images(&args.output, results)?,
+        sheets: &sheets(&args.output, results)?,
         command: &format!("bidir experiment {description} -o FOLDER{quick}"),
     });
     scene_io::write_text(&args.output.join(REPORT), &page)
 }
 
-/// The references, and the images of the first seed.
+/// The contact sheets of strategies.
+fn sheets(folder: &Path, results: &Results) -> Result<Vec<Sheet>, Failure> {
+    let names = results.pyramids.iter();
+    let names = names.flat_map(|pyramid| [&pyramid.weighted, &pyramid.raw]);
+    let read = |name: &String| {
+        let path = folder.join(name);
+        let png = std::fs::read(&path).map_err(|error| Failure::io(&path, "read", &error))?;
+        let name = name.clone();
+        Ok(Sheet { name, png })
+    };
+    names.map(read).collect()
+}
+
+/// The images of the first seed, and the references that they are compared with.
 fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>, Failure> {
-    let scenes = results.scenes.iter();
+    let has_image = |scene: &str| {
+        let mut records = results.records.iter();
+        records.any(|record| record.scene == scene && record.image.is_some())
+    };
+    let scenes = results.scenes.iter().filter(|scene| has_image(&scene.name));
     let references = scenes.filter_map(|scene| {
         let image = scene.reference_image.as_ref()?;
         Some((&scene.name, ImageKind::Reference, image))
@@ -210,14 +228,15 @@ fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>, Failure>
         };
         Some((&record.scene, kind, record.image.as_ref()?))
     });
-    let all = references.chain(renders);
-    all.map(|(scene, kind, image)| {
+    let all = references.chain(renders).map(|(scene, kind, image)| {
         Ok(ReportImage {
             scene: scene.clone(),
             kind,
             pixels: scene_io::read_image(&folder.join(image))?,
             flip: None,
         })
-    })
-    .collect()
+    });
+    let mut images = all.collect::<Result<Vec<_>, Failure>>()?;
+    report::add_flip(&mut images);
+    Ok(images)
 }

@@ -31,6 +31,9 @@ pub struct Results {
     pub budgets: Vec<BudgetInfo>,
     /// One for each render.
     pub records: Vec<Record>,
+    /// What strategies do, one for each scene where it was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pyramids: Vec<Pyramid>,
     /// What was concluded.
     pub claims: Vec<Claim>,
 }
@@ -150,6 +153,54 @@ pub struct Record {
     pub efficiency_seconds: f64,
     /// The image, relative to the folder of the results, where it was kept.
     pub image: Option<String>,
+}
+
+/// What each strategy (s, t) of a method does in a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pyramid {
+    /// The name of the scene.
+    pub scene: String,
+    /// The name of the method.
+    pub method: String,
+    /// The seed.
+    pub seed: u64,
+    /// Samples per pixel.
+    pub spp: u64,
+    /// Width and height, smaller than those of the renders where these are large. Unit: pixels.
+    pub size: [usize; 2],
+    /// The most vertices of paths whose strategies have images.
+    pub vertices: u16,
+    /// The mean luminance of the picture.
+    pub mean: f64,
+    /// The part of it that longer paths make.
+    pub longer: f64,
+    /// The strategies that something was counted of, shorter paths first.
+    pub strategies: Vec<StrategyInfo>,
+    /// The contact sheet of weighted images, relative to the folder of the results.
+    pub weighted: String,
+    /// The contact sheet of raw images.
+    pub raw: String,
+}
+
+/// What a strategy does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StrategyInfo {
+    /// Vertices from the light.
+    pub s: u16,
+    /// Vertices from the camera.
+    pub t: u16,
+    /// The mean luminance of the weighted image: these and that of longer paths add up to the picture's.
+    pub mean: f64,
+    /// The mean luminance of the raw image, without the weight.
+    pub raw_mean: f64,
+    /// The variance of what a pass adds to a pixel of the weighted image, in the mean pixel.
+    pub variance: Option<f64>,
+    /// Shadow rays traced; s = 0 needs none.
+    pub rays: u64,
+    /// Those that something blocked.
+    pub blocked: u64,
+    /// Values that are in the weighted image, but too large for the raw one.
+    pub raw_dropped: u64,
 }
 
 /// Whether what others said is what was found.

@@ -104,8 +104,14 @@ fn the_viewer_works_in_a_browser() {
     println!("{lines}");
     assert!(!lines.contains("FAILED"), "{lines}");
     assert_eq!(lines.lines().last(), Some("end"));
-    assert!(lines.lines().count() >= 14, "{lines}");
-    for (part, at_least) in [("<svg", 3), ("<table", 8), ("<canvas", 2), ("<article", 3)] {
+    assert!(lines.lines().count() >= 15, "{lines}");
+    for (part, at_least) in [
+        ("<svg", 3),
+        ("<table", 8),
+        ("<canvas", 2),
+        ("<article", 4),
+        ("<img", 2),
+    ] {
         let count = dom.matches(part).count();
         assert!(count >= at_least, "{part}: {count}");
     }

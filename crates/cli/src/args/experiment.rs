@@ -12,6 +12,8 @@ A description:
   size = \"320x240\"                       # of all images; else the scenes' own
   threads = 2                            # of each render; else one per processor
   metrics = [\"relmse\", \"relmse_trim\"]    # beside rmse; names are those of `bidir compare`
+  pyramid = \"all\"                        # shows each strategy (s, t) of this method, once in each
+  # pyramid-spp = 64                     # scene; it is in no figure of the comparison
 
   [settings]                             # of all methods: names and values are those of the flags
   integrator = \"bdpt\"                    # of `bidir render` from --integrator to --sampler

@@ -3,6 +3,7 @@
 use super::values::named;
 use bidir::film::{Aov, Layers};
 use clap::{Args, ValueHint};
+use lab::pyramid;
 use std::path::PathBuf;
 
 /// Images beside the picture, as layers of the EXR and of film files.
@@ -46,9 +47,6 @@ pub(crate) struct LayerArgs {
     pub(crate) pyramid: Option<PathBuf>,
 }
 
-/// The most vertices of the paths whose strategies a pyramid shows where nobody says it.
-const PYRAMID_VERTICES: u16 = 6;
-
 /// An image to write, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AovName {
@@ -79,7 +77,7 @@ impl LayerArgs {
         let guides = [Aov::Albedo, Aov::ShadingNormal];
         let aovs = aovs.chain(guides.into_iter().filter(|_| self.denoise));
         let light_groups = if self.light_groups { light_groups } else { &[] };
-        let default = self.pyramid.as_ref().map_or(0, |_| PYRAMID_VERTICES);
+        let default = self.pyramid.as_ref().map_or(0, |_| pyramid::VERTICES);
         let vertices = self.strategy_layers.unwrap_or(default).into();
         let layers = Layers::new(&aovs.collect::<Vec<_>>(), light_groups, vertices);
         match self.pyramid {

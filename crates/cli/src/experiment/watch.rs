@@ -114,6 +114,10 @@ impl Observer for Watch<'_> {
                 let part = part(passes as usize, of as usize).min(0.99);
                 self.show(part, &format!("reference of {scene}"));
             }
+            Event::Pyramid { scene, passes, of } => {
+                let part = part(passes as usize, of as usize).min(0.99);
+                self.show(part, &format!("strategies in {scene}"));
+            }
             Event::Begin { done, of } => self.begin([done, of]),
             Event::Record(record) => {
                 self.done += 1;

@@ -4,6 +4,7 @@ use crate::settings::Budget;
 use bidir::driver::{Session, Training};
 use bidir::path::Strategy;
 use bidir::stats::{Dropped, RayCounts, Stats, StrategyCounts};
+use lab::pyramid::Figures;
 use serde::Serialize;
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -127,23 +128,23 @@ pub(super) struct StrategyReport {
 impl StrategyReport {
     /// All strategies that something was counted of, shorter paths first.
     pub(super) fn all(session: &Session<'_>) -> Vec<Self> {
-        let moments: Vec<_> = session.strategy_moments().collect();
-        let stats = session.stats();
-        let rows = stats.strategies.rows().map(|(strategy, counts)| {
-            let told = moments.iter().find(|told| told.strategy == strategy);
-            let images = stats.strategy_images.get(strategy);
-            Self {
-                s: strategy.s,
-                t: strategy.t,
-                counts: CountsReport::from(counts),
-                blocked_share: (counts.traced > 0)
-                    .then(|| counts.blocked as f64 / counts.traced as f64),
-                mean: told.map(|told| told.mean),
-                variance: told.and_then(|told| told.variance),
-                raw_dropped: told.map(|_| images.raw_dropped),
-            }
-        });
-        rows.collect()
+        let all = Figures::all(session);
+        all.iter().map(Self::from).collect()
+    }
+}
+
+impl From<&Figures> for StrategyReport {
+    fn from(figures: &Figures) -> Self {
+        let images = figures.images;
+        Self {
+            s: figures.strategy.s,
+            t: figures.strategy.t,
+            counts: CountsReport::from(figures.counts),
+            blocked_share: figures.blocked_share(),
+            mean: images.map(|images| images.mean),
+            variance: images.and_then(|images| images.variance),
+            raw_dropped: images.map(|images| images.raw_dropped),
+        }
     }
 }
 

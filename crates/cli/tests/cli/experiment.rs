@@ -65,6 +65,41 @@ fn an_experiment_has_tables_records_and_a_report() {
 }
 
 #[test]
+fn a_report_shows_strategies_and_what_is_seen() {
+    let place = place();
+    place.write(
+        "test.toml",
+        &format!("pyramid = \"all\"\npyramid-spp = 2\n{DESCRIPTION}"),
+    );
+    place.run("experiment test.toml -o out").expect(0);
+    let page = place.read("out/report.html");
+    assert_eq!(page.matches("src=\"data:image/png;base64,iVBOR").count(), 2);
+    // All four renders have their maps, and their reference needs none.
+    assert_eq!(page.matches("\"flip\":\"").count(), 4);
+    assert_eq!(page.matches("\"flip\":null").count(), 1);
+    let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
+    assert_eq!(
+        results["pyramids"][0]["weighted"],
+        "images/room--strategies-weighted.png"
+    );
+    // A reference that is there is in the report, too.
+    let reference = "reference = \"out/images/room--2-spp--all.exr\"";
+    place.write(
+        "test.toml",
+        &DESCRIPTION.replace("reference-spp = 16", reference),
+    );
+    place.run("experiment test.toml -o given").expect(0);
+    let page = place.read("given/report.html");
+    assert_eq!(page.matches("\"flip\":\"").count(), 4);
+    place.write("test.toml", &format!("pyramid = \"oen\"\n{DESCRIPTION}"));
+    place
+        .run("experiment test.toml -o out")
+        .expect(3)
+        .says("test.toml:1:11: there is no method `oen`")
+        .says("did you mean `one`?");
+}
+
+#[test]
 fn one_more_method_needs_the_description_alone() {
     let place = place();
     let more = "[[method]]\nname = \"light\"\nintegrator = \"light\"\n";

@@ -17,7 +17,7 @@ mod transfer;
 
 pub use exr::{ExrImage, ExrLayer, MetadataValue, write_exr};
 pub use layers::{Layers, read_layers, write_layers};
-pub use png::write_png;
+pub use png::{encode_png, write_png};
 pub use transfer::Encoding;
 
 use crate::bytes;

@@ -7,11 +7,17 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
 
-/// Writes linear colours as an eight-bit sRGB PNG; values outside `[0, 1]` are clamped.
+/// Writes linear colours as [`encode_png`] gives them.
+pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()> {
+    let encoded = encode_png(size, pixels).map_err(|error| error.in_file(path))?;
+    file::replace(path, &encoded)
+}
+
+/// Linear colours as an eight-bit sRGB PNG; values outside `[0, 1]` are clamped.
 ///
 /// Shape: `size[0] · size[1]` pixels, row by row from the top left.
-pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()> {
-    let failed = |message: String| Error::new(ErrorKind::Data, message).in_file(path);
+pub fn encode_png(size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Vec<u8>> {
+    let failed = |message: String| Error::new(ErrorKind::Data, message);
     if pixels.len() as u64 != u64::from(size[0]) * u64::from(size[1]) {
         return Err(failed(
             "cannot write: the number of pixels is not that of the size".into(),
@@ -26,5 +32,5 @@ pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()>
     PngEncoder::new(&mut encoded)
         .write_image(&stored, size[0], size[1], ExtendedColorType::Rgb8)
         .map_err(|error| failed(format!("cannot write: {error}")))?;
-    file::replace(path, &encoded)
+    Ok(encoded)
 }

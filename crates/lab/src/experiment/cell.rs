@@ -112,10 +112,7 @@ impl Cell<'_> {
         reference: &Reference,
         metrics: &[Metric],
     ) -> BTreeMap<String, f64> {
-        let image = Pixels {
-            size: self.stage.size(),
-            data: picture.pixels.clone(),
-        };
+        let image = pixels(picture);
         let Some(pair) = Pair::new(&image, &reference.pixels) else {
             return BTreeMap::new();
         };
@@ -137,7 +134,7 @@ impl Cell<'_> {
 
 impl Rendered {
     pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
-        write_image(path, &self.picture)
+        write_image(path, &pixels(&self.picture))
     }
 }
 
@@ -168,20 +165,27 @@ fn rays(session: &Session<'_>) -> Rays {
     }
 }
 
-/// Writes a picture as EXR.
-pub(super) fn write_image(path: &Path, picture: &Picture) -> Result<(), ExperimentError> {
+fn pixels(picture: &Picture) -> Pixels {
+    Pixels {
+        size: [picture.width, picture.height],
+        data: picture.pixels.clone(),
+    }
+}
+
+/// Writes an image as EXR.
+pub(super) fn write_image(path: &Path, image: &Pixels) -> Result<(), ExperimentError> {
     let layer = ExrLayer {
         name: "",
         channels: &["R", "G", "B"],
-        data: picture.pixels.as_flattened(),
+        data: image.data.as_flattened(),
     };
-    let image = ExrImage {
-        resolution: [picture.width, picture.height],
-        crop: [0, 0, picture.width, picture.height],
+    let exr = ExrImage {
+        resolution: image.size,
+        crop: [0, 0, image.size[0], image.size[1]],
         layers: &[layer],
         metadata: &[],
     };
-    Ok(formats::image::write_exr(path, &image)?)
+    Ok(formats::image::write_exr(path, &exr)?)
 }
 
 #[cfg(test)]

@@ -1,18 +1,21 @@
 //! From TOML to an [`Experiment`].
 
 use super::error::ExperimentError;
-use super::names::file_name;
+use super::names::{file_name, nearest};
 use super::reader::{Entry, Section, Source};
 use super::settings::{Changes, named};
-use super::{BudgetSpec, Experiment, MethodSpec, ReferenceSpec, SceneSpec, Seeds};
+use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
+use bidir::integrator::IntegratorKind;
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// Where no number of seeds is given.
 const SEEDS: u64 = 10;
+/// Samples per pixel of images of strategies, where no number is given.
+const PYRAMID_SPP: u64 = 64;
 
 impl Experiment {
     /// Reads a description; `file` is what messages call it, and its scenes are relative to its folder.
@@ -31,7 +34,8 @@ impl Experiment {
         let folder = formats::file::folder_of(file);
         let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
         let method = |section: &mut Section<'_>| method(section, &defaults);
-        let experiment = Self {
+        let shown = [top.take("pyramid"), top.take("pyramid-spp")];
+        let mut experiment = Self {
             title: or(text_of(&mut top, "title")?, "Experiment"),
             description: or(text_of(&mut top, "description")?, ""),
             size: size(&mut top)?,
@@ -41,10 +45,42 @@ impl Experiment {
             scenes: all(&mut top, "scene", scene)?,
             methods: all(&mut top, "method", method)?,
             budgets: all(&mut top, "budget", budget)?,
+            pyramid: None,
         };
+        experiment.pyramid = pyramid(shown, &experiment.methods)?;
         top.finish()?;
         Ok(experiment)
     }
+}
+
+/// The method whose strategies are shown, and with how many samples.
+fn pyramid(
+    [method, spp]: [Option<Entry<'_>>; 2],
+    methods: &[MethodSpec],
+) -> Result<Option<PyramidSpec>> {
+    let Some(entry) = method else {
+        let fault = |spp: Entry<'_>| spp.fault("there is no `pyramid` that it could be of");
+        return spp.map_or(Ok(None), |spp| Err(fault(spp)));
+    };
+    let name = entry.text()?;
+    let Some(method) = methods.iter().find(|method| method.name == name) else {
+        let names = methods.iter().map(|method| method.name.as_str());
+        let hint = match nearest(name, names.clone()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("methods are {}", names.collect::<Vec<_>>().join(", ")),
+        };
+        return Err(entry.fault_with(format!("there is no method `{name}`"), hint));
+    };
+    let integrator = method.changes.integrator;
+    if integrator.is_some_and(|integrator| integrator != IntegratorKind::Bdpt) {
+        let message = format!("the method `{name}` is not bidirectional");
+        let hint = "strategies (s, t) are those of a method whose integrator is \"bdpt\"";
+        return Err(entry.fault_with(message, hint.to_owned()));
+    }
+    Ok(Some(PyramidSpec {
+        method: name.to_owned(),
+        spp: spp.map_or(Ok(PYRAMID_SPP), |spp| spp.whole(2))?,
+    }))
 }
 
 fn or(text: Option<String>, default: &str) -> String {

@@ -69,6 +69,16 @@ pub enum ExperimentError {
         /// Why.
         error: reference::Error,
     },
+    /// Strategies are to be shown of a method that has none in a scene.
+    #[error(
+        "scene `{scene}`: the method `{method}`, whose strategies are to be shown, is not bidirectional there"
+    )]
+    Pyramid {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+    },
     /// A render cannot begin.
     #[error("scene `{scene}`: {error}")]
     Render {
@@ -100,6 +110,7 @@ impl ExperimentError {
                 "it stays where it is; see what more samples say (`reference-spp`), or name as \
                  `reference` one of other estimators, by `bidir reference --estimator … --against …`",
             ),
+            Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
             Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,
         }

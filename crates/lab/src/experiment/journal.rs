@@ -1,10 +1,10 @@
 //! The records so far, on the disk.
 //!
-//! The first line says whose they are, and of which machine; every other line is a record. The file is
-//! replaced as a whole.
+//! The first line says whose they are, and of which machine; every other line is a record, or
+//! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole.
 
 use super::error::ExperimentError;
-use crate::results::{Machine, Record};
+use crate::results::{Machine, Pyramid, Record};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -55,12 +55,19 @@ impl Owner {
     }
 }
 
+/// A line of what was found of strategies.
+#[derive(Serialize, Deserialize)]
+struct PyramidLine {
+    pyramid: Pyramid,
+}
+
 /// The records of an experiment.
 #[derive(Debug)]
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
     records: Vec<Record>,
+    pyramids: Vec<Pyramid>,
 }
 
 impl Journal {
@@ -82,6 +89,7 @@ impl Journal {
             path: folder.join(FILE),
             text: line(&head),
             records: Vec::new(),
+            pyramids: Vec::new(),
         }
     }
 
@@ -111,8 +119,15 @@ impl Journal {
             let folder = folder.to_owned();
             return Err(ExperimentError::Elsewhere { folder, difference });
         }
-        let records = lines.map(serde_json::from_str).collect::<Result<_, _>>();
-        journal.records = records.map_err(|_| others())?;
+        for line in lines {
+            match serde_json::from_str(line) {
+                Ok(PyramidLine { pyramid }) => journal.pyramids.push(pyramid),
+                Err(_) => {
+                    let record = serde_json::from_str(line).map_err(|_| others())?;
+                    journal.records.push(record);
+                }
+            }
+        }
         journal.text = text;
         Ok(journal)
     }
@@ -124,6 +139,14 @@ impl Journal {
         self.write()
     }
 
+    /// Adds what was found of strategies.
+    pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<(), ExperimentError> {
+        let found = PyramidLine { pyramid };
+        self.text += &line(&found);
+        self.pyramids.push(found.pyramid);
+        self.write()
+    }
+
     fn write(&self) -> Result<(), ExperimentError> {
         formats::file::replace(&self.path, self.text.as_bytes())?;
         Ok(())
@@ -131,6 +154,10 @@ impl Journal {
 
     pub(super) fn records(&self) -> &[Record] {
         &self.records
+    }
+
+    pub(super) fn pyramids(&self) -> &[Pyramid] {
+        &self.pyramids
     }
 
     pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {

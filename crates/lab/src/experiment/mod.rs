@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `records.ndjson` | whose records these are and of which machine, and a record per line; replaced after each render |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
-//! | `images/` | the pictures of the first seed, EXR |
+//! | `images/` | the pictures of the first seed, EXR; contact sheets of strategies, PNG |
 //! | `references/` | references that were made here |
 //!
 //! # Budgets
@@ -26,6 +26,12 @@
 //! There is always a first pass. As a number of passes that depends on the passes is slightly
 //! correlated with them, rays and time have a bias of the order 1 / passes.
 //!
+//! # Strategies
+//!
+//! Where [`Experiment::pyramid`] names a method, its strategies are rendered once in each scene, after
+//! the references and before all records, and are kept with these. No time of a record has any part
+//! of it. Records do not depend on it: it can be asked for later, and is then rendered alone.
+//!
 //! # Order
 //!
 //! Seeds are outermost, then scenes, budgets, methods: where a shared machine gets slower with the
@@ -38,6 +44,7 @@ mod error;
 mod identity;
 mod journal;
 mod names;
+mod pyramid;
 mod reader;
 mod reference;
 mod run;
@@ -73,6 +80,17 @@ pub struct Experiment {
     pub methods: Vec<MethodSpec>,
     /// The budgets; there is at least one.
     pub budgets: Vec<BudgetSpec>,
+    /// What is shown of strategies. None: nothing.
+    pub pyramid: Option<PyramidSpec>,
+}
+
+/// Of which method each strategy is shown, in every scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PyramidSpec {
+    /// The name of the method, which is bidirectional.
+    pub method: String,
+    /// Samples per pixel, under the first seed. Range: from 2 on, so that there is a variance.
+    pub spp: u64,
 }
 
 /// Successive seeds.
@@ -158,7 +176,7 @@ impl Experiment {
     }
 
     /// The same in little time, to see whether it works: at most three seeds, sizes of at most 64
-    /// pixels, an eighth of the samples of budgets and references.
+    /// pixels, an eighth of the samples of budgets, references and pyramids.
     #[must_use]
     pub fn quick(mut self) -> Self {
         self.seeds.count = self.seeds.count.min(3);
@@ -186,6 +204,9 @@ impl Experiment {
             }
         }
         self.budgets = all;
+        if let Some(pyramid) = &mut self.pyramid {
+            pyramid.spp = pyramid.spp.div_ceil(8).max(2);
+        }
         self
     }
 }

@@ -131,6 +131,11 @@ impl<'a> Entry<'a> {
         self.source.fault(self.place.clone(), message.into(), None)
     }
 
+    /// An error of this value, and what to do about it.
+    pub(super) fn fault_with(&self, message: String, hint: String) -> ExperimentError {
+        self.source.fault(self.place.clone(), message, Some(hint))
+    }
+
     /// A table.
     pub(super) fn section(self) -> Result<Section<'a>> {
         match self.value {

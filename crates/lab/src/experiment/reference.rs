@@ -1,6 +1,7 @@
 //! What images are compared with: a picture that is there, or one that is made once and kept.
 
 use super::ReferenceSpec;
+use super::cell::write_image;
 use super::error::ExperimentError;
 use super::identity::hash;
 use super::names::file_name;
@@ -36,7 +37,8 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
     }
 }
 
-/// The reference of a scene: the [`given`] one, or else it is made. None: the observer stopped that.
+/// The reference of a scene: the [`given`] one, whose picture is copied into the folder of the results,
+/// or else it is made. None: the observer stopped that.
 ///
 /// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
 /// it.
@@ -48,9 +50,21 @@ pub(super) fn obtain(
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     let ReferenceSpec::Make { spp, changes } = &stage.spec.reference else {
-        return Ok(given);
+        let copied = given.map(|reference| copied(stage, reference, setup));
+        return copied.transpose();
     };
     make(stage, &plan(stage, *spp, changes), setup, threads, observer)
+}
+
+/// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
+/// report shows.
+fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
+    let name = format!("references/{}.exr", file_name(&stage.spec.name));
+    write_image(&setup.folder.join(&name), &reference.pixels)?;
+    Ok(Reference {
+        image: Some(name),
+        ..reference
+    })
 }
 
 /// A reference that is there; `name` is its folder in that of the results, if it lies there.

@@ -6,6 +6,7 @@ use super::cell::Cell;
 use super::error::ExperimentError;
 use super::identity::identity;
 use super::journal::{Journal, Owner};
+use super::pyramid;
 use super::reference;
 use super::settings::texts;
 use super::stage::{Reference, Stage};
@@ -68,7 +69,16 @@ pub enum Event<'a> {
         /// Passes in all.
         of: u64,
     },
-    /// References are there, and so are `done` of all renders.
+    /// A pass begins of the images of strategies.
+    Pyramid {
+        /// The scene.
+        scene: &'a str,
+        /// Passes that are done.
+        passes: u64,
+        /// Passes in all.
+        of: u64,
+    },
+    /// References and images of strategies are there, and so are `done` of all renders.
     Begin {
         /// Renders that are done.
         done: usize,
@@ -111,6 +121,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));
     }
+    pyramid::check(experiment, &stages)?;
     let given = stages.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
     let owner = Owner {
@@ -140,8 +151,13 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
         stages: &stages,
         references: &references,
     };
-    let end = work.render(&mut journal, observer)?;
-    let results = work.results(journal.records());
+    let shown = pyramid::complete(experiment, &stages, setup, &mut journal, observer)?;
+    let end = match shown {
+        End::Complete => work.render(&mut journal, observer)?,
+        End::Stopped => shown,
+    };
+    let mut results = work.results(journal.records());
+    results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
     for noise in reference_noise(&results).filter(|noise| noise.is_large()) {
         observer.tell(Event::Warning(&noise.words()));
     }
@@ -265,6 +281,7 @@ impl Work<'_> {
             methods: self.methods(),
             budgets: budgets.collect(),
             records: records.to_vec(),
+            pyramids: Vec::new(),
             claims: Vec::new(),
         }
     }

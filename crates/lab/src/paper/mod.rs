@@ -252,6 +252,7 @@ fn merge(parts: [(&str, Results); 3], claims: Vec<Claim>, setup: &Setup) -> Resu
         methods: Vec::new(),
         budgets: Vec::new(),
         records: Vec::new(),
+        pyramids: Vec::new(),
         claims,
     };
     for (folder, part) in parts {
@@ -265,6 +266,12 @@ fn merge(parts: [(&str, Results); 3], claims: Vec<Claim>, setup: &Setup) -> Resu
             // The sweeps have many images, of which none shows more than the first.
             record.image = moved(record.image).filter(|_| folder == "table-1");
             all.records.push(record);
+        }
+        for mut pyramid in part.pyramids {
+            for sheet in [&mut pyramid.weighted, &mut pyramid.raw] {
+                *sheet = format!("{folder}/{sheet}");
+            }
+            all.pyramids.push(pyramid);
         }
         for method in part.methods {
             if all.methods.iter().all(|known| known.name != method.name) {

@@ -3,7 +3,8 @@
 use super::room::{Lamp, Room};
 use super::{Effort, Result, scenes, setting};
 use crate::experiment::{
-    BudgetSpec, Changes, Experiment, ExperimentError, MethodSpec, ReferenceSpec, SceneSpec, Seeds,
+    BudgetSpec, Changes, Experiment, ExperimentError, MethodSpec, PyramidSpec, ReferenceSpec,
+    SceneSpec, Seeds,
 };
 use crate::metric::Metric;
 use crate::results::{BudgetKind, Results};
@@ -49,6 +50,8 @@ pub(super) struct Amounts {
     largest: u32,
     /// Samples per pixel of the sweep of triangles.
     samples: f64,
+    /// Samples per pixel of images of strategies.
+    strategies: u64,
 }
 
 impl Amounts {
@@ -81,6 +84,7 @@ impl Effort {
                 rays: 40.0,
                 largest: 3,
                 samples: 1.0,
+                strategies: 2,
             },
             Self::Quick => Amounts {
                 walks: 400_000,
@@ -90,6 +94,7 @@ impl Effort {
                 rays: 100.0,
                 largest: 5,
                 samples: 8.0,
+                strategies: 32,
             },
             Self::Full => Amounts {
                 walks: 4_000_000,
@@ -99,6 +104,7 @@ impl Effort {
                 rays: 200.0,
                 largest: 6,
                 samples: 16.0,
+                strategies: 128,
             },
         }
     }
@@ -176,6 +182,7 @@ fn experiment(title: &str, description: &str) -> Experiment {
         scenes: Vec::new(),
         methods: Vec::new(),
         budgets: Vec::new(),
+        pyramid: None,
     }
 }
 
@@ -193,6 +200,10 @@ pub(super) fn table_1(amounts: &Amounts, folder: &Path) -> Experiment {
             .flat_map(|rule| WEIGHTS.map(|weights| method(weights, rule)))
             .collect(),
         budgets: vec![BudgetSpec::new(BudgetKind::Rays, amounts.rays)],
+        pyramid: Some(PyramidSpec {
+            method: method_name("balance", "all"),
+            spp: amounts.strategies,
+        }),
         ..experiment(
             "Table 1",
             "RMS errors at equal total rays, under three kinds of weights.",

@@ -64,7 +64,7 @@ fn meaning(metric: Metric) -> &'static str {
     }
 }
 
-const WORDS: [(&str, &str); 9] = [
+const WORDS: [(&str, &str); 11] = [
     (
         "efficiency",
         "1 / (mean square error · cost), with the cost in rays or in seconds. Twice the efficiency \
@@ -94,6 +94,16 @@ const WORDS: [(&str, &str); 9] = [
         "rays",
         "Rays of all kinds: those of both walks, shadow rays between them, shadow rays to the \
          camera, and those of training, which the claims on the 1995 paper leave out.",
+    ),
+    (
+        "strategy (s, t)",
+        "A way to make a path: s vertices are walked from a light and t from the camera, and the two \
+         ends are joined. A path of n vertices has n strategies, from s = 0 to t = 1.",
+    ),
+    (
+        "weighted, raw",
+        "Of a contribution, with the weight by which strategies share the paths that several of them \
+         can make, and without it.",
     ),
     (
         "seed",

@@ -61,7 +61,7 @@ impl Element {
 
     /// Elements of HTML that have no end.
     fn is_void(&self) -> bool {
-        matches!(self.name, "br" | "input" | "meta")
+        matches!(self.name, "br" | "img" | "input" | "meta")
     }
 
     /// Elements that a reader of the source wants to see begin on a line of their own.

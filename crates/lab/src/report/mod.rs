@@ -6,11 +6,12 @@
 //! 2. what was compared, on what, with which settings, seeds and machine (`setting`),
 //! 3. each claim: its source, its verdict, what was found, how sure that is, tables and plots (`claims`),
 //! 4. more tables and plots,
-//! 5. the viewer, which flips between images at the same place (`viewer`, `*.js`),
-//! 6. how to make it again, and what the words mean (`glossary`).
+//! 5. what each strategy does (`strategies`),
+//! 6. the viewer, which flips between images at the same place (`viewer`, `*.js`),
+//! 7. how to make it again, and what the words mean (`glossary`).
 //!
-//! *Nothing leaves the page.* Its security policy forbids every request, and of scripts and styles all
-//! but those of this folder, by their hashes. Texts cannot become markup, since the page is a tree
+//! *Nothing leaves the page.* Its security policy forbids every request, images but those that stand in
+//! the page, and of scripts and styles all but those of this folder, by their hashes. Texts cannot become markup, since the page is a tree
 //! until it is written (`markup`).
 //!
 //! *Numbers* are written to the digits that their intervals give them (`number`), and what is best is
@@ -24,6 +25,7 @@
 
 mod axis;
 mod claims;
+mod flip;
 mod glossary;
 mod half;
 mod legend;
@@ -33,10 +35,13 @@ mod overview;
 mod plot;
 mod series;
 mod setting;
+mod strategies;
 mod table;
 #[cfg(test)]
 mod tests;
 mod viewer;
+
+pub use flip::add_flip;
 
 use crate::image::Pixels;
 use crate::metric::ErrorMap;
@@ -55,8 +60,19 @@ pub struct Report<'a> {
     pub plots: &'a [Plot],
     /// What the viewer shows.
     pub images: &'a [ReportImage],
+    /// The contact sheets that the results name.
+    pub sheets: &'a [Sheet],
     /// The command that makes the experiment again.
     pub command: &'a str,
+}
+
+/// A contact sheet of strategies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sheet {
+    /// Its name in the results.
+    pub name: String,
+    /// The file.
+    pub png: Vec<u8>,
 }
 
 /// An image of the viewer; one scene has each kind once.
@@ -68,7 +84,7 @@ pub struct ReportImage {
     pub kind: ImageKind,
     /// Its pixels.
     pub pixels: Pixels,
-    /// What FLIP says of every pixel, where the viewer should show it.
+    /// What FLIP says of every pixel, where the viewer should show it; see [`add_flip`].
     pub flip: Option<ErrorMap>,
 }
 
@@ -104,6 +120,7 @@ pub fn html(report: &Report<'_>) -> String {
         .child(setting::section(results))
         .child(claims::section(&results.claims))
         .child(others(report))
+        .child(strategies::section(results, report.sheets))
         .child(viewer::section(report.images))
         .child(glossary::again(report))
         .child(glossary::section());
@@ -153,12 +170,12 @@ fn head(title: &str) -> Element {
         .child(element("style").code(STYLE))
 }
 
-/// Nothing may be loaded, sent or framed; this style and this script may run, and no other.
+/// Nothing may be loaded, sent or framed; images are in the page; this style and this script may run, and no other.
 fn policy() -> String {
     let hash = |code: &str| half::base64(&Sha256::digest(code.as_bytes()));
     format!(
         "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; \
-         base-uri 'none'; form-action 'none'",
+         img-src data:; base-uri 'none'; form-action 'none'",
         hash(STYLE),
         hash(SCRIPT)
     )

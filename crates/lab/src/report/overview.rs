@@ -16,6 +16,7 @@ pub(super) fn header(report: &Report<'_>) -> Element {
         ("setting", "What was compared"),
         ("claims", "Claims"),
         ("more", "More"),
+        ("strategies", "Strategies"),
         ("viewer", "Images"),
         ("again", "Again"),
         ("glossary", "Glossary"),

@@ -74,6 +74,13 @@ function steps() {
   };
 }
 
+/** Whether all contact sheets are there and can be seen. */
+async function showsSheets() {
+  const sheets = [...document.querySelectorAll("img")];
+  await Promise.allSettled(sheets.map((sheet) => sheet.decode()));
+  return sheets.every((sheet) => sheet.naturalWidth > 0 && sheet.width > 0 && sheet.alt !== "");
+}
+
 /** Tries to load an image, and tells whether the policy of the page refused to. */
 function refusesRequests() {
   return new Promise((resolve) => {
@@ -90,6 +97,7 @@ async function selftest() {
   const lines = Object.entries(steps()).map(([name, step]) => `${step() ? "ok" : "FAILED"}: ${name}`);
   const loaded = performance.getEntriesByType("resource").length;
   lines.push(`${loaded === 0 ? "ok" : "FAILED"}: nothing was loaded`);
+  lines.push(`${(await showsSheets()) ? "ok" : "FAILED"}: contact sheets are shown`);
   lines.push(`${(await refusesRequests()) ? "ok" : "FAILED"}: requests are refused`);
   const report = document.createElement("pre");
   report.id = "selftest";

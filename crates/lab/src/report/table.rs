@@ -28,6 +28,9 @@ enum Better {
 /// A longer text is divided into lines. Unit: characters.
 const LONGEST_NAME: usize = 28;
 
+/// What stands where a number would, if there were one.
+pub(super) const NOTHING: &str = "–";
+
 /// A table of the page.
 pub(super) fn table(table: &Table) -> Element {
     let ranks: Vec<_> = (0..table.columns.len())
@@ -73,6 +76,12 @@ fn legend() -> Element {
 
 fn cell(cell: &Cell, rank: Rank) -> Element {
     let written = match cell {
+        Cell::Text(text) if text == NOTHING => {
+            return element("td")
+                .class("number")
+                .text(text)
+                .child(element("span").class("mark"));
+        }
         // A name stays on its line; a sentence does not.
         Cell::Text(text) if text.chars().count() <= LONGEST_NAME => {
             return element("td").class("name").text(text);

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::results::{
-    Axis, BudgetInfo, BudgetKind, Cell, Claim, FORMAT, Machine, MethodInfo, PlotKind, Scale,
-    SceneInfo, Series, Verdict,
+    Axis, BudgetInfo, BudgetKind, Cell, Claim, FORMAT, Machine, MethodInfo, PlotKind, Pyramid,
+    Scale, SceneInfo, Series, StrategyInfo, Verdict,
 };
 
 /// What a name can be at worst.
@@ -52,6 +52,39 @@ fn claim(id: &str, verdict: Verdict) -> Claim {
     }
 }
 
+fn pyramid() -> Pyramid {
+    let strategy = |s, t, rays| StrategyInfo {
+        s,
+        t,
+        mean: 0.25,
+        raw_mean: 0.5,
+        variance: None,
+        rays,
+        blocked: rays / 4,
+        raw_dropped: 0,
+    };
+    Pyramid {
+        scene: HOSTILE.into(),
+        method: HOSTILE.into(),
+        seed: 3,
+        spp: 2,
+        size: [4, 2],
+        vertices: 3,
+        mean: 1.0,
+        longer: 0.5,
+        strategies: vec![strategy(0, 2, 0), strategy(1, 2, 8)],
+        weighted: "images/weighted.png".into(),
+        raw: "images/raw.png".into(),
+    }
+}
+
+fn sheets() -> [Sheet; 2] {
+    [("images/weighted.png", b"foo"), ("images/raw.png", b"bar")].map(|(name, png)| Sheet {
+        name: name.into(),
+        png: png.to_vec(),
+    })
+}
+
 fn results() -> Results {
     let method = |name: &str, rays: &str| MethodInfo {
         name: name.into(),
@@ -81,6 +114,7 @@ fn results() -> Results {
             amount: 64.0,
         }],
         records: Vec::new(),
+        pyramids: vec![pyramid()],
         claims: vec![
             claim("one", Verdict::Reproduced),
             claim("two", Verdict::NotReproduced),
@@ -125,6 +159,7 @@ fn page(results: &Results) -> String {
             curve("a plot without points", PlotKind::Lines, &[[0.0, 1.0]]),
         ],
         images: &images(),
+        sheets: &sheets(),
         command: "bidir experiment <file>",
     })
 }
@@ -179,7 +214,9 @@ fn everything_is_in_the_page() {
 #[test]
 fn nothing_in_a_text_is_markup() {
     let page = page(&results());
-    assert!(!page.contains("<img"));
+    // The two sheets alone.
+    assert_eq!(page.matches("<img").count(), 2);
+    assert!(!page.contains("<img src=x"));
     // The pixels and the scripts: one end each.
     assert_eq!(page.matches("</script>").count(), 2);
     assert_eq!(page.matches("<script").count(), 2);
@@ -191,13 +228,14 @@ fn nothing_in_a_text_is_markup() {
 
 #[test]
 fn nothing_is_elsewhere() {
-    let page = page(&results());
+    let page = page(&results()).replace("src=\"data:image/png;base64,", "");
     for scheme in [
         "http:", "https:", "//cdn", "url(", "@import", "src=\"", "import(",
     ] {
         assert!(!page.contains(scheme), "{scheme}");
     }
     assert!(page.contains("default-src &#39;none&#39;"));
+    assert!(page.contains("img-src data:;"));
 }
 
 #[test]
@@ -218,6 +256,31 @@ fn pixels_are_in_the_page_as_they_are() {
 }
 
 #[test]
+fn strategies_have_sheets_and_numbers() {
+    let page = page(&results());
+    let start = page.find("<section id=\"strategies\">").unwrap();
+    let section = &page[start..start + page[start..].find("</section>").unwrap()];
+    for part in [
+        "src=\"data:image/png;base64,Zm9v\"",
+        "src=\"data:image/png;base64,YmFy\"",
+        "alt=\"Raw images of the strategies of ",
+        "s=1 t=2 adds most to the picture, 25 % of it.",
+        "2 samples per pixel, seed 3, 4 × 2 pixels",
+        "Of s=1 t=1, s=0 t=3, s=2 t=1 nothing was counted",
+        "longer paths",
+    ] {
+        assert!(section.contains(part), "{part}: {section}");
+    }
+    // Half a ray for each sample, a quarter of them blocked; s = 0 has none.
+    let rows: Vec<_> = section.split("<tr>").collect();
+    let row = |name: &str| rows.iter().find(|row| row.contains(name)).unwrap();
+    let numbers = |row: &str| row.matches("class=\"number\"").count();
+    assert!(row("s=1 t=2</td>").contains(">0.5<") && row("s=1 t=2</td>").contains(">25<"));
+    assert_eq!(numbers(row("s=0 t=2</td>")), 6);
+    assert_eq!(row("s=0 t=2</td>").matches('–').count(), 3);
+}
+
+#[test]
 fn the_page_knows_its_size() {
     let page = page(&results());
     let size = number::with_decimals(page.len() as f64, 0);
@@ -231,6 +294,7 @@ fn a_page_of_nothing_is_a_page() {
         methods: Vec::new(),
         budgets: Vec::new(),
         claims: Vec::new(),
+        pyramids: Vec::new(),
         ..results()
     };
     let page = html(&Report {
@@ -238,10 +302,12 @@ fn a_page_of_nothing_is_a_page() {
         tables: &[],
         plots: &[],
         images: &[],
+        sheets: &[],
         command: "",
     });
     assert!(page.contains("This experiment examines no claim."));
     assert!(page.contains("No images were kept."));
+    assert!(page.contains("pyramid = &quot;METHOD&quot;"));
 }
 
 #[test]

@@ -34,11 +34,14 @@ pub(super) fn section(images: &[ReportImage]) -> Element {
     if images.is_empty() {
         return section.child(element("p").text("No images were kept."));
     }
+    let missing = super::flip::missing(images);
+    let missing = missing.map(|words| element("p").class("note").text(words));
     section
         .child(element("noscript").child(element("p").text("The viewer needs JavaScript.")))
         .child(choices())
         .child(shown())
         .child(stage())
+        .children(missing)
         .child(keys())
 }
 
@@ -73,7 +76,7 @@ fn choices() -> Element {
 const LAYERS: [(&str, &str); 3] = [
     ("image", "image"),
     ("relative", "relative square error"),
-    ("flip", "FLIP error"),
+    ("flip", "FLIP error (HDR)"),
 ];
 
 const CURVES: [(&str, &str); 2] = [("srgb", "sRGB"), ("linear", "linear")];

@@ -105,10 +105,21 @@ pub(crate) struct Watch {
     most: Option<usize>,
     pub(crate) resumed: usize,
     pub(crate) warnings: Vec<String>,
+    /// Passes of images of strategies.
+    pub(crate) strategy_passes: usize,
+    strategy_most: Option<usize>,
     looks: std::cell::Cell<u32>,
 }
 
 impl Watch {
+    /// Stops before a pass of images of strategies.
+    pub(crate) fn at_strategy_pass(passes: usize) -> Self {
+        Self {
+            strategy_most: Some(passes),
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn until(renders: usize) -> Self {
         Self {
             most: Some(renders),
@@ -121,6 +132,7 @@ impl Observer for Watch {
     fn tell(&mut self, event: Event<'_>) {
         match event {
             Event::Record(_) => self.renders += 1,
+            Event::Pyramid { .. } => self.strategy_passes += 1,
             Event::Begin { done, .. } => self.resumed = done,
             Event::Warning(text) => self.warnings.push(text.to_owned()),
             Event::Reference { .. } => {}
@@ -133,7 +145,13 @@ impl Observer for Watch {
     }
 
     fn should_stop(&mut self) -> bool {
-        self.most.is_some_and(|most| self.renders >= most)
+        let is_beyond = |most: Option<usize>, done: usize| most.is_some_and(|most| done >= most);
+        // A pass is told before it is asked whether to go on with it.
+        is_beyond(self.most, self.renders)
+            || is_beyond(
+                self.strategy_most.map(|most| most + 1),
+                self.strategy_passes,
+            )
     }
 }
 

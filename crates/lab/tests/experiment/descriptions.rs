@@ -1,5 +1,5 @@
 use crate::common::{DESCRIPTION, Workplace};
-use bidir_lab::experiment::{BudgetSpec, ExperimentError, ReferenceSpec};
+use bidir_lab::experiment::{BudgetSpec, Experiment, ExperimentError, ReferenceSpec};
 use bidir_lab::results::BudgetKind;
 
 /// A description whose fault is at a place in its own lines.
@@ -68,6 +68,40 @@ fn what_is_wrong_is_told_with_its_place() {
         ":4:1: `reference` or `reference-spp` is missing",
         None,
     );
+}
+
+#[test]
+fn strategies_are_those_of_a_bidirectional_method() {
+    let with = |lines: &str| format!("{lines}\n{DESCRIPTION}[[budget]]\nsamples = 2\n");
+    check(
+        &with("pyramid = \"al\""),
+        ":1:11: there is no method `al`",
+        Some("did you mean `all`?"),
+    );
+    check(
+        &with("pyramid = \"everything\""),
+        ":1:11: there is no method `everything`",
+        Some("methods are all, one"),
+    );
+    check(
+        &(with("pyramid = \"one\"").replace("per-pair\"", "per-pair\"\nintegrator = \"light\"")),
+        ":1:11: the method `one` is not bidirectional",
+        Some("strategies (s, t) are those of a method whose integrator is \"bdpt\""),
+    );
+    check(
+        &with("pyramid-spp = 4"),
+        ":1:15: there is no `pyramid` that it could be of",
+        None,
+    );
+    check(
+        &with("pyramid = \"all\"\npyramid-spp = 1"),
+        ":2:15: expected a whole number from 2 on",
+        None,
+    );
+    let place = Workplace::new();
+    let experiment = place.read(&with("pyramid = \"one\"")).unwrap();
+    let spp = |experiment: &Experiment| experiment.pyramid.as_ref().unwrap().spp;
+    assert_eq!((spp(&experiment), spp(&experiment.quick())), (64, 8));
 }
 
 #[test]

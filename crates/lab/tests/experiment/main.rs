@@ -4,5 +4,6 @@
 
 mod common;
 mod descriptions;
+mod pyramid;
 mod records;
 mod references;

@@ -59,6 +59,7 @@ fn results(seeds: u64) -> Results {
         methods: vec![method("first"), method("second"), method("not run")],
         budgets: vec![budget(64.0), budget(16.0)],
         records: cells.collect(),
+        pyramids: Vec::new(),
         claims: Vec::new(),
     }
 }

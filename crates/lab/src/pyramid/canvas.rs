@@ -1,7 +1,7 @@
 //! A picture that images and text are drawn on. Linear colours; what is outside is cut.
 
 use super::font;
-use lab::image::Pixels;
+use crate::image::Pixels;
 
 /// A dot of a letter is a square of so many pixels.
 const DOT: usize = 2;

@@ -2,11 +2,11 @@
 //! it takes to see it [Veach97, fig. 10.2].
 
 use super::canvas::{Canvas, LINE, text_width};
+use crate::image::{Pixels, resample};
 use bidir::spectrum::luminance;
-use lab::image::{Pixels, resample};
 
 /// The most pixels of a tile's image from side to side, and from top to bottom.
-const TILE: usize = 180;
+pub(super) const TILE: usize = 180;
 /// Between tiles, and around all.
 const GAP: usize = 14;
 /// Lines of a tile's label.

@@ -1,0 +1,74 @@
+//! What a render tells of each strategy in numbers.
+
+use bidir::driver::Session;
+use bidir::film::Film;
+use bidir::path::Strategy;
+use bidir::spectrum::luminance;
+use bidir::stats::StrategyCounts;
+
+/// What is known of a strategy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figures {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// What became of its contributions.
+    pub counts: StrategyCounts,
+    /// What its images tell. None: the film keeps none of it.
+    pub images: Option<ImageFigures>,
+}
+
+/// What the images of a strategy tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImageFigures {
+    /// The mean luminance of the weighted image.
+    pub mean: f64,
+    /// The variance of what a pass adds to a pixel of it, in the mean pixel. None: less than two
+    /// passes, or none of them in this session.
+    pub variance: Option<f64>,
+    /// The mean luminance of the raw image. None: the film has none.
+    pub raw_mean: Option<f64>,
+    /// Values that are in the weighted image, but too large for the raw one.
+    pub raw_dropped: u64,
+}
+
+impl Figures {
+    /// All strategies that something was counted of, shorter paths first.
+    pub fn all(session: &Session<'_>) -> Vec<Self> {
+        let moments: Vec<_> = session.strategy_moments().collect();
+        let (film, stats) = (session.film(), session.stats());
+        let rows = stats.strategies.rows().map(|(strategy, counts)| {
+            let told = moments.iter().find(|told| told.strategy == strategy);
+            let images = told.map(|told| ImageFigures {
+                mean: told.mean,
+                variance: told.variance,
+                raw_mean: film.layers().raw_part(strategy).map(|raw| mean(film, raw)),
+                raw_dropped: stats.strategy_images.get(strategy).raw_dropped,
+            });
+            Self {
+                strategy,
+                counts,
+                images,
+            }
+        });
+        rows.collect()
+    }
+
+    /// The blocked part of the traced rays. None: none was traced.
+    pub fn blocked_share(&self) -> Option<f64> {
+        let StrategyCounts {
+            traced, blocked, ..
+        } = self.counts;
+        (traced > 0).then(|| blocked as f64 / traced as f64)
+    }
+}
+
+/// The mean luminance of a part of a film's picture.
+pub(super) fn mean(film: &Film, part: usize) -> f64 {
+    mean_of(film, film.part_pixels(part))
+}
+
+/// The mean luminance of an image of a film.
+pub(super) fn mean_of(film: &Film, pixels: impl Iterator<Item = [f32; 3]>) -> f64 {
+    let sum: f64 = pixels.map(|pixel| f64::from(luminance(pixel))).sum();
+    sum / film.settings().crop.area().max(1) as f64
+}

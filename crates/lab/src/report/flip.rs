@@ -1,0 +1,112 @@
+//! Maps of FLIP: what an observer sees between each render and the reference of its scene.
+
+use super::{ImageKind, ReportImage};
+use crate::image::{Pair, Pixels};
+use crate::metric::Metric;
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+
+/// A page has maps for as many pixels of renders: a map takes about a second of one core for
+/// 100 000 pixels, and all of them should take less time than what they are of.
+const MOST_PIXELS: usize = 1 << 22;
+
+/// Gives renders their maps against the reference of their scene, where that has their size: the
+/// difference at the exposure at which it is seen best. In order, as far as [`MOST_PIXELS`] goes.
+pub fn add_flip(images: &mut [ReportImage]) {
+    let references: Vec<(String, Pixels)> = images
+        .iter()
+        .filter(|image| image.kind == ImageKind::Reference)
+        .map(|image| (image.scene.clone(), image.pixels.clone()))
+        .collect();
+    let mut left = MOST_PIXELS;
+    let mut wanted = Vec::new();
+    for image in images
+        .iter_mut()
+        .filter(|image| image.kind != ImageKind::Reference)
+    {
+        let of_scene = references.iter().find(|(scene, _)| *scene == image.scene);
+        let count = image.pixels.data.len();
+        if let (Some((_, reference)), true) = (of_scene, count <= left) {
+            left -= count;
+            wanted.push((image, reference));
+        }
+    }
+    wanted.par_iter_mut().for_each(|(image, reference)| {
+        let pair = Pair::new(&image.pixels, reference);
+        image.flip = pair.map(|pair| Metric::FlipHdr.errors(&pair));
+    });
+}
+
+/// What a reader has to know of maps that are not there. None: all are.
+pub(super) fn missing(images: &[ReportImage]) -> Option<String> {
+    let renders = || {
+        images
+            .iter()
+            .filter(|image| image.kind != ImageKind::Reference)
+    };
+    let missing = renders().filter(|image| image.flip.is_none()).count();
+    (missing > 0).then(|| {
+        format!(
+            "{missing} of {} renders have no map of FLIP here: their scene has no reference of their \
+             size among the results, or the maps of those before have {MOST_PIXELS} pixels. \
+             bidir compare --flip hdr --error-map computes it from the images.",
+            renders().count()
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(scene: &str, kind: ImageKind, size: [usize; 2], value: f32) -> ReportImage {
+        let data = vec![[value; 3]; size[0] * size[1]];
+        ReportImage {
+            scene: scene.to_owned(),
+            kind,
+            pixels: Pixels { size, data },
+            flip: None,
+        }
+    }
+
+    fn render() -> ImageKind {
+        ImageKind::Render {
+            method: "all".to_owned(),
+            budget: "1 spp".to_owned(),
+        }
+    }
+
+    #[test]
+    fn renders_have_the_map_against_their_own_reference() {
+        let reference = |scene, value| image(scene, ImageKind::Reference, [4, 3], value);
+        let mut images = [
+            reference("a", 0.5),
+            image("a", render(), [4, 3], 0.5),
+            image("b", render(), [4, 3], 0.5),
+            reference("b", 0.05),
+            image("b", render(), [5, 3], 0.5),
+            image("c", render(), [4, 3], 0.5),
+        ];
+        add_flip(&mut images);
+        let has: Vec<_> = images.iter().map(|image| image.flip.is_some()).collect();
+        assert_eq!(has, [false, true, true, false, false, false]);
+        let mean = |index: usize| Metric::FlipHdr.pool(images[index].flip.as_ref().unwrap());
+        assert!(mean(1).abs() < 1e-12 && mean(2) > 0.1);
+        assert!(missing(&images).unwrap().starts_with("2 of 4 renders"));
+        assert_eq!(missing(&images[..3]), None);
+    }
+
+    /// The one that is too large is left out; what fits behind it is not.
+    #[test]
+    fn large_images_are_bounded() {
+        let side = 1 << 11;
+        let mut images = [
+            image("a", ImageKind::Reference, [side, side + 1], 0.5),
+            image("a", render(), [side, side + 1], 0.4),
+            image("b", ImageKind::Reference, [4, 3], 0.5),
+            image("b", render(), [4, 3], 0.4),
+        ];
+        add_flip(&mut images);
+        let has: Vec<_> = images.iter().map(|image| image.flip.is_some()).collect();
+        assert_eq!(has, [false, false, false, true]);
+    }
+}
