@@ -87,7 +87,7 @@ impl Cell<'_> {
         reference: &Reference,
         metrics: &[Metric],
     ) -> Record {
-        let metrics = self.metrics(&rendered.picture, reference, metrics);
+        let metrics = distances(&rendered.picture, reference, metrics);
         let mse = metrics.get("rmse").map_or(f64::NAN, |rmse| rmse * rmse);
         Record {
             scene: self.stage.spec.name.clone(),
@@ -103,24 +103,6 @@ impl Cell<'_> {
             efficiency_seconds: efficiency(mse, rendered.seconds),
             image: None,
         }
-    }
-
-    /// The distances that are numbers; JSON has no others.
-    fn metrics(
-        &self,
-        picture: &Picture,
-        reference: &Reference,
-        metrics: &[Metric],
-    ) -> BTreeMap<String, f64> {
-        let image = pixels(picture);
-        let Some(pair) = Pair::new(&image, &reference.pixels) else {
-            return BTreeMap::new();
-        };
-        let wanted = |metric| metric == Metric::Rmse || metrics.contains(&metric);
-        let names = Metric::NAMES.into_iter();
-        let names = names.filter(|(_, metric)| wanted(*metric));
-        let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
-        values.filter(|(_, value)| value.is_finite()).collect()
     }
 
     /// The name of its image, relative to the folder of the results.
@@ -163,6 +145,23 @@ fn rays(session: &Session<'_>) -> Rays {
         light_image: rays.light_image,
         training: training.map_or(0, |training| training.rays.total()),
     }
+}
+
+/// The distances that are numbers; JSON has no others.
+fn distances(
+    picture: &Picture,
+    reference: &Reference,
+    metrics: &[Metric],
+) -> BTreeMap<String, f64> {
+    let image = pixels(picture);
+    let Some(pair) = Pair::new(&image, &reference.pixels) else {
+        return BTreeMap::new();
+    };
+    let wanted = |metric| metric == Metric::Rmse || metrics.contains(&metric);
+    let names = Metric::NAMES.into_iter();
+    let names = names.filter(|(_, metric)| wanted(*metric));
+    let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
+    values.filter(|(_, value)| value.is_finite()).collect()
 }
 
 fn pixels(picture: &Picture) -> Pixels {

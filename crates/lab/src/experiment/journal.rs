@@ -120,12 +120,11 @@ impl Journal {
             return Err(ExperimentError::Elsewhere { folder, difference });
         }
         for line in lines {
-            match serde_json::from_str(line) {
-                Ok(PyramidLine { pyramid }) => journal.pyramids.push(pyramid),
-                Err(_) => {
-                    let record = serde_json::from_str(line).map_err(|_| others())?;
-                    journal.records.push(record);
-                }
+            if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
+                journal.pyramids.push(pyramid);
+            } else {
+                let record = serde_json::from_str(line).map_err(|_| others())?;
+                journal.records.push(record);
             }
         }
         journal.text = text;

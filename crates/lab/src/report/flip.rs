@@ -5,8 +5,8 @@ use crate::image::{Pair, Pixels};
 use crate::metric::Metric;
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
-/// A page has maps for as many pixels of renders: a map takes about a second of one core for
-/// 100 000 pixels, and all of them should take less time than what they are of.
+/// A page has maps for as many pixels of renders: half a million take about a second of one core in
+/// rooms, and nobody should wait for a page.
 const MOST_PIXELS: usize = 1 << 22;
 
 /// Gives renders their maps against the reference of their scene, where that has their size: the

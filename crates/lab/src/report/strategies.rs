@@ -129,7 +129,7 @@ fn numbers(pyramid: &Pyramid) -> Table {
         "blocked %",
     ];
     let nothing = || Cell::Text(NOTHING.to_owned());
-    let share = |mean: f64| Cell::Number(rounded(100.0 * mean / pyramid.mean));
+    let share = |mean: f64| Cell::Number(100.0 * mean / pyramid.mean);
     let rest = [
         ("longer paths", pyramid.longer),
         ("the picture", pyramid.mean),
@@ -176,13 +176,8 @@ fn row(strategy: &StrategyInfo, pyramid: &Pyramid, share: Cell) -> Vec<Cell> {
             strategy.variance.is_some(),
         ),
         known(rays / samples, strategy.rays > 0),
-        known(rounded(blocked), strategy.rays > 0),
+        known(blocked, strategy.rays > 0),
     ]
-}
-
-/// A percentage to a tenth.
-fn rounded(percent: f64) -> f64 {
-    (10.0 * percent).round() / 10.0
 }
 
 /// The strategies that are not in the table. None: all are.
