@@ -1,7 +1,7 @@
 //! From a description to results.
 
 use super::Experiment;
-use super::analysis::reference_noise;
+use super::analysis::{ReferenceNoise, reference_noise};
 use super::cell::Cell;
 use super::error::ExperimentError;
 use super::identity::identity;
@@ -158,7 +158,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     };
     let mut results = work.results(journal.records());
     results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
-    for noise in reference_noise(&results).filter(|noise| noise.is_large()) {
+    for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
         observer.tell(Event::Warning(&noise.words()));
     }
     write_results(&setup.folder, &results)?;
