@@ -29,7 +29,7 @@ pub use verdict::{Expected, all, judge};
 
 use super::plans;
 use crate::results::{Axis, Cell, Claim, Plot, PlotKind, Scale, Series, Table, Verdict};
-use crate::statistics::Interval;
+use crate::statistics::{Interval, RATIOS};
 
 /// How sure a whole statement is.
 const CONFIDENCE: f64 = 0.95;
@@ -39,10 +39,6 @@ pub(super) fn shared(parts: usize) -> f64 {
     1.0 - (1.0 - CONFIDENCE) / parts.max(1) as f64
 }
 
-/// How ratios are found, in words.
-const BY_RATIOS: &str = "Ratios are geometric means over seeds, paired by seed, with expanded \
-     percentile bootstrap intervals; a statement's intervals hold together with 95 %.";
-
 /// A claim without tables and plots.
 fn claim(id: &str, source: &str, claim: &str, verdict: Verdict, found: String) -> Claim {
     Claim {
@@ -51,7 +47,7 @@ fn claim(id: &str, source: &str, claim: &str, verdict: Verdict, found: String) -
         source: source.to_owned(),
         verdict,
         found,
-        method: BY_RATIOS.to_owned(),
+        method: format!("{RATIOS} The intervals of a statement hold together with 95 %."),
         tables: Vec::new(),
         plots: Vec::new(),
     }
