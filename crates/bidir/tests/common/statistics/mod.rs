@@ -53,23 +53,42 @@ pub(crate) fn replicates_of(
     passes: u64,
     develop: impl Fn(&Film) -> Vec<Rgb>,
 ) -> Replicates {
+    let [replicates] = replicates_of_each(scene, settings, passes, |film| [develop(film)]);
+    replicates
+}
+
+/// The same, of several images of each film.
+pub(crate) fn replicates_of_each<const N: usize>(
+    scene: &Scene,
+    settings: &Settings,
+    passes: u64,
+    develop: impl Fn(&Film) -> [Vec<Rgb>; N],
+) -> [Replicates; N] {
     let passes = (passes * effort()).div_ceil(REPLICATES as u64);
+    // A pass of so small a film is over before a second thread is awake.
+    let resources = Resources {
+        threads: 1,
+        ..Resources::default()
+    };
     let crop = scene.film().crop;
-    let pictures = (0..REPLICATES as u64).map(|replicate| {
+    let mut of_each = [(); N].map(|()| Replicates {
+        width: crop.width() as usize,
+        height: crop.height() as usize,
+        pictures: Vec::with_capacity(REPLICATES),
+    });
+    for replicate in 0..REPLICATES as u64 {
         let settings = Settings {
             seed: first_seed().wrapping_mul(1000) + replicate,
             sampler: SamplerKind::Independent,
             ..settings.clone()
         };
-        let film = render(scene, &settings, passes, &Resources::default());
-        let pixels = develop(&film.expect("the film is small"));
-        pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
-    });
-    Replicates {
-        width: crop.width() as usize,
-        height: crop.height() as usize,
-        pictures: pictures.collect(),
+        let film = render(scene, &settings, passes, &resources).expect("the film is small");
+        for (replicates, pixels) in of_each.iter_mut().zip(develop(&film)) {
+            let picture = pixels.iter().map(|pixel| pixel.map(f64::from));
+            replicates.pictures.push(picture.collect());
+        }
     }
+    of_each
 }
 
 impl Replicates {

@@ -1,0 +1,86 @@
+//! Groups of lights.
+
+use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates, replicates_of_each};
+use crate::lit_room::{LAMPS, lit_room};
+use crate::{film, layer, settings};
+use bidir::driver::Settings;
+use bidir::film::{Film, LayerImage, Layers, Picture};
+use bidir::integrator::IntegratorKind;
+use bidir::scene::{DEFAULT_GROUP, ENVIRONMENT_GROUP};
+use bidir::spectrum::Rgb;
+
+#[test]
+fn lights_are_in_groups_by_name_or_by_kind() {
+    let scene = lit_room(2, &LAMPS);
+    let expected = ["ceiling", DEFAULT_GROUP, ENVIRONMENT_GROUP];
+    assert_eq!(scene.group_names(), expected);
+    let groups: Vec<_> = (0..3).map(|light| scene.light_group(light)).collect();
+    assert_eq!(groups, [0, 1, 2]);
+}
+
+/// Checks that images of the parts add up to the picture, up to the rounding of their values.
+#[track_caller]
+fn check_sum(picture: &Picture, parts: &[LayerImage]) {
+    for (i, pixel) in picture.pixels.iter().flatten().enumerate() {
+        let sum: f32 = parts.iter().map(|part| part.data[i]).sum();
+        let tolerance = 1e-5 * pixel.abs() + 1e-9;
+        assert!((sum - pixel).abs() < tolerance, "{i}: {sum}, not {pixel}");
+    }
+}
+
+#[test]
+fn parts_add_up_to_the_picture_and_leave_it_alone() {
+    let scene = lit_room(8, &LAMPS);
+    for (name, integrator) in IntegratorKind::NAMES {
+        let layers = Layers::new(&[], scene.group_names(), 4);
+        let film = |layers| film(&scene, &settings(integrator, layers), 16, 2);
+        let (plain, kept) = (film(Layers::default()), film(layers));
+        let picture = kept.develop();
+        assert_eq!(plain.develop(), picture, "{name}");
+        let images = kept.develop_layers();
+        let (groups, strategies) = images.split_at(3);
+        assert_eq!(groups[2].name, "lightgroup.environment");
+        check_sum(&picture, groups);
+        check_sum(&picture, strategies);
+        assert!(
+            groups
+                .iter()
+                .all(|group| group.data.iter().any(|v| *v > 0.0))
+        );
+        assert!(
+            layer(strategies, "longer", "R")
+                .data
+                .iter()
+                .any(|v| *v > 0.0),
+            "{name}"
+        );
+    }
+}
+
+/// What is kept of each lamp's group.
+fn pictures_of_groups(film: &Film) -> [Vec<Rgb>; 3] {
+    let images = film.develop_layers();
+    ["ceiling", DEFAULT_GROUP, ENVIRONMENT_GROUP].map(|group| {
+        let image = layer(&images, &format!("lightgroup.{group}"), "R");
+        image.data.as_chunks::<3>().0.to_vec()
+    })
+}
+
+#[test]
+fn a_group_is_what_its_lights_alone_would_give() {
+    let scene = lit_room(8, &LAMPS);
+    let layers = Layers::new(&[], scene.group_names(), 0);
+    // The smaller and the nearer a lamp, the more its image varies.
+    let passes = LAMPS.into_iter().zip([24576, 16384, 2048]);
+    let alone: Vec<Replicates> = passes
+        .map(|(lamp, passes)| replicates(&lit_room(8, &[lamp]), &Settings::default(), passes))
+        .collect();
+    for (integrator, passes) in [(IntegratorKind::Path, 24576), (IntegratorKind::Bdpt, 16384)] {
+        let settings = settings(integrator, layers.clone());
+        let groups = replicates_of_each(&scene, &settings, passes, pictures_of_groups);
+        for ((group, alone), name) in groups.iter().zip(&alone).zip(scene.group_names()) {
+            let name = format!("{integrator:?}, {name}");
+            check_agree(&name, group, alone, &[WHOLE, 2]);
+        }
+    }
+}

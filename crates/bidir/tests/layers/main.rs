@@ -1,0 +1,49 @@
+//! What a film keeps beside the picture: known features of a plane, parts that add up, and groups of
+//! lights that are what the lights alone would give.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod films;
+mod groups;
+mod lit_room;
+mod plane;
+mod strategies;
+
+use bidir::driver::{Resources, Settings, render};
+use bidir::film::{Aov, Film, LayerImage, Layers};
+use bidir::integrator::IntegratorKind;
+use bidir::scene::Scene;
+
+/// Everything that is known of the first surface, and how it was rendered but for the time.
+pub(crate) const FEATURES: [Aov; 9] = [
+    Aov::Albedo,
+    Aov::Position,
+    Aov::Normal,
+    Aov::ShadingNormal,
+    Aov::Depth,
+    Aov::Coverage,
+    Aov::Samples,
+    Aov::Variance,
+    Aov::Rays,
+];
+
+pub(crate) fn settings(integrator: IntegratorKind, layers: Layers) -> Settings {
+    Settings {
+        integrator,
+        layers,
+        ..Settings::default()
+    }
+}
+
+pub(crate) fn film(scene: &Scene, settings: &Settings, passes: u64, threads: usize) -> Film {
+    let resources = Resources {
+        threads,
+        ..Resources::default()
+    };
+    render(scene, settings, passes, &resources).expect("the film is small")
+}
+
+pub(crate) fn layer<'a>(images: &'a [LayerImage], name: &str, channel: &str) -> &'a LayerImage {
+    let is_it = |image: &&LayerImage| image.name == name && image.channels[0] == channel;
+    images.iter().find(is_it).expect("the layer is kept")
+}

@@ -1,0 +1,156 @@
+//! Features of a plane, all of which are known, and what pixels cost.
+
+use crate::common::{add_walls, builder, diffuse, quad, tilt};
+use crate::{FEATURES, film, layer, settings};
+use bidir::driver::{Progress, Resources, Session};
+use bidir::film::{Aov, LayerImage, Layers};
+use bidir::integrator::IntegratorKind;
+use bidir::light::{InfiniteLight, Light};
+use bidir::math::Vec3;
+use bidir::scene::Scene;
+use bidir::shape::Shape;
+use bidir::spectrum::Rgb;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
+fn plane() -> Scene {
+    let mut builder = builder(4, 0.0);
+    let material = builder.material(diffuse([0.8, 0.4, 0.2]));
+    let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
+    let plane = tilt(plane, Vec3::ZERO);
+    builder.shape(Shape::Mesh(plane), material, None);
+    builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+    builder.build().expect("the plane is valid")
+}
+
+/// The values of a pixel in the layer with this name and first channel.
+fn at(images: &[LayerImage], name: &str, channel: &str, pixel: usize) -> Vec<f32> {
+    let image = layer(images, name, channel);
+    let n = image.channels.len();
+    image.data[pixel * n..(pixel + 1) * n].to_vec()
+}
+
+#[track_caller]
+fn check_near(values: &[f32], expected: &[f32]) {
+    let fits = values
+        .iter()
+        .zip(expected)
+        .all(|(a, b)| (a - b).abs() < 2e-3);
+    assert!(
+        fits && values.len() == expected.len(),
+        "{values:?}, not {expected:?}"
+    );
+}
+
+/// Checks pixel 4, the first of the second row; the view is 0.6 wide at distance 1.
+#[track_caller]
+fn check_surface(images: &[LayerImage]) {
+    let at = |name: &str, channel: &str| at(images, name, channel, 4);
+    check_near(&at("Albedo", "R"), &[0.8, 0.4, 0.2]);
+    check_near(&at("N", "X"), &[0.0, 0.0, -1.0]);
+    check_near(&at("Ns", "X"), &[0.0, 0.0, -1.0]);
+    check_near(&at("", "Z"), &[2.8]);
+    check_near(&at("", "Coverage"), &[1.0]);
+    check_near(&at("", "Samples"), &[64.0]);
+    let position = Vec3::from_slice(&at("P", "X"));
+    check_near(&[position.z], &[1.0]);
+    let centre = Vec3::new(-0.45 * 2.8, 0.15 * 2.8, 1.0);
+    assert!((position - centre).length() < 0.15, "{position:?}");
+    assert!(at("", "Rays")[0] >= 64.0);
+}
+
+/// Checks pixel 6, half of which is sky, which counts for no depth.
+#[track_caller]
+fn check_edge(images: &[LayerImage]) {
+    check_near(&at(images, "", "Z", 6), &[2.8]);
+    let coverage = at(images, "", "Coverage", 6)[0];
+    assert!((coverage - 0.5).abs() < 0.1, "{coverage}");
+}
+
+/// Checks pixel 7, which is sky.
+#[track_caller]
+fn check_sky(images: &[LayerImage]) {
+    for (name, channel) in [
+        ("Albedo", "R"),
+        ("P", "X"),
+        ("N", "X"),
+        ("", "Z"),
+        ("", "Coverage"),
+    ] {
+        let values = at(images, name, channel, 7);
+        assert!(values.iter().all(|v| *v == 0.0), "{name} {channel}");
+    }
+}
+
+#[test]
+fn features_of_a_plane_are_known() {
+    let scene = plane();
+    for (_, integrator) in IntegratorKind::NAMES {
+        let settings = settings(integrator, Layers::new(&FEATURES, &[], 0));
+        let images = film(&scene, &settings, 64, 2).develop_layers();
+        check_surface(&images);
+        check_edge(&images);
+        check_sky(&images);
+    }
+}
+
+#[test]
+fn variance_is_that_of_the_mean() {
+    let scene = plane();
+    let settings = settings(IntegratorKind::Path, Layers::new(&[Aov::Variance], &[], 0));
+    let film = film(&scene, &settings, 64, 2);
+    let (picture, images) = (film.develop(), film.develop_layers());
+    let (absolute, relative) = (
+        layer(&images, "Variance", "R"),
+        layer(&images, "RelativeVariance", "R"),
+    );
+    let flat = |pixels: &[Rgb]| pixels.concat();
+    assert_eq!(absolute.data, flat(&picture.variance));
+    for ((mean, variance), relative) in flat(&picture.pixels)
+        .iter()
+        .zip(&absolute.data)
+        .zip(&relative.data)
+    {
+        assert!((relative * mean * mean - variance).abs() <= 1e-6 * variance);
+    }
+    assert!(absolute.data.iter().any(|variance| *variance > 0.0));
+}
+
+/// A clock that is a millisecond later whenever it is looked at.
+#[derive(Default)]
+struct Clock(AtomicU64);
+
+impl Progress for Clock {
+    fn advance(&self, _samples: u64) {}
+
+    fn nanoseconds(&self) -> u64 {
+        self.0.fetch_add(1_000_000, Ordering::Relaxed)
+    }
+}
+
+#[test]
+fn time_is_looked_at_where_it_is_kept() {
+    let mut builder = builder(4, 0.0);
+    let wall = builder.material(diffuse([0.5; 3]));
+    add_walls(&mut builder, wall);
+    let scene = builder.build().expect("the walls are valid");
+    for (aov, looks) in [(Aov::Time, 3 * 16 * 2), (Aov::Rays, 0)] {
+        let settings = settings(IntegratorKind::Path, Layers::new(&[aov], &[], 0));
+        let resources = Resources {
+            threads: 1,
+            ..Resources::default()
+        };
+        let mut session = Session::new(&scene, settings, &resources).expect("the film is small");
+        let clock = Clock::default();
+        (0..3).for_each(|_| assert!(session.step(&clock)));
+        assert_eq!(clock.0.into_inner(), looks * 1_000_000);
+        if aov == Aov::Time {
+            let images = session.film().develop_layers();
+            let seconds = &layer(&images, "", "Time").data;
+            assert!(
+                seconds.iter().all(|pixel| (pixel - 3e-3).abs() < 1e-6),
+                "{seconds:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,11 @@
+"""The list of mutants: one deliberate fault each, and the test that must notice it.
+
+An entry is (name, file, old text, new text, test). The old text occurs exactly once in the file.
+"""
+
+from .laboratory import LABORATORY
+from .paths import PATHS
+from .pictures import PICTURES
+from .scenes import SCENES
+
+MUTATIONS = PATHS + PICTURES + SCENES + LABORATORY

@@ -1,0 +1,188 @@
+"""Faults in paths: geometry, densities, weights, and which connections are made."""
+
+from .tests import PATH, analytic, estimators, unit
+
+PATHS = [
+    # --- path: geometry and scattering ----------------------------------------------------
+    (
+        "cosine dropped from G",
+        "crates/bidir/src/path/vertex.rs",
+        "let cosines = self.abs_cos(w) * other.abs_cos(w);",
+        "let cosines = self.abs_cos(w);",
+        PATH,
+    ),
+    (
+        "G without 1/d2",
+        "crates/bidir/src/path/vertex.rs",
+        "cosines / distance2",
+        "cosines",
+        PATH,
+    ),
+    (
+        "area density without the cosine",
+        "crates/bidir/src/path/scatter.rs",
+        "pdf_w * cos / distance2",
+        "pdf_w / distance2",
+        PATH,
+    ),
+    (
+        "no correction of shading normals",
+        "crates/bidir/src/path/scatter.rs",
+        "(self.shading.z.dot(w) / self.n_g.dot(w)).abs()",
+        "1.0",
+        PATH,
+    ),
+    (
+        "correction of shading normals for one mode only",
+        "crates/bidir/src/path/scatter.rs",
+        "TransportMode::Importance => self.normal_ratio(wo),",
+        "TransportMode::Importance => self.normal_ratio(wi),",
+        PATH,
+    ),
+    # --- path: densities and weights ------------------------------------------------------
+    (
+        "forward and reverse density swapped",
+        "crates/bidir/src/path/densities.rs",
+        "            vertex.pdf_fwd * factor(context, i, before),\n"
+        "            vertex.pdf_rev * factor(context, n - 1 - i, after),",
+        "            vertex.pdf_rev * factor(context, i, before),\n"
+        "            vertex.pdf_fwd * factor(context, n - 1 - i, after),",
+        PATH,
+    ),
+    (
+        "roulette forgotten in densities",
+        "crates/bidir/src/path/densities.rs",
+        "context.settings.roulette.density_factor(index - 2, albedo)",
+        "context.settings.roulette.density_factor(index - 2, 1.0)",
+        PATH,
+    ),
+    (
+        "old direction at the junction",
+        "crates/bidir/src/path/densities.rs",
+        "x[s - 2].from_camera = z.pdf_to(context, wo, before) * survival;",
+        "x[s - 2].from_camera = z.pdf_to(context, z.wo, before) * survival;",
+        PATH,
+    ),
+    (
+        "next-event density taken for the emission density",
+        "crates/bidir/src/path/densities.rs",
+        "LightPointChoice::Shared || n == 2;",
+        "LightPointChoice::Shared || n >= 2;",
+        PATH,
+    ),
+    (
+        "s = 1 ratio without the emission density",
+        "crates/bidir/src/path/mis.rs",
+        "1 => f64::from(x[0].from_light) / next_event * x[1].ratio(),",
+        "1 => x[1].ratio(),",
+        unit("path::mis"),
+    ),
+    (
+        "connections counted at Dirac vertices",
+        "crates/bidir/src/path/mis.rs",
+        "j => !x[j - 1].is_delta && !x[j].is_delta,",
+        "j => !x[j].is_delta,",
+        analytic("white_objects"),
+    ),
+    (
+        "Dirac lights counted as if they could be hit",
+        "crates/bidir/src/path/mis.rs",
+        "0 => !path.light_is_delta,",
+        "0 => true,",
+        estimators("point_spot_distant"),
+    ),
+    (
+        "n_j of the light image is one",
+        "crates/bidir/src/path/connect.rs",
+        "1 => self.scene.film().light_paths() as f64,",
+        "1 => 1.0,",
+        PATH,
+    ),
+    (
+        "light choice left out of next-event estimation",
+        "crates/bidir/src/path/connect.rs",
+        "Spectrum::splat(1.0 / (prob * sample.pdf))",
+        "Spectrum::splat(1.0 / sample.pdf)",
+        estimators("point_spot_distant"),
+    ),
+    (
+        "survivors of roulette not raised",
+        "crates/bidir/src/path/walk.rs",
+        "beta: beta / survival,",
+        "beta,",
+        analytic("roulette_does_not"),
+    ),
+    # --- integrators ----------------------------------------------------------------------
+    (
+        "sum of the group in place of C/pi",
+        "crates/bidir/src/integrator/bdpt.rs",
+        "            value: candidate.contribution(chosen.prob),",
+        "            // Right in every grey image, wrong in colour.\n"
+        "            value: {\n"
+        "                let candidates = &workspace.candidates;\n"
+        "                let score = |i: usize| candidates[i].score;\n"
+        "                let all: f32 = (0..candidates.len()).map(score).sum();\n"
+        "                let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
+        "                let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
+        "                sum * part\n"
+        "            },",
+        estimators("every_choice_of_shadow_rays"),
+    ),
+    (
+        "chosen rays not divided by their probability",
+        "crates/bidir/src/integrator/bdpt.rs",
+        "candidate.contribution(chosen.prob)",
+        "candidate.value",
+        analytic("selection_keeps"),
+    ),
+    (
+        "paths one vertex too long",
+        "crates/bidir/src/integrator/bdpt.rs",
+        ".min(context.settings.max_vertices() - t);",
+        ".min(context.settings.max_vertices() + 1 - t);",
+        analytic("every_limit_of_depth"),
+    ),
+    (
+        "path tracer's two densities swapped",
+        "crates/bidir/src/integrator/path.rs",
+        "context.settings.mis.weight_of_two(q, p)",
+        "context.settings.mis.weight_of_two(p, q)",
+        analytic("a_ring_light"),
+    ),
+    (
+        "film filter's weight dropped",
+        "crates/bidir/src/integrator/workspace.rs",
+        "camera_subpath(context, &sample.camera, &ray, weight, camera, stats);",
+        "camera_subpath(context, &sample.camera, &ray, 1.0, camera, stats);",
+        estimators("filters_with"),
+    ),
+    # --- selection ------------------------------------------------------------------------
+    (
+        "budget's probability off by 2 %",
+        "crates/bidir/src/select/budget.rs",
+        "                    prob,",
+        "                    prob: 0.98 * prob,",
+        unit("select::"),
+    ),
+    (
+        "budget's pointer does not move on",
+        "crates/bidir/src/select/budget.rs",
+        "pointer -= 1.0;",
+        "pointer -= prob;",
+        unit("select::"),
+    ),
+    (
+        "one per group with an even probability",
+        "crates/bidir/src/select/grouped.rs",
+        "prob: prob(candidate, sum),",
+        "prob: 1.0 / self.members(candidates, group).count() as f64,",
+        unit("select::"),
+    ),
+    (
+        "roulette of rays with its threshold doubled in the estimate",
+        "crates/bidir/src/select/simple.rs",
+        "if prob >= 1.0 || draws.get(i) < prob {",
+        "if prob >= 1.0 || draws.get(i) < prob / 2.0 {",
+        unit("select::"),
+    ),
+]

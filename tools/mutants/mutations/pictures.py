@@ -1,0 +1,83 @@
+"""Faults in films and cameras."""
+
+from .tests import PATH, layers, unit
+
+PICTURES = [
+    (
+        "splats divided by passes",
+        "crates/bidir/src/film/develop.rs",
+        "fixed::to_f64(light, VALUE_SCALE) / light_paths",
+        "fixed::to_f64(light, VALUE_SCALE) / self.samples()",
+        unit("film::"),
+    ),
+    (
+        "raw images with the weight",
+        "crates/bidir/src/integrator/workspace.rs",
+        "lane / self.weight",
+        "lane",
+        layers("a_raw_image"),
+    ),
+    (
+        "environments of one escape varying one by one",
+        "crates/bidir/src/driver/deposit.rs",
+        "contributions.chunk_by(|a, b| a.strategy == b.strategy)",
+        "contributions.chunks(1)",
+        unit("driver::deposit"),
+    ),
+    (
+        "variance of the light image as if light paths had pixels",
+        "crates/bidir/src/driver/variance.rs",
+        "1 => film.light_paths().max(1) as f64,",
+        "1 => 1.0,",
+        layers("strategies_vary"),
+    ),
+    (
+        "contributions in the group of the light before",
+        "crates/bidir/src/film/layers.rs",
+        "then_some(group as usize)",
+        "then_some((group as usize).saturating_sub(1))",
+        layers("a_group"),
+    ),
+    (
+        "points divided by all samples, those without a surface too",
+        "crates/bidir/src/film/develop.rs",
+        "Some(coverage)) => fixed::to_f64(sums[coverage], VALUE_SCALE),",
+        "Some(_)) => self.samples(),",
+        layers("features"),
+    ),
+    (
+        "depth as the distance from the lens",
+        "crates/bidir/src/driver/features.rs",
+        "depth: (surface.point - lens.point).dot(lens.n_g),",
+        "depth: (surface.point - lens.point).length(),",
+        layers("features"),
+    ),
+    (
+        "negative lobes splatted as positive",
+        "crates/bidir/src/film/filter.rs",
+        "sum.copysign(*value)",
+        "sum",
+        unit("film::filter"),
+    ),
+    (
+        "carry lost between the limbs of a sum",
+        "crates/bidir/src/film/fixed.rs",
+        "let high = high.wrapping_add(carry);",
+        "",
+        unit("film::fixed"),
+    ),
+    (
+        "importance without the lens's area",
+        "crates/bidir/src/camera/perspective.rs",
+        "self.pdf_direction(w) / (cos * self.lens_area())",
+        "self.pdf_direction(w) / cos",
+        PATH,
+    ),
+    (
+        "camera density with one cosine too few",
+        "crates/bidir/src/camera/perspective.rs",
+        "self.raster_density / (cos * cos * cos)",
+        "self.raster_density / (cos * cos)",
+        unit("camera::"),
+    ),
+]

@@ -1,0 +1,94 @@
+"""Faults in what scenes are made of, in random numbers and in rays."""
+
+from .tests import unit
+
+SCENES = [
+    # --- scattering models ----------------------------------------------------------------
+    (
+        "eta squared forgotten",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "TransportMode::Radiance => 1.0 / sqr(self.eta_across(wo)),",
+        "TransportMode::Radiance => 1.0,",
+        unit("bsdf::tests::identities"),
+    ),
+    (
+        "eta squared forgotten in Dirac coefficients",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "pdf: prob * sqr(self.eta_at(wi)) * wi.z.abs(),",
+        "pdf: prob * wi.z.abs(),",
+        unit("bsdf::tests::identities"),
+    ),
+    (
+        "wrong Jacobian of refraction",
+        "crates/bidir/src/bsdf/dielectric.rs",
+        "1.0 / sqr(wi.dot(m) + wo.dot(m) / self.eta_across(wo))",
+        "1.0 / sqr(wi.dot(m) + wo.dot(m) * self.eta_across(wo))",
+        unit("bsdf::tests::densities"),
+    ),
+    (
+        "visible normals without G1",
+        "crates/bidir/src/bsdf/microfacet.rs",
+        "self.g1(v) * v.dot(m).abs() * self.d(m) / v.z.abs()",
+        "v.dot(m).abs() * self.d(m) / v.z.abs()",
+        unit("bsdf::microfacet"),
+    ),
+    (
+        "anisotropy turned by a right angle",
+        "crates/bidir/src/bsdf/microfacet.rs",
+        "Vec3::new(m.x * self.alpha_x, m.y * self.alpha_y, m.z.max(1e-6)).normalize()",
+        "Vec3::new(m.x * self.alpha_y, m.y * self.alpha_x, m.z.max(1e-6)).normalize()",
+        unit("bsdf::tests::densities"),
+    ),
+    # --- lights and shapes ----------------------------------------------------------------
+    (
+        "wrong Jacobian of the sphere's cone",
+        "crates/bidir/src/shape/sphere.rs",
+        "cos / (distance2 * 2.0 * PI * height)",
+        "1.0 / (distance2 * 2.0 * PI * height)",
+        unit("shape::tests::directions"),
+    ),
+    (
+        "stretch of a sphere forgotten",
+        "crates/bidir/src/shape/sphere.rs",
+        "        let pdf = 1.0 / (self.local_area() * self.placement.area_scale(n));",
+        "        let pdf = 1.0 / self.area();",
+        unit("shape::tests::points"),
+    ),
+    (
+        "two-sided emission with the density of one side",
+        "crates/bidir/src/light/area.rs",
+        "warp::cosine_hemisphere_pdf(cos.abs()) / 2.0",
+        "warp::cosine_hemisphere_pdf(cos.abs())",
+        unit("light::tests"),
+    ),
+    (
+        "spot without its falloff in light subpaths",
+        "crates/bidir/src/light/point.rs",
+        "emitted_cos: self.intensity(direction),",
+        "emitted_cos: self.intensity,",
+        unit("light::tests"),
+    ),
+    (
+        "half the disk around the scene",
+        "crates/bidir/src/light/infinite.rs",
+        "1.0 / (PI * sqr(context.radius))",
+        "2.0 / (PI * sqr(context.radius))",
+        unit("light::tests"),
+    ),
+    # --- random numbers -------------------------------------------------------------------
+    (
+        "second dimension with a step of Pascal's triangle missing",
+        "crates/bidir/src/sampler/sobol.rs",
+        "    x ^= (x >> 4) & 0x0f0f_0f0f_0f0f_0f0f;\n",
+        "",
+        unit("sampler::sobol"),
+    ),
+    # --- rays -----------------------------------------------------------------------------
+    (
+        "hits at equal distance in any order",
+        "crates/accel/src/ray.rs",
+        "self.t < other.t || (self.t <= other.t && id(self) < id(other))",
+        "self.t < other.t || (self.t <= other.t && id(self) > id(other))",
+        ("bidir-accel", "", ""),
+    ),
+]

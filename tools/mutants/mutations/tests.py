@@ -1,0 +1,38 @@
+"""The tests that mutants name: a package, a target and a filter.
+
+They are chosen to be the fastest that can notice.
+"""
+
+PATH = ("bidir", "--test path_identities", "")
+ANALYTIC = "--test analytic"
+ESTIMATORS = "--test estimators"
+
+
+def unit(filter_):
+    """The unit tests of the `bidir` crate whose names contain `filter_`."""
+    return ("bidir", "--lib", filter_)
+
+
+def layers(filter_):
+    """Tests of what a film keeps beside the picture."""
+    return ("bidir", "--test layers", filter_)
+
+
+def analytic(filter_):
+    """Tests against known images."""
+    return ("bidir", ANALYTIC, filter_)
+
+
+def lab(filter_):
+    """The unit tests of the `lab` crate whose names contain `filter_`."""
+    return ("bidir-lab", "--lib", filter_)
+
+
+def experiment(filter_):
+    """Tests of experiments as a host runs them."""
+    return ("bidir-lab", "--test experiment", filter_)
+
+
+def estimators(filter_):
+    """Tests of estimators against each other on the torture scenes."""
+    return ("bidir-formats", ESTIMATORS, filter_)
