@@ -61,9 +61,9 @@ LABORATORY = [
     ),
     (
         "records of another experiment gone on from",
-        "crates/lab/src/experiment/run.rs",
-        "spec.name,\n            stage.digest,",
-        "spec.name,\n            0,",
+        "crates/lab/src/experiment/identity.rs",
+        "            stage.digest,\n",
+        "            0,\n",
         experiment("another_experiment"),
     ),
     (
