@@ -7,10 +7,10 @@ use crate::args::{CompareArgs, MetricArgs};
 use crate::console::{print, print_json, say};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, IMAGES, MetadataValue};
-use lab::image::{Pair, Pixels, identical, resample};
+use lab::image::{Pair, Pixels, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
 use noise::{Noisy, Significance};
-use report::{Comparison, MEAN_RATIO, Number, Replicates};
+use report::{Bits, Comparison, MEAN_RATIO, Number, Replicates};
 use std::path::{Path, PathBuf};
 
 /// Compares images with a reference.
@@ -24,7 +24,6 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Exit, Failure> {
         .iter()
         .map(|image| compare(args, Noisy::read(image)?, &reference))
         .collect::<Result<_, _>>()?;
-    let all_identical = comparisons.iter().all(|comparison| comparison.identical);
     match &comparisons[..] {
         [one] if args.json => print_json(one)?,
         [one] => print(&one.text())?,
@@ -37,7 +36,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Exit, Failure> {
             }
         }
     };
-    if args.exact && !all_identical {
+    if args.exact && Bits::of_all(&comparisons) == Bits::Different {
         return Ok(Exit::Validation);
     }
     Ok(Exit::Done)
@@ -64,7 +63,7 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
 fn compare(args: &CompareArgs, image: Noisy, reference: &Noisy) -> Result<Comparison, Failure> {
     let significance = Significance::of(&image, reference);
     let (image, reference) = (image.pixels, &reference.pixels);
-    let identical = identical(&image, reference);
+    let identical = Bits::of(&image, reference);
     let fitted = Fitted::new(args, image, reference);
     let (numbers, size) = match fitted.pair(reference) {
         Some(pair) => (numbers(&args.metrics, &pair)?, Some(pair.size())),

@@ -4,7 +4,7 @@
 //! The filter is Open Image Denoise, which the `denoise` crate looks for. The noisy picture stays in
 //! the file, so that it can be denoised again.
 
-use crate::args::DenoiseArgs;
+use crate::args::{DenoiseArgs, ThreadsArgs};
 use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
@@ -27,8 +27,8 @@ pub(crate) struct Filter(Denoiser);
 
 impl Filter {
     /// Finds the library; `threads` is the most that are used, 0 leaves that to the library.
-    pub(crate) fn load(threads: u16) -> Result<Self, Failure> {
-        let denoiser = Denoiser::load(threads.into());
+    pub(crate) fn load(threads: ThreadsArgs) -> Result<Self, Failure> {
+        let denoiser = Denoiser::load(threads.count.into());
         denoiser.map(Self).map_err(|error| failure(&error))
     }
 

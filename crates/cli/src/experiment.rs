@@ -94,7 +94,7 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
 
 /// As many as are asked for, or as there are processors: records tell the number.
 fn threads(args: &ExperimentArgs, own: usize) -> usize {
-    match (args.threads, own) {
+    match (args.threads.count, own) {
         (0, 0) => std::thread::available_parallelism().map_or(1, usize::from),
         (0, own) => own,
         (asked, _) => asked.into(),

@@ -13,21 +13,25 @@ use std::path::{Path, PathBuf};
 /// Tells, develops or checks film files.
 pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failure> {
     match command {
-        FilmCommand::Info { file, json } => info(file, *json),
+        FilmCommand::Info { file, json } => {
+            let header = scene_io::read_film(file)?.header;
+            if *json {
+                print_json(&header)
+            } else {
+                tell(&header)
+            }
+        }
         FilmCommand::Develop { file, output } => develop(file, output),
         FilmCommand::Verify { files } => Ok(verify(files, console)),
     }
 }
 
-fn info(file: &Path, as_json: bool) -> Result<Exit, Failure> {
-    let header = scene_io::read_film(file)?.header;
-    if as_json {
-        return print_json(&header);
-    }
+/// Prints one value per line.
+fn tell(header: &FilmHeader) -> Result<Exit, Failure> {
     let [left, top, right, bottom] = header.crop;
     let [width, height] = header.resolution;
     let settings = header.settings.clone().into_iter();
-    let texts = settings.chain(film_header::counts_by_name(&header));
+    let texts = settings.chain(film_header::counts_by_name(header));
     let texts = texts.map(|(name, value)| format!("  {name:21}{value}\n"));
     print(&format!(
         "passes    {} ({})\nfilm      {width} x {height} pixels, {left},{top} to {right},{bottom}\n\

@@ -123,7 +123,7 @@ impl Job<'_> {
             scene: &self.loaded.scene,
         };
         let resources = Resources {
-            threads: self.args.threads.into(),
+            threads: self.args.threads.count.into(),
             ..Resources::default()
         };
         let display = self.console.display(self.args.talk);

@@ -1,6 +1,6 @@
 //! `bidir render`: a scene becomes an image.
 
-use crate::args::RenderArgs;
+use crate::args::{RenderArgs, ThreadsArgs};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, json, say};
 use crate::denoise::Filter;
@@ -62,12 +62,12 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
 }
 
 /// The threads that build the scene; the session has its own.
-pub(crate) fn set_threads(threads: u16) -> Result<(), Failure> {
+pub(crate) fn set_threads(threads: ThreadsArgs) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.into())
+        .num_threads(threads.count.into())
         .build_global()
         .map_err(|error| {
-            let message = format!("{threads} threads cannot be started: {error}");
+            let message = format!("{} threads cannot be started: {error}", threads.count);
             Failure::new(Exit::RenderFailed, message)
         })
 }
@@ -78,7 +78,7 @@ fn new_session<'a>(
     settings: &Settings,
 ) -> Result<Session<'a>, Failure> {
     let resources = Resources {
-        threads: args.budget.threads.into(),
+        threads: args.budget.threads.count.into(),
         ..Resources::default()
     };
     Session::new(&loaded.scene, settings.clone(), &resources).map_err(|error| {

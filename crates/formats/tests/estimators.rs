@@ -157,13 +157,13 @@ fn filters_with_and_without_negative_lobes() {
         ("triangle", 3),
         ("gaussian", 3),
         ("mitchell", 4),
-        ("sinc", 12),
+        ("sinc", 16),
     ] {
         let loaded = open(&format!("filter-{name}.pbrt"));
-        let case = Case::new(&loaded, 2048);
+        let case = Case::new(&loaded, 1024);
         let reference = case.with_effort(effort).path();
-        case.check_bdpt(&reference);
-        case.check_light(&reference);
+        case.with_effort(2).check_bdpt(&reference);
+        case.with_effort(2).check_light(&reference);
         // Walks whose film position has a negative weight survive as others do.
         let throughput = case
             .with_effort(effort)

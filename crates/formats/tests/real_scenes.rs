@@ -64,7 +64,7 @@ fn veach_mis() {
 
 #[test]
 fn veach_ajar() {
-    check("veach-ajar/veach-ajar.pbrt", 4096, 3);
+    check("veach-ajar/veach-ajar.pbrt", 3072, 3);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The flags of `bidir denoise`.
 
+use super::ThreadsArgs;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -11,6 +12,9 @@ use std::path::PathBuf;
     Examples:\n  bidir denoise room.exr -o room-clean.exr\n  \
     BIDIR_OIDN=oidn/lib bidir denoise room.exr -o room-clean.png"
 )]
+#[command(mut_arg("threads", |threads| threads.help(
+    "Threads; 0 leaves that to the library [default: 0]"
+)))]
 pub(crate) struct DenoiseArgs {
     /// The image, an EXR; of one that was denoised before, the noisy picture that it still has.
     #[arg(value_hint = ValueHint::FilePath)]
@@ -18,14 +22,7 @@ pub(crate) struct DenoiseArgs {
     /// The denoised image, NAME.exr with all other layers and attributes of the image, or NAME.png.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
-    /// Threads; 0 leaves that to the library [default: 0].
-    #[arg(
-        long,
-        visible_alias = "nthreads",
-        env = "BIDIR_THREADS",
-        value_name = "N"
-    )]
-    #[arg(default_value_t = 0, hide_default_value = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
+    /// How fast it is.
+    #[command(flatten)]
+    pub(crate) threads: ThreadsArgs,
 }

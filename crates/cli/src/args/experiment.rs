@@ -1,5 +1,6 @@
 //! The flags of `bidir experiment`.
 
+use super::ThreadsArgs;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -42,6 +43,9 @@ Examples:
       small and coarse, to see whether it works
   bidir experiment paper --quick -o out/paper
       the statements of the 1995 paper, each with a verdict")]
+#[command(mut_arg("threads", |threads| threads.help(
+    "Threads of each render, instead of the description's [default: its own, or one per processor]"
+)))]
 pub(crate) struct ExperimentArgs {
     /// The description, a file of TOML; or `paper`, the experiment of Lafortune and Willems (1995) claim
     /// by claim, which needs no file (one of that name is ./paper).
@@ -59,16 +63,9 @@ pub(crate) struct ExperimentArgs {
     /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours.
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Threads of each render, instead of the description's [default: its own, or one per processor].
-    #[arg(
-        long,
-        visible_alias = "nthreads",
-        env = "BIDIR_THREADS",
-        value_name = "N"
-    )]
-    #[arg(default_value_t = 0, hide_default_value = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
+    /// How fast it is.
+    #[command(flatten)]
+    pub(crate) threads: ThreadsArgs,
     /// Tell nothing but warnings and errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,

@@ -10,6 +10,7 @@ mod long;
 mod reference;
 mod render;
 mod sources;
+mod threads;
 mod tonemap;
 mod values;
 
@@ -21,6 +22,7 @@ pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use long::{LongArgs, Part};
 pub(crate) use reference::ReferenceArgs;
 pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArgs};
+pub(crate) use threads::ThreadsArgs;
 pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
 

@@ -1,7 +1,7 @@
 //! The flags of `bidir reference`.
 
-use super::SceneArgs;
 use super::render::{EstimatorArgs, FilmArgs, TalkArgs};
+use super::{SceneArgs, ThreadsArgs};
 use clap::{Args, FromArgMatches, ValueHint};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -46,20 +46,9 @@ pub(crate) struct ReferenceArgs {
     /// Begin anew where there is a reference, and replace it.
     #[arg(long, help_heading = "Resources")]
     pub(crate) restart: bool,
-    /// Threads; 0 is one for each processor [default: 0].
-    #[arg(
-        long,
-        visible_alias = "nthreads",
-        env = "BIDIR_THREADS",
-        value_name = "N"
-    )]
-    #[arg(
-        default_value_t = 0,
-        hide_default_value = true,
-        help_heading = "Resources"
-    )]
-    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
+    /// How fast it is.
+    #[command(flatten, next_help_heading = "Resources")]
+    pub(crate) threads: ThreadsArgs,
     /// The estimator that makes the picture [default: bdpt].
     ///
     /// An integrator, and flags of `bidir render` from its section Estimator, in quotes. What is not

@@ -4,7 +4,7 @@ use super::layers::LayerArgs;
 use super::long::LongArgs;
 use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
-use super::{SceneArgs, values};
+use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
@@ -171,16 +171,9 @@ pub(crate) struct BudgetArgs {
     /// done is slightly biased: the file says so.
     #[arg(long, value_name = "ERROR", value_parser = values::positive_number)]
     pub(crate) noise: Option<f64>,
-    /// Threads; 0 is one for each processor [default: 0].
-    #[arg(
-        long,
-        visible_alias = "nthreads",
-        env = "BIDIR_THREADS",
-        value_name = "N",
-        default_value_t = 0
-    )]
-    #[arg(hide_default_value = true, value_parser = clap::value_parser!(u16).range(..=1024))]
-    pub(crate) threads: u16,
+    /// How fast it is.
+    #[command(flatten)]
+    pub(crate) threads: ThreadsArgs,
 }
 
 /// The picture's geometry.

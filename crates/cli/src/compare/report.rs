@@ -2,6 +2,7 @@
 
 use super::noise::Significance;
 use crate::exit::{Exit, Failure};
+use lab::image::{Pixels, identical};
 use lab::statistics::{Interval, mean_interval};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -16,14 +17,54 @@ pub(super) const MEAN_RATIO: &str = "mean_ratio";
 /// The probability that an interval holds what infinitely many seeds would give.
 const CONFIDENCE: f64 = 0.95;
 
+/// Whether images have the same size and the same bits; in JSON, whether they are identical.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(into = "bool")]
+pub(super) enum Bits {
+    Same,
+    Different,
+}
+
+impl Bits {
+    pub(super) fn of(image: &Pixels, reference: &Pixels) -> Self {
+        if identical(image, reference) {
+            Self::Same
+        } else {
+            Self::Different
+        }
+    }
+
+    /// Those of all images together.
+    pub(super) fn of_all(comparisons: &[Comparison]) -> Self {
+        let mut each = comparisons.iter().map(|comparison| comparison.identical);
+        if each.all(|bits| bits == Self::Same) {
+            Self::Same
+        } else {
+            Self::Different
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Same => "yes",
+            Self::Different => "no",
+        }
+    }
+}
+
+impl From<Bits> for bool {
+    fn from(bits: Bits) -> Self {
+        bits == Bits::Same
+    }
+}
+
 /// What is found of one image. As JSON has no other numbers, those that are not finite become null
 /// in it.
 #[derive(Debug, Serialize)]
 pub(super) struct Comparison {
     #[serde(flatten, serialize_with = "as_map")]
     pub(super) numbers: Vec<Number>,
-    /// The same size, and the same bits.
-    pub(super) identical: bool,
+    pub(super) identical: Bits,
     /// Width and height of what was compared. None: the sizes differ.
     pub(super) size: Option<[usize; 2]>,
     /// Which image was brought to the size of the other.
@@ -40,7 +81,7 @@ pub(super) struct Replicates {
     #[serde(flatten, serialize_with = "as_map")]
     numbers: Vec<(&'static str, Option<Spread>)>,
     /// All images and the reference have the same bits.
-    identical: bool,
+    identical: Bits,
     size: Option<[usize; 2]>,
     resampled: Option<&'static str>,
     /// How many there are.
@@ -95,7 +136,7 @@ impl Replicates {
         let names = names.iter().enumerate();
         Ok(Self {
             numbers: names.map(|(i, (name, _))| (*name, spread(i))).collect(),
-            identical: comparisons.iter().all(|comparison| comparison.identical),
+            identical: Bits::of_all(comparisons),
             size: sizes.first().copied().filter(|_| all_have_one),
             resampled: comparisons.iter().find_map(|one| one.resampled),
             images: comparisons.len(),
@@ -118,7 +159,7 @@ impl Replicates {
             );
             lines.add(name, &value);
         }
-        lines.add_identical(self.identical);
+        lines.add("identical", self.identical.text());
         let percent = self.confidence * 100.0;
         let images = format!("{}, with intervals of {percent} %", self.images);
         lines.add("images", &images);
@@ -134,7 +175,7 @@ impl Comparison {
         for (name, value) in &self.numbers {
             lines.add(name, &number_text(name, *value));
         }
-        lines.add_identical(self.identical);
+        lines.add("identical", self.identical.text());
         lines.add_resampled(self.resampled, self.size);
         if let Some(significance) = &self.significance {
             lines.add("z_pixels", &significance.pixels.text());
@@ -165,10 +206,6 @@ impl Lines {
         let _ = writeln!(self.text, "{name:<11} {value}");
     }
 
-    fn add_identical(&mut self, identical: bool) {
-        self.add("identical", if identical { "yes" } else { "no" });
-    }
-
     fn add_resampled(&mut self, which: Option<&str>, size: Option<[usize; 2]>) {
         if let (Some(which), Some([width, height])) = (which, size) {
             self.add("resampled", &format!("{which} to {width}x{height}"));
@@ -184,7 +221,7 @@ mod tests {
     fn comparison(numbers: &[Number]) -> Comparison {
         Comparison {
             numbers: numbers.to_vec(),
-            identical: false,
+            identical: Bits::Different,
             size: Some([1, 1]),
             resampled: None,
             significance: None,

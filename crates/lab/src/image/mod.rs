@@ -95,10 +95,11 @@ pub fn identical(a: &Pixels, b: &Pixels) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn image(data: &[[f32; 3]]) -> Pixels {
+    /// An image of one row.
+    pub(crate) fn image(data: &[[f32; 3]]) -> Pixels {
         Pixels {
             size: [data.len(), 1],
             data: data.to_vec(),

@@ -116,13 +116,7 @@ pub fn mean_ratio(pair: &Pair<'_>) -> f64 {
 mod tests {
     use super::*;
     use crate::image::Pixels;
-
-    fn image(data: &[[f32; 3]]) -> Pixels {
-        Pixels {
-            size: [data.len(), 1],
-            data: data.to_vec(),
-        }
-    }
+    use crate::image::tests::image;
 
     #[track_caller]
     fn check(computed: f64, expected: f64) {

@@ -1,0 +1,20 @@
+//! How many threads there are.
+
+use clap::Args;
+
+/// The flag of all commands that compute for long. What 0 means to some of them, they say
+/// themselves.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct ThreadsArgs {
+    /// Threads; 0 is one for each processor [default: 0].
+    #[arg(
+        id = "threads",
+        long = "threads",
+        visible_alias = "nthreads",
+        env = "BIDIR_THREADS",
+        value_name = "N"
+    )]
+    #[arg(default_value_t = 0, hide_default_value = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) count: u16,
+}

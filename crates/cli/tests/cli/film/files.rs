@@ -1,0 +1,118 @@
+//! Files that are damaged, that are no films, or that are there already; what films say.
+
+use crate::common::Workplace;
+use std::fs;
+
+#[test]
+fn damaged_files_are_told_and_the_one_before_is_named() {
+    let place = Workplace::new();
+    place.render_share("0..2", "a.film");
+    let resume = "render room.pbrt -q --spp 4 --checkpoint a.film --resume -o a.exr";
+    place.run(resume).expect(0);
+    let whole = fs::read(place.path("a.film")).unwrap();
+    let mut flipped = whole.clone();
+    flipped[whole.len() / 2] ^= 4;
+    let foreign = fs::read(place.path("a.exr")).unwrap();
+    for bytes in [&whole[..whole.len() - 9], &flipped, &foreign, &[]] {
+        fs::write(place.path("a.film"), bytes).unwrap();
+        place.run(resume).expect(4).says("a.film.previous");
+        place.run("film verify a.film").expect(4);
+        assert_eq!(fs::read(place.path("a.film")).unwrap(), bytes);
+    }
+    place
+        .run("film verify a.film.previous")
+        .expect(0)
+        .says("passes 0..2");
+    place.run("film develop a.film -o b.exr").expect(4);
+}
+
+#[test]
+fn files_that_are_no_films_are_not_replaced_by_one() {
+    let place = Workplace::new();
+    let scene = place.read("room.pbrt");
+    let render = "render room.pbrt -q --spp 1 --restart --checkpoint";
+    place
+        .run(&format!("{render} room.pbrt"))
+        .expect(2)
+        .says("two files of this name");
+    place.run(&format!("{render} a.exr -o a.exr")).expect(2);
+    fs::write(place.path("copy.pbrt"), &scene).unwrap();
+    place
+        .run(&format!("{render} copy.pbrt"))
+        .expect(2)
+        .says("not a film file");
+    assert_eq!(place.read("copy.pbrt"), scene);
+    assert_eq!(place.read("room.pbrt"), scene);
+}
+
+#[test]
+fn the_file_before_is_never_pushed_out_by_a_damaged_one() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --resume")
+        .expect(0);
+    let previous = fs::read(place.path("a.film.previous")).unwrap();
+    fs::write(place.path("a.film"), b"BIDIRFLM and then nothing").unwrap();
+    place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --restart")
+        .expect(0);
+    assert_eq!(fs::read(place.path("a.film.previous")).unwrap(), previous);
+    fs::remove_file(place.path("a.film")).unwrap();
+    let ran = place
+        .run("render room.pbrt -q --spp 2 --checkpoint a.film --resume")
+        .expect(2);
+    ran.says("rename a.film.previous").says("--restart");
+}
+
+#[test]
+fn a_film_file_is_not_replaced_unasked() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    let render = "render room.pbrt -q --spp 2 --checkpoint a.film";
+    place.run(render).expect(2).says("--resume");
+    place.run(&format!("{render} --restart")).expect(0);
+    let info = place.run("film info a.film --json").expect(0).json();
+    assert_eq!(info["passes"], "0..2");
+    assert_eq!(info["stopping"], "fixed");
+    assert_eq!(info["counts"]["samples"], 2 * 24 * 16);
+    place.run("film develop a.film -o a.exr").expect(0);
+    place.expect_same("a.exr", "room.exr");
+}
+
+#[test]
+fn a_film_says_which_estimates_it_has() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    let version = bidir::ESTIMATOR_VERSION.to_string();
+    let info = place.run("film info a.film --json").expect(0).json();
+    assert_eq!(info["settings"]["estimator-version"], *version);
+    place
+        .run("film info a.film")
+        .expect(0)
+        .prints(&format!("  estimator-version    {version}\n"))
+        .prints("  rays.connection      ");
+}
+
+#[test]
+fn what_needs_no_scene_is_told_before_one_is_read() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    let render = "render no-such-scene.pbrt --checkpoint";
+    place
+        .run(&format!("{render} a.film"))
+        .expect(2)
+        .says("there is a film file already");
+    place.write("b.film", "BIDIRFLM and then nothing");
+    place
+        .run(&format!("{render} b.film --resume"))
+        .expect(4)
+        .says("b.film");
+    place.run(&format!("{render} c.film -o a.jpg")).expect(2);
+    place
+        .run(&format!("{render} c.film -o no/such/folder.exr"))
+        .expect(4)
+        .says("folder");
+    place.run(&format!("{render} c.film")).expect(4);
+    assert_eq!(place.names(), ["a.film", "b.film", "room.pbrt"]);
+}

@@ -1,0 +1,160 @@
+//! Shares of a render: merged, missing, refused, and gone on from.
+
+use crate::common::Workplace;
+use std::fs;
+
+#[test]
+fn merged_shares_in_any_order_are_the_whole() {
+    let place = Workplace::new();
+    for estimator in ["path", "light", "bdpt", "bdpt --shadow-rays ray-roulette"] {
+        let render = format!("render room.pbrt --integrator {estimator} --spp 7 -q");
+        place.run(&format!("{render} -o whole.exr")).expect(0);
+        for (parts, order) in [
+            (1, vec![0]),
+            (3, vec![2, 0, 1]),
+            (7, vec![3, 6, 0, 5, 1, 4, 2]),
+        ] {
+            let mut films = String::new();
+            for part in order {
+                let film = format!("{parts}-{part}.film");
+                let share = format!("{render} --part {part}/{parts} --checkpoint {film} --restart");
+                place.run(&share).expect(0);
+                films = films + " " + &film;
+            }
+            place
+                .run(&format!("merge{films} -o all.film --image all.exr"))
+                .expect(0);
+            place.expect_same("all.exr", "whole.exr");
+        }
+    }
+    // A share by itself writes no image that others would overwrite.
+    assert!(!place.path("room.exr").exists());
+}
+
+#[test]
+fn what_is_missing_is_told() {
+    let place = Workplace::new();
+    place.render_share("0..2", "a.film");
+    place.render_share("3..5", "b.film");
+    let missing = "missing a.film b.film --spp 8";
+    place.run(missing).expect(6).prints("2..3\n5..8\n");
+    place
+        .run(&format!("{missing} --parts 4"))
+        .expect(6)
+        .prints("1/4\n2/4\n3/4\n");
+    let json = place
+        .run(&format!("{missing} --parts 4 --json"))
+        .expect(6)
+        .json();
+    assert_eq!(json["passes"][1], "5..8");
+    place.run("missing a.film --spp 2").expect(0);
+    // A file that is not there has no passes; one that cannot be merged is refused.
+    place
+        .run("missing a.film none.film --spp 2")
+        .expect(0)
+        .says("none.film");
+    place.render_share("2..4 --seed 5", "seed.film");
+    place
+        .run("missing a.film seed.film --spp 4")
+        .expect(5)
+        .says("seed is 5");
+}
+
+#[test]
+fn films_that_do_not_belong_together_are_refused() {
+    let place = Workplace::new();
+    place.render_share("0..2", "a.film");
+    place.render_share("1..3", "overlap.film");
+    place.render_share("2..4 --seed 5", "seed.film");
+    place.render_share("2..4 --crop 0,0,8,8", "crop.film");
+    place.write(
+        "room.pbrt",
+        &place.read("room.pbrt").replace("[9 8 7]", "[9 8 6]"),
+    );
+    place.render_share("2..4", "scene.film");
+    for (film, reason) in [
+        ("a", "both have the passes 0..2"),
+        ("overlap", "both have the passes 1..2"),
+        ("seed", "seed is 5 here and 0 there"),
+        ("crop", "crop is 0,0,8,8 here and 0,0,24,16 there"),
+        ("scene", "scene-digest is "),
+    ] {
+        place
+            .run(&format!("merge a.film {film}.film -o all.film"))
+            .expect(5)
+            .says(reason);
+    }
+    assert!(!place.path("all.film").exists());
+    let resumed = "render room.pbrt --spp 8 --checkpoint a.film --resume";
+    place
+        .run(resumed)
+        .expect(5)
+        .says("the film of another render");
+}
+
+#[test]
+fn a_film_of_passes_that_are_not_asked_for_is_not_gone_on_from() {
+    let place = Workplace::new();
+    place.render_share("0..4", "a.film");
+    let before = fs::read(place.path("a.film")).unwrap();
+    let resume = "render room.pbrt -q --checkpoint a.film --resume";
+    for fewer in ["--spp 2", "--passes 4..6", "--part 1/2 --spp 8"] {
+        let ran = place.run(&format!("{resume} {fewer}")).expect(5);
+        ran.says("which are not asked for");
+    }
+    // Where nothing is left to do the file stays as it is.
+    place.run(&format!("{resume} --spp 4")).expect(0);
+    assert_eq!(fs::read(place.path("a.film")).unwrap(), before);
+}
+
+#[test]
+fn an_image_says_the_same_of_all_runs_whoever_writes_it() {
+    let place = Workplace::new();
+    let render = "render room.pbrt -q --shadow-rays ray-roulette --checkpoint a.film --resume";
+    let seconds = || {
+        let info = place.run("film info a.film --json").expect(0).json();
+        info["seconds"].as_f64().unwrap()
+    };
+    place.run(&format!("{render} --spp 2 -o a.exr")).expect(0);
+    let first = (place.attributes("a.exr"), seconds());
+    place.run(&format!("{render} --spp 5 -o a.exr")).expect(0);
+    let attributes = place.attributes("a.exr");
+    assert!(seconds() > first.1);
+    assert_eq!(
+        attributes["renderTimeSeconds"],
+        (seconds() as f32).to_string()
+    );
+    let number = |name: &str| attributes[name].parse::<u64>().unwrap();
+    assert_eq!(number("bidir/samples"), 5 * 24 * 16);
+    // Both runs were trained.
+    let training: u64 = first.0["bidir/rays.training"].parse().unwrap();
+    assert_eq!(number("bidir/rays.training"), 2 * training);
+    assert!(attributes.contains_key("bidir/trained-mean"));
+
+    let image = fs::read(place.path("a.exr")).unwrap();
+    place.run("film develop a.film -o b.exr").expect(0);
+    assert!(fs::read(place.path("b.exr")).unwrap() == image);
+    place.run("merge a.film -o c.film --image c.exr").expect(0);
+    assert!(fs::read(place.path("c.exr")).unwrap() == image);
+    // Where nothing is left to do the image is that of the film file, too.
+    place.run(&format!("{render} --spp 5 -o d.exr")).expect(0);
+    assert!(fs::read(place.path("d.exr")).unwrap() == image);
+}
+
+#[test]
+fn the_picture_decides_when_it_is_done() {
+    let place = Workplace::new();
+    let render = "render room.pbrt -q --noise 0.1 --checkpoint a.film";
+    place.run(render).expect(0);
+    let info = place.run("film info a.film --json").expect(0).json();
+    assert_eq!(info["stopping"], "noise");
+    // Interrupted somewhere and gone on, it is done after the same passes.
+    place
+        .run("render room.pbrt -q --spp 5 --checkpoint b.film")
+        .expect(0);
+    place
+        .run("render room.pbrt -q --noise 0.1 --checkpoint b.film --resume")
+        .expect(0);
+    let again = place.run("film info b.film --json").expect(0).json();
+    assert_eq!(info["passes"], again["passes"]);
+}
