@@ -10,7 +10,7 @@ use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 const MOST_PIXELS: usize = 1 << 22;
 
 /// Gives renders their maps against the reference of their scene, where that has their size: the
-/// difference at the exposure at which it is seen best. In order, as far as [`MOST_PIXELS`] goes.
+/// difference at the exposure at which it is seen best. In order, as far as `MOST_PIXELS` goes.
 pub fn add_flip(images: &mut [ReportImage]) {
     let references: Vec<(String, Pixels)> = images
         .iter()
