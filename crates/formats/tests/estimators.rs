@@ -157,7 +157,7 @@ fn filters_with_and_without_negative_lobes() {
         ("triangle", 3),
         ("gaussian", 3),
         ("mitchell", 4),
-        ("sinc", 16),
+        ("sinc", 24),
     ] {
         let loaded = open(&format!("filter-{name}.pbrt"));
         let case = Case::new(&loaded, 1024);

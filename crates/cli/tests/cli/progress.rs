@@ -104,7 +104,7 @@ fn a_render_that_is_stopped_does_not_say_that_it_is_done() {
 
     let place = Workplace::new();
     // A pass is long enough for the signal to come while it runs.
-    let arguments = "--size 1000x600 --threads 1 --spp 1000000 --time 10 --progress openjd";
+    let arguments = "--size 1000x600 --threads 1 --spp 1000000 --time 10m --progress openjd";
     let mut command = place.command(&format!("render room.pbrt {arguments}"));
     let mut child = command
         .stdout(Stdio::piped())
