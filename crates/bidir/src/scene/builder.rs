@@ -1,13 +1,14 @@
 //! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
+use super::object::{Geometry, ObjectId, Objects};
 use super::{PrimitiveRef, Scene, Surface};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
 use crate::material::Material;
-use crate::math::Vec3;
-use crate::shape::{Mesh, Shape};
+use crate::math::{DAffine3, Vec3};
+use crate::shape::{Mesh, Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
 use thiserror::Error;
 
@@ -62,6 +63,12 @@ pub enum SceneError {
         /// The shape, in the order of addition.
         shape: usize,
     },
+    /// An instance has a map without inverse, or nearly without, or reaches too far.
+    #[error("the transformation of the instance cannot be inverted")]
+    Instance {
+        /// The instance, in the order of addition.
+        instance: usize,
+    },
     /// There are more primitives than the intersector counts.
     #[error("the scene has too many primitives: {0}")]
     Intersector(String),
@@ -80,7 +87,7 @@ impl SceneError {
             Self::VertexIndex { shape, .. }
             | Self::AttributeCount { shape, .. }
             | Self::NotFinite { shape } => Some(*shape),
-            Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
+            Self::Instance { .. } | Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
         }
     }
 }
@@ -93,6 +100,7 @@ pub struct SceneBuilder {
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
+    objects: Objects,
     materials: Vec<Material>,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
@@ -112,6 +120,7 @@ impl SceneBuilder {
             color: ColorModel::default(),
             shapes: Vec::new(),
             surfaces: Vec::new(),
+            objects: Objects::default(),
             materials: Vec::new(),
             lights: Vec::new(),
             light_groups: Vec::new(),
@@ -153,12 +162,38 @@ impl SceneBuilder {
             let light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
             self.light(Light::Area(light))
         });
+        self.push(shape, material, light);
+        index
+    }
+
+    fn push(&mut self, shape: Shape, material: MaterialId, light: Option<u32>) {
         self.surfaces.push(Surface {
             material: material.0,
             light,
         });
         self.shapes.push(shape);
+    }
+
+    /// Adds an object without shapes. It is in the scene where it has [instances](Self::instance).
+    pub fn object(&mut self) -> ObjectId {
+        self.objects.shapes.push(Vec::new());
+        ObjectId(self.objects.shapes.len() as u32 - 1)
+    }
+
+    /// Adds a shape of `material` to an object, in the object's space. Returns its number.
+    ///
+    /// It does not emit: a shape that does has to be added to the world, once for each place.
+    pub fn object_shape(&mut self, object: ObjectId, shape: Shape, material: MaterialId) -> usize {
+        let index = self.shapes.len();
+        self.objects.shapes[object.0 as usize].push(index);
+        self.push(shape, material, None);
         index
+    }
+
+    /// Places an object, under any invertible affine map. Returns the instance's number.
+    pub fn instance(&mut self, object: ObjectId, world_from_object: DAffine3) -> usize {
+        self.objects.instances.push((object, Place(world_from_object)));
+        self.objects.instances.len() - 1
     }
 
     /// Names the group of the lights that are added from here on, shapes that emit included. None,
@@ -196,9 +231,11 @@ impl SceneBuilder {
     pub fn build(self) -> Result<Scene, SceneError> {
         let camera = self.camera.ok_or(SceneError::NoCamera)?;
         check_crop(&self.film)?;
-        let (primitives, geometry) = gather_primitives(&self.shapes)?;
-        let bvh = accel::Bvh::build(&geometry, &accel::BuildOptions { isa: self.isa })
-            .map_err(|error| SceneError::Intersector(error.to_string()))?;
+        let Geometry {
+            bvh,
+            primitives,
+            instances,
+        } = self.objects.build(&self.shapes, self.isa)?;
         let (centre, radius) = bounding_sphere(&bvh, &self.lights);
         let context = LightContext {
             shapes: &self.shapes,
@@ -220,6 +257,7 @@ impl SceneBuilder {
             shapes: self.shapes,
             surfaces: self.surfaces,
             primitives,
+            instances,
             materials: self.materials,
             lights: self.lights,
             light_choice,
@@ -240,12 +278,15 @@ fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
     }
 }
 
-/// Checks all shapes: their primitives, for reference and for the intersector.
-fn gather_primitives(
+/// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
+pub(super) fn gather_primitives(
     shapes: &[Shape],
-) -> Result<(Vec<PrimitiveRef>, Vec<accel::Primitive>), SceneError> {
-    let (mut primitives, mut geometry) = (Vec::new(), Vec::new());
-    for (number, shape) in shapes.iter().enumerate() {
+    numbers: &[usize],
+    primitives: &mut Vec<PrimitiveRef>,
+) -> Result<Vec<accel::Primitive>, SceneError> {
+    let mut geometry = Vec::new();
+    for &number in numbers {
+        let shape = &shapes[number];
         check_shape(number, shape)?;
         for index in 0..shape.primitive_count() {
             primitives.push(PrimitiveRef {
@@ -255,7 +296,7 @@ fn gather_primitives(
             geometry.push(shape.primitive(index));
         }
     }
-    Ok((primitives, geometry))
+    Ok(geometry)
 }
 
 fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {

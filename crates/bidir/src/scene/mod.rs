@@ -4,13 +4,17 @@
 //! in a built scene are valid.
 
 mod builder;
+mod object;
 mod visibility;
 
 pub use accel::Isa;
 pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
+pub use object::ObjectId;
 pub use visibility::{SegmentEnd, offset_origin};
+
+use object::Placed;
 
 use crate::camera::Camera;
 use crate::film::FilmSettings;
@@ -54,7 +58,9 @@ pub struct Scene {
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
+    /// Those of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
+    instances: Vec<Placed>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
@@ -145,9 +151,29 @@ impl Scene {
         &self.materials[i as usize]
     }
 
-    /// All shapes.
+    /// All shapes, those of objects once, in the object's space.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
+    }
+
+    /// How many objects stand in the world.
+    pub fn instance_count(&self) -> usize {
+        self.instances.len()
+    }
+
+    /// The primitives that are kept: those of an object count once.
+    pub fn unique_primitives(&self) -> u64 {
+        self.primitives.len() as u64
+    }
+
+    /// The primitives that rays meet: those of an object count at every place.
+    pub fn placed_primitives(&self) -> u64 {
+        let of_instance = |i| {
+            let (object, _) = self.bvh.instance(i);
+            self.bvh.objects()[object as usize].primitive_count() as u64
+        };
+        let of_instances: u64 = (0..self.instances.len()).map(of_instance).sum();
+        self.bvh.primitive_count() as u64 + of_instances
     }
 
     /// The acceleration structure.
@@ -161,11 +187,20 @@ impl Scene {
         let hit = self
             .bvh
             .closest(&accel::Ray::new(origin, direction), accel::accept_all)?;
-        let primitive = self.primitives[hit.primitive as usize];
-        let shape = &self.shapes[primitive.shape as usize];
         let uv = Vec2::new(hit.u, hit.v);
         let point = origin + direction * hit.t;
-        let surface = shape.surface_point(primitive.index as usize, uv, point);
+        let placed = hit.instance.checked_sub(1);
+        let placed = placed.map(|instance| &self.instances[instance as usize]);
+        let first = placed.map_or(0, |placed| placed.first_primitive);
+        let primitive = self.primitives[(first + hit.primitive) as usize];
+        let (shape, index) = (
+            &self.shapes[primitive.shape as usize],
+            primitive.index as usize,
+        );
+        let surface = match placed {
+            None => shape.surface_point(index, uv, point),
+            Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
+        };
         let of_shape = self.surfaces[primitive.shape as usize];
         let light = of_shape
             .light
