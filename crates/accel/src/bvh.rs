@@ -1,6 +1,7 @@
 //! [`Bvh`]: building and asking.
 
 use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
@@ -15,7 +16,7 @@ use crate::ray::{Hit, Ray};
 use crate::simd::Scalar4;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Sse4;
-use crate::traverse::{AnyHit, ClosestHit, Query, traverse};
+use crate::traverse::{AnyHit, ClosestHit, EachHit, Query, traverse};
 use crate::triangle::TriangleBlock;
 
 /// How to build a [`Bvh`].
@@ -205,6 +206,19 @@ impl Bvh {
         let mut query = AnyHit::new(accept);
         self.ask(ray, &mut query);
         query.found
+    }
+
+    /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
+    /// Tells whether it did.
+    #[inline]
+    pub fn each_hit<F: FnMut(&Hit) -> ControlFlow<()>>(
+        &self,
+        ray: &Ray,
+        found: F,
+    ) -> ControlFlow<()> {
+        let mut query = EachHit::new(found);
+        self.ask(ray, &mut query);
+        query.flow
     }
 
     #[inline]

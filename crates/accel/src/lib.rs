@@ -1,8 +1,8 @@
 //! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, and instances of trees.
 //!
 //! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
-//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`].
-//! Both take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
+//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] tells all hits.
+//! The two take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
 //! and nothing where they are not used ([`accept_all`]).
 //!
 //! ```

@@ -75,6 +75,31 @@ impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
     }
 }
 
+/// Finds all hits, as long as it is wanted.
+pub(crate) struct EachHit<F> {
+    found: F,
+    pub(crate) flow: ControlFlow<()>,
+}
+
+impl<F> EachHit<F> {
+    pub(crate) fn new(found: F) -> Self {
+        Self {
+            found,
+            flow: ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl<F: FnMut(&Hit) -> ControlFlow<()>> Query for EachHit<F> {
+    const NEAR_FIRST: bool = false;
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.flow = (self.found)(&hit);
+        self.flow
+    }
+}
+
 /// Offers `query` every hit of `ray` that it could care for.
 pub(crate) fn traverse<V: F32x4, Q: Query>(bvh: &Bvh, ray: &Ray, query: &mut Q) {
     let Some(mut ray) = clean(ray) else { return };

@@ -80,7 +80,7 @@ fn equal_copies_but_for_rounding() {
             assert!(!steep || (a.t - b.t).abs() < 1e-2, "{ray:?} {a:?} {b:?}");
         }
     }
-    assert!(hits > 5000 && same as f64 > 0.999 * hits as f64, "{same} of {hits}");
+    assert!(hits > 4000 && same as f64 > 0.999 * hits as f64, "{same} of {hits}");
 }
 
 /// The first by `(t, instance)` of trees with one instance each.
@@ -119,7 +119,8 @@ fn equal_brute_force_over_instances() {
             ..random.ray()
         };
         if i % 2 == 0 {
-            ray = Ray::new(ray.origin * [1.0, 1e3][i / 2 % 2], ray.direction);
+            let origin = ray.origin * [1.0, 1e3][i / 2 % 2];
+            ray = Ray::new(origin, 1.5 * random.cube() - origin);
         }
         let refused = random.below(3) as u32;
         let accept = |hit: &Hit| (hit.instance + hit.primitive) % 3 != refused;
@@ -130,7 +131,7 @@ fn equal_brute_force_over_instances() {
             assert_eq!(bvh.occluded(&ray, accept), expected.is_some(), "{ray:?}");
         }
     }
-    assert!(hits > 4000, "{hits} hits do not say much");
+    assert!(hits > 2500, "{hits} hits do not say much");
 }
 
 #[test]

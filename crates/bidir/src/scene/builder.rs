@@ -2,7 +2,7 @@
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
 use super::object::{Geometry, ObjectId, Objects};
-use super::{PrimitiveRef, Scene, Surface};
+use super::{Presence, PrimitiveRef, Scene, Surface, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
@@ -10,6 +10,7 @@ use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::shape::{Mesh, Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
+use crate::texture::FloatTexture;
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
@@ -101,6 +102,7 @@ pub struct SceneBuilder {
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
     objects: Objects,
+    coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
@@ -121,6 +123,7 @@ impl SceneBuilder {
             shapes: Vec::new(),
             surfaces: Vec::new(),
             objects: Objects::default(),
+            coverages: Vec::new(),
             materials: Vec::new(),
             lights: Vec::new(),
             light_groups: Vec::new(),
@@ -170,8 +173,40 @@ impl SceneBuilder {
         self.surfaces.push(Surface {
             material: material.0,
             light,
+            presence: Presence::Whole,
         });
         self.shapes.push(shape);
+    }
+
+    /// Lets only the part `alpha` of shape number `shape` be there, in `[0, 1]` over its parameters:
+    /// rays pass it with 1 - `alpha`, and what it emits is less by `alpha`.
+    ///
+    /// Where `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
+    /// light, as in pbrt-v4.
+    pub fn coverage(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
+        let surface = &mut self.surfaces[shape];
+        let light = surface.light.map(|light| &mut self.lights[light as usize]);
+        let light = light.and_then(|light| match light {
+            Light::Area(light) => Some(light),
+            _ => None,
+        });
+        surface.presence = match alpha {
+            FloatTexture::Constant(alpha) if clamped_coverage(alpha) >= 1.0 => return self,
+            FloatTexture::Constant(alpha) if alpha <= 0.0 => {
+                if let Some(light) = light {
+                    light.hide();
+                }
+                Presence::Absent
+            }
+            texture => {
+                if let Some(light) = light {
+                    light.set_coverage(texture.clone());
+                }
+                self.coverages.push(texture);
+                Presence::Part(self.coverages.len() as u32 - 1)
+            }
+        };
+        self
     }
 
     /// Adds an object without shapes. It is in the scene where it has [instances](Self::instance).
@@ -235,7 +270,7 @@ impl SceneBuilder {
             bvh,
             primitives,
             instances,
-        } = self.objects.build(&self.shapes, self.isa)?;
+        } = self.objects.build(&self.shapes, &self.surfaces, self.isa)?;
         let (centre, radius) = bounding_sphere(&bvh, &self.lights);
         let context = LightContext {
             shapes: &self.shapes,
@@ -258,6 +293,7 @@ impl SceneBuilder {
             surfaces: self.surfaces,
             primitives,
             instances,
+            coverages: self.coverages,
             materials: self.materials,
             lights: self.lights,
             light_choice,
@@ -281,6 +317,7 @@ fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
 /// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
 pub(super) fn gather_primitives(
     shapes: &[Shape],
+    surfaces: &[Surface],
     numbers: &[usize],
     primitives: &mut Vec<PrimitiveRef>,
 ) -> Result<Vec<accel::Primitive>, SceneError> {
@@ -288,6 +325,9 @@ pub(super) fn gather_primitives(
     for &number in numbers {
         let shape = &shapes[number];
         check_shape(number, shape)?;
+        if surfaces[number].presence == Presence::Absent {
+            continue;
+        }
         for index in 0..shape.primitive_count() {
             primitives.push(PrimitiveRef {
                 shape: number as u32,

@@ -4,6 +4,7 @@
 //! in a built scene are valid.
 
 mod builder;
+mod coverage;
 mod object;
 mod visibility;
 
@@ -11,6 +12,8 @@ pub use accel::Isa;
 pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
+pub use coverage::Chances;
+pub(crate) use coverage::clamped_coverage;
 pub use object::ObjectId;
 pub use visibility::{SegmentEnd, offset_origin};
 
@@ -23,6 +26,7 @@ use crate::material::Material;
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::ColorModel;
+use crate::texture::FloatTexture;
 
 /// A primitive of the intersector as a part of a shape.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +41,18 @@ struct PrimitiveRef {
 struct Surface {
     material: u32,
     light: Option<u32>,
+    presence: Presence,
+}
+
+/// How much of a surface is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Presence {
+    /// All of it.
+    Whole,
+    /// What a texture of the scene says, by index.
+    Part(u32),
+    /// Nothing: no ray meets it.
+    Absent,
 }
 
 /// Where a ray meets a surface.
@@ -61,6 +77,8 @@ pub struct Scene {
     /// Those of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
     instances: Vec<Placed>,
+    /// The textures of surfaces that are not all there. Without any, rays do not ask.
+    coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
@@ -181,27 +199,25 @@ impl Scene {
         &self.bvh
     }
 
-    /// The nearest surface along a ray. None: it escapes.
+    /// The nearest surface along a ray of a walk, which passes some by `chances`. None: it escapes.
     #[inline]
-    pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<SurfaceHit> {
-        let hit = self
-            .bvh
-            .closest(&accel::Ray::new(origin, direction), accel::accept_all)?;
+    pub fn intersect(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        chances: Chances<'_>,
+    ) -> Option<SurfaceHit> {
+        let hit = self.closest(&accel::Ray::new(origin, direction), chances)?;
         let uv = Vec2::new(hit.u, hit.v);
         let point = origin + direction * hit.t;
-        let placed = hit.instance.checked_sub(1);
-        let placed = placed.map(|instance| &self.instances[instance as usize]);
-        let first = placed.map_or(0, |placed| placed.first_primitive);
-        let primitive = self.primitives[(first + hit.primitive) as usize];
-        let (shape, index) = (
-            &self.shapes[primitive.shape as usize],
-            primitive.index as usize,
-        );
+        let (placed, primitive) = self.resolve(&hit);
+        let (number, index) = (primitive.shape as usize, primitive.index as usize);
+        let shape = &self.shapes[number];
         let surface = match placed {
             None => shape.surface_point(index, uv, point),
             Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
         };
-        let of_shape = self.surfaces[primitive.shape as usize];
+        let of_shape = self.surfaces[number];
         let light = of_shape
             .light
             .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
@@ -210,5 +226,14 @@ impl Scene {
             material: of_shape.material,
             light,
         })
+    }
+
+    /// What was hit: the instance, if it is of one, and the part of a shape.
+    #[inline]
+    fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
+        let placed = hit.instance.checked_sub(1);
+        let placed = placed.map(|instance| &self.instances[instance as usize]);
+        let first = placed.map_or(0, |placed| placed.first_primitive);
+        (placed, self.primitives[(first + hit.primitive) as usize])
     }
 }

@@ -4,7 +4,7 @@
 //! Shapes of objects do not emit: a light is one shape in the world.
 
 use super::builder::SceneError;
-use super::{PrimitiveRef, builder};
+use super::{PrimitiveRef, Surface, builder};
 use crate::shape::{Place, Shape};
 use std::sync::Arc;
 
@@ -39,7 +39,12 @@ pub(super) struct Geometry {
 
 impl Objects {
     /// Checks all shapes and builds the trees. Shapes that are in no object are in the world.
-    pub(super) fn build(&self, shapes: &[Shape], isa: accel::Isa) -> Result<Geometry, SceneError> {
+    pub(super) fn build(
+        &self,
+        shapes: &[Shape],
+        surfaces: &[Surface],
+        isa: accel::Isa,
+    ) -> Result<Geometry, SceneError> {
         let options = accel::BuildOptions { isa };
         let error = |error: accel::BuildError| match error {
             accel::BuildError::BadInstance { instance, .. } => SceneError::Instance { instance },
@@ -49,11 +54,11 @@ impl Objects {
         self.shapes.iter().flatten().for_each(|&shape| in_world[shape] = false);
         let world: Vec<usize> = (0..shapes.len()).filter(|&shape| in_world[shape]).collect();
         let mut primitives = Vec::new();
-        let own = builder::gather_primitives(shapes, &world, &mut primitives)?;
+        let own = builder::gather_primitives(shapes, surfaces, &world, &mut primitives)?;
         let (mut trees, mut firsts) = (Vec::new(), Vec::new());
         for object in &self.shapes {
             firsts.push(primitives.len() as u32);
-            let geometry = builder::gather_primitives(shapes, object, &mut primitives)?;
+            let geometry = builder::gather_primitives(shapes, surfaces, object, &mut primitives)?;
             let tree = accel::Bvh::build(&geometry, &options).map_err(error)?;
             trees.push(Arc::new(tree));
         }

@@ -68,6 +68,11 @@ impl Mesh {
     }
 
     #[inline]
+    pub(super) fn uv(&self, i: usize, b: Vec2) -> Vec2 {
+        interpolate(self.triangle_uvs(i), b)
+    }
+
+    #[inline]
     fn corners(&self, i: usize) -> Corners {
         let of_vertices = |values: &[Vec3]| self.triangles[i].map(|vertex| values[vertex as usize]);
         Corners {
@@ -130,7 +135,7 @@ impl Corners {
             error,
             n_g,
             shading: Frame::from_z_and_tangent(n_s, tangent(self.positions, uvs)),
-            uv: uvs[0] * b0 + uvs[1] * b.x + uvs[2] * b.y,
+            uv: interpolate(uvs, b),
         }
     }
 
@@ -140,6 +145,11 @@ impl Corners {
         let [n0, n1, n2] = self.normals?;
         (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
     }
+}
+
+#[inline]
+fn interpolate([uv0, uv1, uv2]: [Vec2; 3], b: Vec2) -> Vec2 {
+    uv0 * (1.0 - b.x - b.y) + uv1 * b.x + uv2 * b.y
 }
 
 /// ∂p/∂u, up to scale; zero where the parameters are degenerate.

@@ -99,7 +99,16 @@ impl Shape {
         }
     }
 
-    /// The same of a shape of an object that stands at `place`, in world space; `point` too is in
+    /// The surface's parameters alone at such a hit.
+    #[inline]
+    pub fn uv(&self, i: usize, uv: Vec2) -> Vec2 {
+        match self {
+            Self::Mesh(mesh) => mesh.uv(i, uv),
+            Self::Sphere(_) | Self::Disk(_) => uv,
+        }
+    }
+
+    /// The same geometry of a shape of an object that stands at `place`, in world space; `point` too is in
     /// world space.
     #[inline]
     pub fn surface_point_at(

@@ -27,14 +27,16 @@ pub use film::Crop;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription};
+use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
+use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
 use glam::DAffine3;
+use reader::Reader;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -120,8 +122,9 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
 }
 
 /// A scene in the making.
-struct Assembly {
+struct Assembly<'a> {
     builder: SceneBuilder,
+    textures: Textures<'a>,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
     /// The places of the shapes in the text, in the order of addition.
@@ -140,8 +143,8 @@ enum Destination<'a> {
     Object(ObjectId),
 }
 
-impl Assembly {
-    fn build(context: &mut Context<'_>) -> Result<(Scene, SceneSettings, Summary), Fault> {
+impl<'a> Assembly<'a> {
+    fn build(context: &mut Context<'a>) -> Result<(Scene, SceneSettings, Summary), Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
@@ -154,6 +157,7 @@ impl Assembly {
         }
         let mut assembly = Self {
             builder,
+            textures: Textures::new(description),
             materials: Vec::new(),
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
@@ -165,6 +169,7 @@ impl Assembly {
             assembly.add_shape(context, shape, world)?;
         }
         assembly.add_objects(context)?;
+        assembly.textures.check_unused(context)?;
         assembly.add_lights(context)?;
         let Self {
             builder,
@@ -181,12 +186,17 @@ impl Assembly {
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         let description = context.description;
-        let mut textures = Textures::new(description);
         self.summary.textures = description.textures.len();
         let used = used_materials(description);
+        let textures = &mut self.textures;
         for (index, material) in description.materials.iter().enumerate() {
             let entity = material.entity.as_ref();
-            let mut build = |context: &mut _| material::build(context, &mut textures, entity);
+            if let Some(entity) = entity.filter(|entity| is_interface(entity)) {
+                Reader::new(entity).finish()?;
+                self.materials.push(None);
+                continue;
+            }
+            let mut build = |context: &mut _| material::build(context, textures, entity);
             let built = if used.contains(&index) {
                 build(context)?
             } else {
@@ -196,7 +206,7 @@ impl Assembly {
             let id = built.map(|material| self.builder.material(material));
             self.materials.push(id);
         }
-        textures.check_unused(context)
+        Ok(())
     }
 
     /// Adds a shape where it goes.
@@ -218,7 +228,7 @@ impl Assembly {
         {
             context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
         }
-        let Some(geometry) = Geometry::read(context, shape)? else {
+        let Some((geometry, alpha)) = Geometry::read(context, &mut self.textures, shape)? else {
             return Ok(());
         };
         let Some(&Some(material)) = self.materials.get(shape.material) else {
@@ -237,17 +247,28 @@ impl Assembly {
             Destination::World(places) => {
                 for place in places {
                     let placed = place_shape(&geometry, shape, place)?;
+                    let first = self.shape_spans.len();
                     self.add_placed(placed, material, emission.as_ref(), span)?;
+                    self.cover(first, alpha.as_ref());
                 }
             }
             Destination::Object(object) => {
                 let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
                 self.summary.shapes += 1;
-                self.builder.object_shape(object, shape, material);
+                let number = self.builder.object_shape(object, shape, material);
                 self.shape_spans.push(span);
+                self.cover(number, alpha.as_ref());
             }
         }
         Ok(())
+    }
+
+    /// Lets only a part of the shapes from number `first` on be there.
+    fn cover(&mut self, first: usize, alpha: Option<&FloatTexture>) {
+        let Some(alpha) = alpha else { return };
+        for number in first..self.shape_spans.len() {
+            self.builder.coverage(number, alpha.clone());
+        }
     }
 
     fn count_primitives(&mut self, count: u64, span: Span) -> Result<(), Fault> {
@@ -293,6 +314,12 @@ impl Assembly {
         }
         Ok(())
     }
+}
+
+/// True where the material says that there is no surface: rays pass, shadow rays too. What bounds no
+/// medium need not be kept then, and does not emit.
+fn is_interface(entity: &Entity) -> bool {
+    matches!(entity.kind.as_str(), "interface" | "none" | "")
 }
 
 /// The materials of shapes, by index.

@@ -10,7 +10,7 @@ use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
 use crate::source::Fault;
 use glam::DAffine3;
 
-impl Assembly {
+impl Assembly<'_> {
     pub(super) fn add_objects(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         let description = context.description;
         self.summary.instances = description.instances.len();
@@ -42,7 +42,8 @@ impl Assembly {
         let shared = (instances.len() > 1).then(|| self.builder.object());
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
-                context.unsupported(light.span, "an emitting object", "it emits as any shape")?;
+                let message = "a shape of an object emits: it is a light at each place of the object";
+                context.warn(light.span, message);
             }
             match shared {
                 _ if instances.is_empty() => {}

@@ -2,6 +2,7 @@
 
 use super::context::Context;
 use super::reader::Reader;
+use super::texture::Textures;
 use crate::error::ErrorKind;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::ShapeDescription;
@@ -9,6 +10,7 @@ use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use bidir::texture::FloatTexture;
 use glam::{DAffine3, DVec3};
 
 /// A shape in its own space, ready to be placed any number of times.
@@ -21,11 +23,13 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Reads a shape. None: something else stands in for it, namely nothing.
+    /// Reads a shape, and how much of it is there (None: all). None: something else stands in for it,
+    /// namely nothing.
     pub(super) fn read(
         context: &mut Context<'_>,
+        textures: &mut Textures<'_>,
         shape: &ShapeDescription,
-    ) -> Result<Option<Self>, Fault> {
+    ) -> Result<Option<(Self, Option<FloatTexture>)>, Fault> {
         let entity = &shape.entity;
         let mut reader = Reader::new(entity);
         let geometry = match entity.kind.as_str() {
@@ -54,9 +58,9 @@ impl Geometry {
                 return Ok(None);
             }
         };
-        alpha(context, &mut reader)?;
+        let alpha = textures.float(context, &mut reader, "alpha")?;
         reader.finish()?;
-        Ok(Some(geometry))
+        Ok(Some((geometry, alpha)))
     }
 
     /// The number of primitives.
@@ -158,17 +162,6 @@ fn phi_max(reader: &mut Reader<'_>) -> Result<f32, Fault> {
     Ok(reader
         .float_within("phimax", 360.0, [0.0, 360.0])?
         .to_radians())
-}
-
-fn alpha(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    let opaque = "the shape is opaque";
-    reader.unsupported(context, (ParameterType::Texture, "alpha"), opaque)?;
-    match reader.optional_float("alpha")? {
-        Some(alpha) if alpha < 1.0 => {
-            context.unsupported(reader.span(), "the parameter `float alpha`", opaque)
-        }
-        _ => Ok(()),
-    }
 }
 
 fn ply_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {
