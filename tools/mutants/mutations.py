@@ -34,6 +34,11 @@ def experiment(filter_):
     return ("bidir-lab", "--test experiment", filter_)
 
 
+def coverage(filter_):
+    """Tests of surfaces that are not all there."""
+    return ("bidir-formats", "--test coverage", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)
@@ -138,8 +143,8 @@ MUTATIONS = [
     (
         "light choice left out of next-event estimation",
         "crates/bidir/src/path/connect.rs",
-        "Spectrum::splat(1.0 / (prob * sample.pdf))",
-        "Spectrum::splat(1.0 / sample.pdf)",
+        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
+        "Spectrum::splat(sample.coverage / sample.pdf)",
         estimators("point_spot_distant"),
     ),
     (
@@ -148,6 +153,48 @@ MUTATIONS = [
         "beta: beta / survival,",
         "beta,",
         analytic("roulette_does_not"),
+    ),
+    (
+        "a cut-out lamp that next-event estimation takes for whole",
+        "crates/bidir/src/path/connect.rs",
+        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
+        "Spectrum::splat(1.0 / (prob * sample.pdf))",
+        coverage("lamps_cut_out"),
+    ),
+    (
+        "a cut-out lamp that light subpaths take for whole",
+        "crates/bidir/src/path/walk.rs",
+        "emitted * (emission.from.coverage / (start",
+        "emitted * (1.0 / (start",
+        coverage("lamps_cut_out"),
+    ),
+    (
+        "one decision for all that a ray passes",
+        "crates/bidir/src/scene/coverage.rs",
+        "self.stream.get_for(self.dimension, surface ^ distance)",
+        "self.stream.get_for(self.dimension, 0 * (surface ^ distance))",
+        coverage("walls_let_through"),
+    ),
+    (
+        "splats not weakened by what they pass",
+        "crates/bidir/src/integrator/light.rs",
+        "splat.contribution = splat.contribution.behind(arrives);",
+        "splat.contribution = splat.contribution.behind(arrives.ceil());",
+        coverage("half_transparent"),
+    ),
+    (
+        "mirrored instances inside out",
+        "crates/bidir/src/shape/mesh.rs",
+        "winding_sign: self.winding_sign * place.sign(),",
+        "winding_sign: self.winding_sign,",
+        ("bidir-formats", "--test objects", "geometry"),
+    ),
+    (
+        "instances whose boxes know no rounding",
+        "crates/accel/src/instance.rs",
+        "let reach = half + abs_times(&world_from_object, error) + cancelled;",
+        "let reach = half + 0.0 * error;",
+        ("bidir-accel", "--lib", "no_hit_is_culled"),
     ),
     # --- integrators ------------------------------------------------------------------------
     (

@@ -81,7 +81,12 @@ fn main() {
         let closest = |ray: &Ray| bvh.closest(ray, accept_all).is_some();
         measure(&format!("{name}, closest"), rounds, &rays, closest);
         let filtered = |ray: &Ray| bvh.closest(ray, partly).is_some();
-        measure(&format!("{name}, closest, filtered"), rounds, &rays, filtered);
+        measure(
+            &format!("{name}, closest, filtered"),
+            rounds,
+            &rays,
+            filtered,
+        );
         let occluded = |ray: &Ray| bvh.occluded(ray, accept_all);
         measure(&format!("{name}, any"), rounds, &rays, occluded);
     }

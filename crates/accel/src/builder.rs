@@ -201,8 +201,9 @@ impl Builder<'_> {
             Some(Kind::Triangle) => {
                 let first = tree.blocks.len();
                 let blocks = group.references.chunks(LANES);
-                tree.blocks
-                    .extend(blocks.map(|some| TriangleBlock::new(some.iter().filter_map(triangle))));
+                tree.blocks.extend(
+                    blocks.map(|some| TriangleBlock::new(some.iter().filter_map(triangle))),
+                );
                 Child::triangles(&(first..tree.blocks.len()))
             }
             Some(Kind::Instance) => Child::instance(group.references[0].primitive as usize),

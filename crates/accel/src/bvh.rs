@@ -264,7 +264,11 @@ impl Bvh {
     /// Bytes of memory that the tree and its copy of the primitives take, with the instances and with
     /// every object once.
     pub fn memory_bytes(&self) -> usize {
-        let of_objects: usize = self.objects.iter().map(|object| object.memory_bytes()).sum();
+        let of_objects: usize = self
+            .objects
+            .iter()
+            .map(|object| object.memory_bytes())
+            .sum();
         of_objects + size_of_val(self.placements.as_slice()) + self.own_memory_bytes()
     }
 

@@ -166,9 +166,11 @@ impl<S: Space> Walk<'_, S> {
         while let Some(child) = next {
             match child.target() {
                 Target::Node(index) => self.open::<V, Q>(index, &box_ray, ray.t_max),
-                Target::Triangles(blocks) => self.tree.blocks[blocks]
-                    .iter()
-                    .try_for_each(|block| self.space.visit_block(block, &triangle_ray, ray, query))?,
+                Target::Triangles(blocks) => {
+                    self.tree.blocks[blocks].iter().try_for_each(|block| {
+                        self.space.visit_block(block, &triangle_ray, ray, query)
+                    })?
+                }
                 Target::Quadrics(quadrics) => self.tree.quadrics[quadrics]
                     .iter()
                     .try_for_each(|quadric| self.space.visit_quadric(quadric, ray, query))?,

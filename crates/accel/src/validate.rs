@@ -114,7 +114,9 @@ impl Walk<'_> {
             let point = world_from_object.transform_point3(local);
             let outside = point.cmplt(bounds.min.as_dvec3()) | point.cmpgt(bounds.max.as_dvec3());
             if outside.any() {
-                return Err(format!("instance {index} has bounds {bounds:?} without {point}"));
+                return Err(format!(
+                    "instance {index} has bounds {bounds:?} without {point}"
+                ));
             }
         }
         Ok(())

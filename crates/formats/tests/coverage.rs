@@ -80,12 +80,19 @@ fn walls_let_through_what_is_not_there() {
     let picture = render(&open, IntegratorKind::Path, 4096);
     let exact = picture.exactly([expected; 3]);
     check_agree("walls", &picture, &exact, &[WHOLE]);
-    check_agree("walls, bdpt", &render(&open, IntegratorKind::Bdpt, 4096), &exact, &[WHOLE]);
+    check_agree(
+        "walls, bdpt",
+        &render(&open, IntegratorKind::Bdpt, 4096),
+        &exact,
+        &[WHOLE],
+    );
 }
 
 fn scene_of_walls_and_light() -> Scene {
     let walls = [wall(0.0, 0.5), wall(1.0, 0.3)].concat();
-    scene(&format!("{walls}LightSource \"infinite\" \"rgb L\" [1 1 1]\n"))
+    scene(&format!(
+        "{walls}LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
+    ))
 }
 
 /// A floor and a wall; the light is for each test to add.

@@ -56,7 +56,8 @@ fn load(world: &str) -> Loaded {
 }
 
 fn shared() -> Loaded {
-    let place = |place: &&str| format!("AttributeBegin {place} ObjectInstance \"o\" AttributeEnd\n");
+    let place =
+        |place: &&str| format!("AttributeBegin {place} ObjectInstance \"o\" AttributeEnd\n");
     let places: String = PLACES.iter().map(place).collect();
     load(&format!("ObjectBegin \"o\" {SHAPES} ObjectEnd\n{places}"))
 }
@@ -71,11 +72,20 @@ fn shared_objects_are_kept_once() {
     let (shared, copied) = (shared(), copied());
     let own = 6;
     assert_eq!(shared.summary.primitives, own + 5);
-    assert_eq!((shared.summary.instances, shared.scene.instance_count()), (5, 5));
+    assert_eq!(
+        (shared.summary.instances, shared.scene.instance_count()),
+        (5, 5)
+    );
     assert_eq!(shared.scene.unique_primitives(), own + 5);
     assert_eq!(shared.scene.placed_primitives(), own + 25);
     assert_eq!(copied.scene.placed_primitives(), own + 25);
-    assert_eq!((copied.scene.unique_primitives(), copied.scene.instance_count()), (own + 25, 0));
+    assert_eq!(
+        (
+            copied.scene.unique_primitives(),
+            copied.scene.instance_count()
+        ),
+        (own + 25, 0)
+    );
 }
 
 /// Rays through the places from all around.
@@ -120,16 +130,25 @@ fn geometry_is_that_of_copies() {
             continue;
         }
         let slant = ray.1.dot(b.n_g).abs().max(1e-3);
-        assert!(a.point.distance(b.point) < 1e-5 / slant, "{ray:?} {a:?} {b:?}");
+        assert!(
+            a.point.distance(b.point) < 1e-5 / slant,
+            "{ray:?} {a:?} {b:?}"
+        );
         assert!(a.n_g.dot(b.n_g) > 1.0 - 1e-4 / slant, "{ray:?} {a:?} {b:?}");
         let shading = (a.shading.z.dot(b.shading.z), a.shading.x.dot(b.shading.x));
         let near = 1.0 - 1e-3 / slant;
         assert!(shading.0 > near && shading.1 > near, "{ray:?} {a:?} {b:?}");
         assert!(a.uv.distance(b.uv) < 1e-4 / slant, "{ray:?} {a:?} {b:?}");
         // Larger than that of a copy, by the error of the object's own space.
-        assert!(a.error >= b.error && a.error < 20.0 * b.error, "{a:?} {b:?}");
+        assert!(
+            a.error >= b.error && a.error < 20.0 * b.error,
+            "{a:?} {b:?}"
+        );
     }
-    assert!(hits > 5000 && different < 20, "{hits} hits, {different} differ");
+    assert!(
+        hits > 5000 && different < 20,
+        "{hits} hits, {different} differ"
+    );
 }
 
 fn settings(integrator: IntegratorKind) -> Settings {

@@ -70,7 +70,10 @@ fn equal_copies_but_for_rounding() {
     let (mut same, mut hits) = (0, 0);
     for _ in 0..20_000 {
         let ray = Ray::new(3.0 * random.cube(), random.ball());
-        let (a, b) = (bvh.closest(&ray, accept_all), flat.closest(&ray, accept_all));
+        let (a, b) = (
+            bvh.closest(&ray, accept_all),
+            flat.closest(&ray, accept_all),
+        );
         hits += usize::from(b.is_some());
         if let (Some(a), Some(b)) = (a, b)
             && (a.instance, a.primitive) == numbers[b.primitive as usize]
@@ -80,7 +83,10 @@ fn equal_copies_but_for_rounding() {
             assert!(!steep || (a.t - b.t).abs() < 1e-2, "{ray:?} {a:?} {b:?}");
         }
     }
-    assert!(hits > 4000 && same as f64 > 0.999 * hits as f64, "{same} of {hits}");
+    assert!(
+        hits > 4000 && same as f64 > 0.999 * hits as f64,
+        "{same} of {hits}"
+    );
 }
 
 /// The first by `(t, instance)` of trees with one instance each.
@@ -127,7 +133,11 @@ fn equal_brute_force_over_instances() {
         let expected = closest_of_each(&each, &ray, accept);
         hits += usize::from(expected.is_some());
         for bvh in &trees {
-            assert_eq!(hit_bits(bvh.closest(&ray, accept)), hit_bits(expected), "{ray:?}");
+            assert_eq!(
+                hit_bits(bvh.closest(&ray, accept)),
+                hit_bits(expected),
+                "{ray:?}"
+            );
             assert_eq!(bvh.occluded(&ray, accept), expected.is_some(), "{ray:?}");
         }
     }
@@ -242,9 +252,21 @@ fn bad_instances_are_refused() {
     };
     let one = || vec![object.clone()];
     check(one(), at(1, DVec3::ONE), InstanceError::NoObject);
-    check(one(), at(0, DVec3::new(1.0, 1.0, 0.0)), InstanceError::NotInvertible);
-    check(one(), at(0, DVec3::splat(f64::NAN)), InstanceError::NotInvertible);
-    check(one(), at(0, DVec3::splat(1e30)), InstanceError::NotInvertible);
+    check(
+        one(),
+        at(0, DVec3::new(1.0, 1.0, 0.0)),
+        InstanceError::NotInvertible,
+    );
+    check(
+        one(),
+        at(0, DVec3::splat(f64::NAN)),
+        InstanceError::NotInvertible,
+    );
+    check(
+        one(),
+        at(0, DVec3::splat(1e30)),
+        InstanceError::NotInvertible,
+    );
     let group = Bvh::with_instances(&[], one(), &[good], &options).expect("valid");
     let nested = vec![object.clone(), Arc::new(group)];
     check(nested, at(1, DVec3::ONE), InstanceError::Nested);

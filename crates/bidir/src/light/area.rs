@@ -69,7 +69,6 @@ impl AreaLight {
         self.coverage = Some(coverage);
     }
 
-
     pub(super) fn power(&self) -> f32 {
         let sides = match self.sides {
             EmissionSides::Front => 1.0,

@@ -144,7 +144,10 @@ impl Walker<'_> {
         while subpath.vertices.len() < self.max_vertices {
             *rays += 1;
             let chances = Chances::new(self.stream, subpath.vertices.len());
-            let hit = self.context.scene.intersect(origin, step.direction, chances);
+            let hit = self
+                .context
+                .scene
+                .intersect(origin, step.direction, chances);
             let Some(hit) = hit else {
                 subpath.escape = Some(Escape {
                     direction: step.direction,

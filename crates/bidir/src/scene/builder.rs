@@ -1,14 +1,15 @@
 //! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
+use super::check::{check_crop, check_shape};
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, PrimitiveRef, Scene, Surface, clamped_coverage};
+use super::{Presence, Scene, Surface, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
-use crate::shape::{Mesh, Place, Shape};
+use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
 use crate::texture::FloatTexture;
 use thiserror::Error;
@@ -227,7 +228,9 @@ impl SceneBuilder {
 
     /// Places an object, under any invertible affine map. Returns the instance's number.
     pub fn instance(&mut self, object: ObjectId, world_from_object: DAffine3) -> usize {
-        self.objects.instances.push((object, Place(world_from_object)));
+        self.objects
+            .instances
+            .push((object, Place(world_from_object)));
         self.objects.instances.len() - 1
     }
 
@@ -302,91 +305,6 @@ impl SceneBuilder {
             radius,
         })
     }
-}
-
-fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
-    let [width, height] = film.resolution;
-    let inside = film.crop.max[0] <= width && film.crop.max[1] <= height;
-    if inside && film.crop.area() > 0 {
-        Ok(())
-    } else {
-        Err(SceneError::EmptyCrop)
-    }
-}
-
-/// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
-pub(super) fn gather_primitives(
-    shapes: &[Shape],
-    surfaces: &[Surface],
-    numbers: &[usize],
-    primitives: &mut Vec<PrimitiveRef>,
-) -> Result<Vec<accel::Primitive>, SceneError> {
-    let mut geometry = Vec::new();
-    for &number in numbers {
-        let shape = &shapes[number];
-        check_shape(number, shape)?;
-        if surfaces[number].presence == Presence::Absent {
-            continue;
-        }
-        for index in 0..shape.primitive_count() {
-            primitives.push(PrimitiveRef {
-                shape: number as u32,
-                index: index as u32,
-            });
-            geometry.push(shape.primitive(index));
-        }
-    }
-    Ok(geometry)
-}
-
-fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {
-    let finite = match shape {
-        Shape::Mesh(mesh) => {
-            check_indices(number, mesh)?;
-            mesh.positions
-                .iter()
-                .chain(&mesh.normals)
-                .all(|v| v.is_finite())
-                && mesh.uvs.iter().all(|uv| uv.is_finite())
-        }
-        Shape::Sphere(_) | Shape::Disk(_) => {
-            let bounds = shape.primitive(0).bounds();
-            bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
-        }
-    };
-    if finite {
-        Ok(())
-    } else {
-        Err(SceneError::NotFinite { shape: number })
-    }
-}
-
-fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
-    let vertices = mesh.positions.len();
-    for (what, count) in [
-        ("normals", mesh.normals.len()),
-        ("parameters", mesh.uvs.len()),
-    ] {
-        if count != 0 && count != vertices {
-            return Err(SceneError::AttributeCount {
-                shape,
-                vertices,
-                count,
-                what,
-            });
-        }
-    }
-    for (triangle, indices) in mesh.triangles.iter().enumerate() {
-        if let Some(&vertex) = indices.iter().find(|&&vertex| vertex as usize >= vertices) {
-            return Err(SceneError::VertexIndex {
-                shape,
-                triangle,
-                vertex,
-                vertices,
-            });
-        }
-    }
-    Ok(())
 }
 
 /// A sphere around all surfaces, and around the lights in space, with a little room.

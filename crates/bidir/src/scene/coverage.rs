@@ -87,7 +87,11 @@ impl Scene {
                 ControlFlow::Continue(())
             }
         });
-        if flow.is_break() { 0.0 } else { factors.product() }
+        if flow.is_break() {
+            0.0
+        } else {
+            factors.product()
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! in a built scene are valid.
 
 mod builder;
+mod check;
 mod coverage;
 mod object;
 mod visibility;

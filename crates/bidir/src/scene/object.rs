@@ -3,8 +3,8 @@
 //!
 //! Shapes of objects do not emit: a light is one shape in the world.
 
-use super::builder::SceneError;
-use super::{PrimitiveRef, Surface, builder};
+use super::check::gather_primitives;
+use super::{PrimitiveRef, SceneError, Surface};
 use crate::shape::{Place, Shape};
 use std::sync::Arc;
 
@@ -51,21 +51,27 @@ impl Objects {
             error => SceneError::Intersector(error.to_string()),
         };
         let mut in_world = vec![true; shapes.len()];
-        self.shapes.iter().flatten().for_each(|&shape| in_world[shape] = false);
+        self.shapes
+            .iter()
+            .flatten()
+            .for_each(|&shape| in_world[shape] = false);
         let world: Vec<usize> = (0..shapes.len()).filter(|&shape| in_world[shape]).collect();
         let mut primitives = Vec::new();
-        let own = builder::gather_primitives(shapes, surfaces, &world, &mut primitives)?;
+        let own = gather_primitives(shapes, surfaces, &world, &mut primitives)?;
         let (mut trees, mut firsts) = (Vec::new(), Vec::new());
         for object in &self.shapes {
             firsts.push(primitives.len() as u32);
-            let geometry = builder::gather_primitives(shapes, surfaces, object, &mut primitives)?;
+            let geometry = gather_primitives(shapes, surfaces, object, &mut primitives)?;
             let tree = accel::Bvh::build(&geometry, &options).map_err(error)?;
             trees.push(Arc::new(tree));
         }
-        let instances = self.instances.iter().map(|(object, place)| accel::Instance {
-            object: object.0,
-            world_from_object: place.0,
-        });
+        let instances = self
+            .instances
+            .iter()
+            .map(|(object, place)| accel::Instance {
+                object: object.0,
+                world_from_object: place.0,
+            });
         let instances: Vec<_> = instances.collect();
         let bvh = accel::Bvh::with_instances(&own, trees, &instances, &options).map_err(error)?;
         let placed = |&(object, place): &(ObjectId, Place)| Placed {

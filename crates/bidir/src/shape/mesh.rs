@@ -114,9 +114,7 @@ impl Corners {
     fn at(&self, place: &Place) -> Self {
         Self {
             positions: self.positions.map(|p| place.point(p)),
-            normals: self
-                .normals
-                .map(|normals| normals.map(|n| place.normal(n))),
+            normals: self.normals.map(|normals| normals.map(|n| place.normal(n))),
             uvs: self.uvs,
             winding_sign: self.winding_sign * place.sign(),
         }

@@ -111,13 +111,7 @@ impl Shape {
     /// The same geometry of a shape of an object that stands at `place`, in world space; `point` too is in
     /// world space.
     #[inline]
-    pub fn surface_point_at(
-        &self,
-        place: &Place,
-        i: usize,
-        uv: Vec2,
-        point: Vec3,
-    ) -> SurfacePoint {
+    pub fn surface_point_at(&self, place: &Place, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
         let (mut surface, magnitude) = match self {
             Self::Mesh(mesh) => return mesh.surface_point_at(place, i, uv),
             Self::Sphere(sphere) => (

@@ -30,6 +30,7 @@ use super::digest::SceneDigest;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
+use bidir::math::Vec3;
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
@@ -131,8 +132,13 @@ struct Assembly<'a> {
     shape_spans: Vec<Span>,
     /// The same of instances.
     instance_spans: Vec<Span>,
+    /// Of a box around the object that is being read.
+    object_corners: [Vec3; 2],
     summary: Summary,
 }
+
+/// The corners of no box.
+const NOWHERE: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// Where a shape goes.
 #[derive(Clone, Copy)]
@@ -161,6 +167,7 @@ impl<'a> Assembly<'a> {
             materials: Vec::new(),
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
+            object_corners: NOWHERE,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
@@ -254,6 +261,11 @@ impl<'a> Assembly<'a> {
             }
             Destination::Object(object) => {
                 let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
+                let [low, high] = shape::bounds(&shape);
+                self.object_corners = [
+                    self.object_corners[0].min(low),
+                    self.object_corners[1].max(high),
+                ];
                 self.summary.shapes += 1;
                 let number = self.builder.object_shape(object, shape, material);
                 self.shape_spans.push(span);

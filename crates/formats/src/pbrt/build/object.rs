@@ -5,7 +5,7 @@
 //! emit are lights of the world, one for each place; the format leaves undefined what they do.
 
 use super::context::Context;
-use super::{Assembly, Destination};
+use super::{Assembly, Destination, NOWHERE, shape};
 use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
 use crate::source::Fault;
 use glam::DAffine3;
@@ -39,10 +39,12 @@ impl Assembly<'_> {
         let places = instances.iter().map(|instance| instance.transforms.start);
         let places: Vec<DAffine3> = places.collect();
         let everywhere = Destination::World(&places);
+        self.object_corners = NOWHERE;
         let shared = (instances.len() > 1).then(|| self.builder.object());
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
-                let message = "a shape of an object emits: it is a light at each place of the object";
+                let message =
+                    "a shape of an object emits: it is a light at each place of the object";
                 context.warn(light.span, message);
             }
             match shared {
@@ -55,7 +57,9 @@ impl Assembly<'_> {
         }
         if let Some(object) = shared {
             for instance in instances {
-                self.builder.instance(object, instance.transforms.start);
+                let place = instance.transforms.start;
+                shape::check_instance(instance.span, &place, self.object_corners)?;
+                self.builder.instance(object, place);
                 self.instance_spans.push(instance.span);
             }
         }

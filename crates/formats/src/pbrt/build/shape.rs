@@ -1,5 +1,6 @@
 //! Shapes.
 
+use super::NOWHERE;
 use super::context::Context;
 use super::reader::Reader;
 use super::texture::Textures;
@@ -106,6 +107,32 @@ pub(super) fn check_place(span: Span, point: DVec3) -> Result<Vec3, Fault> {
     } else {
         Err(too_far(span))
     }
+}
+
+/// Two corners of a box around a shape.
+pub(super) fn bounds(shape: &Shape) -> [Vec3; 2] {
+    let boxes = (0..shape.primitive_count()).map(|i| shape.primitive(i).bounds());
+    boxes.fold(NOWHERE, |[low, high], next| {
+        [low.min(next.min), high.max(next.max)]
+    })
+}
+
+/// Refuses instances that reach too far, of an object between two corners.
+pub(super) fn check_instance(
+    span: Span,
+    world_from_object: &DAffine3,
+    corners: [Vec3; 2],
+) -> Result<(), Fault> {
+    // Without shapes there is no box.
+    if !corners[0].cmple(corners[1]).all() {
+        return Ok(());
+    }
+    for i in 0..8_usize {
+        let pick = |axis: usize| f64::from(corners[i >> axis & 1][axis]);
+        let corner = DVec3::new(pick(0), pick(1), pick(2));
+        check_place(span, world_from_object.transform_point3(corner))?;
+    }
+    Ok(())
 }
 
 /// Refuses shapes that reach too far to compute with.

@@ -51,7 +51,10 @@ fn objects_with_more_places_are_shared() {
     assert_eq!((scene.instance_count(), scene.unique_primitives()), (2, 1));
     assert_eq!(scene.placed_primitives(), 2);
     let bounds = scene.bvh().bounds();
-    assert!(bounds.max.distance(Vec3::new(2.0, 4.0, 0.0)) < 1e-4, "{bounds:?}");
+    assert!(
+        bounds.max.distance(Vec3::new(2.0, 4.0, 0.0)) < 1e-4,
+        "{bounds:?}"
+    );
 }
 
 #[test]
@@ -64,14 +67,24 @@ fn shapes_of_objects_that_emit_are_lights_at_each_place() {
     assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
     let scene = loaded.scene;
     assert_eq!((scene.lights().len(), scene.instance_count()), (2, 2));
-    assert_eq!((scene.unique_primitives(), scene.placed_primitives()), (3, 4));
+    assert_eq!(
+        (scene.unique_primitives(), scene.placed_primitives()),
+        (3, 4)
+    );
 }
 
 #[test]
 fn places_without_inverse_are_told() {
+    let object = "ObjectBegin \"o\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\"";
+    // Two axes in nearly the same direction.
+    let flat = "ConcatTransform [1 0 0 0 1 1e-9 0 0 0 0 1 0 0 0 0 1]";
     check_world(
-        "ObjectBegin \"o\" Shape \"sphere\" ObjectEnd\nObjectInstance \"o\"\nScale 1 0 1 ObjectInstance \"o\"",
-        "s.pbrt:4:27: the transformation of the instance cannot be inverted",
+        &format!("{object}\n{flat}\nObjectInstance \"o\""),
+        "s.pbrt:4:16: the transformation of the instance cannot be inverted",
+    );
+    check_world(
+        &format!("{object}\nTranslate 0 0 1e25\nObjectInstance \"o\""),
+        "s.pbrt:4:16: a coordinate is beyond 1e12",
     );
 }
 
@@ -127,7 +140,11 @@ fn the_side_that_emits_follows_reversal_and_not_mirrors() {
             ("Scale -1 -1 -1", true),
         ] {
             let expected = front != (turns && !is_sphere);
-            assert_eq!(emits_to_the_front(&format!("{map} {shape}")), expected, "{map} {shape}");
+            assert_eq!(
+                emits_to_the_front(&format!("{map} {shape}")),
+                expected,
+                "{map} {shape}"
+            );
             let reversed = format!("ReverseOrientation {map} {shape}");
             assert_eq!(emits_to_the_front(&reversed), !expected, "{reversed}");
         }
