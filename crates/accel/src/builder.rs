@@ -24,7 +24,7 @@ use group::{Group, Kind, Reference};
 /// Nodes on the longest way from the root to a leaf.
 pub(crate) const MAX_DEPTH: usize = 32;
 
-/// Primitives of the largest scene: then every index of a leaf fits into a [`Child`], and
+/// Primitives and instances of the largest scene: then every index of a leaf fits into a [`Child`], and
 /// the height of a balanced tree leaves the heuristic more than half of [`MAX_DEPTH`].
 pub(crate) const MAX_PRIMITIVES: usize = Child::MAX_ELEMENTS;
 
@@ -41,19 +41,24 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// The tree over primitives with these bounds, which are all valid.
-    pub(crate) fn build(primitives: &[Primitive], bounds: &[Aabb]) -> Self {
+    /// The tree over primitives with these bounds, which are all valid, and over the instances of
+    /// which the bounds are valid.
+    pub(crate) fn build(primitives: &[Primitive], bounds: &[Aabb], instances: &[Aabb]) -> Self {
         let mut tree = Self::default();
-        let mut references: Vec<Reference> = (0..)
+        let of_primitives = (0..)
             .zip(primitives.iter().zip(bounds))
-            .map(|(index, (primitive, bounds))| Reference::new(index, primitive, *bounds))
-            .collect();
+            .map(|(index, (primitive, bounds))| Reference::new(index, primitive, *bounds));
+        let of_instances = (0..)
+            .zip(instances)
+            .filter(|(_, bounds)| bounds.is_valid())
+            .map(|(index, bounds)| Reference::instance(index, *bounds));
+        let mut references: Vec<Reference> = of_primitives.chain(of_instances).collect();
         if references.is_empty() {
             return tree;
         }
-        let total = bounds
+        let total = references
             .iter()
-            .fold(Aabb::EMPTY, |sum, bounds| sum.union(*bounds));
+            .fold(Aabb::EMPTY, |sum, reference| sum.union(reference.bounds));
         let builder = Builder {
             primitives,
             unit: group::unit_of(&total),
@@ -83,7 +88,7 @@ impl Tree {
             Target::Quadrics(leaf) => {
                 Child::quadrics(&(leaf.start + quadrics..leaf.end + quadrics))
             }
-            Target::Nothing => child,
+            Target::Instance(_) | Target::Nothing => child,
         };
         for node in &mut other.nodes {
             for child in node.children_mut() {
@@ -192,17 +197,22 @@ impl Builder<'_> {
                 &self.primitives[reference.primitive as usize],
             )
         };
-        if group.kind == Some(Kind::Triangle) {
-            let first = tree.blocks.len();
-            let blocks = group.references.chunks(LANES);
-            tree.blocks
-                .extend(blocks.map(|some| TriangleBlock::new(some.iter().filter_map(triangle))));
-            Child::triangles(&(first..tree.blocks.len()))
-        } else {
-            let first = tree.quadrics.len();
-            tree.quadrics
-                .extend(group.references.iter().filter_map(quadric));
-            Child::quadrics(&(first..tree.quadrics.len()))
+        match group.kind {
+            Some(Kind::Triangle) => {
+                let first = tree.blocks.len();
+                let blocks = group.references.chunks(LANES);
+                tree.blocks.extend(
+                    blocks.map(|some| TriangleBlock::new(some.iter().filter_map(triangle))),
+                );
+                Child::triangles(&(first..tree.blocks.len()))
+            }
+            Some(Kind::Instance) => Child::instance(group.references[0].primitive as usize),
+            Some(Kind::Quadric) | None => {
+                let first = tree.quadrics.len();
+                tree.quadrics
+                    .extend(group.references.iter().filter_map(quadric));
+                Child::quadrics(&(first..tree.quadrics.len()))
+            }
         }
     }
 }
@@ -233,7 +243,7 @@ mod tests {
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| format!("{:?}", Tree::build(&primitives, &bounds)))
+            pool.install(|| format!("{:?}", Tree::build(&primitives, &bounds, &[])))
         });
         assert!(trees[0] == trees[1]);
     }

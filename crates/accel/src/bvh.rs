@@ -1,9 +1,14 @@
 //! [`Bvh`]: building and asking.
 
 use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use glam::{DAffine3, Vec3};
 
 use crate::aabb::Aabb;
 use crate::builder::{MAX_PRIMITIVES, Tree};
+use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::node::Node;
 use crate::primitive::Primitive;
@@ -11,7 +16,7 @@ use crate::ray::{Hit, Ray};
 use crate::simd::Scalar4;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::Sse4;
-use crate::traverse::{AnyHit, ClosestHit, Query, traverse};
+use crate::traverse::{AnyHit, ClosestHit, EachHit, Query, traverse};
 use crate::triangle::TriangleBlock;
 
 /// How to build a [`Bvh`].
@@ -37,18 +42,47 @@ pub enum BuildError {
         /// The first such primitive.
         primitive: usize,
     },
-    /// There are more primitives than the tree can count.
+    /// There are more primitives and instances than the tree can count.
     TooManyPrimitives {
         /// How many there are.
         count: usize,
         /// How many there may be.
         limit: usize,
     },
+    /// An instance has no place: its object does not exist, or has instances itself, or its map has
+    /// no inverse (or nearly none), or its bounds are not finite.
+    BadInstance {
+        /// The first such instance.
+        instance: usize,
+        /// What is wrong with it.
+        reason: InstanceError,
+    },
     /// This machine lacks the instructions.
     UnsupportedIsa {
         /// The instructions asked for.
         isa: Isa,
     },
+}
+
+/// What is wrong with an [`Instance`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InstanceError {
+    /// There is no object of this number.
+    NoObject,
+    /// The object has instances itself.
+    Nested,
+    /// The map has no inverse, or is so close to having none that rounding exceeds the instance.
+    NotInvertible,
+}
+
+impl fmt::Display for InstanceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoObject => "refers to an object that does not exist",
+            Self::Nested => "is of an object that has instances itself",
+            Self::NotInvertible => "has a transformation without inverse, or nearly so",
+        })
+    }
 }
 
 impl fmt::Display for BuildError {
@@ -60,6 +94,7 @@ impl fmt::Display for BuildError {
             Self::TooManyPrimitives { count, limit } => {
                 write!(f, "{count} primitives are more than the limit of {limit}")
             }
+            Self::BadInstance { instance, reason } => write!(f, "instance {instance} {reason}"),
             Self::UnsupportedIsa { isa } => write!(f, "this machine does not support {isa}"),
         }
     }
@@ -86,16 +121,49 @@ pub struct Bvh {
     pub(crate) tree: Tree,
     pub(crate) bounds: Aabb,
     pub(crate) primitive_count: usize,
+    pub(crate) objects: Vec<Arc<Bvh>>,
+    pub(crate) placements: Vec<Placement>,
     isa: Isa,
 }
 
 impl Bvh {
     /// Builds the tree, on all threads of the current `rayon` pool. Without primitives no ray hits.
     pub fn build(primitives: &[Primitive], options: &BuildOptions) -> Result<Self, BuildError> {
+        Self::with_instances(primitives, Vec::new(), &[], options)
+    }
+
+    /// Builds the tree over primitives and over instances of `objects`, which have none themselves.
+    ///
+    /// An instance of an empty object is never hit. The instructions of the objects' own trees do
+    /// not matter.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use bidir_accel::{Bvh, BuildOptions, Instance, Primitive, Ray, accept_all};
+    /// use glam::{DAffine3, DVec3, Vec3};
+    ///
+    /// let options = BuildOptions::default();
+    /// let leaf = Bvh::build(&[Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y])], &options)?;
+    /// let at = |z| Instance {
+    ///     object: 0,
+    ///     world_from_object: DAffine3::from_translation(DVec3::Z * z),
+    /// };
+    /// let bvh = Bvh::with_instances(&[], vec![Arc::new(leaf)], &[at(0.0), at(1.0)], &options)?;
+    /// let ray = Ray::new(Vec3::new(0.2, 0.3, 3.0), -Vec3::Z);
+    /// let hit = bvh.closest(&ray, accept_all).expect("the upper leaf is in the way");
+    /// assert_eq!((hit.t, hit.instance, hit.primitive), (2.0, 2, 0));
+    /// # Ok::<(), bidir_accel::BuildError>(())
+    /// ```
+    pub fn with_instances(
+        primitives: &[Primitive],
+        objects: Vec<Arc<Self>>,
+        instances: &[Instance],
+        options: &BuildOptions,
+    ) -> Result<Self, BuildError> {
         if !options.isa.is_supported() {
             return Err(BuildError::UnsupportedIsa { isa: options.isa });
         }
-        let count = primitives.len();
+        let count = primitives.len() + instances.len();
         if count > MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives {
                 count,
@@ -106,12 +174,16 @@ impl Bvh {
         if let Some(primitive) = all_bounds.iter().position(|bounds| !bounds.is_valid()) {
             return Err(BuildError::NotFinite { primitive });
         }
+        let (placements, places) = place(&objects, instances)?;
         Ok(Self {
-            tree: Tree::build(primitives, &all_bounds),
+            tree: Tree::build(primitives, &all_bounds, &places),
             bounds: all_bounds
                 .iter()
+                .chain(&places)
                 .fold(Aabb::EMPTY, |sum, bounds| sum.union(*bounds)),
-            primitive_count: count,
+            primitive_count: primitives.len(),
+            objects,
+            placements,
             isa: options.isa,
         })
     }
@@ -136,23 +208,52 @@ impl Bvh {
         query.found
     }
 
+    /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
+    /// Tells whether it did.
+    #[inline]
+    pub fn each_hit<F: FnMut(&Hit) -> ControlFlow<()>>(
+        &self,
+        ray: &Ray,
+        found: F,
+    ) -> ControlFlow<()> {
+        let mut query = EachHit::new(found);
+        self.ask(ray, &mut query);
+        query.flow
+    }
+
     #[inline]
     fn ask(&self, ray: &Ray, query: &mut impl Query) {
         match self.isa {
             #[cfg(target_arch = "x86_64")]
-            Isa::Sse2 => traverse::<Sse4, _>(&self.tree, ray, query),
-            _ => traverse::<Scalar4, _>(&self.tree, ray, query),
+            Isa::Sse2 => traverse::<Sse4, _>(self, ray, query),
+            _ => traverse::<Scalar4, _>(self, ray, query),
         }
     }
 
-    /// A box around all primitives; [`Aabb::EMPTY`] if there are none.
+    /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// The number of primitives it was built from.
+    /// The number of primitives it was built from, those of objects not counted.
     pub fn primitive_count(&self) -> usize {
         self.primitive_count
+    }
+
+    /// The objects that instances refer to.
+    pub fn objects(&self) -> &[Arc<Self>] {
+        &self.objects
+    }
+
+    /// The number of instances.
+    pub fn instance_count(&self) -> usize {
+        self.placements.len()
+    }
+
+    /// The object of instance `i`, by index, and the inverse of its map as rays are mapped by it.
+    pub fn instance(&self, i: usize) -> (u32, &DAffine3) {
+        let placement = &self.placements[i];
+        (placement.object, placement.object_from_world())
     }
 
     /// The instructions that rays are traced with.
@@ -160,12 +261,53 @@ impl Bvh {
         self.isa
     }
 
-    /// Bytes of memory that the tree and its copy of the primitives take.
+    /// Bytes of memory that the tree and its copy of the primitives take, with the instances and with
+    /// every object once.
     pub fn memory_bytes(&self) -> usize {
+        let of_objects: usize = self
+            .objects
+            .iter()
+            .map(|object| object.memory_bytes())
+            .sum();
+        of_objects + size_of_val(self.placements.as_slice()) + self.own_memory_bytes()
+    }
+
+    fn own_memory_bytes(&self) -> usize {
         size_of_val(self.tree.nodes.as_slice())
             + size_of_val(self.tree.blocks.as_slice())
             + size_of_val(self.tree.quadrics.as_slice())
     }
+}
+
+/// Places every instance; the bounds of those of empty objects are [`Aabb::EMPTY`].
+fn place(
+    objects: &[Arc<Bvh>],
+    instances: &[Instance],
+) -> Result<(Vec<Placement>, Vec<Aabb>), BuildError> {
+    let place = |instance: &Instance| {
+        let object = objects.get(instance.object as usize);
+        let object = object.ok_or(InstanceError::NoObject)?;
+        if !object.placements.is_empty() {
+            return Err(InstanceError::Nested);
+        }
+        let is_empty = object.tree.nodes.is_empty();
+        let bounds = if is_empty {
+            Aabb::around(&[Vec3::ZERO])
+        } else {
+            object.bounds
+        };
+        let placed = Placement::new(instance, &bounds);
+        let (placement, bounds) = placed.ok_or(InstanceError::NotInvertible)?;
+        Ok((placement, if is_empty { Aabb::EMPTY } else { bounds }))
+    };
+    let numbered = |(index, instance)| {
+        place(instance).map_err(|reason| BuildError::BadInstance {
+            instance: index,
+            reason,
+        })
+    };
+    let placed: Result<Vec<_>, _> = instances.iter().enumerate().map(numbered).collect();
+    Ok(placed?.into_iter().unzip())
 }
 
 // The layout that memory estimates and wider vectors count on.

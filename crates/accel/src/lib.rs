@@ -1,8 +1,8 @@
-//! Watertight ray intersection: an 8-wide BVH over triangles, spheres and disks.
+//! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, and instances of trees.
 //!
 //! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
-//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`].
-//! Both take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
+//! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] tells all hits.
+//! The two take a filter that decides which hits exist, so that cut-outs (alpha) cost one call per hit
 //! and nothing where they are not used ([`accept_all`]).
 //!
 //! ```
@@ -36,7 +36,17 @@
 //!   set has no influence on an answer.
 //! - **One answer.** Of hits at equal `t` the lowest `(instance, primitive)` wins, whatever the order
 //!   of traversal. The tree does not depend on the number of threads that build it.
-//! - **No allocation per ray**, and a stack whose bound is proved by the builder.
+//! - **No allocation per ray**, and a stack whose bound is proved by the builder, for both levels.
+//!
+//! # Instances
+//!
+//! [`Bvh::with_instances`] takes other trees ([`Instance`]: which one, under which affine map).
+//! All of the above holds through instances: every triangle of an instance sees one and the same local
+//! ray, so that no ray passes between those that share an edge; the world box of an instance is
+//! widened by what rounding can move that ray (the `instance` module); `t` is the world's, since
+//! directions are mapped without normalising. Between triangles of *different* instances nothing is
+//! promised but rounding. One level only: an object has no instances itself. An instance takes
+//! 128 bytes, whatever its object.
 //!
 //! Not here: motion, curves, and anything about surfaces (normals, materials).
 
@@ -45,6 +55,7 @@ mod builder;
 mod bvh;
 mod disk;
 mod exact;
+mod instance;
 mod isa;
 mod node;
 mod primitive;
@@ -57,8 +68,9 @@ mod triangle;
 mod validate;
 
 pub use aabb::Aabb;
-pub use bvh::{BuildError, BuildOptions, Bvh};
+pub use bvh::{BuildError, BuildOptions, Bvh, InstanceError};
 pub use disk::Disk;
+pub use instance::Instance;
 pub use isa::{Isa, UnknownIsa};
 pub use primitive::Primitive;
 pub use ray::{Hit, Ray, accept_all};

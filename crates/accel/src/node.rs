@@ -136,7 +136,7 @@ impl<V: F32x4> BoxRay<V> {
 /// What a node's slot leads to, in 32 bits.
 ///
 /// From the top: two bits of kind, then either 30 bits of a node's index, or three bits of a leaf's
-/// length less one and 27 bits of its first element.
+/// length less one and 27 bits of its first element. An instance is a leaf of length one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
 pub(crate) struct Child(u32);
@@ -150,12 +150,14 @@ pub(crate) enum Target {
     Triangles(Range<usize>),
     /// A leaf: these quadrics.
     Quadrics(Range<usize>),
+    /// A leaf: the instance of this number.
+    Instance(usize),
     /// An unused slot.
     Nothing,
 }
 
 impl Child {
-    pub(crate) const NOTHING: Self = Self(3 << Self::KIND_SHIFT);
+    pub(crate) const NOTHING: Self = Self(u32::MAX);
     /// Elements (triangle blocks or quadrics) of the largest leaf.
     pub(crate) const MAX_LEAF: usize = 8;
     /// One more than the largest first element of a leaf.
@@ -174,6 +176,10 @@ impl Child {
 
     pub(crate) fn quadrics(quadrics: &Range<usize>) -> Self {
         Self::leaf(2, quadrics)
+    }
+
+    pub(crate) const fn instance(index: usize) -> Self {
+        Self(3 << Self::KIND_SHIFT | index as u32)
     }
 
     fn leaf(kind: u32, elements: &Range<usize>) -> Self {
@@ -196,7 +202,8 @@ impl Child {
         match kind {
             1 => Target::Triangles(first..first + length),
             2 => Target::Quadrics(first..first + length),
-            _ => Target::Nothing,
+            _ if self == Self::NOTHING => Target::Nothing,
+            _ => Target::Instance(first),
         }
     }
 }
@@ -218,6 +225,7 @@ mod tests {
             Child::quadrics(&(last..last + 1)).target(),
             Target::Quadrics(last..last + 1)
         );
+        assert_eq!(Child::instance(last).target(), Target::Instance(last));
         assert_eq!(Child::NOTHING.target(), Target::Nothing);
     }
 

@@ -69,16 +69,18 @@ pub(crate) fn box_bounds(local_from_world: &glam::Affine3A, center: DVec3, half:
 /// than what mapping a ray into local space loses, unless the map is close to singular.
 fn padded(center: DVec3, reach: DVec3) -> Aabb {
     let reach = reach + DVec3::splat(1e-6 * reach.max_element());
-    let outward = |value: f64, direction: f64| {
-        let rounded = value as f32;
-        match direction * (f64::from(rounded) - value) {
-            inward if inward >= 0.0 => rounded,
-            _ if direction > 0.0 => rounded.next_up(),
-            _ => rounded.next_down(),
-        }
-    };
     Aabb {
         min: Vec3::from_array((center - reach).to_array().map(|x| outward(x, -1.0))),
         max: Vec3::from_array((center + reach).to_array().map(|x| outward(x, 1.0))),
+    }
+}
+
+/// `value` rounded upward where `direction` is 1, downward where it is -1.
+pub(crate) fn outward(value: f64, direction: f64) -> f32 {
+    let rounded = value as f32;
+    match direction * (f64::from(rounded) - value) {
+        inward if inward >= 0.0 => rounded,
+        _ if direction > 0.0 => rounded.next_up(),
+        _ => rounded.next_down(),
     }
 }

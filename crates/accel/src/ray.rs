@@ -7,7 +7,7 @@ use glam::Vec3;
 pub struct Ray {
     /// Where `t = 0` is.
     pub origin: Vec3,
-    /// Any length between 1e-37 and 1e37, which is the unit of `t`.
+    /// Any length between 1e-37 and 1e37, which is the unit of `t`; in the space of an instance too.
     /// Components smaller than the smallest normal `f32` count as zero.
     pub direction: Vec3,
     /// The smallest `t` that counts as a hit, itself included. A negative value counts as zero.
@@ -33,9 +33,10 @@ impl Ray {
 pub struct Hit {
     /// Distance from the ray's origin in units of its direction's length.
     pub t: f32,
-    /// Which instance was hit; 0, because there is only one so far.
+    /// What was hit: 0 for the primitives of the [`Bvh`](crate::Bvh) itself, `i + 1` for instance `i`.
     pub instance: u32,
-    /// Index of the primitive in the slice the [`Bvh`](crate::Bvh) was built from.
+    /// Index of the primitive in the slice that the [`Bvh`](crate::Bvh), or the instance's object,
+    /// was built from.
     pub primitive: u32,
     /// First surface parameter, in `[0, 1]`.
     /// Triangle: the weight of vertex 1. Sphere and disk: the angle φ over its maximum.

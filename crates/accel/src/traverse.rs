@@ -4,6 +4,8 @@ use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
 use crate::builder::{MAX_DEPTH, Tree};
+use crate::bvh::Bvh;
+use crate::instance::{Space, World};
 use crate::node::{BoxRay, Child, Target, WIDTH, widen};
 use crate::quadric::Quadric;
 use crate::ray::{Hit, Ray};
@@ -73,45 +75,128 @@ impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
     }
 }
 
-/// Offers `query` every hit of `ray` that it could care for.
-pub(crate) fn traverse<V: F32x4, Q: Query>(tree: &Tree, ray: &Ray, query: &mut Q) {
-    let Some(mut ray) = clean(ray) else { return };
-    if tree.nodes.is_empty() {
-        return;
-    }
-    let box_ray = BoxRay::<V>::new(&ray);
-    let triangle_ray = TriangleRay::<V>::new(&ray);
-    let mut stack = Stack::new();
-    let mut next = Some(Child::node(0));
-    while let Some(child) = next {
-        let flow = match child.target() {
-            Target::Node(index) => {
-                let node = &tree.nodes[index];
-                let (mask, entries) = node.intersect(&box_ray, widen(ray.t_max));
-                let bottom = stack.len;
-                for slot in bits(mask) {
-                    stack.push(Entry {
-                        distance: entries[slot],
-                        child: node.child(slot),
-                    });
-                    if Q::NEAR_FIRST {
-                        stack.sink(bottom);
-                    }
-                }
-                ControlFlow::Continue(())
-            }
-            Target::Triangles(blocks) => tree.blocks[blocks]
-                .iter()
-                .try_for_each(|block| visit_block(block, &triangle_ray, &mut ray, query)),
-            Target::Quadrics(quadrics) => tree.quadrics[quadrics]
-                .iter()
-                .try_for_each(|quadric| visit_quadric(quadric, &mut ray, query)),
-            Target::Nothing => ControlFlow::Continue(()),
-        };
-        if flow.is_break() {
-            return;
+/// Finds all hits, as long as it is wanted.
+pub(crate) struct EachHit<F> {
+    found: F,
+    pub(crate) flow: ControlFlow<()>,
+}
+
+impl<F> EachHit<F> {
+    pub(crate) fn new(found: F) -> Self {
+        Self {
+            found,
+            flow: ControlFlow::Continue(()),
         }
-        next = stack.pop_nearer(widen(ray.t_max));
+    }
+}
+
+impl<F: FnMut(&Hit) -> ControlFlow<()>> Query for EachHit<F> {
+    const NEAR_FIRST: bool = false;
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.flow = (self.found)(&hit);
+        self.flow
+    }
+}
+
+/// Offers `query` every hit of `ray` that it could care for.
+pub(crate) fn traverse<V: F32x4, Q: Query>(bvh: &Bvh, ray: &Ray, query: &mut Q) {
+    let Some(mut ray) = clean(ray) else { return };
+    if !bvh.tree.nodes.is_empty() {
+        let mut walk = Walk {
+            tree: &bvh.tree,
+            space: World,
+            stack: &mut Stack::new(),
+        };
+        // What breaks off has nothing more to ask.
+        let _ = walk.run::<V, Q>(&mut ray, query, |index, stack, ray, query| {
+            visit_instance::<V, Q>(bvh, index, stack, ray, query)
+        });
+    }
+}
+
+/// Follows the ray through the object of instance number `index`. Out of line, so that trees without
+/// instances do not carry it in their loop.
+#[inline(never)]
+fn visit_instance<V: F32x4, Q: Query>(
+    bvh: &Bvh,
+    index: usize,
+    stack: &mut Stack,
+    ray: &mut Ray,
+    query: &mut Q,
+) -> ControlFlow<()> {
+    let placement = &bvh.placements[index];
+    let (local, space) = placement.view(ray, index as u32 + 1);
+    let Some(mut local) = clean(&local) else {
+        return ControlFlow::Continue(());
+    };
+    let mut walk = Walk {
+        tree: &bvh.objects[placement.object as usize].tree,
+        space,
+        stack,
+    };
+    // Objects have no instances.
+    let flow = walk.run::<V, Q>(&mut local, query, |_, _, _, _| ControlFlow::Continue(()));
+    ray.t_max = walk.space.t_max;
+    flow
+}
+
+/// A way through one tree, in its own space.
+struct Walk<'a, S> {
+    tree: &'a Tree,
+    space: S,
+    /// What others have left on it stays there.
+    stack: &'a mut Stack,
+}
+
+impl<S: Space> Walk<'_, S> {
+    /// Visits the tree, which has a root; `instance` is called for the instances on the way.
+    #[inline(always)]
+    fn run<V: F32x4, Q: Query>(
+        &mut self,
+        ray: &mut Ray,
+        query: &mut Q,
+        mut instance: impl FnMut(usize, &mut Stack, &mut Ray, &mut Q) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let box_ray = BoxRay::<V>::new(ray);
+        let triangle_ray = TriangleRay::<V>::new(ray);
+        let begin = self.stack.len;
+        let mut next = Some(Child::node(0));
+        while let Some(child) = next {
+            match child.target() {
+                Target::Node(index) => self.open::<V, Q>(index, &box_ray, ray.t_max),
+                Target::Triangles(blocks) => {
+                    self.tree.blocks[blocks].iter().try_for_each(|block| {
+                        self.space.visit_block(block, &triangle_ray, ray, query)
+                    })?
+                }
+                Target::Quadrics(quadrics) => self.tree.quadrics[quadrics]
+                    .iter()
+                    .try_for_each(|quadric| self.space.visit_quadric(quadric, ray, query))?,
+                Target::Instance(index) => instance(index, self.stack, ray, query)?,
+                Target::Nothing => {}
+            }
+            next = self.stack.pop_nearer(begin, widen(ray.t_max));
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Puts the children of a node that the ray meets onto the stack.
+    #[inline(always)]
+    fn open<V: F32x4, Q: Query>(&mut self, index: usize, ray: &BoxRay<V>, t_max: f32) {
+        let node = &self.tree.nodes[index];
+        let (mask, entries) = node.intersect(ray, widen(t_max));
+        let bottom = self.stack.len;
+        for slot in bits(mask) {
+            self.stack.push(Entry {
+                distance: entries[slot],
+                child: node.child(slot),
+            });
+            if Q::NEAR_FIRST {
+                self.stack.sink(bottom);
+            }
+        }
     }
 }
 
@@ -133,49 +218,71 @@ fn clean(ray: &Ray) -> Option<Ray> {
     })
 }
 
-#[inline(always)]
-fn visit_block<V: F32x4, Q: Query>(
-    block: &TriangleBlock,
-    triangle_ray: &TriangleRay<V>,
-    ray: &mut Ray,
-    query: &mut Q,
-) -> ControlFlow<()> {
-    for lane in bits(block.candidates(triangle_ray)) {
-        if let Some(passage) = block.pass(lane, triangle_ray)
-            && passage.t >= ray.t_min
-            && passage.t <= ray.t_max
-        {
-            let hit = Hit {
-                t: passage.t,
-                instance: 0,
-                primitive: block.primitive(lane),
-                u: passage.u,
-                v: passage.v,
-            };
-            query.offer(hit, &mut ray.t_max)?;
+/// Leaves, in the space of a tree.
+trait Leaves: Space {
+    /// Offers the hits of a block of triangles.
+    #[inline(always)]
+    fn visit_block<V: F32x4, Q: Query>(
+        &mut self,
+        block: &TriangleBlock,
+        triangle_ray: &TriangleRay<V>,
+        ray: &mut Ray,
+        query: &mut Q,
+    ) -> ControlFlow<()> {
+        for lane in bits(block.candidates(triangle_ray)) {
+            if let Some(passage) = block.pass(lane, triangle_ray)
+                && passage.t >= ray.t_min
+                && passage.t <= ray.t_max
+            {
+                let hit = Hit {
+                    t: passage.t,
+                    instance: 0,
+                    primitive: block.primitive(lane),
+                    u: passage.u,
+                    v: passage.v,
+                };
+                self.offer(hit, ray, query)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Offers the hits of a quadric.
+    fn visit_quadric<Q: Query>(
+        &mut self,
+        quadric: &Quadric,
+        ray: &mut Ray,
+        query: &mut Q,
+    ) -> ControlFlow<()> {
+        let mut flow = ControlFlow::Continue(());
+        let primitive = quadric.primitive;
+        let whole = *ray;
+        quadric.intersect(&whole, |t, [u, v]| {
+            if flow.is_continue() && t <= ray.t_max {
+                let hit = Hit {
+                    t,
+                    instance: 0,
+                    primitive,
+                    u: u as f32,
+                    v: v as f32,
+                };
+                flow = self.offer(hit, ray, query);
+            }
+        });
+        flow
+    }
+
+    /// Offers a local hit as what it is in the world.
+    #[inline(always)]
+    fn offer<Q: Query>(&mut self, local: Hit, ray: &mut Ray, query: &mut Q) -> ControlFlow<()> {
+        match self.world_hit(local) {
+            Some(hit) => self.limit(ray, |t_max| query.offer(hit, t_max)),
+            None => ControlFlow::Continue(()),
         }
     }
-    ControlFlow::Continue(())
 }
 
-fn visit_quadric<Q: Query>(quadric: &Quadric, ray: &mut Ray, query: &mut Q) -> ControlFlow<()> {
-    let mut flow = ControlFlow::Continue(());
-    let primitive = quadric.primitive;
-    let whole = *ray;
-    quadric.intersect(&whole, |t, [u, v]| {
-        if flow.is_continue() && t <= ray.t_max {
-            let hit = Hit {
-                t,
-                instance: 0,
-                primitive,
-                u: u as f32,
-                v: v as f32,
-            };
-            flow = query.offer(hit, &mut ray.t_max);
-        }
-    });
-    flow
-}
+impl<S: Space> Leaves for S {}
 
 /// The numbers of the set bits, ascending.
 #[inline(always)]
@@ -194,9 +301,10 @@ struct Entry {
     child: Child,
 }
 
-/// Entries on the stack at most: of every node on the way all children but the one visited, and
-/// at the last node that one too.
-const STACK_SIZE: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+/// Entries on the stack at most, in each of the two levels: of every node on the way all children but
+/// the one visited, and at the last node that one too. An instance is no node: while its object
+/// is visited, the upper level has less than its share.
+const STACK_SIZE: usize = 2 * (MAX_DEPTH * (WIDTH - 1) + 1);
 
 /// A stack without initialisation, which would cost as much as a short ray.
 struct Stack {
@@ -238,10 +346,10 @@ impl Stack {
         self.entries[place].write(last);
     }
 
-    /// The last child that is entered at `t_max` or before; drops those after it.
+    /// The last child above `begin` that is entered at `t_max` or before; drops those after it.
     #[inline(always)]
-    fn pop_nearer(&mut self, t_max: f32) -> Option<Child> {
-        while self.len > 0 {
+    fn pop_nearer(&mut self, begin: usize, t_max: f32) -> Option<Child> {
+        while self.len > begin {
             let entry = self.get(self.len - 1);
             self.len -= 1;
             if entry.distance <= t_max {

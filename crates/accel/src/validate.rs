@@ -1,5 +1,7 @@
 //! [`Bvh::validate`].
 
+use glam::Vec3;
+
 use crate::aabb::Aabb;
 use crate::builder::MAX_DEPTH;
 use crate::bvh::Bvh;
@@ -15,8 +17,15 @@ impl Bvh {
             nodes: vec![false; self.tree.nodes.len()],
             blocks: vec![false; self.tree.blocks.len()],
             quadrics: vec![false; self.tree.quadrics.len()],
+            // Empty objects have no place to be reached at.
+            instances: (0..self.instance_count())
+                .map(|i| self.object_of(i).tree.nodes.is_empty())
+                .collect(),
         };
-        if self.primitive_count > 0 {
+        for object in &self.objects {
+            object.validate()?;
+        }
+        if !self.tree.nodes.is_empty() {
             let contents = walk.node(0, 0)?;
             if contents != self.bounds {
                 return Err(format!(
@@ -28,7 +37,12 @@ impl Bvh {
         all_visited("primitive", &walk.primitives)?;
         all_visited("node", &walk.nodes)?;
         all_visited("block", &walk.blocks)?;
-        all_visited("quadric", &walk.quadrics)
+        all_visited("quadric", &walk.quadrics)?;
+        all_visited("instance", &walk.instances)
+    }
+
+    fn object_of(&self, instance: usize) -> &Self {
+        &self.objects[self.placements[instance].object as usize]
     }
 }
 
@@ -58,6 +72,7 @@ struct Walk<'a> {
     nodes: Vec<bool>,
     blocks: Vec<bool>,
     quadrics: Vec<bool>,
+    instances: Vec<bool>,
 }
 
 impl Walk<'_> {
@@ -71,6 +86,11 @@ impl Walk<'_> {
         let mut total = Aabb::EMPTY;
         for slot in 0..WIDTH {
             let bounds = node.bounds(slot);
+            if let Target::Instance(index) = node.child(slot).target() {
+                self.instance(index, &bounds)?;
+                total = total.union(bounds);
+                continue;
+            }
             let contents = self.child(node.child(slot), depth + 1)?;
             // Equal, not only contained: a loose box is slow, and an unused one must be empty.
             if contents != bounds {
@@ -81,6 +101,25 @@ impl Walk<'_> {
             total = total.union(contents);
         }
         Ok(total)
+    }
+
+    /// Checks that an instance with these bounds contains the corners of its object.
+    fn instance(&mut self, index: usize, bounds: &Aabb) -> Result<(), String> {
+        visit("instance", index, &mut self.instances)?;
+        let world_from_object = self.bvh.placements[index].object_from_world().inverse();
+        let object = self.bvh.object_of(index).bounds;
+        for corner in 0..8 {
+            let pick = |axis: usize| [object.min, object.max][corner >> axis & 1][axis];
+            let local = Vec3::new(pick(0), pick(1), pick(2)).as_dvec3();
+            let point = world_from_object.transform_point3(local);
+            let outside = point.cmplt(bounds.min.as_dvec3()) | point.cmpgt(bounds.max.as_dvec3());
+            if outside.any() {
+                return Err(format!(
+                    "instance {index} has bounds {bounds:?} without {point}"
+                ));
+            }
+        }
+        Ok(())
     }
 
     fn child(&mut self, child: Child, depth: usize) -> Result<Aabb, String> {
@@ -109,7 +148,7 @@ impl Walk<'_> {
                     bounds = bounds.union(quadric.bounds);
                 }
             }
-            Target::Nothing => {}
+            Target::Instance(_) | Target::Nothing => {}
         }
         Ok(bounds)
     }

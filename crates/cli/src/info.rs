@@ -27,8 +27,13 @@ struct Info {
     spp: u64,
     shapes: Counts,
     triangles: usize,
-    primitives: usize,
+    /// Those of shared objects count once.
+    primitives: u64,
+    /// Those of shared objects count at every place.
+    placed_primitives: u64,
     instances: usize,
+    /// Instances whose object is shared.
+    shared_instances: usize,
     materials: Counts,
     lights: Counts,
     /// How many lights are in each group.
@@ -83,13 +88,15 @@ impl Info {
             spp: loaded.spp,
             shapes: count(scene.shapes(), Shape::kind),
             triangles: triangles.sum(),
-            primitives: scene.bvh().primitive_count(),
+            primitives: scene.unique_primitives(),
+            placed_primitives: scene.placed_primitives(),
             instances: loaded.summary.instances,
+            shared_instances: scene.instance_count(),
             materials: count(scene.materials(), Material::kind),
             lights: count(scene.lights(), Light::kind),
             light_groups: light_groups(scene),
             textures: loaded.summary.textures,
-            bounds: (scene.bvh().primitive_count() > 0).then_some(corners),
+            bounds: (scene.placed_primitives() > 0).then_some(corners),
             bvh_bytes: scene.bvh().memory_bytes(),
             isa: scene.bvh().isa().to_string(),
             warnings: loaded.warnings.clone(),
@@ -126,7 +133,7 @@ impl Info {
             ),
             ("shapes", list(&self.shapes)),
             ("triangles", self.triangles.to_string()),
-            ("instances", self.instances.to_string()),
+            ("instances", self.instances_text()),
             ("materials", list(&self.materials)),
             ("lights", list(&self.lights)),
             ("light groups", list(&self.light_groups)),
@@ -144,6 +151,16 @@ impl Info {
             let _ = writeln!(text, "{name:<12} {value}");
         }
         text
+    }
+
+    fn instances_text(&self) -> String {
+        match self.shared_instances {
+            0 => self.instances.to_string(),
+            shared => format!(
+                "{}, {shared} of shared objects: {} primitives kept, {} placed",
+                self.instances, self.primitives, self.placed_primitives
+            ),
+        }
     }
 
     fn bounds_text(&self) -> String {

@@ -91,6 +91,8 @@ struct CandidateReport {
     is_chosen: bool,
     /// Traced or not.
     is_visible: bool,
+    /// How much of it arrives.
+    transmittance: f32,
 }
 
 #[derive(Debug, Serialize)]
@@ -98,6 +100,8 @@ struct SplatReport {
     #[serde(flatten)]
     term: TermReport,
     is_visible: bool,
+    /// How much of it arrives.
+    transmittance: f32,
     /// Where it lands, or would.
     raster: [f32; 2],
     /// The pixel that the filter drew; null where it is not rendered.
@@ -151,7 +155,8 @@ impl SampleReport {
             match (term.landing, term.term.strategy.s) {
                 (Some(landing), _) => light_image.push(SplatReport {
                     term: TermReport::new(&color, term),
-                    is_visible: term.is_visible,
+                    is_visible: term.is_visible(),
+                    transmittance: term.transmittance,
                     raster: landing.raster,
                     landed: landing.pixel,
                 }),
@@ -172,7 +177,7 @@ impl SampleReport {
             value: color.rgb(workspace.value),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
             value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
-            value_of_all_candidates: sum(all.map(|candidate| candidate.term.value)),
+            value_of_all_candidates: sum(all.map(CandidateReport::arriving)),
             hits,
             candidates,
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
@@ -240,6 +245,11 @@ impl TermReport {
 }
 
 impl CandidateReport {
+    /// What it is worth behind what lies in its way.
+    fn arriving(&self) -> Rgb {
+        self.term.value.map(|channel| channel * self.transmittance)
+    }
+
     fn new(color: &Color, replayed: &ReplayedTerm) -> Self {
         Self {
             term: TermReport::new(color, replayed),
@@ -247,7 +257,8 @@ impl CandidateReport {
             // Where nothing is chosen, everything is traced.
             prob: replayed.selection.map_or(1.0, |selection| selection.prob),
             is_chosen: replayed.is_chosen(),
-            is_visible: replayed.is_visible,
+            is_visible: replayed.is_visible(),
+            transmittance: replayed.transmittance,
         }
     }
 }

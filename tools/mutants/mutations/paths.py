@@ -1,6 +1,6 @@
 """Faults in paths: geometry, densities, weights, and which connections are made."""
 
-from .tests import PATH, analytic, estimators, unit
+from .tests import PATH, analytic, coverage, estimators, unit
 
 PATHS = [
     # --- path: geometry and scattering ----------------------------------------------------
@@ -101,8 +101,8 @@ PATHS = [
     (
         "light choice left out of next-event estimation",
         "crates/bidir/src/path/connect.rs",
-        "Spectrum::splat(1.0 / (prob * sample.pdf))",
-        "Spectrum::splat(1.0 / sample.pdf)",
+        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
+        "Spectrum::splat(sample.coverage / sample.pdf)",
         estimators("point_spot_distant"),
     ),
     (
@@ -184,5 +184,33 @@ PATHS = [
         "if prob >= 1.0 || draws.get(i) < prob {",
         "if prob >= 1.0 || draws.get(i) < prob / 2.0 {",
         unit("select::"),
+    ),
+    (
+        "a cut-out lamp that next-event estimation takes for whole",
+        "crates/bidir/src/path/connect.rs",
+        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
+        "Spectrum::splat(1.0 / (prob * sample.pdf))",
+        coverage("lamps_cut_out"),
+    ),
+    (
+        "a cut-out lamp that light subpaths take for whole",
+        "crates/bidir/src/path/walk.rs",
+        "emitted * (emission.from.coverage / (start",
+        "emitted * (1.0 / (start",
+        coverage("lamps_cut_out"),
+    ),
+    (
+        "one decision for all that a ray passes",
+        "crates/bidir/src/scene/coverage.rs",
+        "self.stream.get_for(self.dimension, surface ^ distance)",
+        "self.stream.get_for(self.dimension, 0 * (surface ^ distance))",
+        coverage("walls_let_through"),
+    ),
+    (
+        "splats not weakened by what they pass",
+        "crates/bidir/src/integrator/light.rs",
+        "splat.contribution = splat.contribution.behind(arrives);",
+        "splat.contribution = splat.contribution.behind(arrives.ceil());",
+        coverage("half_transparent"),
     ),
 ]

@@ -91,4 +91,19 @@ SCENES = [
         "self.t < other.t || (self.t <= other.t && id(self) > id(other))",
         ("bidir-accel", "", ""),
     ),
+    # --- instances ---------------------------------------------------------------------------
+    (
+        "mirrored instances inside out",
+        "crates/bidir/src/shape/mesh.rs",
+        "winding_sign: self.winding_sign * place.sign(),",
+        "winding_sign: self.winding_sign,",
+        ("bidir-formats", "--test objects", "geometry"),
+    ),
+    (
+        "instances whose boxes know no rounding",
+        "crates/accel/src/instance.rs",
+        "let reach = half + abs_times(&world_from_object, error) + cancelled;",
+        "let reach = half + 0.0 * error;",
+        ("bidir-accel", "--lib", "no_hit_is_culled"),
+    ),
 ]

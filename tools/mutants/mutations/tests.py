@@ -33,6 +33,11 @@ def experiment(filter_):
     return ("bidir-lab", "--test experiment", filter_)
 
 
+def coverage(filter_):
+    """Tests of surfaces that are not all there."""
+    return ("bidir-formats", "--test coverage", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)

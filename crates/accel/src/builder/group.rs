@@ -13,17 +13,27 @@ use crate::triangle::LANES;
 pub(super) enum Kind {
     Triangle,
     Quadric,
+    Instance,
 }
 
 /// What the builder knows of a primitive.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reference {
     pub(super) bounds: Aabb,
+    /// Index of the primitive, or of the instance.
     pub(super) primitive: u32,
     kind: Kind,
 }
 
 impl Reference {
+    pub(super) fn instance(index: u32, bounds: Aabb) -> Self {
+        Self {
+            bounds,
+            primitive: index,
+            kind: Kind::Instance,
+        }
+    }
+
     pub(super) fn new(index: u32, primitive: &Primitive, bounds: Aabb) -> Self {
         let kind = match primitive {
             Primitive::Triangle(_) => Kind::Triangle,
@@ -36,11 +46,13 @@ impl Reference {
         }
     }
 
-    /// The work of intersecting it, in lanes: a quadric costs what a block of triangles does.
+    /// The work of intersecting it, in lanes: a quadric costs what a block of triangles does, an
+    /// instance so much that none shares a leaf.
     pub(super) fn lanes(&self) -> u32 {
         match self.kind {
             Kind::Triangle => 1,
             Kind::Quadric => LANES as u32,
+            Kind::Instance => MAX_LEAF_LANES,
         }
     }
 }
@@ -57,7 +69,7 @@ pub(super) fn unit_of(total: &Aabb) -> f32 {
 pub(super) struct Group<'a> {
     pub(super) references: &'a mut [Reference],
     pub(super) bounds: Aabb,
-    /// None: both kinds occur.
+    /// None: several kinds occur.
     pub(super) kind: Option<Kind>,
     centers: Aabb,
     area: f32,

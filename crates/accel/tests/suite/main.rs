@@ -8,6 +8,7 @@
 mod answers;
 mod bits;
 mod degenerate;
+mod instances;
 mod oracle;
 mod quadrics;
 mod scenes;

@@ -8,6 +8,7 @@ use crate::film::{Aov, AovKind, Layers};
 use crate::integrator::{Sample, Workspace, camera_ray};
 use crate::math::Vec3;
 use crate::path::{PathContext, Vertex};
+use crate::scene::Chances;
 use crate::spectrum::Spectrum;
 
 /// What a sample has cost so far in its thread: looked at before and after.
@@ -94,7 +95,10 @@ impl FirstSurface {
             [] => {
                 let (ray, _) = camera_ray(context, sample);
                 workspace.stats.rays.camera += 1;
-                let hit = context.scene.intersect(ray.lens.point, ray.direction)?;
+                let chances = Chances::new(&sample.camera, 1);
+                let hit = context
+                    .scene
+                    .intersect(ray.lens.point, ray.direction, chances)?;
                 let surface = Vertex::surface(context, &hit, -ray.direction, Spectrum::ONE);
                 Some(Self::new(context, &Vertex::camera(&ray.lens), &surface))
             }

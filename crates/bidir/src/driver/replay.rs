@@ -32,8 +32,9 @@ pub struct ReplayedTerm {
     pub fate: Fate,
     /// For what is chosen from: importance and probability.
     pub selection: Option<Selection>,
-    /// True where nothing is in the way, traced or not.
-    pub is_visible: bool,
+    /// How much of it arrives, traced or not: 0 where something opaque is in the way, 1 where nothing
+    /// is.
+    pub transmittance: f32,
     /// For t = 1: where it lands if it is visible.
     pub landing: Option<Landing>,
     /// What it added to a pixel of an image of one pass.
@@ -107,7 +108,7 @@ fn zeros(
 impl ReplayedTerm {
     fn new(context: &PathContext<'_>, entry: &Entry, selection: Option<Selection>) -> Self {
         let (scene, ends) = (context.scene, entry.link.ends());
-        let is_visible = ends.is_none_or(|[a, b]| !scene.occluded(a, b));
+        let transmittance = ends.map_or(1.0, |[a, b]| scene.transmittance(a, b));
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
             Link::LightImage(_, splat) => {
@@ -119,10 +120,15 @@ impl ReplayedTerm {
             term: entry.term,
             fate: entry.fate,
             selection,
-            is_visible,
+            transmittance,
             landing,
             added: entry.added * scale,
         }
+    }
+
+    /// True where something of it arrives.
+    pub fn is_visible(&self) -> bool {
+        self.transmittance > 0.0
     }
 
     /// True where the term is let through by selection, or where nothing is chosen from.

@@ -206,8 +206,8 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
             weight: candidate.weight,
         };
         let ends = workspace.ends(candidate.strategy);
-        if workspace.trace(context.scene, candidate.strategy, &ends) {
-            workspace.add(sample, contribution);
+        if let Some(arrives) = workspace.trace(context.scene, candidate.strategy, &ends) {
+            workspace.add(sample, contribution.behind(arrives));
         }
     }
 }

@@ -98,7 +98,7 @@ impl Workspace {
             contribution: image.contribution,
             weight,
         };
-        let splat = Splat {
+        let mut splat = Splat {
             contribution: term.whole(),
             raster: image.raster,
             u: sample
@@ -108,8 +108,10 @@ impl Workspace {
         let end = self.light.vertices[s - 1].segment_end();
         let ends = [end, image.lens.segment_end()];
         self.count(term, |_| Link::LightImage(ends, splat));
-        let is_fine = self.accepts(sample, strategy, term.value());
-        if is_fine && self.trace(context.scene, strategy, &ends) {
+        if self.accepts(sample, strategy, term.value())
+            && let Some(arrives) = self.trace(context.scene, strategy, &ends)
+        {
+            splat.contribution = splat.contribution.behind(arrives);
             self.add_splat(splat);
         }
     }

@@ -113,9 +113,10 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     let ends = [x0.segment_end(), vertex.segment_end()];
     workspace.count(term, |_| Link::Connection(ends));
     let (strategy, value) = (term.strategy, term.value());
-    if workspace.accepts(sample, strategy, value) && workspace.trace(context.scene, strategy, &ends)
+    if workspace.accepts(sample, strategy, value)
+        && let Some(arrives) = workspace.trace(context.scene, strategy, &ends)
     {
-        workspace.add(sample, term.whole());
+        workspace.add(sample, term.whole().behind(arrives));
     }
 }
 

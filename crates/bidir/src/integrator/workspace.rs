@@ -42,6 +42,15 @@ pub struct Contribution {
 }
 
 impl Contribution {
+    /// What is left of it behind surfaces that let `transmittance` pass.
+    #[inline]
+    pub(super) fn behind(self, transmittance: f32) -> Self {
+        Self {
+            value: self.value * transmittance,
+            ..self
+        }
+    }
+
     /// C/π: the value without the weight. None: no film can sum it, though it can sum the value.
     ///
     /// Zero where the value is zero: what a weight of 0 leaves out is not known here.
@@ -194,20 +203,21 @@ impl Workspace {
         self.note(strategy, Fate::Added, value);
     }
 
-    /// Traces the shadow ray of a strategy: true where nothing is in its way.
+    /// Traces the shadow ray of a strategy: how much of it arrives. None: nothing.
     pub(super) fn trace(
         &mut self,
         scene: &Scene,
         strategy: Strategy,
         [a, b]: &[SegmentEnd; 2],
-    ) -> bool {
+    ) -> Option<f32> {
         self.stats.count_shadow_ray(strategy);
-        let is_blocked = scene.occluded(a, b);
-        if is_blocked {
-            self.stats.count_blocked(strategy);
-            self.note(strategy, Fate::Blocked, Spectrum::ZERO);
+        let transmittance = scene.transmittance(a, b);
+        if transmittance > 0.0 {
+            return Some(transmittance);
         }
-        !is_blocked
+        self.stats.count_blocked(strategy);
+        self.note(strategy, Fate::Blocked, Spectrum::ZERO);
+        None
     }
 
     /// Completes the journal of a term.

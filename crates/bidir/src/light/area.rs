@@ -5,8 +5,10 @@
 
 use super::{EmissionSample, LightContext, LightPoint, LightSample};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
+use crate::scene::clamped_coverage;
 use crate::shape::{Shape, ShapeSample};
 use crate::spectrum::{Rgb, luminance};
+use crate::texture::FloatTexture;
 
 /// Which sides of a surface emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +31,10 @@ pub struct AreaLight {
     primitives: Distribution1d,
     /// One over the area; 0 where there is none. Unit: 1/m².
     inverse_area: f32,
+    /// How much of the surface is there. None: all of it.
+    coverage: Option<FloatTexture>,
+    /// True where no ray meets the surface.
+    is_hidden: bool,
 }
 
 impl AreaLight {
@@ -44,7 +50,23 @@ impl AreaLight {
             radiance,
             sides,
             primitives,
+            coverage: None,
+            is_hidden: false,
         }
+    }
+
+    /// Lets no ray meet the surface, though it emits.
+    pub(crate) fn hide(&mut self) {
+        self.is_hidden = true;
+    }
+
+    pub(super) fn is_hidden(&self) -> bool {
+        self.is_hidden
+    }
+
+    /// Lets only a part of the surface be there, and emit.
+    pub(crate) fn set_coverage(&mut self, coverage: FloatTexture) {
+        self.coverage = Some(coverage);
     }
 
     pub(super) fn power(&self) -> f32 {
@@ -70,9 +92,11 @@ impl AreaLight {
         let (primitive, prob, rest) = self.primitives.sample(u.x);
         let drawn = sample(primitive, Vec2::new(rest, u.y));
         let at = LightPoint::on_surface(&drawn.surface, primitive as u32);
+        let coverage = self.coverage.as_ref();
         LightSample {
             at,
             pdf: drawn.pdf * prob,
+            coverage: coverage.map_or(1.0, |alpha| clamped_coverage(alpha.eval(drawn.surface.uv))),
         }
     }
 

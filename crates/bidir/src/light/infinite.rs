@@ -55,10 +55,7 @@ impl DistantLight {
 
     #[inline]
     pub(super) fn at(&self) -> LightSample {
-        LightSample {
-            at: LightPoint::at_infinity(self.to_light),
-            pdf: 1.0,
-        }
+        LightSample::new(LightPoint::at_infinity(self.to_light), 1.0)
     }
 
     #[inline]
@@ -170,10 +167,7 @@ impl InfiniteLight {
                 (to_light, self.pdf(to_light))
             }
         };
-        (pdf > 0.0).then(|| LightSample {
-            at: LightPoint::at_infinity(to_light),
-            pdf,
-        })
+        (pdf > 0.0).then(|| LightSample::new(LightPoint::at_infinity(to_light), pdf))
     }
 
     #[inline]

@@ -86,6 +86,19 @@ pub struct LightSample {
     pub at: LightPoint,
     /// Its density, in the measure that the module's table says.
     pub pdf: f32,
+    /// How much of the surface is there, in `[0, 1]`: a factor of what leaves it, in no density.
+    pub coverage: f32,
+}
+
+impl LightSample {
+    /// A point where all of the light is there.
+    pub fn new(at: LightPoint, pdf: f32) -> Self {
+        Self {
+            at,
+            pdf,
+            coverage: 1.0,
+        }
+    }
 }
 
 /// A ray that leaves a light.
@@ -143,10 +156,14 @@ impl Light {
     }
 
     /// True where no ray can hit the light by chance: its position, or its direction, is a Dirac
-    /// distribution.
+    /// distribution, or its surface is hidden.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        matches!(self, Self::Point(_) | Self::Spot(_) | Self::Distant(_))
+        match self {
+            Self::Point(_) | Self::Spot(_) | Self::Distant(_) => true,
+            Self::Area(light) => light.is_hidden(),
+            Self::Infinite(_) => false,
+        }
     }
 
     /// True for lights outside the scene.
@@ -227,14 +244,8 @@ impl Light {
     ) -> Option<LightSample> {
         match self {
             Self::Area(light) => light.sample_next_event(context, reference, u),
-            Self::Point(light) => Some(LightSample {
-                at: LightPoint::in_space(light.position),
-                pdf: 1.0,
-            }),
-            Self::Spot(light) => Some(LightSample {
-                at: LightPoint::in_space(light.position),
-                pdf: 1.0,
-            }),
+            Self::Point(light) => Some(light.at()),
+            Self::Spot(light) => Some(light.at()),
             Self::Distant(light) => Some(light.at()),
             Self::Infinite(light) => light.sample(u),
         }

@@ -23,13 +23,16 @@ impl PointLight {
         4.0 * PI * luminance(self.intensity)
     }
 
+    /// The point itself.
+    #[inline]
+    pub(super) fn at(&self) -> LightSample {
+        LightSample::new(LightPoint::in_space(self.position), 1.0)
+    }
+
     #[inline]
     pub(super) fn sample_emission(&self, u: Vec2) -> EmissionSample {
         EmissionSample {
-            from: LightSample {
-                at: LightPoint::in_space(self.position),
-                pdf: 1.0,
-            },
+            from: self.at(),
             origin: self.position,
             direction: warp::uniform_sphere(u),
             pdf_direction: Self::PDF_DIRECTION,
@@ -91,14 +94,17 @@ impl SpotLight {
         self.intensity.map(|i| i * falloff)
     }
 
+    /// The point itself.
+    #[inline]
+    pub(super) fn at(&self) -> LightSample {
+        LightSample::new(LightPoint::in_space(self.position), 1.0)
+    }
+
     #[inline]
     pub(super) fn sample_emission(&self, u: Vec2) -> EmissionSample {
         let direction = self.axis.to_world(warp::uniform_cone(u, self.end_height));
         EmissionSample {
-            from: LightSample {
-                at: LightPoint::in_space(self.position),
-                pdf: 1.0,
-            },
+            from: self.at(),
             origin: self.position,
             direction,
             pdf_direction: self.pdf_cone(),

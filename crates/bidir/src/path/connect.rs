@@ -34,7 +34,7 @@ pub fn connect(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) -
 
 /// A light point of its own for the camera vertex `receiver`: the light subpath of strategy s = 1.
 ///
-/// None: there is no light, or the draw has no density.
+/// None: there is no light, the draw has no density, or nothing of the light is there.
 #[inline]
 pub fn next_event_vertex(
     context: &PathContext<'_>,
@@ -47,8 +47,8 @@ pub fn next_event_vertex(
     let lights = scene.light_context();
     let sample = scene.lights()[light].sample_next_event(&lights, receiver.point, u)?;
     let mut vertex = Vertex::light(context, light as u32, &sample.at);
-    vertex.beta = Spectrum::splat(1.0 / (prob * sample.pdf));
-    Some(vertex)
+    vertex.beta = Spectrum::splat(sample.coverage / (prob * sample.pdf));
+    (sample.coverage > 0.0).then_some(vertex)
 }
 
 /// The density e(x_0 | x_1) with which [`next_event_vertex`] draws the point `at` of light number

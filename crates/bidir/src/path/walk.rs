@@ -11,7 +11,7 @@ use crate::camera::CameraRay;
 use crate::light::EmissionSample;
 use crate::math::Vec3;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::offset_origin;
+use crate::scene::{Chances, offset_origin};
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
@@ -93,7 +93,7 @@ pub fn light_subpath(
         .illuminant(emission.emitted_cos, &context.wavelengths);
     let step = Step {
         direction: emission.direction,
-        beta: emitted * (1.0 / (start.pdf_fwd * emission.pdf_direction)),
+        beta: emitted * (emission.from.coverage / (start.pdf_fwd * emission.pdf_direction)),
         pdf_w: emission.pdf_direction,
     };
     let origin = offset_origin(emission.origin, start.n_g, start.error, emission.direction);
@@ -108,7 +108,8 @@ pub fn light_subpath(
     walker.walk(subpath, origin, step, &mut stats.rays.light);
 }
 
-/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density.
+/// Draws the start of a light subpath and the ray that leaves it. None: the draw has no density, or
+/// nothing of the light is there.
 fn draw_emission(
     context: &PathContext<'_>,
     stream: &SampleStream,
@@ -123,8 +124,8 @@ fn draw_emission(
     let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
     let from = &emission.from;
     let mut start = Vertex::on_light(light as u32, &from.at, prob * from.pdf);
-    start.beta = Spectrum::splat(1.0 / start.pdf_fwd);
-    Some((start, emission))
+    start.beta = Spectrum::splat(from.coverage / start.pdf_fwd);
+    (from.coverage > 0.0).then_some((start, emission))
 }
 
 impl Subpath {
@@ -142,7 +143,12 @@ impl Walker<'_> {
         let start = magnitude(step.beta);
         while subpath.vertices.len() < self.max_vertices {
             *rays += 1;
-            let Some(hit) = self.context.scene.intersect(origin, step.direction) else {
+            let chances = Chances::new(self.stream, subpath.vertices.len());
+            let hit = self
+                .context
+                .scene
+                .intersect(origin, step.direction, chances);
+            let Some(hit) = hit else {
                 subpath.escape = Some(Escape {
                     direction: step.direction,
                     beta: step.beta,

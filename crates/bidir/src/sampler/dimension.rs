@@ -32,6 +32,8 @@ pub enum Purpose {
     LightImagePixel,
     /// The draw of shadow-ray selection; the vertex counts the groups.
     Select,
+    /// Whether a walk passes surfaces that are not all there, on its way to the vertex.
+    Coverage,
 }
 
 /// The address of a random number, or of a pair, within a sample.

@@ -96,6 +96,14 @@ impl SampleStream {
         self.get_2d(dimension).x
     }
 
+    /// The number of `dimension` for one of many things that have no order, each with a key of its own.
+    /// The numbers of different things are unrelated. Range: `[0, 1)`.
+    #[inline]
+    pub fn get_for(&self, dimension: Dimension, key: u64) -> f32 {
+        let of_sample = mix(self.key ^ dimension.key()) ^ mix(self.index);
+        unit(mix(of_sample ^ mix(key)) as u32)
+    }
+
     /// The pair of numbers of `dimension`. Range: `[0, 1)²`.
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
@@ -177,6 +185,22 @@ mod tests {
         assert!(mean.abs() < bound, "mean {mean}");
         assert!((square - 1.0 / 12.0).abs() < bound, "variance {square}");
         assert!(product.abs() < bound, "covariance {product}");
+    }
+
+    #[test]
+    fn numbers_for_things_are_uniform_and_unrelated() {
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+            let sampler = Sampler::new(kind, 3);
+            let get = |index, dimension, key| {
+                let stream = sampler.stream(Domain::Camera, 9, index);
+                stream.get_for(dimension, key)
+            };
+            let other = Dimension::at(4, Purpose::Coverage);
+            check_moments(|i| (get(i, DIMENSION, 1), get(i, DIMENSION, 2)));
+            check_moments(|i| (get(7, DIMENSION, i), get(8, DIMENSION, i)));
+            check_moments(|i| (get(i, DIMENSION, 5), get(i, other, 5)));
+            check_moments(|i| (get(i, DIMENSION, i), get(i + 1, DIMENSION, i)));
+        }
     }
 
     #[test]

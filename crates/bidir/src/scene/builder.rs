@@ -1,14 +1,17 @@
 //! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
-use super::{PrimitiveRef, Scene, Surface};
+use super::check::{check_crop, check_shape};
+use super::object::{Geometry, ObjectId, Objects};
+use super::{Presence, Scene, Surface, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
 use crate::material::Material;
-use crate::math::Vec3;
-use crate::shape::{Mesh, Shape};
+use crate::math::{DAffine3, Vec3};
+use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
+use crate::texture::FloatTexture;
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
@@ -62,6 +65,12 @@ pub enum SceneError {
         /// The shape, in the order of addition.
         shape: usize,
     },
+    /// An instance has a map without inverse, or nearly without, or reaches too far.
+    #[error("the transformation of the instance cannot be inverted")]
+    Instance {
+        /// The instance, in the order of addition.
+        instance: usize,
+    },
     /// There are more primitives than the intersector counts.
     #[error("the scene has too many primitives: {0}")]
     Intersector(String),
@@ -80,7 +89,7 @@ impl SceneError {
             Self::VertexIndex { shape, .. }
             | Self::AttributeCount { shape, .. }
             | Self::NotFinite { shape } => Some(*shape),
-            Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
+            Self::Instance { .. } | Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
         }
     }
 }
@@ -93,6 +102,8 @@ pub struct SceneBuilder {
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
+    objects: Objects,
+    coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
@@ -112,6 +123,8 @@ impl SceneBuilder {
             color: ColorModel::default(),
             shapes: Vec::new(),
             surfaces: Vec::new(),
+            objects: Objects::default(),
+            coverages: Vec::new(),
             materials: Vec::new(),
             lights: Vec::new(),
             light_groups: Vec::new(),
@@ -153,12 +166,72 @@ impl SceneBuilder {
             let light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
             self.light(Light::Area(light))
         });
+        self.push(shape, material, light);
+        index
+    }
+
+    fn push(&mut self, shape: Shape, material: MaterialId, light: Option<u32>) {
         self.surfaces.push(Surface {
             material: material.0,
             light,
+            presence: Presence::Whole,
         });
         self.shapes.push(shape);
+    }
+
+    /// Lets only the part `alpha` of shape number `shape` be there, in `[0, 1]` over its parameters:
+    /// rays pass it with 1 - `alpha`, and what it emits is less by `alpha`.
+    ///
+    /// Where `alpha` is 0 all over, no ray meets the shape, but it emits all the same: an invisible
+    /// light, as in pbrt-v4.
+    pub fn coverage(&mut self, shape: usize, alpha: FloatTexture) -> &mut Self {
+        let surface = &mut self.surfaces[shape];
+        let light = surface.light.map(|light| &mut self.lights[light as usize]);
+        let light = light.and_then(|light| match light {
+            Light::Area(light) => Some(light),
+            _ => None,
+        });
+        surface.presence = match alpha {
+            FloatTexture::Constant(alpha) if clamped_coverage(alpha) >= 1.0 => return self,
+            FloatTexture::Constant(alpha) if alpha <= 0.0 => {
+                if let Some(light) = light {
+                    light.hide();
+                }
+                Presence::Absent
+            }
+            texture => {
+                if let Some(light) = light {
+                    light.set_coverage(texture.clone());
+                }
+                self.coverages.push(texture);
+                Presence::Part(self.coverages.len() as u32 - 1)
+            }
+        };
+        self
+    }
+
+    /// Adds an object without shapes. It is in the scene where it has [instances](Self::instance).
+    pub fn object(&mut self) -> ObjectId {
+        self.objects.shapes.push(Vec::new());
+        ObjectId(self.objects.shapes.len() as u32 - 1)
+    }
+
+    /// Adds a shape of `material` to an object, in the object's space. Returns its number.
+    ///
+    /// It does not emit: a shape that does has to be added to the world, once for each place.
+    pub fn object_shape(&mut self, object: ObjectId, shape: Shape, material: MaterialId) -> usize {
+        let index = self.shapes.len();
+        self.objects.shapes[object.0 as usize].push(index);
+        self.push(shape, material, None);
         index
+    }
+
+    /// Places an object, under any invertible affine map. Returns the instance's number.
+    pub fn instance(&mut self, object: ObjectId, world_from_object: DAffine3) -> usize {
+        self.objects
+            .instances
+            .push((object, Place(world_from_object)));
+        self.objects.instances.len() - 1
     }
 
     /// Names the group of the lights that are added from here on, shapes that emit included. None,
@@ -196,9 +269,11 @@ impl SceneBuilder {
     pub fn build(self) -> Result<Scene, SceneError> {
         let camera = self.camera.ok_or(SceneError::NoCamera)?;
         check_crop(&self.film)?;
-        let (primitives, geometry) = gather_primitives(&self.shapes)?;
-        let bvh = accel::Bvh::build(&geometry, &accel::BuildOptions { isa: self.isa })
-            .map_err(|error| SceneError::Intersector(error.to_string()))?;
+        let Geometry {
+            bvh,
+            primitives,
+            instances,
+        } = self.objects.build(&self.shapes, &self.surfaces, self.isa)?;
         let (centre, radius) = bounding_sphere(&bvh, &self.lights);
         let context = LightContext {
             shapes: &self.shapes,
@@ -220,6 +295,8 @@ impl SceneBuilder {
             shapes: self.shapes,
             surfaces: self.surfaces,
             primitives,
+            instances,
+            coverages: self.coverages,
             materials: self.materials,
             lights: self.lights,
             light_choice,
@@ -228,84 +305,6 @@ impl SceneBuilder {
             radius,
         })
     }
-}
-
-fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
-    let [width, height] = film.resolution;
-    let inside = film.crop.max[0] <= width && film.crop.max[1] <= height;
-    if inside && film.crop.area() > 0 {
-        Ok(())
-    } else {
-        Err(SceneError::EmptyCrop)
-    }
-}
-
-/// Checks all shapes: their primitives, for reference and for the intersector.
-fn gather_primitives(
-    shapes: &[Shape],
-) -> Result<(Vec<PrimitiveRef>, Vec<accel::Primitive>), SceneError> {
-    let (mut primitives, mut geometry) = (Vec::new(), Vec::new());
-    for (number, shape) in shapes.iter().enumerate() {
-        check_shape(number, shape)?;
-        for index in 0..shape.primitive_count() {
-            primitives.push(PrimitiveRef {
-                shape: number as u32,
-                index: index as u32,
-            });
-            geometry.push(shape.primitive(index));
-        }
-    }
-    Ok((primitives, geometry))
-}
-
-fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {
-    let finite = match shape {
-        Shape::Mesh(mesh) => {
-            check_indices(number, mesh)?;
-            mesh.positions
-                .iter()
-                .chain(&mesh.normals)
-                .all(|v| v.is_finite())
-                && mesh.uvs.iter().all(|uv| uv.is_finite())
-        }
-        Shape::Sphere(_) | Shape::Disk(_) => {
-            let bounds = shape.primitive(0).bounds();
-            bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
-        }
-    };
-    if finite {
-        Ok(())
-    } else {
-        Err(SceneError::NotFinite { shape: number })
-    }
-}
-
-fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
-    let vertices = mesh.positions.len();
-    for (what, count) in [
-        ("normals", mesh.normals.len()),
-        ("parameters", mesh.uvs.len()),
-    ] {
-        if count != 0 && count != vertices {
-            return Err(SceneError::AttributeCount {
-                shape,
-                vertices,
-                count,
-                what,
-            });
-        }
-    }
-    for (triangle, indices) in mesh.triangles.iter().enumerate() {
-        if let Some(&vertex) = indices.iter().find(|&&vertex| vertex as usize >= vertices) {
-            return Err(SceneError::VertexIndex {
-                shape,
-                triangle,
-                vertex,
-                vertices,
-            });
-        }
-    }
-    Ok(())
 }
 
 /// A sphere around all surfaces, and around the lights in space, with a little room.

@@ -4,13 +4,21 @@
 //! in a built scene are valid.
 
 mod builder;
+mod check;
+mod coverage;
+mod object;
 mod visibility;
 
 pub use accel::Isa;
 pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
+pub use coverage::Chances;
+pub(crate) use coverage::clamped_coverage;
+pub use object::ObjectId;
 pub use visibility::{SegmentEnd, offset_origin};
+
+use object::Placed;
 
 use crate::camera::Camera;
 use crate::film::FilmSettings;
@@ -19,6 +27,7 @@ use crate::material::Material;
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::ColorModel;
+use crate::texture::FloatTexture;
 
 /// A primitive of the intersector as a part of a shape.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +42,18 @@ struct PrimitiveRef {
 struct Surface {
     material: u32,
     light: Option<u32>,
+    presence: Presence,
+}
+
+/// How much of a surface is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Presence {
+    /// All of it.
+    Whole,
+    /// What a texture of the scene says, by index.
+    Part(u32),
+    /// Nothing: no ray meets it.
+    Absent,
 }
 
 /// Where a ray meets a surface.
@@ -54,7 +75,11 @@ pub struct Scene {
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
+    /// Those of the world first, then those of the objects.
     primitives: Vec<PrimitiveRef>,
+    instances: Vec<Placed>,
+    /// The textures of surfaces that are not all there. Without any, rays do not ask.
+    coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     light_choice: LightChoice,
@@ -145,9 +170,29 @@ impl Scene {
         &self.materials[i as usize]
     }
 
-    /// All shapes.
+    /// All shapes, those of objects once, in the object's space.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
+    }
+
+    /// How many objects stand in the world.
+    pub fn instance_count(&self) -> usize {
+        self.instances.len()
+    }
+
+    /// The primitives that are kept: those of an object count once.
+    pub fn unique_primitives(&self) -> u64 {
+        self.primitives.len() as u64
+    }
+
+    /// The primitives that rays meet: those of an object count at every place.
+    pub fn placed_primitives(&self) -> u64 {
+        let of_instance = |i| {
+            let (object, _) = self.bvh.instance(i);
+            self.bvh.objects()[object as usize].primitive_count() as u64
+        };
+        let of_instances: u64 = (0..self.instances.len()).map(of_instance).sum();
+        self.bvh.primitive_count() as u64 + of_instances
     }
 
     /// The acceleration structure.
@@ -155,18 +200,25 @@ impl Scene {
         &self.bvh
     }
 
-    /// The nearest surface along a ray. None: it escapes.
+    /// The nearest surface along a ray of a walk, which passes some by `chances`. None: it escapes.
     #[inline]
-    pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<SurfaceHit> {
-        let hit = self
-            .bvh
-            .closest(&accel::Ray::new(origin, direction), accel::accept_all)?;
-        let primitive = self.primitives[hit.primitive as usize];
-        let shape = &self.shapes[primitive.shape as usize];
+    pub fn intersect(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        chances: Chances<'_>,
+    ) -> Option<SurfaceHit> {
+        let hit = self.closest(&accel::Ray::new(origin, direction), chances)?;
         let uv = Vec2::new(hit.u, hit.v);
         let point = origin + direction * hit.t;
-        let surface = shape.surface_point(primitive.index as usize, uv, point);
-        let of_shape = self.surfaces[primitive.shape as usize];
+        let (placed, primitive) = self.resolve(&hit);
+        let (number, index) = (primitive.shape as usize, primitive.index as usize);
+        let shape = &self.shapes[number];
+        let surface = match placed {
+            None => shape.surface_point(index, uv, point),
+            Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
+        };
+        let of_shape = self.surfaces[number];
         let light = of_shape
             .light
             .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
@@ -175,5 +227,14 @@ impl Scene {
             material: of_shape.material,
             light,
         })
+    }
+
+    /// What was hit: the instance, if it is of one, and the part of a shape.
+    #[inline]
+    fn resolve(&self, hit: &accel::Hit) -> (Option<&Placed>, PrimitiveRef) {
+        let placed = hit.instance.checked_sub(1);
+        let placed = placed.map(|instance| &self.instances[instance as usize]);
+        let first = placed.map_or(0, |placed| placed.first_primitive);
+        (placed, self.primitives[(first + hit.primitive) as usize])
     }
 }

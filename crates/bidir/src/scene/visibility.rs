@@ -1,5 +1,5 @@
-//! v(a, b): whether a shadow ray gets from one end to the other. All surfaces are opaque to it,
-//! glass too: light through a smooth interface is found by walks.
+//! v(a, b): how much of a shadow ray gets from one end to the other. Surfaces are as opaque to it as
+//! they are there (`coverage`), glass too: light through a smooth interface is found by walks.
 //!
 //! Both ends are pushed off their surface by the error of their point, so that none shadows itself.
 
@@ -27,11 +27,12 @@ pub fn offset_origin(point: Vec3, n_g: Vec3, error: f32, w: Vec3) -> Vec3 {
 }
 
 impl Scene {
-    /// True where something lies between two ends, of which at most one is at infinity.
+    /// How much of the light from one end to the other arrives, in `[0, 1]`: 0 where something opaque
+    /// lies between, 1 where nothing does. At most one end is at infinity.
     #[inline]
-    pub fn occluded(&self, a: &SegmentEnd, b: &SegmentEnd) -> bool {
+    pub fn transmittance(&self, a: &SegmentEnd, b: &SegmentEnd) -> f32 {
         if a.is_infinite {
-            return self.occluded(b, a);
+            return self.transmittance(b, a);
         }
         let ray = if b.is_infinite {
             accel::Ray::new(offset_origin(a.point, a.n_g, a.error, b.point), b.point)
@@ -44,6 +45,6 @@ impl Scene {
                 ..accel::Ray::new(from, to - from)
             }
         };
-        self.bvh.occluded(&ray, accel::accept_all)
+        self.transmittance_along(&ray)
     }
 }

@@ -1,7 +1,7 @@
 //! A flat ring or a part of one. An affine map scales all of its area alike, so that points are
 //! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
 
-use super::{Orientation, Placement, ShapeSample, SurfacePoint};
+use super::{Orientation, Place, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos, sqr};
 
 /// The ring at `z = height` with radii from `inner_radius` to `radius` and azimuth below
@@ -51,6 +51,21 @@ impl Disk {
     pub fn area(&self) -> f32 {
         let local = self.phi_max / 2.0 * (sqr(self.radius) - sqr(self.inner_radius));
         local * self.placement.area_scale(Vec3::Z)
+    }
+
+    /// The same disk in the world, for one of an object; its densities are still those of the object.
+    #[inline]
+    pub(super) fn at(&self, place: &Place) -> Self {
+        Self {
+            placement: self.placement.at(place),
+            ..*self
+        }
+    }
+
+    /// A bound of the coordinates of its points.
+    #[inline]
+    pub(super) fn magnitude(&self) -> f32 {
+        self.placement.magnitude(self.radius.max(self.height.abs()))
     }
 
     #[inline]

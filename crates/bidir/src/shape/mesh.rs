@@ -4,7 +4,7 @@
 //! Normals and parameters are interpolated linearly. Shading normals change the frame, never the
 //! point.
 
-use super::{Orientation, ShapeSample, SurfacePoint, position_error};
+use super::{Orientation, Place, ShapeSample, SurfacePoint, position_error};
 use crate::math::{Frame, Vec2, Vec3, warp};
 
 /// Triangles that share vertices, in world space.
@@ -53,31 +53,34 @@ impl Mesh {
     /// The geometry at barycentric coordinates `b` of vertices 1 and 2.
     #[inline]
     pub(super) fn surface_point(&self, i: usize, b: Vec2) -> SurfacePoint {
-        let [p0, p1, p2] = self.triangle(i);
-        let b0 = 1.0 - b.x - b.y;
-        let magnitude = p0.abs().max(p1.abs()).max(p2.abs()).max_element();
-        let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
-        let n_g = winding * self.orientation.sign();
-        let n_s = self.shading_normal(i, b0, b).unwrap_or(n_g);
-        let n_g = if n_g.dot(n_s) < 0.0 { -n_g } else { n_g };
-        let uvs = self.triangle_uvs(i);
-        SurfacePoint {
-            point: p0 * b0 + p1 * b.x + p2 * b.y,
-            error: position_error(magnitude),
-            n_g,
-            shading: Frame::from_z_and_tangent(n_s, tangent([p0, p1, p2], uvs)),
-            uv: uvs[0] * b0 + uvs[1] * b.x + uvs[2] * b.y,
-        }
+        let corners = self.corners(i);
+        corners.surface_point(b, position_error(corners.magnitude()))
     }
 
-    /// The interpolated normal. None: there are none, or they cancel.
+    /// The same of a mesh that belongs to an object at `place`: what a mesh of moved vertices has,
+    /// with the error of the map added.
     #[inline]
-    fn shading_normal(&self, i: usize, b0: f32, b: Vec2) -> Option<Vec3> {
-        if self.normals.is_empty() {
-            return None;
+    pub(super) fn surface_point_at(&self, place: &Place, i: usize, b: Vec2) -> SurfacePoint {
+        let corners = self.corners(i);
+        let moved = corners.at(place);
+        let error = position_error(moved.magnitude()) + place.error(corners.magnitude());
+        moved.surface_point(b, error)
+    }
+
+    #[inline]
+    pub(super) fn uv(&self, i: usize, b: Vec2) -> Vec2 {
+        interpolate(self.triangle_uvs(i), b)
+    }
+
+    #[inline]
+    fn corners(&self, i: usize) -> Corners {
+        let of_vertices = |values: &[Vec3]| self.triangles[i].map(|vertex| values[vertex as usize]);
+        Corners {
+            positions: self.triangle(i),
+            normals: (!self.normals.is_empty()).then(|| of_vertices(&self.normals)),
+            uvs: self.triangle_uvs(i),
+            winding_sign: self.orientation.sign(),
         }
-        let [n0, n1, n2] = self.triangles[i].map(|vertex| self.normals[vertex as usize]);
-        (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
     }
 
     #[inline]
@@ -87,6 +90,64 @@ impl Mesh {
         }
         self.triangles[i].map(|vertex| self.uvs[vertex as usize])
     }
+}
+
+/// What is known at the corners of a triangle.
+struct Corners {
+    positions: [Vec3; 3],
+    normals: Option<[Vec3; 3]>,
+    uvs: [Vec2; 3],
+    /// -1 where the front is not what the winding says.
+    winding_sign: f32,
+}
+
+impl Corners {
+    /// The largest coordinate.
+    #[inline]
+    fn magnitude(&self) -> f32 {
+        let [p0, p1, p2] = self.positions;
+        p0.abs().max(p1.abs()).max(p2.abs()).max_element()
+    }
+
+    /// The corners in the world. A mirroring map turns the winding, not the front.
+    #[inline]
+    fn at(&self, place: &Place) -> Self {
+        Self {
+            positions: self.positions.map(|p| place.point(p)),
+            normals: self.normals.map(|normals| normals.map(|n| place.normal(n))),
+            uvs: self.uvs,
+            winding_sign: self.winding_sign * place.sign(),
+        }
+    }
+
+    #[inline]
+    fn surface_point(&self, b: Vec2, error: f32) -> SurfacePoint {
+        let ([p0, p1, p2], uvs) = (self.positions, self.uvs);
+        let b0 = 1.0 - b.x - b.y;
+        let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
+        let n_g = winding * self.winding_sign;
+        let n_s = self.shading_normal(b0, b).unwrap_or(n_g);
+        let n_g = if n_g.dot(n_s) < 0.0 { -n_g } else { n_g };
+        SurfacePoint {
+            point: p0 * b0 + p1 * b.x + p2 * b.y,
+            error,
+            n_g,
+            shading: Frame::from_z_and_tangent(n_s, tangent(self.positions, uvs)),
+            uv: interpolate(uvs, b),
+        }
+    }
+
+    /// The interpolated normal. None: there are none, or they cancel.
+    #[inline]
+    fn shading_normal(&self, b0: f32, b: Vec2) -> Option<Vec3> {
+        let [n0, n1, n2] = self.normals?;
+        (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
+    }
+}
+
+#[inline]
+fn interpolate([uv0, uv1, uv2]: [Vec2; 3], b: Vec2) -> Vec2 {
+    uv0 * (1.0 - b.x - b.y) + uv1 * b.x + uv2 * b.y
 }
 
 /// ∂p/∂u, up to scale; zero where the parameters are degenerate.

@@ -1,6 +1,6 @@
 //! Surfaces: where rays meet them, and how points are drawn on them.
 //!
-//! All geometry is in world space. A shape gives its primitives to [`accel`], turns a hit into a
+//! All geometry is in world space, but for shapes of shared objects, which a [`Place`] takes there. A shape gives its primitives to [`accel`], turns a hit into a
 //! [`SurfacePoint`], and, where it is a light, draws points by area. Densities are **area
 //! measure**, 1/m².
 //!
@@ -12,6 +12,7 @@
 
 mod disk;
 mod mesh;
+mod place;
 mod sphere;
 
 #[cfg(test)]
@@ -19,6 +20,7 @@ mod tests;
 
 pub use disk::Disk;
 pub use mesh::Mesh;
+pub use place::Place;
 pub use sphere::Sphere;
 
 use crate::math::{Affine3A, Frame, Vec2, Vec3};
@@ -95,6 +97,31 @@ impl Shape {
             Self::Sphere(sphere) => sphere.surface_point(uv, point),
             Self::Disk(disk) => disk.surface_point(uv, point),
         }
+    }
+
+    /// The surface's parameters alone at such a hit.
+    #[inline]
+    pub fn uv(&self, i: usize, uv: Vec2) -> Vec2 {
+        match self {
+            Self::Mesh(mesh) => mesh.uv(i, uv),
+            Self::Sphere(_) | Self::Disk(_) => uv,
+        }
+    }
+
+    /// The same geometry of a shape of an object that stands at `place`, in world space; `point` too is in
+    /// world space.
+    #[inline]
+    pub fn surface_point_at(&self, place: &Place, i: usize, uv: Vec2, point: Vec3) -> SurfacePoint {
+        let (mut surface, magnitude) = match self {
+            Self::Mesh(mesh) => return mesh.surface_point_at(place, i, uv),
+            Self::Sphere(sphere) => (
+                sphere.at(place).surface_point(uv, point),
+                sphere.magnitude(),
+            ),
+            Self::Disk(disk) => (disk.at(place).surface_point(uv, point), disk.magnitude()),
+        };
+        surface.error += place.error(magnitude);
+        surface
     }
 
     /// The area of primitive `i`. Unit: m².
@@ -190,6 +217,23 @@ impl Placement {
             local_from_world: world_from_local.inverse(),
             volume_scale: world_from_local.matrix3.determinant().abs(),
         }
+    }
+
+    /// The same in the world, for a quadric of an object.
+    #[inline]
+    fn at(&self, place: &Place) -> Self {
+        Self::new(place.compose(&self.world_from_local))
+    }
+
+    /// A bound of the coordinates of points up to `distance` from the local origin.
+    #[inline]
+    fn magnitude(&self, distance: f32) -> f32 {
+        let (m, origin) = (
+            self.world_from_local.matrix3,
+            self.world_from_local.translation,
+        );
+        let reach = (m.x_axis.abs() + m.y_axis.abs() + m.z_axis.abs()) * distance;
+        (origin.abs() + reach).max_element()
     }
 
     /// The inverse transpose applied to a local normal: not normalised.

@@ -4,7 +4,7 @@
 //! - for a receiver outside a whole, undistorted sphere, evenly in the cone that it is seen in:
 //!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
 
-use super::{Orientation, Placement, ShapeSample, SurfacePoint};
+use super::{Orientation, Place, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 
 /// The part of a sphere with z in `[z_min, z_max]` and azimuth below `phi_max`, in its own space,
@@ -102,6 +102,21 @@ impl Sphere {
     /// The area. Unit: m².
     pub fn area(&self) -> f32 {
         self.area
+    }
+
+    /// The same sphere in the world, for one of an object; its densities are still those of the object.
+    #[inline]
+    pub(super) fn at(&self, place: &Place) -> Self {
+        Self {
+            placement: self.placement.at(place),
+            ..*self
+        }
+    }
+
+    /// A bound of the coordinates of its points.
+    #[inline]
+    pub(super) fn magnitude(&self) -> f32 {
+        self.placement.magnitude(self.radius)
     }
 
     #[inline]

@@ -99,8 +99,8 @@ fn check_term(replayed: &ReplayedTerm) {
     let prob = replayed.selection.map_or(1.0, |selection| selection.prob);
     match replayed.fate {
         Fate::NotTraced => assert!(prob < 1.0 && !replayed.is_chosen()),
-        Fate::Blocked => assert!(!replayed.is_visible && replayed.is_chosen()),
-        Fate::Added => assert!(replayed.is_visible && replayed.is_chosen()),
+        Fate::Blocked => assert!(!replayed.is_visible() && replayed.is_chosen()),
+        Fate::Added => assert!(replayed.is_visible() && replayed.is_chosen()),
         Fate::Dropped => panic!("the scene has no value to drop"),
     }
     if replayed.fate != Fate::Added {

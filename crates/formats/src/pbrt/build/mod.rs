@@ -4,7 +4,7 @@
 //! [`LoadOptions::lenient`] something simpler stands in for it, and a warning says what.
 //!
 //! Colours are linear Rec. 709 throughout: spectra are known by their names only, and by three
-//! values each. Instances are copies. Quadrics keep their outside in front under mirroring
+//! values each. Objects are shared by their instances (`object`). Quadrics keep their outside in front under mirroring
 //! transformations, where the reference program contradicts itself.
 
 mod camera;
@@ -17,6 +17,7 @@ mod group;
 mod imagemap;
 mod light;
 mod material;
+mod object;
 mod reader;
 mod settings;
 mod shape;
@@ -26,14 +27,17 @@ pub use film::Crop;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription};
+use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
-use bidir::scene::{MaterialId, Scene, SceneBuilder, SceneError};
+use bidir::math::Vec3;
+use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
+use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
 use glam::DAffine3;
+use reader::Reader;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -71,9 +75,9 @@ pub struct Loaded {
 /// What a scene is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Shapes, those of instances counted every time.
+    /// Shapes as they are kept: those of shared objects count once.
     pub shapes: usize,
-    /// Triangles, spheres and disks.
+    /// Triangles, spheres and disks as they are kept: those of shared objects count once.
     pub primitives: u64,
     /// Places of objects.
     pub instances: usize,
@@ -87,7 +91,7 @@ pub struct Summary {
     pub other_lights: usize,
 }
 
-/// The most primitives of a scene with all its instances.
+/// The most primitives of a scene, those of shared objects counted once.
 const MOST_PRIMITIVES: u64 = 1 << 28;
 
 /// Reads a scene file with all that it refers to; `-` is standard input.
@@ -119,17 +123,34 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
 }
 
 /// A scene in the making.
-struct Assembly {
+struct Assembly<'a> {
     builder: SceneBuilder,
+    textures: Textures<'a>,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
     /// The places of the shapes in the text, in the order of addition.
     shape_spans: Vec<Span>,
+    /// The same of instances.
+    instance_spans: Vec<Span>,
+    /// Of a box around the object that is being read.
+    object_corners: [Vec3; 2],
     summary: Summary,
 }
 
-impl Assembly {
-    fn build(context: &mut Context<'_>) -> Result<(Scene, SceneSettings, Summary), Fault> {
+/// The corners of no box.
+const NOWHERE: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+
+/// Where a shape goes.
+#[derive(Clone, Copy)]
+enum Destination<'a> {
+    /// Into the world, once for each of these places of its space.
+    World(&'a [DAffine3]),
+    /// Into an object that is shared.
+    Object(ObjectId),
+}
+
+impl<'a> Assembly<'a> {
+    fn build(context: &mut Context<'a>) -> Result<(Scene, SceneSettings, Summary), Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
@@ -142,37 +163,47 @@ impl Assembly {
         }
         let mut assembly = Self {
             builder,
+            textures: Textures::new(description),
             materials: Vec::new(),
             shape_spans: Vec::new(),
+            instance_spans: Vec::new(),
+            object_corners: NOWHERE,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
         for shape in &description.shapes {
-            assembly.add_shape(context, shape, &[DAffine3::IDENTITY])?;
+            let world = Destination::World(&[DAffine3::IDENTITY]);
+            assembly.add_shape(context, shape, world)?;
         }
         assembly.add_objects(context)?;
+        assembly.textures.check_unused(context)?;
         assembly.add_lights(context)?;
         let Self {
             builder,
             shape_spans,
+            instance_spans,
             summary,
             ..
         } = assembly;
-        let beginning = SourceMap::BEGINNING;
         let scene = builder
             .build()
-            .map_err(|error| scene_fault(&error, &shape_spans, beginning))?;
+            .map_err(|error| scene_fault(&error, &shape_spans, &instance_spans))?;
         Ok((scene, settings, summary))
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         let description = context.description;
-        let mut textures = Textures::new(description);
         self.summary.textures = description.textures.len();
         let used = used_materials(description);
+        let textures = &mut self.textures;
         for (index, material) in description.materials.iter().enumerate() {
             let entity = material.entity.as_ref();
-            let mut build = |context: &mut _| material::build(context, &mut textures, entity);
+            if let Some(entity) = entity.filter(|entity| is_interface(entity)) {
+                Reader::new(entity).finish()?;
+                self.materials.push(None);
+                continue;
+            }
+            let mut build = |context: &mut _| material::build(context, textures, entity);
             let built = if used.contains(&index) {
                 build(context)?
             } else {
@@ -182,15 +213,15 @@ impl Assembly {
             let id = built.map(|material| self.builder.material(material));
             self.materials.push(id);
         }
-        textures.check_unused(context)
+        Ok(())
     }
 
-    /// Adds a shape once for each of `places`.
+    /// Adds a shape where it goes.
     fn add_shape(
         &mut self,
         context: &mut Context<'_>,
         shape: &ShapeDescription,
-        places: &[DAffine3],
+        destination: Destination<'_>,
     ) -> Result<(), Fault> {
         let span = shape.entity.span;
         if shape.transforms.is_animated() {
@@ -204,7 +235,7 @@ impl Assembly {
         {
             context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
         }
-        let Some(geometry) = Geometry::read(context, shape)? else {
+        let Some((geometry, alpha)) = Geometry::read(context, &mut self.textures, shape)? else {
             return Ok(());
         };
         let Some(&Some(material)) = self.materials.get(shape.material) else {
@@ -214,19 +245,52 @@ impl Assembly {
             Some(entity) => Some(AreaEmission::read(context, entity)?),
             None => None,
         };
-        self.summary.primitives += geometry.primitives() * places.len() as u64;
-        if self.summary.primitives > MOST_PRIMITIVES {
-            let message = format!("the scene has more than {MOST_PRIMITIVES} primitives");
-            let fault = Fault::new(ErrorKind::Limit, span, message);
-            return Err(fault.with_hint("every instance of an object is a copy of its shapes"));
-        }
-        for place in places {
-            let world_from_local = *place * shape.transforms.start;
-            let placed = geometry.place(&world_from_local, shape::orientation(shape));
-            shape::check_extent(span, &placed)?;
-            self.add_placed(placed, material, emission.as_ref(), span)?;
+        let copies = match destination {
+            Destination::World(places) => places.len() as u64,
+            Destination::Object(_) => 1,
+        };
+        self.count_primitives(geometry.primitives() * copies, span)?;
+        match destination {
+            Destination::World(places) => {
+                for place in places {
+                    let placed = place_shape(&geometry, shape, place)?;
+                    let first = self.shape_spans.len();
+                    self.add_placed(placed, material, emission.as_ref(), span)?;
+                    self.cover(first, alpha.as_ref());
+                }
+            }
+            Destination::Object(object) => {
+                let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
+                let [low, high] = shape::bounds(&shape);
+                self.object_corners = [
+                    self.object_corners[0].min(low),
+                    self.object_corners[1].max(high),
+                ];
+                self.summary.shapes += 1;
+                let number = self.builder.object_shape(object, shape, material);
+                self.shape_spans.push(span);
+                self.cover(number, alpha.as_ref());
+            }
         }
         Ok(())
+    }
+
+    /// Lets only a part of the shapes from number `first` on be there.
+    fn cover(&mut self, first: usize, alpha: Option<&FloatTexture>) {
+        let Some(alpha) = alpha else { return };
+        for number in first..self.shape_spans.len() {
+            self.builder.coverage(number, alpha.clone());
+        }
+    }
+
+    fn count_primitives(&mut self, count: u64, span: Span) -> Result<(), Fault> {
+        self.summary.primitives += count;
+        if self.summary.primitives <= MOST_PRIMITIVES {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {MOST_PRIMITIVES} primitives");
+        let fault = Fault::new(ErrorKind::Limit, span, message);
+        Err(fault.with_hint("objects with many instances take the place of one"))
     }
 
     /// Adds a shape in the world, in parts where they emit each for itself.
@@ -253,42 +317,6 @@ impl Assembly {
         Ok(())
     }
 
-    fn add_objects(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
-        let description = context.description;
-        self.summary.instances = description.instances.len();
-        for instance in &description.instances {
-            if instance.transforms.is_animated() {
-                context.unsupported(
-                    instance.span,
-                    "a moving object",
-                    "its first place stands in",
-                )?;
-            }
-        }
-        for (index, object) in description.objects.iter().enumerate() {
-            let instances = description
-                .instances
-                .iter()
-                .filter(|instance| instance.object == index);
-            let places: Vec<_> = instances
-                .map(|instance| instance.transforms.start)
-                .collect();
-            for shape in &object.shapes {
-                if let Some(light) = &shape.area_light {
-                    context.unsupported(
-                        light.span,
-                        "an emitting object",
-                        "it emits as any shape",
-                    )?;
-                }
-                if !places.is_empty() {
-                    self.add_shape(context, shape, &places)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
     fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         for light in &context.description.lights {
             if let Some((light, group)) = light::build(context, light)? {
@@ -298,6 +326,12 @@ impl Assembly {
         }
         Ok(())
     }
+}
+
+/// True where the material says that there is no surface: rays pass, shadow rays too. What bounds no
+/// medium need not be kept then, and does not emit.
+fn is_interface(entity: &Entity) -> bool {
+    matches!(entity.kind.as_str(), "interface" | "none" | "")
 }
 
 /// The materials of shapes, by index.
@@ -311,16 +345,30 @@ fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
         .collect()
 }
 
+/// The shape in the space of `place`.
+fn place_shape(
+    geometry: &Geometry,
+    shape: &ShapeDescription,
+    place: &DAffine3,
+) -> Result<Shape, Fault> {
+    let world_from_local = *place * shape.transforms.start;
+    let placed = geometry.place(&world_from_local, shape::orientation(shape));
+    shape::check_extent(shape.entity.span, &placed)?;
+    Ok(placed)
+}
+
 /// Says where in the text the builder's error is.
-fn scene_fault(error: &SceneError, shape_spans: &[Span], beginning: Span) -> Fault {
-    let span = error
-        .shape()
-        .and_then(|shape| shape_spans.get(shape).copied());
+fn scene_fault(error: &SceneError, shape_spans: &[Span], instance_spans: &[Span]) -> Fault {
+    let span = match error {
+        SceneError::Instance { instance } => instance_spans.get(*instance),
+        error => error.shape().and_then(|shape| shape_spans.get(shape)),
+    };
     let kind = match error {
         SceneError::Intersector(_) => ErrorKind::Limit,
         _ => ErrorKind::Scene,
     };
-    Fault::new(kind, span.unwrap_or(beginning), error.to_string())
+    let span = span.copied().unwrap_or(SourceMap::BEGINNING);
+    Fault::new(kind, span, error.to_string())
 }
 
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Shapes.
 
+use super::NOWHERE;
 use super::context::Context;
 use super::reader::Reader;
+use super::texture::Textures;
 use crate::error::ErrorKind;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::ShapeDescription;
@@ -9,6 +11,7 @@ use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use bidir::texture::FloatTexture;
 use glam::{DAffine3, DVec3};
 
 /// A shape in its own space, ready to be placed any number of times.
@@ -21,11 +24,13 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Reads a shape. None: something else stands in for it, namely nothing.
+    /// Reads a shape, and how much of it is there (None: all). None: something else stands in for it,
+    /// namely nothing.
     pub(super) fn read(
         context: &mut Context<'_>,
+        textures: &mut Textures<'_>,
         shape: &ShapeDescription,
-    ) -> Result<Option<Self>, Fault> {
+    ) -> Result<Option<(Self, Option<FloatTexture>)>, Fault> {
         let entity = &shape.entity;
         let mut reader = Reader::new(entity);
         let geometry = match entity.kind.as_str() {
@@ -54,9 +59,9 @@ impl Geometry {
                 return Ok(None);
             }
         };
-        alpha(context, &mut reader)?;
+        let alpha = textures.float(context, &mut reader, "alpha")?;
         reader.finish()?;
-        Ok(Some(geometry))
+        Ok(Some((geometry, alpha)))
     }
 
     /// The number of primitives.
@@ -102,6 +107,32 @@ pub(super) fn check_place(span: Span, point: DVec3) -> Result<Vec3, Fault> {
     } else {
         Err(too_far(span))
     }
+}
+
+/// Two corners of a box around a shape.
+pub(super) fn bounds(shape: &Shape) -> [Vec3; 2] {
+    let boxes = (0..shape.primitive_count()).map(|i| shape.primitive(i).bounds());
+    boxes.fold(NOWHERE, |[low, high], next| {
+        [low.min(next.min), high.max(next.max)]
+    })
+}
+
+/// Refuses instances that reach too far, of an object between two corners.
+pub(super) fn check_instance(
+    span: Span,
+    world_from_object: &DAffine3,
+    corners: [Vec3; 2],
+) -> Result<(), Fault> {
+    // Without shapes there is no box.
+    if !corners[0].cmple(corners[1]).all() {
+        return Ok(());
+    }
+    for i in 0..8_usize {
+        let pick = |axis: usize| f64::from(corners[i >> axis & 1][axis]);
+        let corner = DVec3::new(pick(0), pick(1), pick(2));
+        check_place(span, world_from_object.transform_point3(corner))?;
+    }
+    Ok(())
 }
 
 /// Refuses shapes that reach too far to compute with.
@@ -158,17 +189,6 @@ fn phi_max(reader: &mut Reader<'_>) -> Result<f32, Fault> {
     Ok(reader
         .float_within("phimax", 360.0, [0.0, 360.0])?
         .to_radians())
-}
-
-fn alpha(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    let opaque = "the shape is opaque";
-    reader.unsupported(context, (ParameterType::Texture, "alpha"), opaque)?;
-    match reader.optional_float("alpha")? {
-        Some(alpha) if alpha < 1.0 => {
-            context.unsupported(reader.span(), "the parameter `float alpha`", opaque)
-        }
-        _ => Ok(()),
-    }
 }
 
 fn ply_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {

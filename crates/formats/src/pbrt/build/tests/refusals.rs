@@ -112,11 +112,6 @@ fn what_is_not_built_is_refused_by_name() {
          with --lenient: it is left out",
     );
     check_world(
-        "Shape \"sphere\" \"float alpha\" 0.5",
-        "s.pbrt:2:7: the parameter `float alpha` is recognised but not supported yet; \
-         with --lenient: the shape is opaque",
-    );
-    check_world(
         "LightSource \"point\" \"blackbody I\" 5000",
         "s.pbrt:2:21: a blackbody spectrum is recognised but not supported yet; \
          with --lenient: white stands in",
@@ -147,7 +142,6 @@ fn with_leniency_something_stands_in_and_is_counted() {
             "s.pbrt:1:12: the integrator `sppm` is not supported yet: `bdpt` stands in",
             "s.pbrt:2:10: the material `coateddiffuse` is not supported yet: \
              `diffuse` of its reflectance stands in",
-            "s.pbrt:4:10: the material `interface` is not supported yet: its shapes are left out",
             "s.pbrt:3:22: the shape `cylinder` is not supported yet: it is left out (2 times)",
         ]
     );

@@ -1,5 +1,6 @@
-use super::world;
+use super::{STRICT, check_world, load_text, world};
 use bidir::math::{Vec2, Vec3};
+use bidir::scene::Scene;
 use bidir::shape::Shape;
 
 /// The normal at the first corner of the only mesh.
@@ -31,23 +32,121 @@ fn the_front_follows_winding_mirrors_reversal_and_normals() {
     );
 }
 
+const OBJECT: &str = "ObjectBegin \"o\" Translate 0 1 0 \
+    Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ObjectEnd\n";
+
 #[test]
-fn instances_are_copies_at_their_places() {
-    let scene = world(
-        "ObjectBegin \"o\" Translate 0 1 0 Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ObjectEnd\n\
-         ObjectBegin \"unused\" Shape \"sphere\" ObjectEnd\n\
-         ObjectInstance \"o\" Scale 2 2 2 ObjectInstance \"o\"",
+fn objects_with_one_place_are_put_there() {
+    let once = "ObjectBegin \"unused\" Shape \"sphere\" ObjectEnd Scale 2 2 2 ObjectInstance \"o\"";
+    let scene = world(&format!("{OBJECT}{once}"));
+    assert_eq!((scene.instance_count(), scene.unique_primitives()), (0, 1));
+    assert_eq!(corners(&scene), [Vec3::new(2.0, 2.0, 0.0)]);
+}
+
+#[test]
+fn objects_with_more_places_are_shared() {
+    let twice = "ObjectInstance \"o\" Scale 2 2 2 ObjectInstance \"o\"";
+    let scene = world(&format!("{OBJECT}{twice}"));
+    assert_eq!(corners(&scene), [Vec3::new(1.0, 1.0, 0.0)]);
+    assert_eq!((scene.instance_count(), scene.unique_primitives()), (2, 1));
+    assert_eq!(scene.placed_primitives(), 2);
+    let bounds = scene.bvh().bounds();
+    assert!(
+        bounds.max.distance(Vec3::new(2.0, 4.0, 0.0)) < 1e-4,
+        "{bounds:?}"
     );
-    let corners: Vec<Vec3> = scene
-        .shapes()
-        .iter()
-        .map(|shape| match shape {
-            Shape::Mesh(mesh) => mesh.positions[1],
-            _ => panic!("only meshes are placed"),
-        })
-        .collect();
+}
+
+#[test]
+fn shapes_of_objects_that_emit_are_lights_at_each_place() {
+    let loaded = load_text(
+        "WorldBegin ObjectBegin \"o\" Shape \"disk\" AreaLightSource \"diffuse\" Shape \"sphere\" ObjectEnd\n\
+         ObjectInstance \"o\" Translate 5 0 0 ObjectInstance \"o\"",
+        &STRICT,
+    );
+    assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
+    let scene = loaded.scene;
+    assert_eq!((scene.lights().len(), scene.instance_count()), (2, 2));
     assert_eq!(
-        corners,
-        [Vec3::new(1.0, 1.0, 0.0), Vec3::new(2.0, 2.0, 0.0)]
+        (scene.unique_primitives(), scene.placed_primitives()),
+        (3, 4)
     );
+}
+
+#[test]
+fn places_without_inverse_are_told() {
+    let object = "ObjectBegin \"o\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\"";
+    // Two axes in nearly the same direction.
+    let flat = "ConcatTransform [1 0 0 0 1 1e-9 0 0 0 0 1 0 0 0 0 1]";
+    check_world(
+        &format!("{object}\n{flat}\nObjectInstance \"o\""),
+        "s.pbrt:4:16: the transformation of the instance cannot be inverted",
+    );
+    check_world(
+        &format!("{object}\nTranslate 0 0 1e25\nObjectInstance \"o\""),
+        "s.pbrt:4:16: a coordinate is beyond 1e12",
+    );
+}
+
+/// The second corners of all meshes.
+fn corners(scene: &Scene) -> Vec<Vec3> {
+    let corner = |shape: &Shape| match shape {
+        Shape::Mesh(mesh) => mesh.positions[1],
+        _ => panic!("only meshes are placed"),
+    };
+    scene.shapes().iter().map(corner).collect()
+}
+
+/// Whether the front of the only light is the side of its shape's own z axis, or its outside.
+#[track_caller]
+fn emits_to_the_front(world_text: &str) -> bool {
+    let scene = world(&format!("AreaLightSource \"diffuse\" {world_text}"));
+    let (light, lights) = (&scene.lights()[0], scene.light_context());
+    let sample = light.sample_emission(&lights, Vec2::new(0.3, 0.4), Vec2::new(0.2, 0.1));
+    let sample = sample.expect("it emits");
+    let at = sample.from.at;
+    // What is hit there emits as what was drawn there.
+    let shape = &scene.shapes()[0];
+    let surface = shape.surface_point(0, Vec2::splat(0.3), at.point);
+    assert!(surface.n_g.dot(at.n_g) > 0.0);
+    let radiance = |w: Vec3| light.emitted(&at, w)[0] > 0.0;
+    assert!(radiance(sample.direction) && !radiance(-sample.direction));
+    match shape {
+        Shape::Sphere(_) => sample.direction.dot(at.point) > 0.0,
+        _ => sample.direction.z > 0.0,
+    }
+}
+
+#[test]
+fn the_side_that_emits_follows_reversal_and_not_mirrors() {
+    let mesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
+    let with_normals = format!("{mesh} \"normal N\" [0 0 1 0 0 1 0 0 1]");
+    let against = format!("{mesh} \"normal N\" [0 0 -1 0 0 -1 0 0 -1]");
+    let (sphere, disk) = ("Shape \"sphere\"", "Shape \"disk\"");
+    // In x the mirror leaves the front of a flat shape where it is, in z it turns with the shape.
+    for (shape, front) in [
+        (mesh, true),
+        (&with_normals, true),
+        (&against, false),
+        (sphere, true),
+        (disk, true),
+    ] {
+        let is_sphere = shape == sphere;
+        for (map, turns) in [
+            ("", false),
+            ("Scale -1 1 1", false),
+            ("Scale 1 -2 1", false),
+            ("Scale 1 1 -1", true),
+            ("Scale -1 -1 -1", true),
+        ] {
+            let expected = front != (turns && !is_sphere);
+            assert_eq!(
+                emits_to_the_front(&format!("{map} {shape}")),
+                expected,
+                "{map} {shape}"
+            );
+            let reversed = format!("ReverseOrientation {map} {shape}");
+            assert_eq!(emits_to_the_front(&reversed), !expected, "{reversed}");
+        }
+    }
 }

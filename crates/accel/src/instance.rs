@@ -1,0 +1,218 @@
+//! Objects that stand in several places: a tree of their own, shared, and an affine map each.
+//!
+//! A ray is taken to the object's space and meets the object's tree there, so that all triangles of an
+//! instance see one and the same local ray: edges between them stay as tight as without the map.
+//! With `M` the map to the object's space, the local ray is
+//!
+//! ```text
+//!     o' = M(o + t₀·d),   d' = M d   (no translation),   t = t₀ + t'
+//! ```
+//!
+//! `t₀ ≥ 0` is where the ray enters a ball around the instance, 0 if it starts inside. It is what a
+//! distant origin costs in digits. The direction is not normalised, so that `t'` has the unit of `t`.
+//! All of it is computed in `f64`, in one order, without FMA; `o'` and `d'` are then rounded, to the
+//! `f32` numbers that the exact test of edges asks for.
+//!
+//! **Boxes.** Rounding moves the local line. Let `ε` be half of `f32::EPSILON`, `R` the radius of the ball
+//! and `c'` its local center. Per local axis, `ρ = R·|row of M|` bounds the distance from `c'` in the
+//! ball, and `m = |c'| + ρ` all coordinates there. Within the ball the line is moved by at most `εm`
+//! (origin) and `2ερ` (direction); a leaf moves its vertices by `2ερ` (translation) and rounds
+//! `t'`, which is another `2ερ` along the line. That is less than `e = 2ε(m + 8ρ)`, of which the
+//! second half is room for the `f64` arithmetic, for origins up to 2²⁶ radii away.
+//! The world box of an instance is that of the mapped local box, widened by `|M⁻¹|·e`: whatever the
+//! local line hits is in a box that the world ray meets.
+//!
+//! **Limits.** `t` is rounded once, from `t₀ + t'`. The local limits are those of the world less `t₀`,
+//! rounded outward by one unit before and after, so that nothing is culled that would tie.
+
+use glam::{DAffine3, DVec3};
+
+use crate::aabb::Aabb;
+use crate::primitive::outward;
+use crate::ray::{Hit, Ray};
+
+/// A place of an object.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instance {
+    /// Index of the object.
+    pub object: u32,
+    /// Any invertible affine map, mirroring ones included.
+    pub world_from_object: DAffine3,
+}
+
+/// An [`Instance`] made ready for rays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Placement {
+    object_from_world: DAffine3,
+    /// A ball around the instance, in world space.
+    center: DVec3,
+    radius: f32,
+    pub(crate) object: u32,
+}
+
+/// The most that a map may stretch in either direction: directions stay in the range of `f32`.
+const MOST_SCALE: f64 = 1e18;
+
+// What memory estimates count on.
+const _: () = assert!(size_of::<Placement>() <= 128);
+
+impl Placement {
+    /// Places an object with these bounds, and tells the bounds of the place.
+    ///
+    /// None: the map has no inverse, or is so close to having none that the rounding of rays exceeds
+    /// the instance, or something overflows.
+    pub(crate) fn new(instance: &Instance, object: &Aabb) -> Option<(Self, Aabb)> {
+        let world_from_object = instance.world_from_object;
+        let object_from_world = world_from_object.inverse();
+        let (low, high) = (object.min.as_dvec3(), object.max.as_dvec3());
+        let local_center = 0.5 * (low + high);
+        let center = world_from_object.transform_point3(local_center);
+        let half = abs_times(&world_from_object, 0.5 * (high - low));
+        // The rounding error depends on the ball, and the ball on the error: begin with room.
+        let offset = abs_times(&world_from_object, local_center.abs());
+        let cancelled = 2.0_f64.powi(-48) * (center.abs() + offset);
+        let radius = 2.0 * half.length() + 1e-5 * offset.length() + 1e3 * cancelled.length();
+        let error = local_error(&object_from_world, local_center, radius);
+        let reach = half + abs_times(&world_from_object, error) + cancelled;
+        let is_moderate = |map: &DAffine3| {
+            let columns = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
+            columns.iter().all(|column| column.length() <= MOST_SCALE)
+        };
+        // Also false for the NaN and the infinities of a singular map.
+        if !(reach.length() <= radius
+            && is_moderate(&world_from_object)
+            && is_moderate(&object_from_world))
+        {
+            return None;
+        }
+        let bounds = Aabb {
+            min: (center - reach).to_array().map(|x| outward(x, -1.0)).into(),
+            max: (center + reach).to_array().map(|x| outward(x, 1.0)).into(),
+        };
+        let placement = Self {
+            object_from_world,
+            center,
+            radius: outward(reach.length(), 1.0),
+            object: instance.object,
+        };
+        bounds.is_valid().then_some((placement, bounds))
+    }
+
+    pub(crate) fn object_from_world(&self) -> &DAffine3 {
+        &self.object_from_world
+    }
+
+    /// Where the ray, already cleaned, enters the ball: `t₀`.
+    fn entry(&self, ray: &Ray) -> f64 {
+        let direction = ray.direction.as_dvec3();
+        let to_center = self.center - ray.origin.as_dvec3();
+        let square = direction.length_squared();
+        let entry =
+            to_center.dot(direction) / square - 1.001 * f64::from(self.radius) / square.sqrt();
+        entry.max(0.0)
+    }
+
+    /// The ray in the object's space, with how it is seen from the world. `instance` is the number
+    /// that hits get.
+    pub(crate) fn view(&self, ray: &Ray, instance: u32) -> (Ray, Object) {
+        let start = self.entry(ray);
+        let origin = ray.origin.as_dvec3() + start * ray.direction.as_dvec3();
+        let object = Object {
+            instance,
+            start,
+            t_min: ray.t_min,
+            t_max: ray.t_max,
+        };
+        let local = Ray {
+            origin: self.object_from_world.transform_point3(origin).as_vec3(),
+            direction: self
+                .object_from_world
+                .transform_vector3(ray.direction.as_dvec3())
+                .as_vec3(),
+            t_min: ((f64::from(ray.t_min.next_down()) - start) as f32).next_down(),
+            t_max: object.local_t_max(),
+        };
+        (local, object)
+    }
+}
+
+/// A bound of `|M p|` for `|p| ≤ extent`, without the translation.
+fn abs_times(map: &DAffine3, extent: DVec3) -> DVec3 {
+    let m = map.matrix3;
+    m.x_axis.abs() * extent.x + m.y_axis.abs() * extent.y + m.z_axis.abs() * extent.z
+}
+
+/// How far rounding moves a local line within the ball: `e` of the module's page.
+fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -> DVec3 {
+    let rows = object_from_world.matrix3.transpose();
+    let lengths = DVec3::new(
+        rows.x_axis.length(),
+        rows.y_axis.length(),
+        rows.z_axis.length(),
+    );
+    let rho = radius * lengths;
+    f64::from(f32::EPSILON) * (local_center.abs() + rho + 8.0 * rho)
+}
+
+/// What hits in the space of a tree are in the world.
+pub(crate) trait Space {
+    /// The world's hit for a local one. None: it is beyond the limits.
+    fn world_hit(&self, local: Hit) -> Option<Hit>;
+
+    /// The limit of world hits, as queries shorten it, with that of local ones.
+    fn limit<R>(&mut self, ray: &mut Ray, shorten: impl FnOnce(&mut f32) -> R) -> R;
+}
+
+/// The tree's own primitives: nothing is changed.
+pub(crate) struct World;
+
+impl Space for World {
+    #[inline(always)]
+    fn world_hit(&self, local: Hit) -> Option<Hit> {
+        Some(local)
+    }
+
+    #[inline(always)]
+    fn limit<R>(&mut self, ray: &mut Ray, shorten: impl FnOnce(&mut f32) -> R) -> R {
+        shorten(&mut ray.t_max)
+    }
+}
+
+/// The primitives of one instance.
+pub(crate) struct Object {
+    instance: u32,
+    /// `t₀`.
+    start: f64,
+    /// The limits in the world.
+    t_min: f32,
+    pub(crate) t_max: f32,
+}
+
+impl Object {
+    fn local_t_max(&self) -> f32 {
+        let world = f64::from(self.t_max.next_up());
+        ((world - self.start) as f32).next_up().min(f32::MAX)
+    }
+}
+
+impl Space for Object {
+    #[inline(always)]
+    fn world_hit(&self, local: Hit) -> Option<Hit> {
+        let t = (self.start + f64::from(local.t)) as f32;
+        (t >= self.t_min && t <= self.t_max).then_some(Hit {
+            t,
+            instance: self.instance,
+            ..local
+        })
+    }
+
+    #[inline(always)]
+    fn limit<R>(&mut self, ray: &mut Ray, shorten: impl FnOnce(&mut f32) -> R) -> R {
+        let result = shorten(&mut self.t_max);
+        ray.t_max = self.local_t_max();
+        result
+    }
+}
+
+#[cfg(test)]
+mod tests;

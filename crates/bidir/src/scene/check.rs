@@ -1,0 +1,90 @@
+//! What must hold of the parts of a scene before rays are traced in it.
+
+use super::{Presence, PrimitiveRef, SceneError, Surface};
+use crate::film::FilmSettings;
+use crate::shape::{Mesh, Shape};
+
+pub(super) fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
+    let [width, height] = film.resolution;
+    let inside = film.crop.max[0] <= width && film.crop.max[1] <= height;
+    if inside && film.crop.area() > 0 {
+        Ok(())
+    } else {
+        Err(SceneError::EmptyCrop)
+    }
+}
+
+/// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
+pub(super) fn gather_primitives(
+    shapes: &[Shape],
+    surfaces: &[Surface],
+    numbers: &[usize],
+    primitives: &mut Vec<PrimitiveRef>,
+) -> Result<Vec<accel::Primitive>, SceneError> {
+    let mut geometry = Vec::new();
+    for &number in numbers {
+        let shape = &shapes[number];
+        check_shape(number, shape)?;
+        if surfaces[number].presence == Presence::Absent {
+            continue;
+        }
+        for index in 0..shape.primitive_count() {
+            primitives.push(PrimitiveRef {
+                shape: number as u32,
+                index: index as u32,
+            });
+            geometry.push(shape.primitive(index));
+        }
+    }
+    Ok(geometry)
+}
+
+pub(super) fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError> {
+    let finite = match shape {
+        Shape::Mesh(mesh) => {
+            check_indices(number, mesh)?;
+            mesh.positions
+                .iter()
+                .chain(&mesh.normals)
+                .all(|v| v.is_finite())
+                && mesh.uvs.iter().all(|uv| uv.is_finite())
+        }
+        Shape::Sphere(_) | Shape::Disk(_) => {
+            let bounds = shape.primitive(0).bounds();
+            bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
+        }
+    };
+    if finite {
+        Ok(())
+    } else {
+        Err(SceneError::NotFinite { shape: number })
+    }
+}
+
+fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
+    let vertices = mesh.positions.len();
+    for (what, count) in [
+        ("normals", mesh.normals.len()),
+        ("parameters", mesh.uvs.len()),
+    ] {
+        if count != 0 && count != vertices {
+            return Err(SceneError::AttributeCount {
+                shape,
+                vertices,
+                count,
+                what,
+            });
+        }
+    }
+    for (triangle, indices) in mesh.triangles.iter().enumerate() {
+        if let Some(&vertex) = indices.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Err(SceneError::VertexIndex {
+                shape,
+                triangle,
+                vertex,
+                vertices,
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,168 @@
+//! α: how much of a surface is there. Rays pass it with 1 - α, as if it were not; what they pass is no
+//! vertex and in no density.
+//!
+//! A walk decides by chance whether it meets a surface, for each one by a number of its own, so that
+//! the order in which the intersector asks does not matter. Its throughput needs no factor: the
+//! probability α of a vertex, or 1 - α of passing, is what the integrand has there. A shadow ray
+//! does not decide: it returns the transmittance Π (1 - α), exactly.
+//!
+//! Light that a light sample draws on such a surface carries α as a factor
+//! ([`LightSample::coverage`](crate::light::LightSample::coverage)); where a walk hits the light, it
+//! has decided by then.
+
+use super::{Presence, Scene};
+use crate::math::Vec2;
+use crate::sampler::{Dimension, Purpose, SampleStream};
+use accel::Hit;
+use std::ops::ControlFlow;
+
+/// The random numbers by which a ray of a walk passes surfaces that are not all there.
+#[derive(Clone, Copy)]
+pub struct Chances<'a> {
+    stream: &'a SampleStream,
+    dimension: Dimension,
+}
+
+impl<'a> Chances<'a> {
+    /// Those of the ray that looks for vertex number `vertex` of a subpath.
+    #[inline]
+    pub fn new(stream: &'a SampleStream, vertex: usize) -> Self {
+        Self {
+            stream,
+            dimension: Dimension::at(vertex, Purpose::Coverage),
+        }
+    }
+
+    /// The number that decides about `hit`. A ray may meet a primitive twice, and decides twice.
+    #[inline]
+    fn draw(&self, hit: &Hit) -> f32 {
+        let surface = u64::from(hit.instance) << 32 | u64::from(hit.primitive);
+        // An odd factor: different distances remain different keys of one surface.
+        let distance = u64::from(hit.t.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.stream.get_for(self.dimension, surface ^ distance)
+    }
+}
+
+impl Scene {
+    /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
+    #[inline]
+    fn coverage(&self, hit: &Hit) -> f32 {
+        let (_, primitive) = self.resolve(hit);
+        let shape = primitive.shape as usize;
+        let texture = match self.surfaces[shape].presence {
+            Presence::Whole => return 1.0,
+            Presence::Part(texture) => texture,
+            Presence::Absent => return 0.0,
+        };
+        let parameters = Vec2::new(hit.u, hit.v);
+        let uv = self.shapes[shape].uv(primitive.index as usize, parameters);
+        clamped_coverage(self.coverages[texture as usize].eval(uv))
+    }
+
+    /// The nearest surface that a ray of a walk does not pass.
+    #[inline]
+    pub(super) fn closest(&self, ray: &accel::Ray, chances: Chances<'_>) -> Option<Hit> {
+        if self.coverages.is_empty() {
+            return self.bvh.closest(ray, accel::accept_all);
+        }
+        self.bvh.closest(ray, |hit| match self.coverage(hit) {
+            alpha if alpha >= 1.0 => true,
+            alpha => alpha > 0.0 && chances.draw(hit) < alpha,
+        })
+    }
+
+    /// Π (1 - α) over everything that a shadow ray meets.
+    #[inline]
+    pub(super) fn transmittance_along(&self, ray: &accel::Ray) -> f32 {
+        if self.coverages.is_empty() {
+            return f32::from(!self.bvh.occluded(ray, accel::accept_all));
+        }
+        let mut factors = Factors::default();
+        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(hit) {
+            alpha if alpha >= 1.0 => ControlFlow::Break(()),
+            alpha => {
+                if alpha > 0.0 {
+                    factors.push(1.0 - alpha);
+                }
+                ControlFlow::Continue(())
+            }
+        });
+        if flow.is_break() {
+            0.0
+        } else {
+            factors.product()
+        }
+    }
+}
+
+/// A texture's number as α.
+#[inline]
+pub(crate) fn clamped_coverage(alpha: f32) -> f32 {
+    if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
+}
+
+/// Factors that come in any order, whose product does not depend on it.
+#[derive(Default)]
+struct Factors {
+    first: [f32; Self::FEW],
+    count: usize,
+    /// Those beyond the first; what is empty takes no memory.
+    rest: Vec<f32>,
+}
+
+impl Factors {
+    const FEW: usize = 32;
+
+    #[inline]
+    fn push(&mut self, factor: f32) {
+        match self.first.get_mut(self.count) {
+            Some(place) => *place = factor,
+            None => self.rest.push(factor),
+        }
+        self.count += 1;
+    }
+
+    /// The product in ascending order, rounded once.
+    fn product(mut self) -> f32 {
+        let few = self.count.min(Self::FEW);
+        let factors = if self.rest.is_empty() {
+            &mut self.first[..few]
+        } else {
+            self.rest.extend_from_slice(&self.first);
+            &mut self.rest[..]
+        };
+        factors.sort_unstable_by(f32::total_cmp);
+        let product: f64 = factors.iter().map(|&factor| f64::from(factor)).product();
+        product as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_do_not_depend_on_order() {
+        for count in [0, 1, 5, 32, 33, 100] {
+            let numbers: Vec<f32> = (0..count).map(|i| 1.0 / (1.7 + i as f32)).collect();
+            let product = |order: &mut dyn Iterator<Item = &f32>| {
+                let mut factors = Factors::default();
+                order.for_each(|&factor| factors.push(factor));
+                factors.product()
+            };
+            let forwards = product(&mut numbers.iter());
+            let backwards = product(&mut numbers.iter().rev());
+            assert_eq!(forwards.to_bits(), backwards.to_bits());
+            let expected: f64 = numbers.iter().map(|&x| f64::from(x)).product();
+            assert!((f64::from(forwards) - expected).abs() <= 1e-6 * expected);
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_opaque() {
+        let expected = [(f32::NAN, 1.0), (-1.0, 0.0), (0.25, 0.25), (7.0, 1.0)];
+        for (alpha, clear) in expected {
+            assert!((clamped_coverage(alpha) - clear).abs() <= 0.0, "{alpha}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Where a shared object stands: an affine map from its space to the world.
+//!
+//! Points go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
+//! mirrors: the front of a surface stays the front.
+
+use super::position_error;
+use crate::math::{Affine3A, DAffine3, Vec3};
+use glam::{DMat3, DVec3};
+
+/// The place of an object, under any invertible affine map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place(pub DAffine3);
+
+impl Place {
+    /// A point of the object in the world.
+    #[inline]
+    pub(super) fn point(&self, p: Vec3) -> Vec3 {
+        self.0.transform_point3(p.as_dvec3()).as_vec3()
+    }
+
+    /// A normal of the object in the world, unit length; zero where there is none.
+    #[inline]
+    pub(super) fn normal(&self, n: Vec3) -> Vec3 {
+        (self.cofactors() * n.as_dvec3())
+            .normalize_or_zero()
+            .as_vec3()
+            * self.sign()
+    }
+
+    /// |det M|·M⁻ᵀ, up to the sign of the determinant.
+    #[inline]
+    fn cofactors(&self) -> DMat3 {
+        let [x, y, z] = self.columns();
+        DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
+    }
+
+    /// 1, or -1 where the map mirrors.
+    #[inline]
+    pub(super) fn sign(&self) -> f32 {
+        let [x, y, z] = self.columns();
+        if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    #[inline]
+    fn columns(&self) -> [DVec3; 3] {
+        let m = self.0.matrix3;
+        [m.x_axis, m.y_axis, m.z_axis]
+    }
+
+    /// What the error of a point in the object's space, with coordinates up to `magnitude`, becomes
+    /// in the world at most.
+    #[inline]
+    pub(super) fn error(&self, magnitude: f32) -> f32 {
+        let [x, y, z] = self.columns();
+        let stretch = (x.abs() + y.abs() + z.abs()).max_element() as f32;
+        stretch * position_error(magnitude)
+    }
+
+    /// The map of a quadric of the object to the world.
+    #[inline]
+    pub(super) fn compose(&self, object_from_local: &Affine3A) -> Affine3A {
+        let m = object_from_local.matrix3;
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.as_dvec3());
+        let linear = DMat3::from_cols(columns[0], columns[1], columns[2]);
+        let local =
+            DAffine3::from_mat3_translation(linear, object_from_local.translation.as_dvec3());
+        (self.0 * local).as_affine3a()
+    }
+}

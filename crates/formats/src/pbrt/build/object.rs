@@ -1,0 +1,68 @@
+//! Objects and their instances.
+//!
+//! An object that stands in one place is put there, as if it were no object. One that stands in
+//! several is shared: its shapes are kept once, and rays are taken to its space. Shapes of an object that
+//! emit are lights of the world, one for each place; the format leaves undefined what they do.
+
+use super::context::Context;
+use super::{Assembly, Destination, NOWHERE, shape};
+use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
+use crate::source::Fault;
+use glam::DAffine3;
+
+impl Assembly<'_> {
+    pub(super) fn add_objects(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
+        let description = context.description;
+        self.summary.instances = description.instances.len();
+        for instance in &description.instances {
+            if instance.transforms.is_animated() {
+                let stand_in = "its first place stands in";
+                context.unsupported(instance.span, "a moving object", stand_in)?;
+            }
+        }
+        let mut instances = vec![Vec::new(); description.objects.len()];
+        for instance in &description.instances {
+            instances[instance.object].push(instance);
+        }
+        for (object, instances) in description.objects.iter().zip(&instances) {
+            self.add_object(context, object, instances)?;
+        }
+        Ok(())
+    }
+
+    fn add_object(
+        &mut self,
+        context: &mut Context<'_>,
+        object: &ObjectDescription,
+        instances: &[&InstanceDescription],
+    ) -> Result<(), Fault> {
+        let places = instances.iter().map(|instance| instance.transforms.start);
+        let places: Vec<DAffine3> = places.collect();
+        let everywhere = Destination::World(&places);
+        self.object_corners = NOWHERE;
+        let shared = (instances.len() > 1).then(|| self.builder.object());
+        for shape in &object.shapes {
+            if let Some(light) = &shape.area_light {
+                let message =
+                    "a shape of an object emits: it is a light at each place of the object";
+                context.warn(light.span, message);
+            }
+            match shared {
+                _ if instances.is_empty() => {}
+                Some(object) if shape.area_light.is_none() => {
+                    self.add_shape(context, shape, Destination::Object(object))?;
+                }
+                _ => self.add_shape(context, shape, everywhere)?,
+            }
+        }
+        if let Some(object) = shared {
+            for instance in instances {
+                let place = instance.transforms.start;
+                shape::check_instance(instance.span, &place, self.object_corners)?;
+                self.builder.instance(object, place);
+                self.instance_spans.push(instance.span);
+            }
+        }
+        Ok(())
+    }
+}
