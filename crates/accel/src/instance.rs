@@ -53,6 +53,9 @@ pub(crate) struct Placement {
 /// The most that a map may stretch in either direction: directions stay in the range of `f32`.
 const MOST_SCALE: f64 = 1e18;
 
+/// What a sum of two lengths may lose, relative to them: 2⁻⁴⁸, some roundings of an `f64`.
+const CANCELLED: f64 = 1.0 / (1u64 << 48) as f64;
+
 // What memory estimates count on.
 const _: () = assert!(size_of::<Placement>() <= 128);
 
@@ -70,7 +73,7 @@ impl Placement {
         let half = abs_times(&world_from_object, 0.5 * (high - low));
         // The rounding error depends on the ball, and the ball on the error: begin with room.
         let offset = abs_times(&world_from_object, local_center.abs());
-        let cancelled = 2.0_f64.powi(-48) * (center.abs() + offset);
+        let cancelled = CANCELLED * (center.abs() + offset);
         let radius = 2.0 * half.length() + 1e-5 * offset.length() + 1e3 * cancelled.length();
         let error = local_error(&object_from_world, local_center, radius);
         let reach = half + abs_times(&world_from_object, error) + cancelled;

@@ -169,7 +169,7 @@ impl<S: Space> Walk<'_, S> {
                 Target::Triangles(blocks) => {
                     self.tree.blocks[blocks].iter().try_for_each(|block| {
                         self.space.visit_block(block, &triangle_ray, ray, query)
-                    })?
+                    })?;
                 }
                 Target::Quadrics(quadrics) => self.tree.quadrics[quadrics]
                     .iter()

@@ -60,7 +60,7 @@ impl Place {
     #[inline]
     pub(super) fn compose(&self, object_from_local: &Affine3A) -> Affine3A {
         let m = object_from_local.matrix3;
-        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|column| column.as_dvec3());
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(glam::Vec3A::as_dvec3);
         let linear = DMat3::from_cols(columns[0], columns[1], columns[2]);
         let local =
             DAffine3::from_mat3_translation(linear, object_from_local.translation.as_dvec3());
