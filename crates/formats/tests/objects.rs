@@ -176,16 +176,18 @@ fn pictures_of_shared_objects_and_of_copies_agree() {
 #[test]
 fn a_forest_takes_the_memory_of_a_tree() {
     // A height field of ten thousand triangles, a thousand times.
-    let (n, mut points, mut indices) = (71, String::new(), String::new());
-    for i in 0..n * n {
+    let n = 71;
+    let point = |i: usize| {
         let (x, z) = (i % n, i / n);
-        let height = (x * 7 + z * 11) % 13;
-        points += &format!("{x} {height} {z} ");
-        if x + 1 < n && z + 1 < n {
-            let (a, b, c, d) = (i, i + 1, i + n, i + n + 1);
-            indices += &format!("{a} {b} {c} {b} {d} {c} ");
-        }
-    }
+        format!("{x} {} {z} ", (x * 7 + z * 11) % 13)
+    };
+    let points: String = (0..n * n).map(point).collect();
+    let corners = (0..n * n).filter(|i| i % n + 1 < n && i / n + 1 < n);
+    let square = |i: usize| {
+        let (a, b, c, d) = (i, i + 1, i + n, i + n + 1);
+        format!("{a} {b} {c} {b} {d} {c} ")
+    };
+    let indices: String = corners.map(square).collect();
     let tree = format!(
         "ObjectBegin \"tree\" Shape \"trianglemesh\" \"point3 P\" [{points}] \"integer indices\" [{indices}] ObjectEnd\n"
     );
