@@ -60,6 +60,7 @@ fn scenes() -> [(&'static str, Bvh); 2] {
     [("flat", flat), ("forest", forest.expect("invertible"))]
 }
 
+#[inline(never)]
 fn measure(name: &str, rounds: usize, rays: &[Ray], trace: impl Fn(&Ray) -> bool) {
     let round = |_| {
         let begin = Instant::now();

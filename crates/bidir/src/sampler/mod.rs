@@ -100,8 +100,9 @@ impl SampleStream {
     /// The numbers of different things are unrelated. Range: `[0, 1)`.
     #[inline]
     pub fn get_for(&self, dimension: Dimension, key: u64) -> f32 {
-        let of_sample = mix(self.key ^ dimension.key()) ^ mix(self.index);
-        unit(mix(of_sample ^ mix(key)) as u32)
+        // One inside the other: a sum of hashes would cancel where key and index are the same.
+        let of_sample = mix(mix(self.key ^ dimension.key()) ^ self.index);
+        unit(mix(of_sample ^ key) as u32)
     }
 
     /// The pair of numbers of `dimension`. Range: `[0, 1)²`.

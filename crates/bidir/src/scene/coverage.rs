@@ -143,8 +143,10 @@ mod tests {
 
     #[test]
     fn products_do_not_depend_on_order() {
-        for count in [0, 1, 5, 32, 33, 100] {
-            let numbers: Vec<f32> = (0..count).map(|i| 1.0 / (1.7 + i as f32)).collect();
+        for count in [0_u8, 1, 5, 32, 33, 100] {
+            let numbers: Vec<f32> = (0..count)
+                .map(|i| (1.0 + f32::from(i)) / (1.7 + f32::from(i)))
+                .collect();
             let product = |order: &mut dyn Iterator<Item = &f32>| {
                 let mut factors = Factors::default();
                 order.for_each(|&factor| factors.push(factor));
