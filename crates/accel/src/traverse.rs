@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use crate::builder::{MAX_DEPTH, Tree};
 use crate::bvh::Bvh;
 use crate::instance::{Space, World};
-use crate::node::{BoxRay, Child, Target, WIDTH, widen};
+use crate::node::{BoxRay, Child, Node, Target, WIDTH, widen};
 use crate::quadric::Quadric;
 use crate::ray::{Hit, Ray};
 use crate::simd::F32x4;
@@ -102,101 +102,87 @@ impl<F: FnMut(&Hit) -> ControlFlow<()>> Query for EachHit<F> {
 
 /// Offers `query` every hit of `ray` that it could care for.
 pub(crate) fn traverse<V: F32x4, Q: Query>(bvh: &Bvh, ray: &Ray, query: &mut Q) {
-    let Some(mut ray) = clean(ray) else { return };
+    let Some(ray) = clean(ray) else { return };
     if !bvh.tree.nodes.is_empty() {
         let mut walk = Walk {
             tree: &bvh.tree,
             space: World,
-            stack: &mut Stack::new(),
+            ray,
         };
         // What breaks off has nothing more to ask.
-        let _ = walk.run::<V, Q>(&mut ray, query, |index, stack, ray, query| {
-            visit_instance::<V, Q>(bvh, index, stack, ray, query)
+        let _ = walk.run::<V, Q>(query, |index, ray, query| {
+            visit_instance::<V, Q>(bvh, index, ray, query)
         });
     }
 }
 
-/// Follows the ray through the object of instance number `index`. Out of line, so that trees without
-/// instances do not carry it in their loop.
+/// Follows the ray through the object of instance number `index`, and tells its new `t_max`. Out of
+/// line, so that trees without instances do not carry it in their loop.
 #[inline(never)]
 fn visit_instance<V: F32x4, Q: Query>(
     bvh: &Bvh,
     index: usize,
-    stack: &mut Stack,
-    ray: &mut Ray,
+    ray: Ray,
     query: &mut Q,
-) -> ControlFlow<()> {
+) -> ControlFlow<(), f32> {
     let placement = &bvh.placements[index];
-    let (local, space) = placement.view(ray, index as u32 + 1);
-    let Some(mut local) = clean(&local) else {
-        return ControlFlow::Continue(());
+    let (local, space) = placement.view(&ray, index as u32 + 1);
+    let Some(local) = clean(&local) else {
+        return ControlFlow::Continue(ray.t_max);
     };
     let mut walk = Walk {
         tree: &bvh.objects[placement.object as usize].tree,
         space,
-        stack,
+        ray: local,
     };
     // Objects have no instances.
-    let flow = walk.run::<V, Q>(&mut local, query, |_, _, _, _| ControlFlow::Continue(()));
-    ray.t_max = walk.space.t_max;
-    flow
+    walk.run::<V, Q>(query, |_, ray, _| ControlFlow::Continue(ray.t_max))?;
+    ControlFlow::Continue(walk.space.t_max)
 }
 
 /// A way through one tree, in its own space.
 struct Walk<'a, S> {
     tree: &'a Tree,
     space: S,
-    /// What others have left on it stays there.
-    stack: &'a mut Stack,
+    ray: Ray,
 }
 
 impl<S: Space> Walk<'_, S> {
-    /// Visits the tree, which has a root; `instance` is called for the instances on the way.
+    /// Visits the tree, which has a root; `instance` is called for the instances on the way, and tells
+    /// the `t_max` after them.
+    ///
+    /// Instances get a copy of the ray and a stack of their own: what no other function has the
+    /// address of stays in registers.
     #[inline(always)]
     fn run<V: F32x4, Q: Query>(
         &mut self,
-        ray: &mut Ray,
         query: &mut Q,
-        mut instance: impl FnMut(usize, &mut Stack, &mut Ray, &mut Q) -> ControlFlow<()>,
+        mut instance: impl FnMut(usize, Ray, &mut Q) -> ControlFlow<(), f32>,
     ) -> ControlFlow<()> {
+        let Self { tree, space, ray } = self;
         let box_ray = BoxRay::<V>::new(ray);
         let triangle_ray = TriangleRay::<V>::new(ray);
-        let begin = self.stack.len;
+        let mut stack = Stack::new();
         let mut next = Some(Child::node(0));
         while let Some(child) = next {
             match child.target() {
-                Target::Node(index) => self.open::<V, Q>(index, &box_ray, ray.t_max),
+                Target::Node(index) => stack.open::<V, Q>(&tree.nodes[index], &box_ray, ray.t_max),
                 Target::Triangles(blocks) => {
-                    self.tree.blocks[blocks].iter().try_for_each(|block| {
-                        self.space.visit_block(block, &triangle_ray, ray, query)
-                    })?;
+                    for block in &tree.blocks[blocks] {
+                        space.visit_block(block, &triangle_ray, ray, query)?;
+                    }
                 }
-                Target::Quadrics(quadrics) => self.tree.quadrics[quadrics]
-                    .iter()
-                    .try_for_each(|quadric| self.space.visit_quadric(quadric, ray, query))?,
-                Target::Instance(index) => instance(index, self.stack, ray, query)?,
+                Target::Quadrics(quadrics) => {
+                    for quadric in &tree.quadrics[quadrics] {
+                        space.visit_quadric(quadric, ray, query)?;
+                    }
+                }
+                Target::Instance(index) => ray.t_max = instance(index, *ray, query)?,
                 Target::Nothing => {}
             }
-            next = self.stack.pop_nearer(begin, widen(ray.t_max));
+            next = stack.pop_nearer(widen(ray.t_max));
         }
         ControlFlow::Continue(())
-    }
-
-    /// Puts the children of a node that the ray meets onto the stack.
-    #[inline(always)]
-    fn open<V: F32x4, Q: Query>(&mut self, index: usize, ray: &BoxRay<V>, t_max: f32) {
-        let node = &self.tree.nodes[index];
-        let (mask, entries) = node.intersect(ray, widen(t_max));
-        let bottom = self.stack.len;
-        for slot in bits(mask) {
-            self.stack.push(Entry {
-                distance: entries[slot],
-                child: node.child(slot),
-            });
-            if Q::NEAR_FIRST {
-                self.stack.sink(bottom);
-            }
-        }
     }
 }
 
@@ -301,10 +287,9 @@ struct Entry {
     child: Child,
 }
 
-/// Entries on the stack at most, in each of the two levels: of every node on the way all children but
-/// the one visited, and at the last node that one too. An instance is no node: while its object
-/// is visited, the upper level has less than its share.
-const STACK_SIZE: usize = 2 * (MAX_DEPTH * (WIDTH - 1) + 1);
+/// Entries on the stack of a tree at most: of every node on the way all children but the one visited,
+/// and at the last node that one too.
+const STACK_SIZE: usize = MAX_DEPTH * (WIDTH - 1) + 1;
 
 /// A stack without initialisation, which would cost as much as a short ray.
 struct Stack {
@@ -334,6 +319,22 @@ impl Stack {
         unsafe { self.entries[index].assume_init() }
     }
 
+    /// Pushes the children of `node` that the ray meets.
+    #[inline(always)]
+    fn open<V: F32x4, Q: Query>(&mut self, node: &Node, ray: &BoxRay<V>, t_max: f32) {
+        let (mask, entries) = node.intersect(ray, widen(t_max));
+        let bottom = self.len;
+        for slot in bits(mask) {
+            self.push(Entry {
+                distance: entries[slot],
+                child: node.child(slot),
+            });
+            if Q::NEAR_FIRST {
+                self.sink(bottom);
+            }
+        }
+    }
+
     /// Moves the last entry down to its place in the order of falling distance, not below `bottom`.
     #[inline(always)]
     fn sink(&mut self, bottom: usize) {
@@ -346,10 +347,10 @@ impl Stack {
         self.entries[place].write(last);
     }
 
-    /// The last child above `begin` that is entered at `t_max` or before; drops those after it.
+    /// The last child that is entered at `t_max` or before; drops those after it.
     #[inline(always)]
-    fn pop_nearer(&mut self, begin: usize, t_max: f32) -> Option<Child> {
-        while self.len > begin {
+    fn pop_nearer(&mut self, t_max: f32) -> Option<Child> {
+        while self.len > 0 {
             let entry = self.get(self.len - 1);
             self.len -= 1;
             if entry.distance <= t_max {

@@ -66,16 +66,21 @@ impl TriangleBlock {
         self.primitives[lane]
     }
 
+    /// The vertices in `lane`. Written out, as `array::map` is not always inlined into the loop.
+    #[inline(always)]
     fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.vertices
-            .map(|rows| Vec3::from_array(rows.map(|row| row[lane])))
+        let vertex = |i: usize| {
+            let [x, y, z] = &self.vertices[i];
+            Vec3::new(x[lane], y[lane], z[lane])
+        };
+        [vertex(0), vertex(1), vertex(2)]
     }
 
     /// A mask that has the bit of every lane whose triangle the ray's line may pass.
     #[inline(always)]
     pub(crate) fn candidates<V: F32x4>(&self, ray: &TriangleRay<V>) -> u32 {
         let [x, y, z] = ray.axes;
-        let [a, b, c] = [0, 1, 2].map(|vertex| {
+        let sheared = |vertex: usize| {
             let rows = &self.vertices[vertex];
             let z = V::load(&rows[z]) - ray.origin_lanes[2];
             [
@@ -83,7 +88,8 @@ impl TriangleBlock {
                 V::load(&rows[y]) - ray.origin_lanes[1] - ray.shear[1] * z,
                 z,
             ]
-        });
+        };
+        let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
         let edge = |a: [V; 3], b: [V; 3]| a[0] * b[1] - a[1] * b[0];
         let [ab, bc, ca] = [edge(a, b), edge(b, c), edge(c, a)];
 
@@ -105,8 +111,9 @@ impl TriangleBlock {
     /// Where the ray's line passes the triangle in `lane`.
     #[inline(always)]
     pub(crate) fn pass<V: F32x4>(&self, lane: usize, ray: &TriangleRay<V>) -> Option<Passage> {
-        let triangle = self.triangle(lane).map(|vertex| vertex - ray.origin);
-        pass_triangle(triangle, ray.direction, ray.axes[2])
+        let [a, b, c] = self.triangle(lane);
+        let seen = [a - ray.origin, b - ray.origin, c - ray.origin];
+        pass_triangle(seen, ray.direction, ray.axes[2])
     }
 }
 
