@@ -14,6 +14,7 @@ use bidir::path::{
     PathRoulette, PathSettings, Subpath, Vertex, camera_subpath, connect, light_subpath, weight,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
+use bidir::scene::Scene;
 use bidir::spectrum::{Spectrum, Wavelengths};
 use bidir::stats::Stats;
 
@@ -106,15 +107,14 @@ fn assert_spectra_close(a: Spectrum, b: Spectrum, what: &str) {
     (0..3).for_each(|lane| assert_close(a[lane], b[lane], what));
 }
 
-/// Calls `f` with the context of the room and a number of subpath pairs.
+/// Calls `f` with the context of a scene and a number of subpath pairs.
 fn for_each_pair(
     settings: &PathSettings,
-    lens_radius: f32,
+    scene: &Scene,
     mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
 ) {
-    let scene = common::room(lens_radius);
     let context = PathContext {
-        scene: &scene,
+        scene,
         settings,
         wavelengths: Wavelengths::default(),
     };
@@ -157,7 +157,7 @@ fn stored_quantities_are_those_of_a_walk_from_scratch() {
     let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
     let mut comparisons: [Comparisons; 5] = Default::default();
     let [pdf_fwd, pdf_rev, albedo_fwd, albedo_rev, beta] = &mut comparisons;
-    for_each_pair(&settings, 0.05, |context, light, camera| {
+    for_each_pair(&settings, &common::room(0.05), |context, light, camera| {
         let modes = [TransportMode::Importance, TransportMode::Radiance];
         for (subpath, mode) in [light, camera].into_iter().zip(modes) {
             let stored = &subpath.vertices[..];
@@ -197,7 +197,18 @@ fn whole_path(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) ->
     let index = path[0].light.expect("a light subpath begins on a light");
     path[0] = Vertex::light(context, index, &at);
     path[0].beta = Spectrum::splat(1.0 / path[0].pdf_fwd);
+    // An end of a subpath is connected, whatever its walk did next.
+    path.iter_mut()
+        .for_each(|vertex| vertex.went_by_delta = false);
     path
+}
+
+/// True where a walk took a Dirac lobe between the vertices of `subpath`.
+fn took_a_dirac_lobe(subpath: &[Vertex]) -> bool {
+    let [between @ .., _] = subpath else {
+        return false;
+    };
+    between.iter().any(|vertex| vertex.went_by_delta)
 }
 
 /// The density with which strategy s = 1 draws x_0.
@@ -256,15 +267,17 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
     result
 }
 
-fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, lens_radius: f32) {
+fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
     let settings = settings(mis, light_point);
     let mut paths = 0;
-    for_each_pair(&settings, lens_radius, |context, light, camera| {
+    for_each_pair(&settings, scene, |context, light, camera| {
         for s in 1..=light.vertices.len() {
             for t in 1..=camera.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
                 let contributes = !connect(context, light, camera).is_black();
-                if s + t > settings.max_vertices() || !contributes {
+                // Such a step cannot be made again from points alone.
+                let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
+                if s + t > settings.max_vertices() || !contributes || is_bound {
                     continue;
                 }
                 let path = whole_path(context, light, camera);
@@ -306,18 +319,27 @@ fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
 
 #[test]
 fn weights_sum_to_one_and_all_strategies_see_the_same_integrand() {
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, 0.0);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, 0.1);
-    check_paths(MisHeuristic::Balance, LightPointChoice::Shared, 0.1);
-    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, 0.1);
-    check_paths(MisHeuristic::Uniform, LightPointChoice::Shared, 0.0);
+    let (pinhole, lens) = (common::room(0.0), common::room(0.1));
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &pinhole);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &lens);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Shared, &lens);
+    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &lens);
+    check_paths(MisHeuristic::Uniform, LightPointChoice::Shared, &pinhole);
+}
+
+/// The same where surfaces have layers, transmit, are mixtures, and have Dirac lobes beside others.
+#[test]
+fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
+    let scene = common::gallery(0.1);
+    check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
+    check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
 }
 
 #[test]
 fn densities_of_points_in_front_of_each_other_are_reciprocal() {
     // G is symmetric, and a walk's first camera density is the raster's Jacobian.
     let settings = settings(MisHeuristic::Balance, LightPointChoice::Fresh);
-    for_each_pair(&settings, 0.0, |context, light, camera| {
+    for_each_pair(&settings, &common::room(0.0), |context, light, camera| {
         let (z, y) = (
             &light.vertices[0],
             &camera.vertices[camera.vertices.len() - 1],

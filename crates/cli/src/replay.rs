@@ -220,7 +220,7 @@ impl VertexReport {
             position: vertex.point.to_array(),
             is_infinite: vertex.is_infinite,
             normal: vertex.n_g.to_array(),
-            is_delta: vertex.is_delta(),
+            is_delta: vertex.is_delta() || vertex.went_by_delta,
             light: vertex.light,
             beta: color.rgb(vertex.beta),
             pdf_fwd: vertex.pdf_fwd,

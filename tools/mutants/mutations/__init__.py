@@ -4,8 +4,9 @@ An entry is (name, file, old text, new text, test). The old text occurs exactly 
 """
 
 from .laboratory import LABORATORY
+from .materials import MATERIALS
 from .paths import PATHS
 from .pictures import PICTURES
 from .scenes import SCENES
 
-MUTATIONS = PATHS + PICTURES + SCENES + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + LABORATORY

@@ -23,6 +23,11 @@ def analytic(filter_):
     return ("bidir", ANALYTIC, filter_)
 
 
+def materials(filter_):
+    """Tests of estimators against each other on every material."""
+    return ("bidir", "--test materials", filter_)
+
+
 def lab(filter_):
     """The unit tests of the `lab` crate whose names contain `filter_`."""
     return ("bidir-lab", "--lib", filter_)

@@ -43,9 +43,8 @@ impl Conductor {
         if self.is_smooth() || !same_hemisphere(wo, wi) {
             return Spectrum::ZERO;
         }
-        let m = (wo + wi).normalize();
-        let facets = self.ggx.d(m) * self.ggx.g2(wo, wi);
-        self.fresnel(wo.dot(m)) * (facets / (4.0 * wo.z * wi.z))
+        let (facets, cos) = self.ggx.mirror(wo, wi);
+        self.fresnel(cos) * facets
     }
 
     #[inline]
@@ -53,8 +52,7 @@ impl Conductor {
         if self.is_smooth() || !same_hemisphere(wo, wi) {
             return 0.0;
         }
-        let m = (wo + wi).normalize();
-        self.ggx.visible_pdf(wo, m) / (4.0 * wo.dot(m).abs()) // [Walter07, eq. 14]
+        self.ggx.mirror_pdf(wo, wi)
     }
 
     #[inline]
@@ -63,13 +61,7 @@ impl Conductor {
             return None;
         }
         if self.is_smooth() {
-            return Some(BsdfSample {
-                wi: Vec3::new(-wo.x, -wo.y, wo.z),
-                weight: self.fresnel(wo.z),
-                pdf: wo.z.abs(),
-                pdf_reverse: wo.z.abs(),
-                is_delta: true,
-            });
+            return Some(BsdfSample::mirror(wo, self.fresnel(wo.z), 1.0));
         }
         let m = self.ggx.sample_visible(wo, u);
         let wi = m * (2.0 * wo.dot(m)) - wo;

@@ -211,7 +211,7 @@ impl Dielectric {
 /// Refracts `wo` at a facet with normal `m`; `eta` is the index across divided by that of the side
 /// of `wo`. None: total internal reflection.
 #[inline]
-fn refract(wo: Vec3, m: Vec3, eta: f32) -> Option<Vec3> {
+pub(super) fn refract(wo: Vec3, m: Vec3, eta: f32) -> Option<Vec3> {
     let cos_o = wo.dot(m);
     let sin2_t = (1.0 - sqr(cos_o)).max(0.0) / sqr(eta);
     if sin2_t >= 1.0 {

@@ -74,6 +74,48 @@ impl Ggx {
         self.g1(v) * v.dot(m).abs() * self.d(m) / v.z.abs()
     }
 
+    /// D(m) G₂(wo, wi) / (4 |cosθ_o cosθ_i|) with m halfway between two directions on one side, and
+    /// wo·m: reflection by facets, without their reflectance [Walter07, eq. 20]. Unit: 1/sr.
+    #[inline]
+    pub fn mirror(self, wo: Vec3, wi: Vec3) -> (f32, f32) {
+        let m = (wo + wi).normalize();
+        let facets = self.d(m) * self.g2(wo, wi);
+        (facets / (4.0 * wo.z * wi.z), wo.dot(m))
+    }
+
+    /// The density of [`sample_mirror`](Self::sample_mirror) [Walter07, eq. 14]. Measure: solid
+    /// angle of wi, 1/sr.
+    #[inline]
+    pub fn mirror_pdf(self, wo: Vec3, wi: Vec3) -> f32 {
+        let m = (wo + wi).normalize();
+        self.visible_pdf(wo, m) / (4.0 * wo.dot(m).abs())
+    }
+
+    /// The direction that a facet which `wo` sees reflects it to. None: below the surface.
+    #[inline]
+    pub fn sample_mirror(self, wo: Vec3, u: Vec2) -> Option<Vec3> {
+        let m = self.sample_visible(wo, u);
+        let wi = m * (2.0 * wo.dot(m)) - wo;
+        (wo.z * wi.z > 0.0).then_some(wi)
+    }
+
+    /// The slope of an isotropic surface with as much variance.
+    #[inline]
+    pub fn mean_alpha(self) -> f32 {
+        ((sqr(self.alpha_x) + sqr(self.alpha_y)) / 2.0).sqrt()
+    }
+
+    /// These slopes, each with the variance `scale`² α² of another surface's added.
+    #[inline]
+    #[must_use]
+    pub fn broadened(self, other: Self, scale: f32) -> Self {
+        let add = |a: f32, b: f32| (sqr(a) + sqr(scale * b)).sqrt();
+        Self::new(
+            add(self.alpha_x, other.alpha_x),
+            add(self.alpha_y, other.alpha_y),
+        )
+    }
+
     /// A normal in the upper hemisphere, by how much of its facets `v` sees; for `v` below the
     /// surface, of the facets seen from beneath \[Heitz18\].
     #[inline]

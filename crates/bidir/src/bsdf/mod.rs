@@ -20,20 +20,34 @@
 //! the η and θ of the sampled side. Ratios of the two are then the true ratios of densities, which is
 //! all that multiple importance sampling needs.
 //!
+//! **Mixed lobes.** A smooth coat reflects by a Dirac lobe, and its base does not. `eval` and `pdf` are
+//! those of the other lobes, `pdf` with the probability of drawing them, and each sample says which
+//! kind it is. Almost no path that the one kind makes is made by the other, so on every path the
+//! vertex is the one or the other (docs/derivations/mis-weights.md).
+//!
 //! **Adding one**: a file with the model and its tests, a variant here with an arm in each match (the
 //! compiler lists them), and a constructor in [`material`](crate::material).
 
+pub mod coat;
+mod coated_conductor;
+mod coated_diffuse;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod diffuse_transmission;
 pub mod fresnel;
 pub mod microfacet;
 #[cfg(test)]
 mod tests;
+mod thin_dielectric;
 
+pub use coated_conductor::{CoatedConductor, CoatedMetal};
+pub use coated_diffuse::{CoatedDiffuse, Filling};
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
+pub use diffuse_transmission::DiffuseTransmission;
+pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -71,8 +85,37 @@ pub struct BsdfSample {
     pub pdf: f32,
     /// The coefficient or density of drawing `wo` by a walk that arrives along `wi`.
     pub pdf_reverse: f32,
-    /// True where the scattering is a Dirac distribution: no strategy may connect at this vertex.
+    /// True where a Dirac lobe was drawn: on this path no strategy may connect at this vertex.
     pub is_delta: bool,
+}
+
+impl BsdfSample {
+    /// The mirrored direction, drawn with probability `prob` from a Dirac lobe of `reflectance` that
+    /// is as likely seen from there.
+    #[inline]
+    fn mirror(wo: Vec3, reflectance: Spectrum, prob: f32) -> Self {
+        let pdf = prob * wo.z.abs();
+        Self {
+            wi: Vec3::new(-wo.x, -wo.y, wo.z),
+            weight: reflectance / prob,
+            pdf,
+            pdf_reverse: pdf,
+            is_delta: true,
+        }
+    }
+
+    /// A direction of value `f`, with the densities of drawing it and of drawing `wo` from it. None:
+    /// where the density underflows.
+    #[inline]
+    fn of_densities(wi: Vec3, f: Spectrum, [pdf, pdf_reverse]: [f32; 2]) -> Option<Self> {
+        (pdf > 0.0 && wi.z != 0.0).then(|| Self {
+            wi,
+            weight: f * (wi.z.abs() / pdf),
+            pdf,
+            pdf_reverse,
+            is_delta: false,
+        })
+    }
 }
 
 /// The scattering of one surface point.
@@ -84,11 +127,18 @@ pub enum Bsdf {
     Conductor(Conductor),
     /// An interface between two transparent media, smooth or rough.
     Dielectric(Dielectric),
+    /// A pane.
+    ThinDielectric(ThinDielectric),
+    /// Lambertian reflection and transmission.
+    DiffuseTransmission(DiffuseTransmission),
+    /// A dielectric layer over a diffuse base.
+    CoatedDiffuse(CoatedDiffuse),
+    /// A dielectric layer over metal.
+    CoatedConductor(CoatedConductor),
 }
 
 impl Bsdf {
-    /// f for light that goes from one direction to the other. Unit: 1/sr. Zero for a Dirac
-    /// distribution.
+    /// f for light that goes from one direction to the other, without Dirac lobes. Unit: 1/sr.
     ///
     /// Only [`Vertex::scatter`](crate::path::Vertex::scatter) calls this.
     #[inline]
@@ -97,6 +147,10 @@ impl Bsdf {
             Self::Diffuse(bsdf) => bsdf.eval(wo, wi),
             Self::Conductor(bsdf) => bsdf.eval(wo, wi),
             Self::Dielectric(bsdf) => bsdf.eval(wo, wi, mode),
+            Self::ThinDielectric(_) => Spectrum::ZERO,
+            Self::DiffuseTransmission(bsdf) => bsdf.eval(wo, wi),
+            Self::CoatedDiffuse(bsdf) => bsdf.eval(wo, wi),
+            Self::CoatedConductor(bsdf) => bsdf.eval(wo, wi),
         }
     }
 
@@ -115,18 +169,27 @@ impl Bsdf {
             Self::Diffuse(bsdf) => bsdf.sample(wo, u),
             Self::Conductor(bsdf) => bsdf.sample(wo, u),
             Self::Dielectric(bsdf) => bsdf.sample(wo, mode, u_lobe, u),
+            Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_lobe),
+            Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, u_lobe, u),
+            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, u_lobe, u),
+            Self::CoatedConductor(bsdf) => bsdf.sample(wo, u_lobe, u),
         };
         // Where the density underflows there is no sample.
         sample.filter(|sample| sample.pdf > 0.0)
     }
 
-    /// The density of `sample` at `wi`. Measure: solid angle, 1/sr.
+    /// The density of `sample` at `wi`, without Dirac lobes but with the probability that they leave.
+    /// Measure: solid angle, 1/sr.
     #[inline]
     pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
         match self {
             Self::Diffuse(_) => Diffuse::pdf(wo, wi),
             Self::Conductor(bsdf) => bsdf.pdf(wo, wi),
             Self::Dielectric(bsdf) => bsdf.pdf(wo, wi),
+            Self::ThinDielectric(_) => 0.0,
+            Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi),
+            Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi),
+            Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi),
         }
     }
 
@@ -137,6 +200,10 @@ impl Bsdf {
             Self::Diffuse(_) => false,
             Self::Conductor(bsdf) => bsdf.is_smooth(),
             Self::Dielectric(bsdf) => bsdf.is_smooth(),
+            Self::ThinDielectric(_) => true,
+            Self::DiffuseTransmission(_) => false,
+            Self::CoatedDiffuse(bsdf) => bsdf.is_delta(),
+            Self::CoatedConductor(bsdf) => bsdf.is_delta(),
         }
     }
 
@@ -148,7 +215,10 @@ impl Bsdf {
         match self {
             Self::Diffuse(bsdf) => bsdf.reflectance,
             Self::Conductor(bsdf) => bsdf.albedo(wo),
-            Self::Dielectric(_) => Spectrum::ONE,
+            Self::Dielectric(_) | Self::ThinDielectric(_) => Spectrum::ONE,
+            Self::DiffuseTransmission(bsdf) => bsdf.albedo(),
+            Self::CoatedDiffuse(bsdf) => bsdf.albedo(wo),
+            Self::CoatedConductor(bsdf) => bsdf.albedo(wo),
         }
     }
 
@@ -158,6 +228,14 @@ impl Bsdf {
         examples.extend(Diffuse::examples().map(|(name, bsdf)| (name, Self::Diffuse(bsdf))));
         examples.extend(Conductor::examples().map(|(name, bsdf)| (name, Self::Conductor(bsdf))));
         examples.extend(Dielectric::examples().map(|(name, bsdf)| (name, Self::Dielectric(bsdf))));
+        let thin = ThinDielectric::examples();
+        examples.extend(thin.map(|(name, bsdf)| (name, Self::ThinDielectric(bsdf))));
+        let leaves = DiffuseTransmission::examples();
+        examples.extend(leaves.map(|(name, bsdf)| (name, Self::DiffuseTransmission(bsdf))));
+        let varnish = CoatedDiffuse::examples();
+        examples.extend(varnish.map(|(name, bsdf)| (name, Self::CoatedDiffuse(bsdf))));
+        let lacquer = CoatedConductor::examples();
+        examples.extend(lacquer.map(|(name, bsdf)| (name, Self::CoatedConductor(bsdf))));
         examples
     }
 }

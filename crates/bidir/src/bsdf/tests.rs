@@ -4,6 +4,7 @@ mod degenerate;
 mod densities;
 mod energy;
 mod identities;
+mod layers;
 
 use super::{Bsdf, TransportMode};
 use crate::math::{Vec2, Vec3, sin_cos};
@@ -44,7 +45,12 @@ fn numbers(sample: &SampleStream) -> (f32, Vec2) {
     (lobe, sample.get_2d(Dimension::at(2, Purpose::Scatter)))
 }
 
-const VARIANTS: usize = 3;
+/// True where the surface looks alike from above and from below.
+fn is_two_sided(bsdf: &Bsdf) -> bool {
+    !matches!(bsdf, Bsdf::Dielectric(_))
+}
+
+const VARIANTS: usize = 7;
 
 /// A new variant does not compile before it has a number here.
 fn variant(bsdf: &Bsdf) -> usize {
@@ -52,6 +58,10 @@ fn variant(bsdf: &Bsdf) -> usize {
         Bsdf::Diffuse(_) => 0,
         Bsdf::Conductor(_) => 1,
         Bsdf::Dielectric(_) => 2,
+        Bsdf::ThinDielectric(_) => 3,
+        Bsdf::DiffuseTransmission(_) => 4,
+        Bsdf::CoatedDiffuse(_) => 5,
+        Bsdf::CoatedConductor(_) => 6,
     }
 }
 

@@ -8,6 +8,7 @@ use crate::film::{Aov, AovKind, Layers};
 use crate::integrator::{Sample, Workspace, camera_ray};
 use crate::math::Vec3;
 use crate::path::{PathContext, Vertex};
+use crate::sampler::{Dimension, Purpose};
 use crate::scene::Chances;
 use crate::spectrum::Spectrum;
 
@@ -99,7 +100,9 @@ impl FirstSurface {
                 let hit = context
                     .scene
                     .intersect(ray.lens.point, ray.direction, chances)?;
-                let surface = Vertex::surface(context, &hit, -ray.direction, Spectrum::ONE);
+                let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
+                let (wo, beta) = (-ray.direction, Spectrum::ONE);
+                let surface = Vertex::surface(context, &hit, wo, beta, u_mix);
                 Some(Self::new(context, &Vertex::camera(&ray.lens), &surface))
             }
         }

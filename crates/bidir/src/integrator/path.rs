@@ -67,7 +67,7 @@ fn hit(
     if contribution != Spectrum::ZERO {
         let from = &workspace.camera.vertices[i - 1];
         // Next-event estimation begins at the first surface, and skips Dirac scattering.
-        let weight = if i == 1 || from.is_delta() {
+        let weight = if i == 1 || from.went_by_delta {
             1.0
         } else {
             let q = next_event_pdf(context, from, arrival.light, &arrival.at);

@@ -1,12 +1,20 @@
 //! What a surface is made of: textures that become a [`Bsdf`] at a point.
 //!
+//! A mixture is one of its materials at each vertex, chosen by a number of the path's own: the choice is
+//! part of the path, as likely from whichever end the vertex was drawn, so that it cancels in densities.
+//!
 //! **Adding one**: a variant here that builds the [`Bsdf`], and a mapping in the scene reader.
 
+mod coated;
+
+pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
+
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse};
-use crate::math::Vec2;
+use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, ThinDielectric};
+use crate::math::{ONE_MINUS_EPSILON, Vec2};
 use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
 use crate::texture::{ColorTexture, FloatTexture};
+use std::sync::Arc;
 
 /// How a described roughness becomes a slope α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +71,30 @@ pub enum ConductorIndex {
     Reflectance(ColorTexture),
 }
 
+impl ConductorIndex {
+    /// Real and imaginary part.
+    #[inline]
+    fn eval(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> (Spectrum, Spectrum) {
+        let unbounded = |rgb: Rgb| color.unbounded(rgb, wavelengths);
+        match self {
+            Self::Complex { eta, k } => (unbounded(eta.eval(uv)), unbounded(k.eval(uv))),
+            Self::Reflectance(r) => {
+                let k = unit(r.eval(uv)).map(absorption_of_reflectance);
+                (Spectrum::ONE, unbounded(k))
+            }
+        }
+    }
+}
+
+/// One of two materials at each point.
+#[derive(Clone, Debug)]
+pub struct Mixture {
+    /// The materials.
+    pub materials: [Material; 2],
+    /// The probability of the second.
+    pub amount: FloatTexture,
+}
+
 /// The material of a shape.
 #[derive(Clone, Debug)]
 pub enum Material {
@@ -85,6 +117,26 @@ pub enum Material {
         /// Its roughness.
         roughness: Roughness,
     },
+    /// A pane.
+    ThinDielectric {
+        /// Index of refraction of the pane divided by that around it.
+        eta: f32,
+    },
+    /// Lambertian reflection and transmission.
+    DiffuseTransmission {
+        /// The part that is reflected.
+        reflectance: ColorTexture,
+        /// The part that goes through.
+        transmittance: ColorTexture,
+        /// What both are multiplied by.
+        scale: f32,
+    },
+    /// A dielectric layer over a diffuse base.
+    CoatedDiffuse(CoatedDiffuseMaterial),
+    /// A dielectric layer over metal.
+    CoatedConductor(CoatedConductorMaterial),
+    /// One of two materials at each point.
+    Mix(Arc<Mixture>),
 }
 
 impl Material {
@@ -94,28 +146,33 @@ impl Material {
             Self::Diffuse { .. } => "diffuse",
             Self::Conductor { .. } => "conductor",
             Self::Dielectric { .. } => "dielectric",
+            Self::ThinDielectric { .. } => "thindielectric",
+            Self::DiffuseTransmission { .. } => "diffusetransmission",
+            Self::CoatedDiffuse(_) => "coateddiffuse",
+            Self::CoatedConductor(_) => "coatedconductor",
+            Self::Mix(_) => "mix",
         }
     }
 
-    /// The scattering at `uv`.
+    /// The material that a mixture is at `uv`, chosen by the number `u`; itself where it is none.
+    #[inline]
+    pub fn choose(&self, uv: Vec2, u: impl FnOnce() -> f32) -> &Self {
+        match self {
+            Self::Mix(mixture) => mixture.choose(uv, u()),
+            material => material,
+        }
+    }
+
+    /// The scattering at `uv`, that of a mixture's first material: [`choose`](Self::choose) first.
     #[inline]
     pub fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
         let albedo = |texture: &ColorTexture| color.albedo(unit(texture.eval(uv)), wavelengths);
-        let unbounded = |rgb: Rgb| color.unbounded(rgb, wavelengths);
         match self {
             Self::Diffuse { reflectance } => Bsdf::Diffuse(Diffuse {
                 reflectance: albedo(reflectance),
             }),
             Self::Conductor { index, roughness } => {
-                let (eta, k) = match index {
-                    ConductorIndex::Complex { eta, k } => {
-                        (unbounded(eta.eval(uv)), unbounded(k.eval(uv)))
-                    }
-                    ConductorIndex::Reflectance(r) => {
-                        let k = unit(r.eval(uv)).map(absorption_of_reflectance);
-                        (Spectrum::ONE, unbounded(k))
-                    }
-                };
+                let (eta, k) = index.eval(uv, color, wavelengths);
                 Bsdf::Conductor(Conductor {
                     eta,
                     k,
@@ -126,7 +183,40 @@ impl Material {
                 eta: *eta,
                 ggx: roughness.ggx(uv),
             }),
+            Self::ThinDielectric { eta } => Bsdf::ThinDielectric(ThinDielectric { eta: *eta }),
+            Self::DiffuseTransmission {
+                reflectance,
+                transmittance,
+                scale,
+            } => {
+                let part = |texture: &ColorTexture| {
+                    let scaled = texture.eval(uv).map(|channel| channel * scale);
+                    color.albedo(unit(scaled), wavelengths)
+                };
+                Bsdf::DiffuseTransmission(DiffuseTransmission {
+                    reflectance: part(reflectance),
+                    transmittance: part(transmittance),
+                })
+            }
+            Self::CoatedDiffuse(material) => material.bsdf(uv, color, wavelengths),
+            Self::CoatedConductor(material) => material.bsdf(uv, color, wavelengths),
+            Self::Mix(mixture) => mixture.materials[0].bsdf(uv, color, wavelengths),
         }
+    }
+}
+
+impl Mixture {
+    /// The number is stretched for what is chosen, so that mixtures within mixtures can use it again.
+    fn choose(&self, uv: Vec2, u: f32) -> &Material {
+        let amount = self.amount.eval(uv).clamp(0.0, 1.0);
+        let [first, second] = &self.materials;
+        // Where the amount is not a number, the first stands for both.
+        let (material, rest) = if u < amount {
+            (second, u / amount)
+        } else {
+            (first, (u - amount) / (1.0 - amount))
+        };
+        material.choose(uv, || rest.clamp(0.0, ONE_MINUS_EPSILON))
     }
 }
 

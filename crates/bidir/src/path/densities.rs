@@ -52,13 +52,21 @@ impl PathDensities {
     ) {
         let (s, n) = (light.len(), light.len() + camera.len());
         self.vertices.clear();
-        let empty = |vertex: &Vertex| VertexDensities {
+        // A vertex between two of its walk does on this path what the walk did; an end that is
+        // connected scatters by its other lobes.
+        let lobes = |subpath: &[Vertex], walked: usize, i: usize| VertexDensities {
             from_light: 0.0,
             from_camera: 0.0,
-            is_delta: vertex.is_delta(),
+            is_delta: i < walked && subpath[i].went_by_delta,
+        };
+        let steps = match junction {
+            Junction::Connection => [s - 1, camera.len() - 1],
+            Junction::Hit => [0, camera.len()],
         };
         self.vertices
-            .extend(light.iter().chain(camera.iter().rev()).map(empty));
+            .extend((0..s).map(|i| lobes(light, steps[0], i)));
+        let of_camera = (0..camera.len()).rev().map(|i| lobes(camera, steps[1], i));
+        self.vertices.extend(of_camera);
         for (i, pdf) in walked_densities(context, light, n).enumerate() {
             self.vertices[i].from_light = pdf[0];
             if i + 2 < s {

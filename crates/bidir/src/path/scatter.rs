@@ -21,6 +21,8 @@ pub(super) struct Scattered {
     pub(super) pdf: f32,
     /// The same of drawing `wo` by a walk that arrives along `wi`.
     pub(super) pdf_reverse: f32,
+    /// True where a Dirac lobe was drawn.
+    pub(super) is_delta: bool,
 }
 
 impl Vertex {
@@ -87,6 +89,7 @@ impl Vertex {
             weight,
             pdf: sample.pdf,
             pdf_reverse: sample.pdf_reverse,
+            is_delta: sample.is_delta,
         })
     }
 
@@ -122,8 +125,8 @@ impl Vertex {
     }
 
     /// Density of drawing `next` from this vertex by a walk that came along `-wo`, without
-    /// roulette. Measure: area at `next`, 1/m²; solid angle for a light at infinity. Zero where
-    /// the scattering is a Dirac distribution.
+    /// roulette. Measure: area at `next`, 1/m²; solid angle for a light at infinity. Dirac lobes
+    /// are no part of it but for the probability that they take.
     #[inline]
     pub fn pdf_to(&self, context: &PathContext<'_>, wo: Vec3, next: &Self) -> f32 {
         let scene = context.scene;

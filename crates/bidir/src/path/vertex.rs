@@ -51,6 +51,9 @@ pub struct Vertex {
     pub albedo_fwd: f32,
     /// The largest lane of the albedo seen from the next vertex; set when this vertex scatters.
     pub albedo_rev: f32,
+    /// True where the walk went on by a Dirac lobe: what this vertex is on paths that use the walk's
+    /// next step. Set when this vertex scatters.
+    pub went_by_delta: bool,
     /// The light that the vertex lies on, by index.
     pub light: Option<u32>,
     /// The primitive of the light's shape.
@@ -81,6 +84,7 @@ impl Vertex {
             pdf_rev: 0.0,
             albedo_fwd: 1.0,
             albedo_rev: 1.0,
+            went_by_delta: false,
             light: None,
             light_primitive: 0,
             is_infinite: false,
@@ -116,10 +120,18 @@ impl Vertex {
         }
     }
 
-    /// A surface point reached along `-wo` with throughput `beta`.
-    pub fn surface(context: &PathContext<'_>, hit: &SurfaceHit, wo: Vec3, beta: Spectrum) -> Self {
+    /// A surface point reached along `-wo` with throughput `beta`. The number `u_mix` chooses among
+    /// mixed materials; others do not ask for it.
+    pub fn surface(
+        context: &PathContext<'_>,
+        hit: &SurfaceHit,
+        wo: Vec3,
+        beta: Spectrum,
+        u_mix: impl FnOnce() -> f32,
+    ) -> Self {
         let surface = &hit.surface;
         let material = context.scene.material(hit.material);
+        let material = material.choose(surface.uv, u_mix);
         let bsdf = material.bsdf(surface.uv, context.scene.color(), &context.wavelengths);
         Self {
             error: surface.error,
@@ -157,7 +169,8 @@ impl Vertex {
         }
     }
 
-    /// True where the scattering is a Dirac distribution, so that nothing can connect here.
+    /// True where all scattering is a Dirac distribution, so that nothing can connect here. What a
+    /// walk did here says [`went_by_delta`](Self::went_by_delta).
     #[inline]
     pub fn is_delta(&self) -> bool {
         self.kind == VertexKind::Surface && self.bsdf.is_delta()

@@ -156,7 +156,10 @@ impl Walker<'_> {
                 });
                 return;
             };
-            let mut vertex = Vertex::surface(self.context, &hit, -step.direction, step.beta);
+            let at = Dimension::at(subpath.vertices.len(), Purpose::Mix);
+            let u_mix = || self.stream.get_1d(at);
+            let wo = -step.direction;
+            let mut vertex = Vertex::surface(self.context, &hit, wo, step.beta, u_mix);
             let last = subpath.vertices.len() - 1;
             vertex.pdf_fwd = subpath.vertices[last].density_at(step.pdf_w, &vertex);
             // Rounding put the vertex on the one before it, in a corner: no density, no path.
@@ -187,6 +190,7 @@ impl Walker<'_> {
         let scattered =
             vertex.sample_scatter(self.mode, u_lobe, self.stream.get_2d(at(Purpose::Scatter)))?;
         previous.pdf_rev = vertex.density_at(scattered.pdf_reverse, previous);
+        vertex.went_by_delta = scattered.is_delta;
         vertex.albedo_rev = vertex.albedo_from(scattered.wi);
         let beta = vertex.beta * scattered.weight;
         let survival = self.context.settings.roulette.survival_prob(

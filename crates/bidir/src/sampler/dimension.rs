@@ -34,6 +34,8 @@ pub enum Purpose {
     Select,
     /// Whether a walk passes surfaces that are not all there, on its way to the vertex.
     Coverage,
+    /// Which of mixed materials a surface point is made of.
+    Mix,
 }
 
 /// The address of a random number, or of a pair, within a sample.

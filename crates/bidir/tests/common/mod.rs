@@ -6,12 +6,16 @@ pub(crate) mod statistics;
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter};
 use bidir::light::EmissionSides;
-use bidir::material::{ConductorIndex, Material, Roughness, RoughnessMapping};
+use bidir::material::{
+    CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, Material,
+    Mixture, Roughness, RoughnessMapping,
+};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture};
+use std::sync::Arc;
 
 /// A camera at `eye` that looks along +z through a film of `size` pixels.
 pub(crate) fn camera(eye: Vec3, size: u32, lens_radius: f32) -> Camera {
@@ -76,6 +80,44 @@ pub(crate) fn glass(alpha: f32) -> Material {
     Material::Dielectric {
         eta: 1.5,
         roughness: roughness(alpha),
+    }
+}
+
+fn coat(alpha: f32) -> CoatSettings {
+    CoatSettings {
+        eta: 1.5,
+        roughness: roughness(alpha),
+        thickness: FloatTexture::Constant(0.05),
+        albedo: CLEAR,
+        g: FloatTexture::Constant(0.0),
+        orders: 5,
+    }
+}
+
+pub(crate) fn varnish(alpha: f32) -> Material {
+    let base = ColorTexture::Constant([0.7, 0.3, 0.1]);
+    Material::CoatedDiffuse(CoatedDiffuseMaterial::new(coat(alpha), base))
+}
+
+pub(crate) fn lacquer(coat_alpha: f32, metal_alpha: f32) -> Material {
+    let index = ConductorIndex::Reflectance(ColorTexture::Constant([0.9, 0.7, 0.4]));
+    let metal = roughness(metal_alpha);
+    Material::CoatedConductor(CoatedConductorMaterial::new(coat(coat_alpha), index, metal))
+}
+
+pub(crate) fn mix(materials: [Material; 2], amount: f32) -> Material {
+    Material::Mix(Arc::new(Mixture {
+        materials,
+        amount: FloatTexture::Constant(amount),
+    }))
+}
+
+/// Reflects and transmits.
+pub(crate) fn paper() -> Material {
+    Material::DiffuseTransmission {
+        reflectance: ColorTexture::Constant([0.5, 0.3, 0.2]),
+        transmittance: ColorTexture::Constant([0.2, 0.4, 0.7]),
+        scale: 0.9,
     }
 }
 
@@ -162,4 +204,31 @@ pub(crate) fn room_of(size: u32, lens_radius: f32) -> Scene {
     builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), rough_metal, None);
     builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None);
     builder.build().expect("the room is valid")
+}
+
+/// A closed room of varnished walls with a ceiling light, a varnished panel with tilted normals, a
+/// sheet of paper, and balls of lacquered metal and of a mixture.
+pub(crate) fn gallery(lens_radius: f32) -> Scene {
+    let mut builder = builder(8, lens_radius);
+    let wall = builder.material(varnish(0.0));
+    let panel = builder.material(varnish(0.3));
+    let sheet = builder.material(paper());
+    let metals = [lacquer(0.0, 0.4), lacquer(0.3, 0.3)].map(|metal| builder.material(metal));
+    let mixture = builder.material(mix([metal(0.4), diffuse([0.3, 0.6, 0.9])], 0.5));
+    add_walls(&mut builder, wall);
+    let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+    builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
+    let tilted = quad(Vec3::new(-1.8, -1.0, 1.5), Vec3::Y * 2.0, Vec3::X * 2.0);
+    let tilted = tilt(tilted, Vec3::new(0.5, 0.8, 0.0));
+    builder.shape(Shape::Mesh(tilted), panel, None);
+    let hanging = quad(
+        Vec3::new(0.4, -0.2, 1.0),
+        Vec3::Y * 1.2,
+        Vec3::new(1.0, 0.0, 0.4),
+    );
+    builder.shape(Shape::Mesh(hanging), sheet, None);
+    builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), metals[0], None);
+    builder.shape(sphere(Vec3::new(0.6, -1.3, -0.2), 0.4), metals[1], None);
+    builder.shape(sphere(Vec3::new(1.3, -1.4, 0.8), 0.4), mixture, None);
+    builder.build().expect("the gallery is valid")
 }

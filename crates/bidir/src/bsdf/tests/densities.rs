@@ -1,5 +1,5 @@
-use super::{cases, numbers};
-use crate::bsdf::{Bsdf, TransportMode};
+use super::{cases, is_two_sided, numbers};
+use crate::bsdf::TransportMode;
 use crate::testing::{Battery, Domain, Grid, samples};
 
 /// Directions are drawn as the density says, and what it lacks to 1 is lost below the surface.
@@ -12,13 +12,14 @@ fn samples_follow_the_density() {
     };
     let mut battery = Battery::new("BSDF densities");
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
-        let two_sided = matches!(bsdf, Bsdf::Diffuse(_) | Bsdf::Conductor(_));
-        if two_sided && wo.z < 0.0 {
+        if is_two_sided(&bsdf) && wo.z < 0.0 {
             continue; // The same as from above.
         }
         let draws = samples(&name, 1 << 20).map(|sample| {
             let (u_lobe, u) = numbers(&sample);
-            Some(bsdf.sample(wo, TransportMode::Radiance, u_lobe, u)?.wi)
+            let drawn = bsdf.sample(wo, TransportMode::Radiance, u_lobe, u)?;
+            // What a Dirac lobe takes is not in the density.
+            (!drawn.is_delta).then_some(drawn.wi)
         });
         battery.chi2(&name, &grid, |wi| bsdf.pdf(wo, wi), draws);
     }

@@ -42,9 +42,44 @@ fn check_reciprocity(bsdf: &Bsdf, wo: Vec3, wi: Vec3, case: &str) {
 
 fn index_inside(bsdf: &Bsdf) -> f32 {
     match bsdf {
-        Bsdf::Diffuse(_) | Bsdf::Conductor(_) => 1.0,
         Bsdf::Dielectric(dielectric) => dielectric.eta,
+        // Both sides are outside.
+        _ => 1.0,
     }
+}
+
+/// Checks a draw of a Dirac lobe beside others: the density of the others lacks its probability, and a
+/// walk the other way has the same coefficient.
+#[track_caller]
+fn check_dirac_lobe(bsdf: &Bsdf, wo: Vec3, drawn: &BsdfSample, case: &str) {
+    let mirrored = Vec3::new(-wo.x, -wo.y, wo.z);
+    assert!((drawn.wi - mirrored).length() < 1e-5, "{case}: {drawn:?}");
+    let back = bsdf
+        .sample(drawn.wi, TransportMode::Radiance, 0.0, Vec2::splat(0.5))
+        .expect("a Dirac lobe loses nothing");
+    assert!(back.is_delta, "{case}");
+    check_close(back.pdf, drawn.pdf_reverse, 1e-5, case);
+    check_close(back.pdf_reverse, drawn.pdf, 1e-5, case);
+    check_spectra(back.weight, drawn.weight, case);
+}
+
+/// A Dirac lobe is drawn with the probability that is in its coefficient.
+#[test]
+fn dirac_lobes_among_others_are_as_frequent_as_they_say() {
+    let mut lobes = 0;
+    for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
+        let draw = |u_lobe| bsdf.sample(wo, TransportMode::Radiance, u_lobe, Vec2::splat(0.4));
+        let Some(dirac) = draw(0.0).filter(|drawn| drawn.is_delta) else {
+            continue;
+        };
+        let n = 10_000;
+        let at = |i: i32| draw((i as f32 + 0.5) / n as f32);
+        let drawn = (0..n).filter(|&i| at(i).is_some_and(|drawn| drawn.is_delta));
+        let share = drawn.count() as f32 / n as f32;
+        assert!((share - dirac.pdf / wo.z.abs()).abs() < 2e-4, "{name}");
+        lobes += 1;
+    }
+    assert!(lobes > 10, "{lobes}");
 }
 
 #[test]
@@ -56,6 +91,10 @@ fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
                 let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
                     continue;
                 };
+                if drawn.is_delta {
+                    check_dirac_lobe(&bsdf, wo, &drawn, &name);
+                    continue;
+                }
                 check_sample(&bsdf, wo, mode, &drawn, &name);
                 check_reciprocity(&bsdf, wo, drawn.wi, &name);
             }

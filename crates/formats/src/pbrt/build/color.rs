@@ -102,12 +102,16 @@ pub(super) fn check_emission(span: Span, emission: Rgb) -> Result<Rgb, Fault> {
     ))
 }
 
-/// Reads the index of refraction of a dielectric: a number, or a spectrum's middle.
-pub(super) fn read_eta(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<f32, Fault> {
-    if let Some(eta) = reader.optional_float("eta")? {
-        return positive(reader, eta);
+/// Reads the index of refraction of a dielectric, called `name`: a number, or a spectrum's middle.
+pub(super) fn read_eta(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    name: &'static str,
+) -> Result<f32, Fault> {
+    if let Some(eta) = reader.optional_float(name)? {
+        return positive(reader, name, eta);
     }
-    let Some(parameter) = reader.find(ParameterType::Spectrum, "eta") else {
+    let Some(parameter) = reader.find(ParameterType::Spectrum, name) else {
         return Ok(1.5);
     };
     if let Values::Strings(names) = &parameter.values {
@@ -121,16 +125,16 @@ pub(super) fn read_eta(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Re
         }
     }
     let [_, middle, _] = spectrum(context, parameter, Purpose::Unbounded)?;
-    positive(reader, middle)
+    positive(reader, name, middle)
 }
 
-fn positive(reader: &Reader<'_>, eta: f32) -> Result<f32, Fault> {
+fn positive(reader: &Reader<'_>, name: &str, eta: f32) -> Result<f32, Fault> {
     if eta > 0.0 {
         Ok(eta)
     } else {
         Err(Fault::scene(
             reader.span(),
-            "the index of refraction `eta` is not positive",
+            format!("the index of refraction `{name}` is not positive"),
         ))
     }
 }

@@ -1,37 +1,145 @@
 //! Materials.
+//!
+//! A mixture names its parts, which are built before it; what names itself through others is refused.
 
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::reader::Reader;
 use super::texture::Textures;
-use crate::pbrt::parameters::ParameterType;
-use crate::pbrt::scene::Entity;
-use crate::source::Fault;
-use bidir::material::{ConductorIndex, Material, Roughness, RoughnessMapping};
+use crate::pbrt::known;
+use crate::pbrt::lexer::shorten;
+use crate::pbrt::parameters::{ParameterType, Values};
+use crate::pbrt::scene::{Entity, MaterialDescription};
+use crate::source::{Fault, Span};
+use bidir::material::{
+    CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, Material,
+    Mixture, Roughness, RoughnessMapping,
+};
 use bidir::texture::{ColorTexture, FloatTexture};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Builds a material; without an entity it is the one that shapes have before any is named.
-///
-/// None: there is no surface.
-pub(super) fn build(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    entity: Option<&Entity>,
-) -> Result<Option<Material>, Fault> {
-    let Some(entity) = entity else {
-        return Ok(Some(grey()));
-    };
-    let mut reader = Reader::new(entity);
-    let material = match entity.kind.as_str() {
-        "diffuse" => diffuse(context, textures, &mut reader)?,
-        "conductor" => conductor(context, textures, &mut reader)?,
-        "dielectric" => dielectric(context, textures, &mut reader)?,
-        _ => return stand_in(context, textures, entity),
-    };
-    bump(context, &mut reader)?;
-    reader.finish()?;
-    Ok(Some(material))
+/// Builds the materials of a description one by one.
+pub(super) struct Materials<'a> {
+    described: &'a [MaterialDescription],
+    /// Those with names, by name.
+    named: BTreeMap<&'a str, usize>,
+    /// Those that are being built, the innermost last: a mixture must not be part of itself.
+    open: Vec<usize>,
 }
+
+impl<'a> Materials<'a> {
+    pub(super) fn new(described: &'a [MaterialDescription]) -> Self {
+        let named = described.iter().enumerate();
+        Self {
+            named: named
+                .filter_map(|(index, material)| Some((material.name.as_deref()?, index)))
+                .collect(),
+            described,
+            open: Vec::new(),
+        }
+    }
+
+    /// Builds material number `index`; without an entity it is the one that shapes have before any is
+    /// named.
+    ///
+    /// None: there is no surface: rays pass, shadow rays too. What bounds no medium need not be kept
+    /// then, and does not emit.
+    pub(super) fn build(
+        &mut self,
+        context: &mut Context<'_>,
+        textures: &mut Textures<'_>,
+        index: usize,
+    ) -> Result<Option<Material>, Fault> {
+        let described = self.described;
+        let Some(entity) = described[index].entity.as_ref() else {
+            return Ok(Some(grey()));
+        };
+        let mut reader = Reader::new(entity);
+        let material = match entity.kind.as_str() {
+            "diffuse" => diffuse(context, textures, &mut reader)?,
+            "diffusetransmission" => diffuse_transmission(context, textures, &mut reader)?,
+            "conductor" => conductor(context, textures, &mut reader)?,
+            "dielectric" => dielectric(context, textures, &mut reader)?,
+            "thindielectric" => Material::ThinDielectric {
+                eta: color::read_eta(context, &mut reader, "eta")?,
+            },
+            "coateddiffuse" => coated_diffuse(context, textures, &mut reader)?,
+            "coatedconductor" => coated_conductor(context, textures, &mut reader)?,
+            "mix" => {
+                let material = self.mix(context, textures, index, &mut reader)?;
+                reader.finish()?;
+                return Ok(Some(material));
+            }
+            "interface" | "none" | "" => {
+                reader.finish()?;
+                return Ok(None);
+            }
+            _ => return stand_in(context, textures, entity),
+        };
+        bump(context, &mut reader)?;
+        reader.finish()?;
+        Ok(Some(material))
+    }
+
+    fn mix(
+        &mut self,
+        context: &mut Context<'_>,
+        textures: &mut Textures<'_>,
+        index: usize,
+        reader: &mut Reader<'_>,
+    ) -> Result<Material, Fault> {
+        let amount = textures.float(context, reader, "amount")?;
+        let Some(parameter) = reader.find(ParameterType::String, "materials") else {
+            let message = "the parameter `string materials` is missing";
+            return Err(Fault::scene(reader.span(), message));
+        };
+        let (Values::Strings(names), span) = (&parameter.values, parameter.value_span) else {
+            return Err(Fault::scene(parameter.value_span, "expected names"));
+        };
+        let [first, second] = names.as_slice() else {
+            let message = format!("`materials` has two names, found {}", names.len());
+            return Err(Fault::scene(span, message));
+        };
+        self.open.push(index);
+        let parts = [first, second].map(|name| self.part(context, textures, name, span));
+        self.open.pop();
+        let [first, second] = parts;
+        Ok(Material::Mix(Arc::new(Mixture {
+            materials: [first?, second?],
+            amount: amount.unwrap_or(FloatTexture::Constant(0.5)),
+        })))
+    }
+
+    /// Builds the part of a mixture that is called `name`.
+    fn part(
+        &mut self,
+        context: &mut Context<'_>,
+        textures: &mut Textures<'_>,
+        name: &str,
+        span: Span,
+    ) -> Result<Material, Fault> {
+        let Some(&index) = self.named.get(&*known::normalized(name)) else {
+            let fault = Fault::scene(span, format!("unknown material `{}`", shorten(name)));
+            return Err(fault.with_nearest(name, self.named.keys().copied()));
+        };
+        if self.open.contains(&index) {
+            let message = format!("the mixture `{}` is a part of itself", shorten(name));
+            return Err(Fault::scene(span, message));
+        }
+        if self.open.len() >= DEEPEST {
+            let message = format!("mixtures are nested deeper than {DEEPEST}");
+            return Err(Fault::scene(span, message));
+        }
+        self.build(context, textures, index)?.ok_or_else(|| {
+            let message = format!("the material `{}` is no surface", shorten(name));
+            Fault::scene(span, message).with_hint("a mixture is of two surfaces")
+        })
+    }
+}
+
+/// Mixtures within mixtures: each doubles what is built.
+const DEEPEST: usize = 8;
 
 fn grey() -> Material {
     Material::Diffuse {
@@ -56,29 +164,53 @@ fn diffuse(
     })
 }
 
+fn diffuse_transmission(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Material, Fault> {
+    let quarter = ColorTexture::Constant([0.25; 3]);
+    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
+    let transmittance = textures.color(context, reader, "transmittance", Purpose::Albedo)?;
+    Ok(Material::DiffuseTransmission {
+        reflectance: reflectance.unwrap_or_else(|| quarter.clone()),
+        transmittance: transmittance.unwrap_or(quarter),
+        scale: reader.float_within("scale", 1.0, [0.0, f32::MAX])?,
+    })
+}
+
 fn conductor(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
-    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    let eta = textures.color(context, reader, "eta", Purpose::Unbounded)?;
-    let k = textures.color(context, reader, "k", Purpose::Unbounded)?;
-    let index = match (reflectance, eta, k) {
-        (Some(reflectance), None, None) => ConductorIndex::Reflectance(reflectance),
-        (Some(_), _, _) => {
-            let message = "a conductor has `reflectance` or `eta` and `k`, not both";
-            return Err(Fault::scene(reader.span(), message));
-        }
-        (None, eta, k) => ConductorIndex::Complex {
-            eta: eta.unwrap_or(ColorTexture::Constant(color::COPPER.0)),
-            k: k.unwrap_or(ColorTexture::Constant(color::COPPER.1)),
-        },
-    };
     Ok(Material::Conductor {
-        index,
-        roughness: roughness(context, textures, reader)?,
+        index: conductor_index(context, textures, reader, ["eta", "k"])?,
+        roughness: roughness(context, textures, reader, &SURFACE)?,
     })
+}
+
+/// The index of a metal, whose parts are called `eta` and `k`.
+fn conductor_index(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+    [eta, k]: [&'static str; 2],
+) -> Result<ConductorIndex, Fault> {
+    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
+    let real = textures.color(context, reader, eta, Purpose::Unbounded)?;
+    let imaginary = textures.color(context, reader, k, Purpose::Unbounded)?;
+    match (reflectance, real, imaginary) {
+        (Some(reflectance), None, None) => Ok(ConductorIndex::Reflectance(reflectance)),
+        (Some(_), _, _) => {
+            let message = format!("a conductor has `reflectance` or `{eta}` and `{k}`, not both");
+            Err(Fault::scene(reader.span(), message))
+        }
+        (None, real, imaginary) => Ok(ConductorIndex::Complex {
+            eta: real.unwrap_or(ColorTexture::Constant(color::COPPER.0)),
+            k: imaginary.unwrap_or(ColorTexture::Constant(color::COPPER.1)),
+        }),
+    }
 }
 
 fn dielectric(
@@ -86,22 +218,89 @@ fn dielectric(
     textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
-    let eta = color::read_eta(context, reader)?;
+    let eta = color::read_eta(context, reader, "eta")?;
     Ok(Material::Dielectric {
         eta,
-        roughness: roughness(context, textures, reader)?,
+        roughness: roughness(context, textures, reader, &SURFACE)?,
     })
 }
+
+fn coated_diffuse(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Material, Fault> {
+    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
+    let coat = coat(context, textures, reader, ("eta", &SURFACE))?;
+    let reflectance = reflectance.unwrap_or(ColorTexture::Constant([0.5; 3]));
+    Ok(Material::CoatedDiffuse(CoatedDiffuseMaterial::new(
+        coat,
+        reflectance,
+    )))
+}
+
+fn coated_conductor(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Material, Fault> {
+    let names = ["conductor.eta", "conductor.k"];
+    let index = conductor_index(context, textures, reader, names)?;
+    let of_metal = roughness(context, textures, reader, &METAL)?;
+    let coat = coat(context, textures, reader, ("interface.eta", &INTERFACE))?;
+    Ok(Material::CoatedConductor(CoatedConductorMaterial::new(
+        coat, index, of_metal,
+    )))
+}
+
+/// A layer, whose index and roughness have these names.
+fn coat(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+    (eta, names): (&'static str, &[&'static str; 3]),
+) -> Result<CoatSettings, Fault> {
+    let thickness = textures.float(context, reader, "thickness")?;
+    let albedo = textures.color(context, reader, "albedo", Purpose::Albedo)?;
+    let g = textures.float(context, reader, "g")?;
+    let reflections = reader.integer("maxdepth", 10, 0)?.div_ceil(2);
+    reader.ignore(context, ParameterType::Integer, "nsamples");
+    Ok(CoatSettings {
+        eta: color::read_eta(context, reader, eta)?,
+        roughness: roughness(context, textures, reader, names)?,
+        thickness: thickness.unwrap_or(FloatTexture::Constant(0.01)),
+        albedo: albedo.unwrap_or(CLEAR),
+        g: g.unwrap_or(FloatTexture::Constant(0.0)),
+        // Every other event of a walk in the layer is a reflection at the base.
+        orders: reflections,
+    })
+}
+
+/// The names of a roughness: in both directions, along u, along v.
+const SURFACE: [&str; 3] = ["roughness", "uroughness", "vroughness"];
+/// That of a layer's interface.
+const INTERFACE: [&str; 3] = [
+    "interface.roughness",
+    "interface.uroughness",
+    "interface.vroughness",
+];
+/// That of the metal under a layer.
+const METAL: [&str; 3] = [
+    "conductor.roughness",
+    "conductor.uroughness",
+    "conductor.vroughness",
+];
 
 fn roughness(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
+    [both, u, v]: &[&'static str; 3],
 ) -> Result<Roughness, Fault> {
-    let both = textures.float(context, reader, "roughness")?;
+    let both = textures.float(context, reader, both)?;
     let both = both.unwrap_or(FloatTexture::Constant(0.0));
-    let u = textures.float(context, reader, "uroughness")?;
-    let v = textures.float(context, reader, "vroughness")?;
+    let u = textures.float(context, reader, u)?;
+    let v = textures.float(context, reader, v)?;
     let mapping = if reader.bool("remaproughness", true)? {
         RoughnessMapping::SquareRoot
     } else {
@@ -125,28 +324,9 @@ fn stand_in(
     let mut accept = |stand_in| context.unsupported(entity.span, &what, stand_in);
     let mut reader = Reader::new(entity);
     match entity.kind.as_str() {
-        "interface" | "none" | "" => {
-            accept("its shapes are left out")?;
-            Ok(None)
-        }
-        "thindielectric" => {
-            accept("a smooth `dielectric` stands in")?;
-            dielectric(context, textures, &mut reader).map(Some)
-        }
-        "coateddiffuse" | "diffusetransmission" | "subsurface" => {
+        "subsurface" => {
             accept("`diffuse` of its reflectance stands in")?;
             diffuse(context, textures, &mut reader).map(Some)
-        }
-        "coatedconductor" => {
-            accept("smooth copper stands in")?;
-            let index = ConductorIndex::Complex {
-                eta: ColorTexture::Constant(color::COPPER.0),
-                k: ColorTexture::Constant(color::COPPER.1),
-            };
-            Ok(Some(Material::Conductor {
-                index,
-                roughness: Roughness::SMOOTH,
-            }))
         }
         _ => {
             accept("`diffuse` of 0.5 stands in")?;

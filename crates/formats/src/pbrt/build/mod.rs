@@ -27,7 +27,7 @@ pub use film::Crop;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{Entity, SceneDescription, ShapeDescription};
+use super::scene::{SceneDescription, ShapeDescription};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::math::Vec3;
@@ -37,7 +37,7 @@ use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
 use glam::DAffine3;
-use reader::Reader;
+use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -193,17 +193,12 @@ impl<'a> Assembly<'a> {
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         let description = context.description;
+        let mut materials = Materials::new(&description.materials);
         self.summary.textures = description.textures.len();
         let used = used_materials(description);
         let textures = &mut self.textures;
-        for (index, material) in description.materials.iter().enumerate() {
-            let entity = material.entity.as_ref();
-            if let Some(entity) = entity.filter(|entity| is_interface(entity)) {
-                Reader::new(entity).finish()?;
-                self.materials.push(None);
-                continue;
-            }
-            let mut build = |context: &mut _| material::build(context, textures, entity);
+        for index in 0..description.materials.len() {
+            let mut build = |context: &mut _| materials.build(context, textures, index);
             let built = if used.contains(&index) {
                 build(context)?
             } else {
@@ -326,12 +321,6 @@ impl<'a> Assembly<'a> {
         }
         Ok(())
     }
-}
-
-/// True where the material says that there is no surface: rays pass, shadow rays too. What bounds no
-/// medium need not be kept then, and does not emit.
-fn is_interface(entity: &Entity) -> bool {
-    matches!(entity.kind.as_str(), "interface" | "none" | "")
 }
 
 /// The materials of shapes, by index.

@@ -3,6 +3,7 @@
 mod digest;
 mod film;
 mod lights;
+mod materials;
 mod refusals;
 mod robust;
 mod settings;

@@ -96,8 +96,8 @@ fn wrong_worlds_are_told() {
 #[test]
 fn what_is_not_built_is_refused_by_name() {
     check_world(
-        "Material \"coateddiffuse\" Shape \"sphere\"",
-        "s.pbrt:2:10: the material `coateddiffuse` is recognised but not supported yet; \
+        "Material \"subsurface\" Shape \"sphere\"",
+        "s.pbrt:2:10: the material `subsurface` is recognised but not supported yet; \
          with --lenient: `diffuse` of its reflectance stands in",
     );
     check_world(
@@ -131,7 +131,7 @@ fn what_is_not_built_is_refused_by_name() {
 #[test]
 fn with_leniency_something_stands_in_and_is_counted() {
     let loaded = load_text(
-        "Integrator \"sppm\" WorldBegin\nMaterial \"coateddiffuse\" \"rgb reflectance\" [1 0 0]\n\
+        "Integrator \"sppm\" WorldBegin\nMaterial \"subsurface\" \"rgb reflectance\" [1 0 0]\n\
          Shape \"sphere\" Shape \"cylinder\" Shape \"cylinder\"\nMaterial \"interface\" Shape \"sphere\"",
         &LENIENT,
     );
@@ -140,7 +140,7 @@ fn with_leniency_something_stands_in_and_is_counted() {
         loaded.warnings,
         [
             "s.pbrt:1:12: the integrator `sppm` is not supported yet: `bdpt` stands in",
-            "s.pbrt:2:10: the material `coateddiffuse` is not supported yet: \
+            "s.pbrt:2:10: the material `subsurface` is not supported yet: \
              `diffuse` of its reflectance stands in",
             "s.pbrt:3:22: the shape `cylinder` is not supported yet: it is left out (2 times)",
         ]

@@ -1,0 +1,225 @@
+//! A dielectric layer over an opaque base: what both coated materials have in common.
+//!
+//! Light that the interface lets through reaches the base along refracted directions, and leaves by
+//! the interface again, so that a base that scatters f_b inside scatters, seen from outside,
+//!
+//! f = T(wo) T(wi) A(wo) A(wi) f_b / η²,
+//!
+//! T the interface's directional transmittance, A = exp(-τ/cosθ') what the layer leaves of light
+//! that crosses it along the refracted direction, and 1/η² the compression of radiance
+//! (docs/derivations/layered-materials.md). Each factor belongs to one direction, so f is symmetric.
+//!
+//! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps
+//! Fresnel's equations off the rim as facets do, and q is a cubic through four values that were
+//! integrated when the material was built ([`Layer`]). For a smooth interface g = 0 and q = 1.
+
+mod layer;
+mod reflections;
+
+pub use layer::Layer;
+pub use reflections::Reflections;
+
+use super::fresnel;
+use super::microfacet::{Ggx, SMOOTH_ALPHA};
+use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
+use crate::spectrum::Spectrum;
+
+/// √μ of the values that a [`Curve`] goes through.
+const KNOTS: [f32; 4] = [0.15, 0.45, 0.75, 1.0];
+
+/// A function of the cosine μ: the cubic in √μ through its values at [`KNOTS`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Curve([f32; 4]);
+
+impl Curve {
+    const ONE: Self = Self([1.0; 4]);
+
+    /// The curve through `value(μ)`.
+    fn through(value: impl Fn(f32) -> f32) -> Self {
+        Self(KNOTS.map(|knot| value(sqr(knot))))
+    }
+
+    #[inline]
+    pub(super) fn at(self, cos: f32) -> f32 {
+        let x = cos.sqrt();
+        let [a, b, c, d] = KNOTS.map(|knot| x - knot);
+        let [ka, kb, kc, kd] = KNOTS;
+        let basis = [
+            b * c * d / ((ka - kb) * (ka - kc) * (ka - kd)),
+            a * c * d / ((kb - ka) * (kb - kc) * (kb - kd)),
+            a * b * d / ((kc - ka) * (kc - kb) * (kc - kd)),
+            a * b * c / ((kd - ka) * (kd - kb) * (kd - kc)),
+        ];
+        self.0[0] * basis[0] + self.0[1] * basis[1] + self.0[2] * basis[2] + self.0[3] * basis[3]
+    }
+
+    /// ∫ 2μ value dμ over `[0, 1]`.
+    fn mean(self) -> f32 {
+        mean(|cos| self.at(cos))
+    }
+
+    /// Between two curves.
+    fn lerp(self, other: Self, t: f32) -> Self {
+        Self(std::array::from_fn(|i| {
+            self.0[i] + (other.0[i] - self.0[i]) * t
+        }))
+    }
+}
+
+/// The interface of a layer, and what the layer absorbs. Both sides of the surface have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coat {
+    /// The optical depth of absorption.
+    absorption: Spectrum,
+    /// Index of refraction of the layer, divided by that outside.
+    eta: f32,
+    ggx: Ggx,
+    /// g: the cosine that a grazing direction meets facets at.
+    grazing: f32,
+    /// q: what facets shadow of the transmitted light.
+    ratio: Curve,
+}
+
+impl Coat {
+    /// A coat with facets of `ggx`, an interface that `layer` was tabulated for.
+    pub fn new(layer: &Layer, ggx: Ggx, absorption: Spectrum) -> Self {
+        Self {
+            absorption,
+            eta: layer.eta,
+            ggx,
+            grazing: layer.grazing,
+            ratio: layer.ratio,
+        }
+    }
+
+    /// The same over metal, which keeps directions, so that another part of light gets through.
+    pub fn over_metal(layer: &Layer, reflections: &Reflections, ggx: Ggx, depth: Spectrum) -> Self {
+        Self {
+            ratio: reflections.ratio,
+            ..Self::new(layer, ggx, depth)
+        }
+    }
+
+    #[inline]
+    pub(super) fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    /// An index-matched interface reflects nothing, and bends nothing.
+    #[inline]
+    pub(super) fn is_smooth(&self) -> bool {
+        self.ggx.is_smooth()
+    }
+
+    /// About the part of light along `w` that the interface reflects; exact where it is smooth.
+    #[inline]
+    pub(super) fn reflectance(&self, w: Vec3) -> f32 {
+        fresnel::dielectric(spread_cosine(w.z, self.grazing).max(1e-7), self.eta)
+    }
+
+    /// T(w): the part of light along `w` that the interface lets through to the base.
+    #[inline]
+    pub(super) fn transmittance(&self, w: Vec3) -> f32 {
+        let through = 1.0 - self.reflectance(w);
+        (through * self.ratio.at(w.z.abs())).clamp(0.0, 1.0)
+    }
+
+    /// The direction within the layer, on the same side, as a smooth interface bends it. None: total
+    /// reflection.
+    #[inline]
+    pub(super) fn refracted(&self, w: Vec3) -> Option<Vec3> {
+        let (x, y) = (w.x / self.eta, w.y / self.eta);
+        let cos2 = 1.0 - sqr(x) - sqr(y);
+        (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
+    }
+
+    /// The direction outside of one within the layer. None: total reflection.
+    #[inline]
+    pub(super) fn emerging(&self, w: Vec3) -> Option<Vec3> {
+        let (x, y) = (w.x * self.eta, w.y * self.eta);
+        let cos2 = 1.0 - sqr(x) - sqr(y);
+        (cos2 > 0.0).then(|| Vec3::new(x, y, cos2.sqrt().copysign(w.z)))
+    }
+
+    /// A(wo) A(wi): what the layer leaves of light that crosses it along both.
+    #[inline]
+    pub(super) fn attenuation(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if self.absorption.is_black() {
+            return Spectrum::ONE;
+        }
+        let length = |w: Vec3| {
+            let sin2 = 1.0 - sqr(w.z);
+            1.0 / safe_sqrt(1.0 - sin2 / sqr(self.eta)).max(1e-3)
+        };
+        let both = length(wo) + length(wi);
+        self.absorption.map(|depth| libm::expf(-depth * both))
+    }
+
+    /// f of the interface's reflection. Unit: 1/sr. Zero where it is smooth.
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_smooth() {
+            return 0.0;
+        }
+        let (facets, cos) = self.ggx.mirror(wo, wi);
+        facets * fresnel::dielectric(cos.abs(), self.eta)
+    }
+
+    /// The density of [`sample`](Self::sample). Measure: solid angle, 1/sr. Zero where it is smooth.
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_smooth() {
+            return 0.0;
+        }
+        self.ggx.mirror_pdf(wo, wi)
+    }
+
+    /// Draws a direction of the rough interface's reflection. None: below the surface.
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u: Vec2) -> Option<Vec3> {
+        self.ggx.sample_mirror(wo, u)
+    }
+}
+
+/// ∫ 2μ value(μ) dμ over `[0, 1]`, with points even in μ².
+fn mean(value: impl Fn(f32) -> f32) -> f32 {
+    let points = 24;
+    let at = |i| value(((i as f32 + 0.5) / points as f32).sqrt());
+    (0..points).map(at).sum::<f32>() / points as f32
+}
+
+/// The facets of a metal as they look through those of an interface `coat` of index `eta`.
+///
+/// A facet of the interface that is tilted by t bends what it refracts by t (1 - 1/η), twice on the
+/// way; one of the metal, what it reflects by 2t.
+pub(super) fn seen_through(metal: Ggx, coat: Ggx, eta: f32) -> Ggx {
+    if coat.is_smooth() {
+        return metal;
+    }
+    let scale = (1.0 - 1.0 / eta).abs() * std::f32::consts::FRAC_1_SQRT_2;
+    let broad = metal.broadened(coat, scale);
+    if broad.is_smooth() {
+        Ggx::new(SMOOTH_ALPHA, SMOOTH_ALPHA)
+    } else {
+        broad
+    }
+}
+
+/// μ̂ = √(μ² + (1-μ²) g²).
+#[inline]
+fn spread_cosine(cos: f32, grazing: f32) -> f32 {
+    (sqr(cos) + (1.0 - sqr(cos)).max(0.0) * sqr(grazing)).sqrt()
+}
+
+/// Σ x^k over k < `terms`: light that is thrown back `k` times.
+#[inline]
+pub(super) fn geometric_sum(x: f32, terms: u32) -> f32 {
+    if terms == u32::MAX {
+        return 1.0 / (1.0 - x);
+    }
+    if x > 0.999 {
+        // Close to x = 1 the quotient has no digits left.
+        return (0..terms.min(4096)).rev().fold(0.0, |sum, _| 1.0 + x * sum);
+    }
+    (1.0 - libm::powf(x, terms as f32)) / (1.0 - x)
+}

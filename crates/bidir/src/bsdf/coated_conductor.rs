@@ -1,0 +1,279 @@
+//! A dielectric layer over metal: lacquer, anodised or wet metal.
+//!
+//! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) (f_m(wo', wi') / η² + M) [1/sr], with
+//! f_m the metal's own reflection for an index relative to the layer's, between directions that a
+//! smooth interface refracts. A rough interface, which scatters what it refracts, broadens the facets
+//! of f_m as variances of slopes add [Belcour18, §4], and T is scaled so that as much leaves as walks
+//! between both surfaces say.
+//!
+//! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
+//! E(wo) E(wi) / (π Ē) · F̄² Σ_k (F̄ s)^k / Σ_k s^k, as if it had forgotten where it came from
+//! [Kulla17]; E, what white metal so reflects, and s, how much less each time, are tabulated by a
+//! walk ([`Reflections`]). Where both surfaces are smooth there is one mirrored
+//! direction, and the sum over all reflections is exact.
+//!
+//! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
+
+use super::coat::{Coat, Curve, Layer, Reflections, geometric_sum, seen_through};
+use super::microfacet::Ggx;
+use super::{BsdfSample, Filling, fresnel, same_hemisphere};
+use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
+use crate::spectrum::Spectrum;
+
+/// A dielectric layer over metal; both sides of the surface look alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoatedConductor {
+    coat: Coat,
+    metal: CoatedMetal,
+    /// E.
+    trapped: Curve,
+    /// F̄² Σ_k (F̄ s)^k / (π Ē Σ_k s^k).
+    multiple: Spectrum,
+    /// ∫ E M cosθ dω of the brightest lane.
+    escape: f32,
+    /// The most reflections at the metal.
+    orders: u32,
+}
+
+/// A metal under a layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoatedMetal {
+    /// Real part of the index of refraction, relative to the layer's.
+    pub eta: Spectrum,
+    /// Imaginary part, likewise.
+    pub k: Spectrum,
+    /// The facets.
+    pub ggx: Ggx,
+}
+
+impl CoatedMetal {
+    #[inline]
+    fn fresnel(&self, cos: f32) -> Spectrum {
+        fresnel::conductor(cos, self.eta, self.k)
+    }
+}
+
+/// A way in which light leaves.
+#[derive(Clone, Copy, PartialEq)]
+enum Lobe {
+    /// Off the interface.
+    Coat,
+    /// Off the metal, once.
+    Once,
+    /// Off the metal, more than once.
+    Trapped,
+}
+
+impl CoatedConductor {
+    /// `metal` under an interface of `ggx`; `tables` are those of the two surfaces, and `orders` is
+    /// the most reflections at the metal, `u32::MAX` for all.
+    pub fn new(
+        tables: (&Layer, &Reflections),
+        ggx: Ggx,
+        filling: &Filling,
+        metal: CoatedMetal,
+        orders: u32,
+    ) -> Self {
+        let (layer, reflections) = tables;
+        let absorption = filling.absorption();
+        let coat = Coat::over_metal(layer, reflections, ggx, absorption);
+        let metal = CoatedMetal {
+            ggx: seen_through(metal.ggx, ggx, coat.eta()),
+            ..metal
+        };
+        // Metals reflect much the same from all but grazing directions.
+        let average = metal.fresnel(0.7);
+        let trip = absorption.map(|depth| libm::expf(-depth * layer.path));
+        let terms = reflections.orders.saturating_sub(1);
+        let white = geometric_sum(reflections.again, terms).max(1.0);
+        let multiple = average.zip(trip, |average, trip| {
+            let series = geometric_sum(average * trip * reflections.again, terms) / white;
+            sqr(average) * trip * series * INV_PI / reflections.mean
+        });
+        Self {
+            coat,
+            metal,
+            trapped: reflections.part,
+            multiple,
+            escape: multiple.max_lane() * PI * reflections.mean,
+            orders,
+        }
+    }
+
+    #[inline]
+    pub(super) fn is_delta(&self) -> bool {
+        self.metal.ggx.is_smooth()
+    }
+
+    /// What leaves along the mirrored direction where all is smooth: F + T² Σ_k (F_m a)^k F^{k-1}, a
+    /// what the layer leaves of one trip.
+    #[inline]
+    fn mirror_reflectance(&self, wo: Vec3) -> Spectrum {
+        let reflected = self.coat.reflectance(wo);
+        let Some(inner) = self.coat.refracted(wo) else {
+            return Spectrum::ONE;
+        };
+        let trip = self.metal.fresnel(inner.z.abs()) * self.coat.attenuation(wo, wo);
+        trip.map(|trip| {
+            let series = geometric_sum(reflected * trip, self.orders);
+            reflected + sqr(1.0 - reflected) * trip * if self.orders > 0 { series } else { 0.0 }
+        })
+    }
+
+    /// About the part of light along `w` that each lobe scatters. It depends on |cosθ| alone.
+    #[inline]
+    fn shares(&self, w: Vec3) -> [Spectrum; 3] {
+        let coat = Spectrum::splat(self.coat.reflectance(w));
+        let (Some(inner), 1..) = (self.coat.refracted(w), self.orders) else {
+            return [coat, Spectrum::ZERO, Spectrum::ZERO];
+        };
+        let once = self.metal.fresnel(inner.z.abs()) * sqr(self.coat.transmittance(w));
+        let trapped = Spectrum::splat(self.trapped_part(w) * self.escape);
+        [coat, once, trapped]
+    }
+
+    #[inline]
+    fn trapped_part(&self, w: Vec3) -> f32 {
+        self.trapped.at(w.z.abs()).clamp(0.0, 1.0)
+    }
+
+    /// The probabilities of drawing from each lobe. None: nothing is scattered.
+    #[inline]
+    fn probs(&self, w: Vec3) -> Option<[f32; 3]> {
+        let shares = self.shares(w).map(Spectrum::max_lane);
+        let sum = shares[0] + shares[1] + shares[2];
+        (sum > 0.0).then(|| shares.map(|share| share / sum))
+    }
+
+    #[inline]
+    pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
+        if self.is_delta() {
+            return self.mirror_reflectance(wo);
+        }
+        let [coat, once, trapped] = self.shares(wo);
+        (coat + once + trapped).map(|lane| lane.min(1.0))
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if self.is_delta() || !same_hemisphere(wo, wi) {
+            return Spectrum::ZERO;
+        }
+        let coat = Spectrum::splat(self.coat.eval(wo, wi));
+        let inner = (self.coat.refracted(wo), self.coat.refracted(wi));
+        let ((Some(inner_o), Some(inner_i)), 1..) = (inner, self.orders) else {
+            return coat;
+        };
+        let (facets, cos) = self.metal.ggx.mirror(inner_o, inner_i);
+        let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
+        let once = self.metal.fresnel(cos) * (facets * through / sqr(self.coat.eta()));
+        let trapped = self.multiple * (self.trapped_part(wo) * self.trapped_part(wi));
+        coat + (once + trapped) * self.coat.attenuation(wo, wi)
+    }
+
+    /// The density of drawing `wi` by a reflection at the metal: that of the direction within, times
+    /// dω'/dω = |cosθ| / (η² |cosθ'|).
+    #[inline]
+    fn once_pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let (Some(inner_o), Some(inner_i)) = (self.coat.refracted(wo), self.coat.refracted(wi))
+        else {
+            return 0.0;
+        };
+        let within = self.metal.ggx.mirror_pdf(inner_o, inner_i);
+        within * wi.z.abs() / (sqr(self.coat.eta()) * inner_i.z.abs())
+    }
+
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        if self.is_delta() || !same_hemisphere(wo, wi) {
+            return 0.0;
+        }
+        let Some([coat, once, trapped]) = self.probs(wo) else {
+            return 0.0;
+        };
+        coat * self.coat.pdf(wo, wi)
+            + once * self.once_pdf(wo, wi)
+            + trapped * warp::cosine_hemisphere_pdf(wi.z.abs())
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        if wo.z == 0.0 {
+            return None;
+        }
+        if self.is_delta() {
+            return Some(BsdfSample::mirror(wo, self.mirror_reflectance(wo), 1.0));
+        }
+        let [coat, once, _] = self.probs(wo)?;
+        let lobe = match u_lobe {
+            u if u < coat => Lobe::Coat,
+            u if u < coat + once => Lobe::Once,
+            _ => Lobe::Trapped,
+        };
+        if lobe == Lobe::Coat && self.coat.is_smooth() {
+            let reflectance = Spectrum::splat(self.coat.reflectance(wo));
+            return Some(BsdfSample::mirror(wo, reflectance, coat));
+        }
+        let wi = self.sample_lobe(lobe, wo, u)?;
+        let densities = [self.pdf(wo, wi), self.pdf(wi, wo)];
+        BsdfSample::of_densities(wi, self.eval(wo, wi), densities)
+    }
+
+    /// Draws a direction from a lobe that is no Dirac distribution. None: it does not leave.
+    #[inline]
+    fn sample_lobe(&self, lobe: Lobe, wo: Vec3, u: Vec2) -> Option<Vec3> {
+        match lobe {
+            Lobe::Coat => self.coat.sample(wo, u),
+            Lobe::Once => {
+                let inner = self.coat.refracted(wo)?;
+                self.coat.emerging(self.metal.ggx.sample_mirror(inner, u)?)
+            }
+            Lobe::Trapped => {
+                let wi = warp::cosine_hemisphere(u);
+                Some(Vec3::new(wi.x, wi.y, wi.z.copysign(wo.z)))
+            }
+        }
+    }
+
+    pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        let coated = |eta, coat: f32, metal: [f32; 2], thickness, orders| {
+            let (ggx, facets) = (Ggx::new(coat, coat), Ggx::new(metal[0], metal[1]));
+            let (layer, alpha) = (Layer::new(eta, coat), facets.mean_alpha());
+            let reflections = Reflections::new(&layer, [coat, alpha], orders);
+            let filling = Filling {
+                thickness,
+                albedo: Spectrum::splat(0.0),
+                g: 0.0,
+            };
+            let metal = CoatedMetal {
+                eta: Spectrum([0.14, 0.64, 0.78, 0.78]),
+                k: Spectrum([2.4, 1.7, 1.6, 1.6]),
+                ggx: facets,
+            };
+            Self::new((&layer, &reflections), ggx, &filling, metal, orders)
+        };
+        [
+            (
+                "coated conductor smooth",
+                coated(1.5, 0.0, [0.0; 2], 0.01, 5),
+            ),
+            (
+                "coated conductor under smooth coat",
+                coated(1.5, 0.0, [0.3; 2], 0.01, 5),
+            ),
+            (
+                "coated conductor under rough coat",
+                coated(1.5, 0.3, [0.0; 2], 0.2, 5),
+            ),
+            (
+                "coated conductor rough",
+                coated(1.3, 0.4, [0.6; 2], 0.01, u32::MAX),
+            ),
+            (
+                "coated conductor anisotropic",
+                coated(1.5, 0.0, [0.5, 0.15], 0.0, 5),
+            ),
+        ]
+        .into_iter()
+    }
+}

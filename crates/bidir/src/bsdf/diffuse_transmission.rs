@@ -1,0 +1,80 @@
+//! f = r/π on the side that is looked at, t/π through the surface (1/sr): paper, leaves, cloth.
+//!
+//! Drawn by one cosine-distributed direction on the side of `wi`, the side with probability
+//! proportional to the largest lane of r and of t. No interface is crossed: radiance is not scaled.
+
+use super::{BsdfSample, same_hemisphere};
+use crate::math::{INV_PI, Vec2, Vec3, warp};
+use crate::spectrum::Spectrum;
+
+/// Lambertian reflection and transmission, the same from both sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiffuseTransmission {
+    /// The reflectance r. Range: `[0, 1]` per lane.
+    pub reflectance: Spectrum,
+    /// The transmittance t. Range: `[0, 1]` per lane; r + t above 1 makes light.
+    pub transmittance: Spectrum,
+}
+
+impl DiffuseTransmission {
+    #[inline]
+    pub(super) fn albedo(&self) -> Spectrum {
+        (self.reflectance + self.transmittance).map(|lane| lane.min(1.0))
+    }
+
+    /// The probability of drawing a reflected direction. None: nothing is scattered.
+    #[inline]
+    fn reflection_prob(&self) -> Option<f32> {
+        let (r, t) = (self.reflectance.max_lane(), self.transmittance.max_lane());
+        (r + t > 0.0).then(|| r / (r + t))
+    }
+
+    #[inline]
+    pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        if wo.z == 0.0 || wi.z == 0.0 {
+            Spectrum::ZERO
+        } else if same_hemisphere(wo, wi) {
+            self.reflectance * INV_PI
+        } else {
+            self.transmittance * INV_PI
+        }
+    }
+
+    #[inline]
+    pub(super) fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
+        let Some(prob) = self.reflection_prob().filter(|_| wo.z != 0.0) else {
+            return 0.0;
+        };
+        let side = if same_hemisphere(wo, wi) {
+            prob
+        } else {
+            1.0 - prob
+        };
+        side * warp::cosine_hemisphere_pdf(wi.z.abs())
+    }
+
+    #[inline]
+    pub(super) fn sample(&self, wo: Vec3, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let prob = self.reflection_prob()?;
+        let side = if u_lobe < prob { wo.z } else { -wo.z };
+        let wi = warp::cosine_hemisphere(u);
+        let wi = Vec3::new(wi.x, wi.y, wi.z.copysign(side));
+        let densities = [self.pdf(wo, wi), self.pdf(wi, wo)];
+        BsdfSample::of_densities(wi, self.eval(wo, wi), densities)
+    }
+
+    pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        let of = |reflectance, transmittance| Self {
+            reflectance: Spectrum(reflectance),
+            transmittance: Spectrum(transmittance),
+        };
+        [
+            (
+                "diffuse transmission",
+                of([0.3, 0.4, 0.1, 0.0], [0.2, 0.3, 0.5, 0.0]),
+            ),
+            ("diffuse transmission only", of([0.0; 4], [1.0; 4])),
+        ]
+        .into_iter()
+    }
+}

@@ -1,0 +1,165 @@
+use super::{check_world, world};
+use bidir::bsdf::Bsdf;
+use bidir::material::Material;
+use bidir::math::{Vec2, Vec3};
+use bidir::spectrum::{ColorModel, Wavelengths};
+
+/// The scattering of the last material, of which `u` chooses a part.
+#[track_caller]
+fn bsdf(text: &str, u: f32) -> Bsdf {
+    let scene = world(&format!("{text} Shape \"sphere\""));
+    let material = scene.materials().last().expect("there is a material");
+    let chosen = material.choose(Vec2::ZERO, || u);
+    chosen.bsdf(Vec2::ZERO, ColorModel::Rgb, &Wavelengths::default())
+}
+
+/// Checks that two ways to write a material are one.
+#[track_caller]
+fn check_same(text: &str, spelled_out: &str) {
+    assert_eq!(bsdf(text, 0.0), bsdf(spelled_out, 0.0));
+}
+
+#[track_caller]
+fn check_different(text: &str, other: &str) {
+    assert_ne!(bsdf(text, 0.0), bsdf(other, 0.0));
+}
+
+#[test]
+fn what_is_left_out_has_the_defaults_of_the_format() {
+    check_same(
+        "Material \"coateddiffuse\"",
+        "Material \"coateddiffuse\" \"rgb reflectance\" [.5 .5 .5] \"float roughness\" 0 \
+         \"float thickness\" .01 \"float eta\" 1.5 \"float g\" 0 \"rgb albedo\" [0 0 0] \
+         \"integer maxdepth\" 10 \"bool remaproughness\" true",
+    );
+    check_same(
+        "Material \"coatedconductor\"",
+        "Material \"coatedconductor\" \"float interface.roughness\" 0 \"float interface.eta\" 1.5 \
+         \"float thickness\" .01 \"spectrum conductor.eta\" \"metal-Cu-eta\" \
+         \"spectrum conductor.k\" \"metal-Cu-k\" \"float conductor.roughness\" 0 \
+         \"integer maxdepth\" 10",
+    );
+    check_same(
+        "Material \"thindielectric\"",
+        "Material \"thindielectric\" \"float eta\" 1.5",
+    );
+    check_same(
+        "Material \"diffusetransmission\"",
+        "Material \"diffusetransmission\" \"rgb reflectance\" [.5 .5 .5] \
+         \"rgb transmittance\" [.5 .5 .5] \"float scale\" .5",
+    );
+}
+
+#[test]
+fn every_parameter_of_a_layer_changes_something() {
+    let plain = "Material \"coateddiffuse\" \"float roughness\" .3";
+    for parameter in [
+        "\"rgb reflectance\" [.2 .2 .2]",
+        "\"float thickness\" .5",
+        "\"float eta\" 1.3",
+        "\"rgb albedo\" [.5 .5 .5]",
+        "\"integer maxdepth\" 3",
+        "\"bool remaproughness\" false",
+        "\"float uroughness\" .1",
+        "\"float vroughness\" .1",
+    ] {
+        check_different(plain, &format!("{plain} {parameter}"));
+    }
+    let plain = "Material \"coatedconductor\" \"float conductor.roughness\" .3";
+    for parameter in [
+        "\"float interface.roughness\" .1",
+        "\"float interface.uroughness\" .1",
+        "\"float interface.vroughness\" .1",
+        "\"float interface.eta\" 1.3",
+        "\"float conductor.uroughness\" .1",
+        "\"float conductor.vroughness\" .1",
+        "\"rgb reflectance\" [.2 .2 .2]",
+        "\"rgb conductor.k\" [1 1 1]",
+        "\"float thickness\" .5",
+        "\"integer maxdepth\" 2",
+        "\"bool remaproughness\" false",
+    ] {
+        check_different(plain, &format!("{plain} {parameter}"));
+    }
+}
+
+#[test]
+fn unequal_slopes_of_a_coat_turn_with_the_surface() {
+    let text = "Material \"coateddiffuse\" \"float uroughness\" .5 \"float vroughness\" .05";
+    let Bsdf::CoatedDiffuse(bsdf) = bsdf(text, 0.0) else {
+        panic!("the material is a coated diffuse one");
+    };
+    let bsdf = Bsdf::CoatedDiffuse(bsdf);
+    let along = |w: Vec3| bsdf.pdf(Vec3::Z, w.normalize());
+    assert!(along(Vec3::new(0.5, 0.0, 1.0)) > 1.2 * along(Vec3::new(0.0, 0.5, 1.0)));
+}
+
+const PARTS: &str = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n\
+                     MakeNamedMaterial \"b\" \"string type\" \"dielectric\"\n";
+
+#[test]
+fn a_mixture_is_its_second_material_with_probability_amount() {
+    let of = |parameters: &str, u| bsdf(&format!("{PARTS}Material \"mix\" {parameters}"), u);
+    let both = "\"string materials\" [\"a\" \"b\"]";
+    assert!(matches!(of(both, 0.4), Bsdf::Dielectric(_)));
+    assert!(matches!(of(both, 0.6), Bsdf::Diffuse(_)));
+    let few = format!("{both} \"float amount\" .1");
+    assert!(matches!(of(&few, 0.05), Bsdf::Dielectric(_)));
+    assert!(matches!(of(&few, 0.15), Bsdf::Diffuse(_)));
+    // A mixture within, defined after it is named.
+    let nested = "\"string materials\" [\"a\" \"m\"]\n\
+                  MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"b\" \"a\"]";
+    let scene = world(&format!(
+        "{PARTS}Material \"mix\" {nested} Shape \"sphere\""
+    ));
+    let mixtures = scene.materials().iter();
+    let mixtures = mixtures.filter(|material| matches!(material, Material::Mix(_)));
+    assert_eq!(mixtures.count(), 2);
+}
+
+#[test]
+fn mixtures_of_what_is_not_there_are_refused() {
+    let mix = |parameters: &str| format!("{PARTS}Material \"mix\" {parameters} Shape \"sphere\"");
+    check_world(
+        &mix(""),
+        "s.pbrt:4:10: the parameter `string materials` is missing",
+    );
+    check_world(
+        &mix("\"string materials\" [\"a\" \"c\"]"),
+        "s.pbrt:4:35: unknown material `c`; did you mean `a`?",
+    );
+    check_world(
+        &mix("\"string materials\" [\"a\"]"),
+        "s.pbrt:4:35: `materials` has two names, found 1",
+    );
+    check_world(
+        "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [\"m\" \"m\"] \
+         NamedMaterial \"m\" Shape \"sphere\"",
+        "s.pbrt:2:62: the mixture `m` is a part of itself",
+    );
+}
+
+#[test]
+fn misspelt_parameters_of_materials_are_refused() {
+    check_world(
+        "Material \"coateddiffuse\" \"float thicknes\" .1 Shape \"sphere\"",
+        "s.pbrt:2:26: unknown parameter `thicknes` of `coateddiffuse`; did you mean `thickness`?",
+    );
+    check_world(
+        "Material \"coatedconductor\" \"float interface.roughnes\" .1 Shape \"sphere\"",
+        "s.pbrt:2:28: unknown parameter `interface.roughnes` of `coatedconductor`; \
+         did you mean `interface.roughness`?",
+    );
+    check_world(
+        "Material \"coatedconductor\" \"float roughness\" .1 Shape \"sphere\"",
+        "s.pbrt:2:28: unknown parameter `roughness` of `coatedconductor`",
+    );
+    check_world(
+        "Material \"thindielectric\" \"float eta\" 0 Shape \"sphere\"",
+        "s.pbrt:2:10: the index of refraction `eta` is not positive",
+    );
+    check_world(
+        "Material \"diffusetransmission\" \"float scale\" -1 Shape \"sphere\"",
+        "s.pbrt:2:45: `scale` is -1, but has to be at least 0",
+    );
+}

@@ -1,0 +1,70 @@
+"""Faults in layered and mixed materials, and in what Dirac lobes beside others mean to weights."""
+
+from .tests import materials, unit
+
+MATERIALS = [
+    # --- layered and mixed materials ----------------------------------------------------------
+    (
+        "a Dirac lobe of a walk not told to weights",
+        "crates/bidir/src/path/densities.rs",
+        "is_delta: i < walked && subpath[i].went_by_delta,",
+        "is_delta: false,",
+        materials("a_smooth_varnish"),
+    ),
+    (
+        "an end that is connected taken for Dirac",
+        "crates/bidir/src/path/densities.rs",
+        "is_delta: i < walked && subpath[i].went_by_delta,",
+        "is_delta: subpath[i].went_by_delta,",
+        materials("a_smooth_varnish"),
+    ),
+    (
+        "the path tracer weighs hits by a Dirac lobe against next-event estimation",
+        "crates/bidir/src/integrator/path.rs",
+        "from.went_by_delta {",
+        "from.is_delta() {",
+        materials("a_smooth_varnish"),
+    ),
+    (
+        "a varnish's base drawn without its probability",
+        "crates/bidir/src/bsdf/coated_diffuse.rs",
+        "prob * self.coat.pdf(wo, wi) + (1.0 - prob) * base",
+        "prob * self.coat.pdf(wo, wi) + base",
+        unit("samples_follow_the_density"),
+    ),
+    (
+        "radiance within a varnish not compressed",
+        "crates/bidir/src/bsdf/coated_diffuse.rs",
+        "rho * series * INV_PI / sqr(coat.eta())",
+        "rho * series * INV_PI",
+        unit("a_varnish_scatters"),
+    ),
+    (
+        "directions within a lacquer without their Jacobian",
+        "crates/bidir/src/bsdf/coated_conductor.rs",
+        "within * wi.z.abs() / (sqr(self.coat.eta()) * inner_i.z.abs())",
+        "within",
+        unit("samples_follow_the_density"),
+    ),
+    (
+        "a varnish loses what its interface throws back",
+        "crates/bidir/src/bsdf/coat/mod.rs",
+        "(1.0 - libm::powf(x, terms as f32)) / (1.0 - x)",
+        "1.0",
+        unit("a_varnish_scatters"),
+    ),
+    (
+        "a pane with one reflection",
+        "crates/bidir/src/bsdf/thin_dielectric.rs",
+        "2.0 * once / (1.0 + once)",
+        "once",
+        unit("a_pane_reflects"),
+    ),
+    (
+        "a mixture within a mixture chooses by the same number",
+        "crates/bidir/src/material/mod.rs",
+        "material.choose(uv, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
+        "material.choose(uv, || u)",
+        materials("in_the_given_shares"),
+    ),
+]
