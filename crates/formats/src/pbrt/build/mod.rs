@@ -16,12 +16,15 @@ mod group;
 mod imagemap;
 mod light;
 mod material;
+mod mesh;
 mod object;
+mod patches;
 mod reader;
 mod sensor;
 mod settings;
 mod shape;
 mod spectral;
+mod subdivision;
 mod texture;
 
 pub use film::Crop;
