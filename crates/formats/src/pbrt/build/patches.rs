@@ -40,8 +40,7 @@ impl PatchMesh {
         mesh
     }
 
-    /// The triangles of the mesh.
-    pub(super) fn is_parallelogram(&self, patch: &[u32; 4]) -> bool {
+    fn is_parallelogram(&self, patch: &[u32; 4]) -> bool {
         let [p00, p10, p01, p11] = patch.map(|corner| self.position(corner));
         let size = (p11 - p00).length() + (p10 - p01).length();
         (p00 + p11 - p10 - p01).length() <= 1e-6 * size
@@ -56,12 +55,9 @@ impl PatchMesh {
         for j in 0..=cells {
             for i in 0..=cells {
                 let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
-                mesh.positions.push(self.point(patch, [u, v]));
+                mesh.positions.push(self.point(patch, [i, j], cells));
                 mesh.normals.extend(self.normal(patch, [u, v], cells));
-                mesh.uvs.push(match self.uvs.is_empty() {
-                    true => [u as f32, v as f32],
-                    false => blend(patch.map(|corner| self.uvs[corner as usize]), [u, v]),
-                });
+                mesh.uvs.push(self.uv(patch, [u, v]));
             }
         }
         let row = cells as u32 + 1;
@@ -74,23 +70,28 @@ impl PatchMesh {
         }
     }
 
-    /// p(u, v); on an edge from the lower vertex to the higher, whichever patch asks.
-    fn point(&self, patch: &[u32; 4], [u, v]: [f64; 2]) -> [f32; 3] {
+    fn uv(&self, patch: &[u32; 4], [u, v]: [f64; 2]) -> [f32; 2] {
+        if self.uvs.is_empty() {
+            return [u as f32, v as f32];
+        }
+        blend(patch.map(|corner| self.uvs[corner as usize]), [u, v])
+    }
+
+    /// The corner `[i, j]` of the grid; on an edge by the edge's two ends from the lower vertex to the
+    /// higher, whichever patch asks.
+    fn point(&self, patch: &[u32; 4], [i, j]: [usize; 2], cells: usize) -> [f32; 3] {
         let [c00, c10, c01, c11] = *patch;
+        let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
         let along = |a: u32, b: u32, t: f64| {
             let (a, b, t) = if a <= b { (a, b, t) } else { (b, a, 1.0 - t) };
             self.position(a) * (1.0 - t) + self.position(b) * t
         };
-        let point = if u == 0.0 {
-            along(c00, c01, v)
-        } else if u == 1.0 {
-            along(c10, c11, v)
-        } else if v == 0.0 {
-            along(c00, c10, u)
-        } else if v == 1.0 {
-            along(c01, c11, u)
-        } else {
-            along(c00, c10, u) * (1.0 - v) + along(c01, c11, u) * v
+        let point = match (i, j) {
+            (0, _) => along(c00, c01, v),
+            (i, _) if i == cells => along(c10, c11, v),
+            (_, 0) => along(c00, c10, u),
+            (_, j) if j == cells => along(c01, c11, u),
+            _ => along(c00, c10, u) * (1.0 - v) + along(c01, c11, u) * v,
         };
         point.as_vec3().to_array()
     }
