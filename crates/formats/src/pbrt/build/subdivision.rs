@@ -163,11 +163,7 @@ fn border_tangents(v: DVec3, ring: &[DVec3]) -> [DVec3; 2] {
 
 /// β.
 fn smoothing(n: f64) -> f64 {
-    if n == 3.0 {
-        3.0 / 16.0
-    } else {
-        3.0 / (8.0 * n)
-    }
+    if n < 3.5 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) }
 }
 
 impl Topology {
