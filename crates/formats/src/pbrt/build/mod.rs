@@ -16,12 +16,14 @@ mod filter;
 mod group;
 mod imagemap;
 mod light;
+mod mapping;
 mod material;
 mod object;
 mod reader;
 mod settings;
 mod shape;
 mod texture;
+mod texture_class;
 
 pub use film::Crop;
 pub use settings::SceneSettings;
@@ -158,6 +160,7 @@ impl<'a> Assembly<'a> {
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
         builder.camera(camera);
+        builder.texture_filtering(settings::texture_filtering(description)?);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }

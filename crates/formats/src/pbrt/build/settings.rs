@@ -3,9 +3,11 @@
 use super::context::Context;
 use super::reader::Reader;
 use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::SceneDescription;
 use crate::source::Fault;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
+use bidir::scene::TextureFiltering;
 
 /// What a scene file says about how it is rendered.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +45,23 @@ pub(super) fn build(
     Ok(settings)
 }
 
+/// Whether textures are averaged over pixels.
+pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
+    let mut filtering = TextureFiltering::AsAsked;
+    let options = description.options.iter();
+    for option in options.filter(|option| option.name == "disabletexturefiltering") {
+        filtering = match option.value.as_str() {
+            "true" => TextureFiltering::Disabled,
+            "false" => TextureFiltering::AsAsked,
+            _ => {
+                let message = "the option `disabletexturefiltering` is `true` or `false`";
+                return Err(Fault::scene(option.span, message));
+            }
+        };
+    }
+    Ok(filtering)
+}
+
 fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
     for option in &context.description.options {
         match (option.name.as_str(), option.value.as_str()) {
@@ -52,6 +71,8 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
             }
             // Choices of precision or of what is recorded, and defaults spelled out.
             ("rendercoordsys" | "pixelstats" | "wavefront", _) | (_, "false") => {}
+            // See `texture_filtering`.
+            ("disabletexturefiltering", _) => {}
             (name, _) => {
                 context.warn(
                     option.span,

@@ -3,6 +3,7 @@ use crate::pbrt::load;
 use bidir::material::{ConductorIndex, Material};
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
+use bidir::texture::TexturePoint;
 
 /// A folder with a scene and an image of two rows: red above, green below.
 fn textured(parameters: &str) -> Scene {
@@ -27,7 +28,10 @@ fn check_texture(parameters: &str, uv: Vec2, expected: [f32; 3]) {
     let Material::Diffuse { reflectance } = &scene.materials()[1] else {
         panic!("the material is diffuse");
     };
-    assert_eq!(Vec3::from(reflectance.eval(uv)), Vec3::from(expected));
+    assert_eq!(
+        Vec3::from(reflectance.eval(&TexturePoint::of_parameters(uv))),
+        Vec3::from(expected)
+    );
 }
 
 #[test]
@@ -64,8 +68,9 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
     else {
         panic!("the material is a conductor with an index");
     };
+    let at = TexturePoint::of_parameters(Vec2::ZERO);
     assert_eq!(
-        [eta, k].map(|part| Vec3::from(part.eval(Vec2::ZERO))),
+        [eta, k].map(|part| Vec3::from(part.eval(&at))),
         [Vec3::splat(2.0); 2]
     );
     // Also after it was used for something that may be so large.
@@ -82,13 +87,13 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
 #[test]
 fn a_stand_in_is_counted_once_however_often_it_is_used() {
     let loaded = load_text(
-        "WorldBegin\nTexture \"dots\" \"spectrum\" \"dots\"\n\
+        "WorldBegin\nTexture \"dots\" \"spectrum\" \"ptex\"\n\
          Material \"diffuse\" \"texture reflectance\" \"dots\" Shape \"sphere\"\n\
          Material \"conductor\" \"texture reflectance\" \"dots\" Shape \"sphere\"",
         &LENIENT,
     );
     assert_eq!(
         loaded.warnings,
-        ["s.pbrt:2:27: the texture class `dots` is not supported yet: 0.5 stands in"]
+        ["s.pbrt:2:27: the texture class `ptex` is not supported yet: 0.5 stands in"]
     );
 }
