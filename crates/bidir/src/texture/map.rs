@@ -133,11 +133,14 @@ impl<const N: usize> ImageMap<N> {
     #[inline]
     fn fetch(&self, image: &Image<N>, x: i64, y: i64) -> [f32; N] {
         let (width, height) = (image.width() as i64, image.height() as i64);
+        // Most texels are inside, and divisions are slow.
+        if (0..width).contains(&x) && (0..height).contains(&y) {
+            return image.texel(x as usize, y as usize);
+        }
         let (x, y) = match self.wrap {
             Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
             Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
-            Wrap::Black if x < 0 || y < 0 || x >= width || y >= height => return [0.0; N],
-            Wrap::Black => (x, y),
+            Wrap::Black => return [0.0; N],
             Wrap::OctahedralSphere => octahedral([x, y], [width, height]),
         };
         image.texel(x as usize, y as usize)

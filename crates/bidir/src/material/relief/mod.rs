@@ -160,3 +160,6 @@ fn step(at: &TexturePoint, gradient: Vec3) -> f32 {
     };
     step.max(2e-5 * at.uv.abs().max_element().max(1.0))
 }
+
+#[cfg(test)]
+mod tests;
