@@ -12,6 +12,7 @@ use crate::bsdf::{
 use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
+use std::fmt::Write;
 
 /// Index of all layers here.
 const ETA: f32 = 1.5;
@@ -165,7 +166,7 @@ fn compare(name: &str, bsdf: &Bsdf, stack: &Stack) -> f32 {
     for cos in [0.2, 0.6, 1.0] {
         let wo = direction(cos, 0.3);
         let [closed, walked] = [albedo_of_draws(bsdf, wo), stack.albedo_of_walks(wo)];
-        line += &format!(" {closed:.3} | {walked:.3} |");
+        let _ = write!(line, " {closed:.3} | {walked:.3} |");
         largest = largest.max((closed - walked).abs());
     }
     if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
@@ -255,7 +256,7 @@ fn check_furnace(bsdf: &Bsdf, least: f32, case: &str) {
     let mut line = format!("| {case} |");
     for cos in [0.05, 0.1, 0.2, 0.4, 0.7, 1.0] {
         let part = albedo_of_draws(bsdf, direction(cos, 0.3));
-        line += &format!(" {part:.3} |");
+        let _ = write!(line, " {part:.3} |");
         assert!(
             (least..1.003).contains(&part),
             "{case}, cosine {cos}: {part}"

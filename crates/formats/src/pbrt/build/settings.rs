@@ -1,10 +1,12 @@
 //! Sampler, integrator and options.
 
 use super::context::Context;
+use super::film::BuiltFilm;
 use super::reader::Reader;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::SceneDescription;
 use crate::source::Fault;
+use bidir::film::Aov;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::TextureFiltering;
@@ -24,13 +26,12 @@ pub struct SceneSettings {
     pub seed: Option<u64>,
     /// The name of the image, as the file has it. None: where it gives none.
     pub output: Option<String>,
+    /// The images that its film has beside the picture.
+    pub aovs: Vec<Aov>,
 }
 
 /// Everything that is neither scene nor film.
-pub(super) fn build(
-    context: &mut Context<'_>,
-    output: Option<String>,
-) -> Result<SceneSettings, Fault> {
+pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {
     let (integrator, max_depth) = integrator(context)?;
     let mut settings = SceneSettings {
         integrator,
@@ -38,7 +39,8 @@ pub(super) fn build(
         sampler: SamplerKind::Sobol,
         samples_per_pixel: 16,
         seed: None,
-        output,
+        output: film.output.clone(),
+        aovs: film.aovs.clone(),
     };
     options(context, &mut settings)?;
     sampler(context, &mut settings)?;

@@ -9,6 +9,7 @@ mod robust;
 mod settings;
 mod shapes;
 mod textures;
+mod views;
 
 use super::{LoadOptions, Loaded, build};
 use crate::error::Error;

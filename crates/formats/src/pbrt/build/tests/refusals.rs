@@ -111,11 +111,6 @@ fn what_is_not_built_is_refused_by_name() {
         "s.pbrt:2:7: the shape `cylinder` is recognised but not supported yet; \
          with --lenient: it is left out",
     );
-    check_world(
-        "LightSource \"point\" \"blackbody I\" 5000",
-        "s.pbrt:2:21: a blackbody spectrum is recognised but not supported yet; \
-         with --lenient: white stands in",
-    );
     check(
         "Integrator \"mlt\" \"integer chains\" 3 WorldBegin",
         "s.pbrt:1:12: the integrator `mlt` is recognised but not supported yet; \
