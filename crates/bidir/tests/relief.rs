@@ -131,28 +131,33 @@ fn estimators_agree_on_relief() {
     check_agree("light and path", &light, &path, &quarters);
 }
 
+/// An image of normals that are all the same, in its plainest form.
+fn slant() -> Relief {
+    Relief::NormalMap(NormalMap {
+        texture: ColorTexture::Constant([0.8, 0.5, 0.9]),
+        scale: 1.0,
+        bitangent: Bitangent::RightHanded,
+    })
+}
+
 /// The relief is there: without it the picture is another one.
 #[test]
 fn relief_changes_the_picture() {
-    let mean = |relief: Option<Relief>| {
+    let mean = |emboss: &dyn Fn(Material) -> Material| {
         let mut builder = builder(SIZE, 0.0);
         let wall = builder.material(diffuse([0.0; 3]));
         let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
         builder.shape(Shape::Mesh(light), wall, emission([6.0; 3]));
-        let flat = diffuse([0.5; 3]);
-        let material = match relief {
-            Some(relief) => flat.embossed(relief),
-            None => flat,
-        };
-        add_floor(&mut builder, material);
+        add_floor(&mut builder, emboss(diffuse([0.5; 3])));
         let scene = builder.build().expect("the floor is valid");
         render(&scene, IntegratorKind::Path, 64).mean()
     };
-    let (smooth, rough) = (mean(None), mean(Some(bumps())));
-    assert!(
-        (smooth - rough).abs() > 0.02 * smooth,
-        "{smooth} and {rough}"
-    );
+    let smooth = mean(&|material| material);
+    for relief in [bumps(), normals(), slant()] {
+        let rough = mean(&|material| material.embossed(relief.clone()));
+        let name = format!("{smooth} and {rough}: {relief:.30?}");
+        assert!((smooth - rough).abs() > 0.01 * smooth, "{name:.60}");
+    }
 }
 
 /// The vertex where a ray from `origin` meets the floor at `target`.

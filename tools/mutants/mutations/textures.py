@@ -50,6 +50,13 @@ TEXTURES = [
         unit("a_sphere_bulges"),
     ),
     (
+        "a relief that gets no tangents",
+        "crates/bidir/src/material/mod.rs",
+        "Self::Embossed(_) => Needs::ALL,",
+        "Self::Embossed(_) => Needs::NOTHING,",
+        relief("relief_changes_the_picture"),
+    ),
+    (
         "an image of normals decoded as colours",
         "crates/formats/src/pbrt/build/imagemap.rs",
         "encoding: Some(Encoding::Linear),",

@@ -141,6 +141,8 @@ impl Camera {
     pub fn pixel_width(&self, p: Vec3) -> f32 {
         match self {
             Self::Perspective(camera) => camera.pixel_width(p),
+            Self::Orthographic(camera) => camera.pixel_width(),
+            Self::Spherical(camera) => camera.pixel_width(p),
         }
     }
 }

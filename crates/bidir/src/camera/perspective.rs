@@ -126,7 +126,7 @@ impl Perspective {
     /// Distance times the width of a pixel in the middle of the view, one unit in front.
     #[inline]
     pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
-        p.distance(self.origin) / self.raster_density.sqrt()
+        p.distance(self.pose.origin) / self.raster_density.sqrt()
     }
 
     #[inline]

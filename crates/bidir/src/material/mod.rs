@@ -212,7 +212,8 @@ impl Material {
                 let parts = first.needs().and(second.needs());
                 parts.and(mixture.amount.needs())
             }
-            Self::Embossed(embossed) => embossed.material.needs().and(embossed.relief.needs()),
+            // Tangents, and the width of a pixel between heights that are compared.
+            Self::Embossed(_) => Needs::ALL,
         }
     }
 

@@ -8,7 +8,7 @@
 use super::{Material, Mixture};
 use crate::math::{Frame, Vec2, Vec3};
 use crate::shape::{Differentials, SurfacePoint};
-use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 use std::sync::Arc;
 
 /// What turns the shading frame of a surface.
@@ -66,17 +66,6 @@ impl Material {
 }
 
 impl Relief {
-    pub(super) fn needs(&self) -> Needs {
-        match self {
-            // The step between the heights that are compared is a pixel's.
-            Self::Displacement(_) => Needs::ALL,
-            Self::NormalMap(map) => match map.bitangent {
-                Bitangent::RightHanded => map.texture.needs(),
-                Bitangent::AlongV => Needs::ALL,
-            },
-        }
-    }
-
     /// The shading frame at a point. Its normal is on the side of the geometric normal, as in
     /// pbrt-v4; where nothing can be told, the frame is that of the surface.
     pub fn frame(
