@@ -30,7 +30,7 @@ fn room_with_a_broken_texture() -> Scene {
         mapping: Mapping::IDENTITY,
     };
     let broken = builder.material(Material::Diffuse {
-        reflectance: ColorTexture::Image(map),
+        reflectance: ColorTexture::Image(Arc::new(map)),
     });
     let mut panel = quad(Vec3::new(-1.0, -1.0, 1.5), Vec3::Y * 2.0, Vec3::X * 2.0);
     panel.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];

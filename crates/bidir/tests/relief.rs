@@ -62,7 +62,7 @@ fn bumps() -> Relief {
 fn normals() -> Relief {
     let map = image([0.2, 0.2, 0.7], [0.8, 0.8, 1.0], Mapping::IDENTITY);
     Relief::NormalMap(NormalMap {
-        texture: ColorTexture::Image(map),
+        texture: ColorTexture::Image(Arc::new(map)),
         scale: 0.8,
         bitangent: Bitangent::AlongV,
     })
@@ -76,7 +76,7 @@ fn floor() -> Material {
     });
     let colors = image([0.1, 0.4, 0.1], [0.9, 0.6, 0.5], Mapping::IDENTITY);
     let colored = Material::Diffuse {
-        reflectance: ColorTexture::Image(colors),
+        reflectance: ColorTexture::Image(Arc::new(colors)),
     };
     let mixture = Mixture {
         materials: [metal(0.3), colored],

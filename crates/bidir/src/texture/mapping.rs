@@ -24,7 +24,7 @@ impl TextureSpace {
     /// The space that `from_world` leads to.
     pub fn new(from_world: Affine3A) -> Self {
         let m = from_world.matrix3;
-        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.length());
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|axis| Vec3::from(axis).length());
         Self {
             from_world,
             stretch: columns.into_iter().fold(0.0, f32::max),

@@ -39,9 +39,11 @@ pub trait Value: Copy + Debug {
     type Map: Clone + Debug;
 
     /// (1 - `t`)·self + `t`·`other`.
+    #[must_use]
     fn lerp(self, other: Self, t: f32) -> Self;
 
     /// The product with a number.
+    #[must_use]
     fn scaled(self, factor: f32) -> Self;
 
     /// The value of an image.
@@ -121,7 +123,7 @@ pub enum Texture<T: Value> {
     /// The same everywhere.
     Constant(T),
     /// Looked up in an image.
-    Image(T::Map),
+    Image(Arc<T::Map>),
     /// A texture times a number.
     Scale(Arc<Scale<T>>),
     /// A mixture of two textures.
@@ -214,8 +216,11 @@ impl<T: Value> Texture<T> {
             Self::DirectionMix(mix) => &mix.textures,
             Self::Checkerboard(board) => &board.textures,
             Self::Dots(dots) => &dots.textures,
-            Self::Constant(_) | Self::Image(_) | Self::Bilerp(_) | Self::Noise(_) => &[],
-            Self::Marble(_) => &[],
+            Self::Constant(_)
+            | Self::Image(_)
+            | Self::Bilerp(_)
+            | Self::Noise(_)
+            | Self::Marble(_) => &[],
         }
     }
 
@@ -236,7 +241,7 @@ impl<T: Value> Mix<T> {
         // What has no part is not looked up: that saves time, and keeps what is not finite out.
         if amount == 0.0 {
             first.eval(at)
-        } else if amount == 1.0 {
+        } else if 1.0 - amount == 0.0 {
             second.eval(at)
         } else {
             first.eval(at).lerp(second.eval(at), amount)

@@ -237,17 +237,13 @@ fn differentials_are_those_of_the_surface() {
 /// The point with parameters `uv`, by the parametrisation of the format.
 fn local_point(shape: &Shape, map: Affine3A, uv: Vec2) -> Vec3 {
     let (sin, cos) = sin_cos(5.0 * uv.x);
-    let local = match shape {
-        Shape::Disk(_) => {
-            let r = 1.5 - 1.3 * uv.y;
-            Vec3::new(r * cos, r * sin, 0.3)
-        }
-        _ => {
-            let theta = |z: f32| libm::acosf(z);
-            let (bottom, top) = (theta(-0.6), theta(0.9));
-            let (s, c) = sin_cos(bottom + (top - bottom) * uv.y);
-            Vec3::new(s * cos, s * sin, c)
-        }
+    let local = if let Shape::Disk(_) = shape {
+        let r = 1.5 - 1.3 * uv.y;
+        Vec3::new(r * cos, r * sin, 0.3)
+    } else {
+        let [bottom, top] = [-0.6, 0.9].map(libm::acosf);
+        let (s, c) = sin_cos(bottom + (top - bottom) * uv.y);
+        Vec3::new(s * cos, s * sin, c)
     };
     map.transform_point3(local)
 }

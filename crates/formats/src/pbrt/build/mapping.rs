@@ -41,7 +41,8 @@ pub(super) fn direction(
 ) -> Result<Vec3, Fault> {
     let local = vector(reader, name, default)?;
     let world = texture.transforms.start.transform_vector3(local.as_dvec3());
-    world.try_normalize().map(|d| d.as_vec3()).ok_or_else(|| {
+    let direction = world.try_normalize().map(glam::DVec3::as_vec3);
+    direction.ok_or_else(|| {
         let message = format!("the direction `{name}` has no length");
         Fault::scene(reader.span(), message)
     })

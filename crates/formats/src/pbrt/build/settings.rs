@@ -71,10 +71,10 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
                 let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
                 settings.seed = Some(value.parse().map_err(wrong)?);
             }
-            // Choices of precision or of what is recorded, and defaults spelled out.
-            ("rendercoordsys" | "pixelstats" | "wavefront", _) | (_, "false") => {}
-            // See `texture_filtering`.
-            ("disabletexturefiltering", _) => {}
+            // Choices of precision or of what is recorded, what the scene itself knows, and defaults
+            // spelled out.
+            ("rendercoordsys" | "pixelstats" | "wavefront" | "disabletexturefiltering", _)
+            | (_, "false") => {}
             (name, _) => {
                 context.warn(
                     option.span,

@@ -16,6 +16,7 @@ use crate::source::{Fault, Span};
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Textures within textures: how deep.
 const DEEPEST: usize = 32;
@@ -123,6 +124,7 @@ impl Element for Rgb {
 }
 
 /// What a parameter that may be textured says.
+#[derive(Clone, Copy)]
 pub(super) enum Operand<T> {
     /// The same everywhere.
     Value(T),
@@ -179,7 +181,7 @@ impl<'a> Textures<'a> {
         };
         let settings = ImageSettings::of_normals(context, file, span);
         let map = self.files.color(context, &settings)?;
-        Ok(Some(ColorTexture::Image(map)))
+        Ok(Some(ColorTexture::Image(Arc::new(map))))
     }
 
     fn get<T: Element>(
@@ -286,7 +288,8 @@ impl<'a> Textures<'a> {
         context: &mut Context<'_>,
         settings: &ImageSettings,
     ) -> Result<Texture<T>, Fault> {
-        T::image(&mut self.files, context, settings).map(Texture::Image)
+        let map = T::image(&mut self.files, context, settings)?;
+        Ok(Texture::Image(Arc::new(map)))
     }
 
     pub(super) fn described(&self, number: usize) -> &'a TextureDescription {
