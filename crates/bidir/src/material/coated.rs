@@ -24,8 +24,6 @@ pub struct CoatSettings {
     pub albedo: ColorTexture,
     /// The mean cosine of the angle of scattering.
     pub g: FloatTexture,
-    /// The most reflections at the base, `u32::MAX` for all.
-    pub orders: u32,
 }
 
 impl CoatSettings {
@@ -133,13 +131,7 @@ impl CoatedDiffuseMaterial {
         let filling = self.coat.filling(at, color, wavelengths);
         let reflectance = color.albedo(unit(self.reflectance.eval(at)), wavelengths);
         let layer = self.layers.at(ggx.mean_alpha());
-        Bsdf::CoatedDiffuse(CoatedDiffuse::new(
-            &layer,
-            ggx,
-            &filling,
-            reflectance,
-            self.coat.orders,
-        ))
+        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filling, reflectance))
     }
 }
 
@@ -162,8 +154,7 @@ impl CoatedConductorMaterial {
         let metal_axis = Axis::of(&roughness);
         let of_coat = |layer: &Layer, alpha: f32| {
             let metal = metal_axis.0.iter();
-            let orders = coat.orders;
-            let tables = metal.map(|&metal| Reflections::new(layer, [alpha, metal], orders));
+            let tables = metal.map(|&metal| Reflections::new(layer, [alpha, metal]));
             tables.collect::<Vec<_>>()
         };
         let coats = layers.layers.iter().zip(&layers.axis.0);
@@ -213,13 +204,7 @@ impl CoatedConductorMaterial {
         let layer = self.layers.at(coat_alpha);
         let reflections = self.reflections(coat_alpha, metal_alpha);
         let tables = (&layer, &reflections);
-        Bsdf::CoatedConductor(CoatedConductor::new(
-            tables,
-            ggx,
-            &filling,
-            metal,
-            self.coat.orders,
-        ))
+        Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, &filling, metal))
     }
 }
 
@@ -259,7 +244,7 @@ mod tests {
                     g: 0.0,
                 };
                 let white = Spectrum::ONE;
-                let bsdf = CoatedDiffuse::new(&layer, ggx, &filling, white, u32::MAX);
+                let bsdf = CoatedDiffuse::new(&layer, ggx, &filling, white);
                 Bsdf::CoatedDiffuse(bsdf).albedo(Vec3::Z)[0]
             });
             assert!((between - exact).abs() < 0.02, "{between} and {exact}");

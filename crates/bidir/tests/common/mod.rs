@@ -90,7 +90,6 @@ fn coat(alpha: f32) -> CoatSettings {
         thickness: FloatTexture::Constant(0.05),
         albedo: CLEAR,
         g: FloatTexture::Constant(0.0),
-        orders: 5,
     }
 }
 

@@ -294,7 +294,7 @@ fn coat(
     let thickness = textures.float(context, reader, "thickness")?;
     let albedo = textures.color(context, reader, "albedo", Purpose::Albedo)?;
     let g = textures.float(context, reader, "g")?;
-    let reflections = reader.integer("maxdepth", 10, 0)?.div_ceil(2);
+    reader.ignore(context, ParameterType::Integer, "maxdepth");
     reader.ignore(context, ParameterType::Integer, "nsamples");
     Ok(CoatSettings {
         eta: spectral::read_eta(context, reader, eta)?,
@@ -302,8 +302,6 @@ fn coat(
         thickness: thickness.unwrap_or(FloatTexture::Constant(0.01)),
         albedo: albedo.unwrap_or(CLEAR),
         g: g.unwrap_or(FloatTexture::Constant(0.0)),
-        // Every other event of a walk in the layer is a reflection at the base.
-        orders: reflections,
     })
 }
 

@@ -60,7 +60,6 @@ fn every_parameter_of_a_layer_changes_something() {
         "\"float thickness\" .5",
         "\"float eta\" 1.3",
         "\"rgb albedo\" [.5 .5 .5]",
-        "\"integer maxdepth\" 3",
         "\"bool remaproughness\" false",
         "\"float uroughness\" .1",
         "\"float vroughness\" .1",
@@ -78,7 +77,6 @@ fn every_parameter_of_a_layer_changes_something() {
         "\"rgb reflectance\" [.2 .2 .2]",
         "\"rgb conductor.k\" [1 1 1]",
         "\"float thickness\" .5",
-        "\"integer maxdepth\" 2",
         "\"bool remaproughness\" false",
     ] {
         check_different(plain, &format!("{plain} {parameter}"));
