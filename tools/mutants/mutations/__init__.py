@@ -8,5 +8,6 @@ from .materials import MATERIALS
 from .paths import PATHS
 from .pictures import PICTURES
 from .scenes import SCENES
+from .textures import TEXTURES
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + TEXTURES + LABORATORY

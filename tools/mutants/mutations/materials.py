@@ -63,8 +63,8 @@ MATERIALS = [
     (
         "a mixture within a mixture chooses by the same number",
         "crates/bidir/src/material/mod.rs",
-        "material.choose(uv, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
-        "material.choose(uv, || u)",
+        "material.choose(at, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
+        "material.choose(at, || u)",
         materials("in_the_given_shares"),
     ),
 ]

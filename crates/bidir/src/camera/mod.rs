@@ -134,4 +134,15 @@ impl Camera {
             Self::Spherical(camera) => camera.density(w),
         }
     }
+
+    /// How wide a pixel is at the point `p`, across the view: what textures there are averaged over.
+    /// A function of the point alone, of any point of the world, seen or not. Unit: m.
+    #[inline]
+    pub fn pixel_width(&self, p: Vec3) -> f32 {
+        match self {
+            Self::Perspective(camera) => camera.pixel_width(p),
+            Self::Orthographic(camera) => camera.pixel_width(),
+            Self::Spherical(camera) => camera.pixel_width(p),
+        }
+    }
 }

@@ -80,6 +80,12 @@ impl Orthographic {
         self.pose.forward.dot(p - self.pose.origin)
     }
 
+    /// The width of a pixel, the same everywhere.
+    #[inline]
+    pub(super) fn pixel_width(&self) -> f32 {
+        1.0 / self.raster_density.sqrt()
+    }
+
     /// dx/dA along the axis, the one direction there is.
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {

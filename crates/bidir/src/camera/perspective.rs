@@ -123,6 +123,12 @@ impl Perspective {
         }
     }
 
+    /// Distance times the width of a pixel in the middle of the view, one unit in front.
+    #[inline]
+    pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
+        p.distance(self.pose.origin) / self.raster_density.sqrt()
+    }
+
     #[inline]
     pub(super) fn importance(&self, w: Vec3) -> f32 {
         let cos = self.pose.forward.dot(w);

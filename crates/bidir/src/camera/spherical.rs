@@ -98,6 +98,17 @@ impl Spherical {
         p.distance(self.pose.origin)
     }
 
+    /// Distance times the width of a pixel, at the horizon where they are wider than elsewhere.
+    #[inline]
+    pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
+        let area = self.resolution.x * self.resolution.y;
+        let solid_angle = match self.mapping {
+            SphericalMapping::Equirectangular => 2.0 * PI * PI / area,
+            SphericalMapping::EqualArea => 4.0 * PI / area,
+        };
+        self.depth(p) * solid_angle.sqrt()
+    }
+
     /// dx/dω.
     #[inline]
     pub(super) fn density(&self, w: Vec3) -> f32 {

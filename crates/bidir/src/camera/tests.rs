@@ -325,3 +325,25 @@ fn parallel_rays_see_nothing_behind_their_plane() {
     assert!(camera.raster(EYE - forward(), forward()).is_none());
     assert!(camera.importance(-forward()) <= 0.0 && camera.pdf_direction(-forward()) <= 0.0);
 }
+
+/// The width of a pixel is that of the widest on the film, by differences of rays, at any distance.
+#[test]
+fn pixels_are_as_wide_as_their_rays_are_apart() {
+    let cameras = examples().map(|(name, camera, _)| (name, camera));
+    for (name, camera) in cameras.into_iter().chain(others()) {
+        let distance = 7.0;
+        let at = |raster: Vec2| {
+            let ray = camera.sample_ray(raster, Vec2::splat(0.5));
+            ray.origin + ray.direction * distance
+        };
+        let h = 0.05;
+        let width = |raster: Vec2| {
+            let along = |axis: Vec2| (at(raster + axis * h) - at(raster - axis * h)) / (2.0 * h);
+            along(Vec2::X).cross(along(Vec2::Y)).length().sqrt()
+        };
+        let middles = (0..1200).map(|i| Vec2::new((i % 40) as f32, (i / 40) as f32) + 0.5);
+        let ratios = middles.map(|raster| width(raster) / camera.pixel_width(at(raster)));
+        let widest = ratios.fold(0.0, f32::max);
+        assert!((0.9..1.02).contains(&widest), "{name}: {widest}");
+    }
+}

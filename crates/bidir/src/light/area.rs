@@ -8,7 +8,7 @@ use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::scene::clamped_coverage;
 use crate::shape::{Shape, ShapeSample};
 use crate::spectrum::{Rgb, luminance};
-use crate::texture::FloatTexture;
+use crate::texture::{FloatTexture, TexturePoint};
 
 /// Which sides of a surface emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,7 +96,9 @@ impl AreaLight {
         LightSample {
             at,
             pdf: drawn.pdf * prob,
-            coverage: coverage.map_or(1.0, |alpha| clamped_coverage(alpha.eval(drawn.surface.uv))),
+            coverage: coverage.map_or(1.0, |alpha| {
+                clamped_coverage(alpha.eval(&TexturePoint::new(&drawn.surface)))
+            }),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::light::LightPoint;
 use crate::math::{Frame, Vec3};
 use crate::scene::{SegmentEnd, SurfaceHit};
 use crate::spectrum::Spectrum;
+use crate::texture::TexturePoint;
 
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,17 +132,24 @@ impl Vertex {
         beta: Spectrum,
         u_mix: impl FnOnce() -> f32,
     ) -> Self {
-        let surface = &hit.surface;
-        let material = context.scene.material(hit.material);
-        let material = material.choose(surface.uv, u_mix);
-        let bsdf = material.bsdf(surface.uv, context.scene.color(), &context.wavelengths);
+        let (scene, surface) = (context.scene, &hit.surface);
+        let mut at = TexturePoint::new(surface);
+        if let Some(differentials) = &hit.differentials {
+            at = at.seen(scene.footprint(surface.point), differentials);
+        }
+        let material = scene.material(hit.material).choose(&at, u_mix);
+        let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
+        let shading = match (material.relief(), &hit.differentials) {
+            (Some(relief), Some(differentials)) => relief.frame(surface, differentials, &at),
+            _ => surface.shading,
+        };
         Self {
             error: surface.error,
-            shading: surface.shading,
+            shading,
             wo,
             bsdf,
             beta,
-            albedo_fwd: bsdf.albedo(surface.shading.to_local(wo)).max_lane(),
+            albedo_fwd: bsdf.albedo(shading.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             ..Self::endpoint(VertexKind::Surface, surface.point, surface.n_g)

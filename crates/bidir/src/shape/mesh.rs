@@ -4,7 +4,8 @@
 //! Normals and parameters are interpolated linearly. Shading normals change the frame, never the
 //! point.
 
-use super::{Orientation, Place, ShapeSample, SurfacePoint, position_error};
+use super::differentials::normal_derivative;
+use super::{Differentials, Orientation, Place, ShapeSample, SurfacePoint, position_error};
 use crate::math::{Frame, Vec2, Vec3, warp};
 
 /// Triangles that share vertices, in world space.
@@ -65,6 +66,15 @@ impl Mesh {
         let moved = corners.at(place);
         let error = position_error(moved.magnitude()) + place.error(corners.magnitude());
         moved.surface_point(b, error)
+    }
+
+    /// The derivatives along the parameters at barycentric coordinates `b`.
+    pub(super) fn differentials(&self, place: Option<&Place>, i: usize, b: Vec2) -> Differentials {
+        let corners = self.corners(i);
+        match place {
+            None => corners.differentials(b),
+            Some(place) => corners.at(place).differentials(b),
+        }
     }
 
     #[inline]
@@ -134,6 +144,33 @@ impl Corners {
             n_g,
             shading: Frame::from_z_and_tangent(n_s, tangent(self.positions, uvs)),
             uv: interpolate(uvs, b),
+        }
+    }
+
+    /// Positions and normals change linearly over the triangle; the unit normal follows.
+    fn differentials(&self, b: Vec2) -> Differentials {
+        let [uv0, uv1, uv2] = self.uvs;
+        let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
+        let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+        let along = |[v0, v1, v2]: [Vec3; 3]| {
+            let (d1, d2) = (v1 - v0, v2 - v0);
+            [d1 * duv2.y - d2 * duv1.y, d2 * duv1.x - d1 * duv2.x].map(|d| d / determinant)
+        };
+        let n_g = {
+            let [p0, p1, p2] = self.positions;
+            (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z)
+        };
+        let flat = Differentials::flat(n_g, along(self.positions));
+        let Some(normals) = self.normals.filter(|_| determinant != 0.0) else {
+            return flat;
+        };
+        let [n0, n1, n2] = normals;
+        let n = n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y;
+        let [dn_du, dn_dv] = along(normals).map(|change| normal_derivative(n, change));
+        Differentials {
+            dn_du,
+            dn_dv,
+            ..flat
         }
     }
 

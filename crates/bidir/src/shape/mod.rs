@@ -10,6 +10,7 @@
 //! **Adding one**: a file, a variant in [`Shape`] with an arm in each match, its intersection in
 //! `accel`, and a mapping in the scene reader.
 
+mod differentials;
 mod disk;
 mod mesh;
 mod place;
@@ -18,6 +19,7 @@ mod sphere;
 #[cfg(test)]
 mod tests;
 
+pub use differentials::Differentials;
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use place::Place;
@@ -122,6 +124,27 @@ impl Shape {
         };
         surface.error += place.error(magnitude);
         surface
+    }
+
+    /// The derivatives along the parameters at such a hit, of a shape of the world or of an object at
+    /// `place`; `surface` is what [`surface_point`](Self::surface_point) gave.
+    pub fn differentials(
+        &self,
+        place: Option<&Place>,
+        (i, uv): (usize, Vec2),
+        surface: &SurfacePoint,
+    ) -> Differentials {
+        match self {
+            Self::Mesh(mesh) => mesh.differentials(place, i, uv),
+            Self::Sphere(sphere) => match place {
+                None => sphere.differentials(surface.point),
+                Some(place) => sphere.at(place).differentials(surface.point),
+            },
+            Self::Disk(disk) => match place {
+                None => disk.differentials(surface.point),
+                Some(place) => disk.at(place).differentials(surface.point),
+            },
+        }
     }
 
     /// The area of primitive `i`. Unit: m².

@@ -13,8 +13,8 @@ use crate::pbrt::parameters::{ParameterType, Values};
 use crate::pbrt::scene::{Entity, MaterialDescription};
 use crate::source::{Fault, Span};
 use bidir::material::{
-    CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, Material,
-    Mixture, Roughness, RoughnessMapping,
+    Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
+    Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
 use bidir::texture::{ColorTexture, FloatTexture};
 use std::collections::BTreeMap;
@@ -78,9 +78,12 @@ impl<'a> Materials<'a> {
             }
             _ => return stand_in(context, textures, entity),
         };
-        bump(context, &mut reader)?;
+        let relief = relief(context, textures, &mut reader)?;
         reader.finish()?;
-        Ok(Some(material))
+        Ok(Some(match relief {
+            Some(relief) => material.embossed(relief),
+            None => material,
+        }))
     }
 
     fn mix(
@@ -148,10 +151,22 @@ fn grey() -> Material {
     }
 }
 
-fn bump(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    let flat = "the surface stays smooth";
-    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
-    reader.unsupported(context, (ParameterType::String, "normalmap"), flat)
+/// Reads what turns the shading frame: an image of normals, or else a texture of heights.
+fn relief(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Option<Relief>, Fault> {
+    let height = textures.float(context, reader, "displacement")?;
+    let normals = textures.normals(context, reader, "normalmap")?;
+    if let Some(texture) = normals {
+        return Ok(Some(Relief::NormalMap(NormalMap {
+            texture,
+            scale: 1.0,
+            bitangent: Bitangent::RightHanded,
+        })));
+    }
+    Ok(height.map(Relief::Displacement))
 }
 
 fn diffuse(

@@ -15,6 +15,7 @@ mod filter;
 mod group;
 mod imagemap;
 mod light;
+mod mapping;
 mod material;
 mod mesh;
 mod object;
@@ -26,6 +27,7 @@ mod shape;
 mod spectral;
 mod subdivision;
 mod texture;
+mod texture_class;
 
 pub use film::Crop;
 pub use settings::SceneSettings;
@@ -162,6 +164,7 @@ impl<'a> Assembly<'a> {
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
         builder.camera(camera);
+        builder.texture_filtering(settings::texture_filtering(description)?);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }

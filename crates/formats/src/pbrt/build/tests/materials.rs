@@ -3,14 +3,16 @@ use bidir::bsdf::Bsdf;
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::{ColorModel, Wavelengths};
+use bidir::texture::TexturePoint;
 
 /// The scattering of the last material, of which `u` chooses a part.
 #[track_caller]
 fn bsdf(text: &str, u: f32) -> Bsdf {
     let scene = world(&format!("{text} Shape \"sphere\""));
     let material = scene.materials().last().expect("there is a material");
-    let chosen = material.choose(Vec2::ZERO, || u);
-    chosen.bsdf(Vec2::ZERO, ColorModel::Rgb, &Wavelengths::default())
+    let at = TexturePoint::of_parameters(Vec2::ZERO);
+    let chosen = material.choose(&at, || u);
+    chosen.bsdf(&at, ColorModel::Rgb, &Wavelengths::default())
 }
 
 /// Checks that two ways to write a material are one.

@@ -5,6 +5,7 @@ mod film;
 mod lights;
 mod materials;
 mod refusals;
+mod relief;
 mod robust;
 mod settings;
 mod shapes;

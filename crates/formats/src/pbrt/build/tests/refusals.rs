@@ -101,9 +101,9 @@ fn what_is_not_built_is_refused_by_name() {
          with --lenient: `diffuse` of its reflectance stands in",
     );
     check_world(
-        "Texture \"t\" \"float\" \"fbm\"\n\
+        "Texture \"t\" \"float\" \"ptex\"\n\
          Material \"conductor\" \"texture roughness\" \"t\" Shape \"sphere\"",
-        "s.pbrt:2:21: the texture class `fbm` is recognised but not supported yet; \
+        "s.pbrt:2:21: the texture class `ptex` is recognised but not supported yet; \
          with --lenient: 0.5 stands in",
     );
     check_world(
@@ -144,8 +144,8 @@ fn with_leniency_something_stands_in_and_is_counted() {
 
 #[test]
 fn what_nobody_uses_is_no_reason_to_refuse() {
-    let unused = "Texture \"marble\" \"spectrum\" \"marble\" \"float scale\" 3\n\
-        Texture \"bumps\" \"float\" \"fbm\"\n\
+    let unused = "Texture \"marble\" \"spectrum\" \"ptex\" \"float scale\" 3\n\
+        Texture \"bumps\" \"float\" \"ptex\"\n\
         Texture \"ball\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\" \"string mapping\" \"spherical\"\n\
         Texture \"gone\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n\
         Material \"hair\" Material \"diffuse\" \"texture reflectance\" \"marble\"\n\
