@@ -135,6 +135,7 @@ impl AreaLight {
             // A primitive by area and a point evenly on it: evenly over all.
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
             Shape::Sphere(sphere) => sphere.pdf(at.point),
+            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
         }
     }
 
@@ -169,6 +170,7 @@ impl AreaLight {
         match &context.shapes[self.shape] {
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
             Shape::Sphere(sphere) => sphere.pdf_from(reference, at.point, at.n_g),
+            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
         }
     }
 }

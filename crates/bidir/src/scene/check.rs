@@ -49,7 +49,7 @@ pub(super) fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError
                 .all(|v| v.is_finite())
                 && mesh.uvs.iter().all(|uv| uv.is_finite())
         }
-        Shape::Sphere(_) | Shape::Disk(_) => {
+        Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => {
             let bounds = shape.primitive(0).bounds();
             bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
         }

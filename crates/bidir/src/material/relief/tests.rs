@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::{Affine3A, PI, sin_cos};
-use crate::shape::{Disk, Mesh, Orientation, Place, Shape, Sphere};
+use crate::shape::{Cylinder, Disk, Mesh, Orientation, Place, Shape, Sphere};
 use crate::texture::{Bilerp, Mapping, Noise, NoiseKind, TextureSpace};
 
 /// Points of the first primitive with their frames under a relief, where a pixel is `width` wide.
@@ -14,7 +14,7 @@ fn frames(shape: &Shape, relief: &Relief, width: f32) -> Vec<(SurfacePoint, Fram
     let with_frame = |surface: SurfacePoint| {
         let hit = match shape {
             Shape::Mesh(mesh) => barycentric(mesh, surface.point),
-            Shape::Sphere(_) | Shape::Disk(_) => surface.uv,
+            Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => surface.uv,
         };
         let differentials = shape.differentials(None, (0, hit), &surface);
         let at = TexturePoint::new(&surface).seen(width, &differentials);
@@ -157,7 +157,15 @@ fn a_constant_height_or_a_flat_map_changes_nothing() {
         Orientation::Reversed,
     );
     let mesh = triangle([Vec2::ZERO; 3]);
-    for shape in [Shape::Disk(disk), Shape::Mesh(mesh), Shape::Sphere(sphere)] {
+    let limits = Vec3::new(-0.4, 0.7, 5.0);
+    let turned = Affine3A::from_rotation_y(2.0);
+    let cylinder = Cylinder::new(turned, 0.6, limits, Orientation::Natural);
+    for shape in [
+        Shape::Disk(disk),
+        Shape::Mesh(mesh),
+        Shape::Sphere(sphere),
+        Shape::Cylinder(cylinder),
+    ] {
         let level = Relief::Displacement(FloatTexture::Constant(0.0));
         for relief in [level, normal_map([0.5, 0.5, 1.0], Bitangent::RightHanded)] {
             for (surface, frame) in frames(&shape, &relief, 0.01) {
@@ -228,6 +236,7 @@ fn differentials_are_those_of_the_surface() {
         for shape in [
             Shape::Sphere(Sphere::partial(map, 1.0, limits, Orientation::Natural)),
             Shape::Disk(Disk::new(map, 0.3, [0.2, 1.5], 5.0, Orientation::Reversed)),
+            Shape::Cylinder(Cylinder::new(map, 0.8, limits, Orientation::Reversed)),
         ] {
             check_differentials(&shape, place, |uv| local_point(&shape, map, uv));
         }
@@ -237,13 +246,17 @@ fn differentials_are_those_of_the_surface() {
 /// The point with parameters `uv`, by the parametrisation of the format.
 fn local_point(shape: &Shape, map: Affine3A, uv: Vec2) -> Vec3 {
     let (sin, cos) = sin_cos(5.0 * uv.x);
-    let local = if let Shape::Disk(_) = shape {
-        let r = 1.5 - 1.3 * uv.y;
-        Vec3::new(r * cos, r * sin, 0.3)
-    } else {
-        let [bottom, top] = [-0.6, 0.9].map(libm::acosf);
-        let (s, c) = sin_cos(bottom + (top - bottom) * uv.y);
-        Vec3::new(s * cos, s * sin, c)
+    let local = match shape {
+        Shape::Disk(_) => {
+            let r = 1.5 - 1.3 * uv.y;
+            Vec3::new(r * cos, r * sin, 0.3)
+        }
+        Shape::Cylinder(_) => Vec3::new(0.8 * cos, 0.8 * sin, -0.6 + 1.5 * uv.y),
+        Shape::Sphere(_) | Shape::Mesh(_) => {
+            let [bottom, top] = [-0.6, 0.9].map(libm::acosf);
+            let (s, c) = sin_cos(bottom + (top - bottom) * uv.y);
+            Vec3::new(s * cos, s * sin, c)
+        }
     };
     map.transform_point3(local)
 }

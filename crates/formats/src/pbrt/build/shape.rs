@@ -10,7 +10,7 @@ use crate::pbrt::scene::ShapeDescription;
 use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use bidir::math::{Vec2, Vec3};
-use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
 use glam::{DAffine3, DVec3};
 
@@ -21,6 +21,8 @@ pub(super) enum Geometry {
     Sphere(f32, Vec3),
     /// Height, inner and outer radius, largest azimuth (radians).
     Disk(f32, [f32; 2], f32),
+    /// Radius, then lowest and highest z and largest azimuth (radians).
+    Cylinder(f32, Vec3),
 }
 
 impl Geometry {
@@ -46,6 +48,11 @@ impl Geometry {
                 ];
                 Self::Sphere(radius, Vec3::new(z[0], z[1], phi_max(&mut reader)?))
             }
+            "cylinder" => {
+                let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
+                let z = [reader.float("zmin", -1.0)?, reader.float("zmax", 1.0)?];
+                Self::Cylinder(radius, Vec3::new(z[0], z[1], phi_max(&mut reader)?))
+            }
             "disk" => {
                 let height = reader.float("height", 0.0)?;
                 let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
@@ -70,7 +77,7 @@ impl Geometry {
     pub(super) fn primitives(&self) -> u64 {
         match self {
             Self::Mesh(mesh) => mesh.triangles.len() as u64,
-            Self::Sphere(..) | Self::Disk(..) => 1,
+            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => 1,
         }
     }
 
@@ -81,6 +88,9 @@ impl Geometry {
         match self {
             Self::Sphere(radius, limits) => {
                 Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
+            }
+            Self::Cylinder(radius, limits) => {
+                Shape::Cylinder(Cylinder::new(affine, *radius, *limits, orientation))
             }
             Self::Disk(height, radii, phi_max) => {
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
@@ -142,7 +152,7 @@ pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
     let is_near = |p: Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
     let fits = match shape {
         Shape::Mesh(mesh) => mesh.positions.iter().all(|&p| is_near(p)),
-        Shape::Sphere(_) | Shape::Disk(_) => {
+        Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => {
             let bounds = shape.primitive(0).bounds();
             is_near(bounds.min) && is_near(bounds.max)
         }

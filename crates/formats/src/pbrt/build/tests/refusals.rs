@@ -107,8 +107,8 @@ fn what_is_not_built_is_refused_by_name() {
          with --lenient: 0.5 stands in",
     );
     check_world(
-        "Shape \"cylinder\"",
-        "s.pbrt:2:7: the shape `cylinder` is recognised but not supported yet; \
+        "Shape \"curve\"",
+        "s.pbrt:2:7: the shape `curve` is recognised but not supported yet; \
          with --lenient: it is left out",
     );
     check(
@@ -127,7 +127,7 @@ fn what_is_not_built_is_refused_by_name() {
 fn with_leniency_something_stands_in_and_is_counted() {
     let loaded = load_text(
         "Integrator \"sppm\" WorldBegin\nMaterial \"subsurface\" \"rgb reflectance\" [1 0 0]\n\
-         Shape \"sphere\" Shape \"cylinder\" Shape \"cylinder\"\nMaterial \"interface\" Shape \"sphere\"",
+         Shape \"sphere\" Shape \"curve\" Shape \"curve\"\nMaterial \"interface\" Shape \"sphere\"",
         &LENIENT,
     );
     assert_eq!((loaded.summary.shapes, loaded.summary.materials), (1, 2));
@@ -137,7 +137,7 @@ fn with_leniency_something_stands_in_and_is_counted() {
             "s.pbrt:1:12: the integrator `sppm` is not supported yet: `bdpt` stands in",
             "s.pbrt:2:10: the material `subsurface` is not supported yet: \
              `diffuse` of its reflectance stands in",
-            "s.pbrt:3:22: the shape `cylinder` is not supported yet: it is left out (2 times)",
+            "s.pbrt:3:22: the shape `curve` is not supported yet: it is left out (2 times)",
         ]
     );
 }
