@@ -1,6 +1,6 @@
 //! `bidir info`: what is in a scene.
 
-use crate::args::InfoArgs;
+use crate::args::{InfoArgs, SceneArgs};
 use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
@@ -46,6 +46,8 @@ struct Info {
     isa: String,
     /// Light paths that estimators do not make, by their names.
     blind_spots: BTreeMap<&'static str, Vec<BlindSpotInfo>>,
+    /// What is not supported, and what stands in for it with `--lenient`.
+    refused: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -72,7 +74,12 @@ struct FilmInfo {
 
 /// Tells what is in a scene.
 pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
-    let loaded = scene_io::load(&args.scene, None)?;
+    // What a render would refuse is told with the rest, instead of the first of it alone.
+    let scene = SceneArgs {
+        lenient: true,
+        ..args.scene.clone()
+    };
+    let loaded = scene_io::load(&scene, None)?;
     loaded.tell_warnings(&args.scene, 0, console)?;
     let info = Info::new(args.scene.scene.display().to_string(), &loaded);
     if args.json {
@@ -113,6 +120,7 @@ impl Info {
             blind_spots: IntegratorKind::NAMES
                 .map(|(name, integrator)| (name, blind_spots_of(scene, integrator)))
                 .into(),
+            refused: loaded.refused.clone(),
             warnings: loaded.warnings.clone(),
         }
     }
@@ -165,6 +173,13 @@ impl Info {
             let _ = writeln!(text, "{name:<12} {value}");
         }
         self.tell_blind_spots(&mut text);
+        for refused in &self.refused {
+            let _ = writeln!(text, "refused      {refused}");
+        }
+        let is_ignored = |warning: &&String| !self.refused.contains(warning);
+        for ignored in self.warnings.iter().filter(is_ignored) {
+            let _ = writeln!(text, "note         {ignored}");
+        }
         text
     }
 

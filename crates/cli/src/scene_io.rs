@@ -29,6 +29,8 @@ pub(crate) struct LoadedScene {
     pub(crate) output: Option<PathBuf>,
     /// What is odd but no error, each with its place.
     pub(crate) warnings: Vec<String>,
+    /// Those of them that tell what stands in for what is not supported.
+    pub(crate) refused: Vec<String>,
     /// What the scene is made of.
     pub(crate) summary: Summary,
     /// A hash of all that was read.
@@ -61,6 +63,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         spp: loaded.settings.samples_per_pixel.into(),
         output: loaded.settings.output.map(PathBuf::from),
         warnings,
+        refused: loaded.refused,
         summary: loaded.summary,
         digest: loaded.digest.to_string(),
     })

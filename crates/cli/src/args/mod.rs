@@ -179,7 +179,7 @@ pub(crate) enum Command {
 }
 
 /// Which scene, and how it is read.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
     /// The scene: a file of pbrt-v4, or `-` for standard input.
     #[arg(value_hint = ValueHint::FilePath)]

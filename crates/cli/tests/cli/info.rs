@@ -44,6 +44,23 @@ fn light_paths_that_no_strategy_makes_are_told() {
 }
 
 #[test]
+fn what_a_render_would_refuse_is_listed() {
+    let place = Workplace::new();
+    let odd = crate::common::SCENE.replace(
+        "WorldBegin",
+        "WorldBegin\nMaterial \"hair\"\nShape \"sphere\"\nShape \"curve\"\n",
+    );
+    place.write("odd.pbrt", &odd);
+    place
+        .run("info odd.pbrt")
+        .expect(0)
+        .prints("the material `hair` is not supported yet")
+        .prints("refused      odd.pbrt:")
+        .prints("the shape `curve` is not supported yet");
+    place.run("render odd.pbrt -o odd.exr").expect(3);
+}
+
+#[test]
 fn what_is_odd_is_warned_of() {
     let place = Workplace::new();
     place.write(

@@ -9,6 +9,7 @@ use crate::pbrt::scene::{SceneDescription, Warning, warn};
 use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, Span};
 use crate::spectra::Spectrum;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Whether something simpler may replace what is not supported yet.
@@ -23,6 +24,8 @@ pub(super) struct Context<'a> {
     pub(super) options: &'a LoadOptions,
     stand_ins: StandIns,
     pub(super) warnings: Vec<Warning>,
+    /// The messages of those warnings that tell of stand-ins.
+    pub(super) refused: BTreeSet<String>,
     /// Of the texts and of every file that was read since.
     pub(super) digest: DigestBuilder,
 }
@@ -43,6 +46,7 @@ impl<'a> Context<'a> {
             options,
             stand_ins,
             warnings: description.warnings.clone(),
+            refused: BTreeSet::new(),
             digest,
         }
     }
@@ -91,7 +95,9 @@ impl<'a> Context<'a> {
         stand_in: &str,
     ) -> Result<(), Fault> {
         if self.stand_ins == StandIns::Accepted {
-            self.warn(span, format!("{what} is not supported yet: {stand_in}"));
+            let message = format!("{what} is not supported yet: {stand_in}");
+            self.refused.insert(message.clone());
+            self.warn(span, message);
             return Ok(());
         }
         let message = format!("{what} is recognised but not supported yet");

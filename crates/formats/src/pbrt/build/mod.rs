@@ -33,7 +33,7 @@ pub use film::Crop;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription};
+use super::scene::{SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::math::Vec3;
@@ -72,6 +72,8 @@ pub struct Loaded {
     pub settings: SceneSettings,
     /// What is odd but no error, each as `file:line:column: message`.
     pub warnings: Vec<String>,
+    /// Those of the warnings that tell what stands in for what is not supported.
+    pub refused: Vec<String>,
     /// What the scene is made of.
     pub summary: Summary,
     /// Which scene it is.
@@ -110,7 +112,7 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
     let mut context = Context::new(description, options);
     let built = Assembly::build(&mut context);
     let (scene, settings, summary) = built.map_err(|fault| description.sources.error(fault))?;
-    let warnings = context.warnings.iter().map(|warning| {
+    let text = |warning: &Warning| {
         let (line, column) = description.sources.line_and_column(warning.span);
         let file = description.sources.name(warning.span.file).display();
         let times = match warning.count {
@@ -118,11 +120,14 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
             count => format!(" ({count} times)"),
         };
         format!("{file}:{line}:{column}: {}{times}", warning.message)
-    });
+    };
+    let is_refusal = |warning: &&Warning| context.refused.contains(&warning.message);
+    let refused = context.warnings.iter().filter(is_refusal);
     Ok(Loaded {
         scene,
         settings,
-        warnings: warnings.collect(),
+        warnings: context.warnings.iter().map(text).collect(),
+        refused: refused.map(text).collect(),
         summary,
         digest: context.digest.finish(),
     })
