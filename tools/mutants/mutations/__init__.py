@@ -9,5 +9,6 @@ from .paths import PATHS
 from .pictures import PICTURES
 from .scenes import SCENES
 from .textures import TEXTURES
+from .views import VIEWS
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + TEXTURES + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + TEXTURES + VIEWS + LABORATORY

@@ -48,6 +48,11 @@ def experiment(filter_):
     return ("bidir-lab", "--test experiment", filter_)
 
 
+def formats(filter_):
+    """The unit tests of the `formats` crate whose names contain `filter_`."""
+    return ("bidir-formats", "--lib", filter_)
+
+
 def coverage(filter_):
     """Tests of surfaces that are not all there."""
     return ("bidir-formats", "--test coverage", filter_)
