@@ -6,8 +6,10 @@
 //! **Adding one**: a variant here that builds the [`Bsdf`], and a mapping in the scene reader.
 
 mod coated;
+mod principled;
 
 pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
+pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};
 
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, ThinDielectric};
@@ -135,6 +137,8 @@ pub enum Material {
     CoatedDiffuse(CoatedDiffuseMaterial),
     /// A dielectric layer over metal.
     CoatedConductor(CoatedConductorMaterial),
+    /// Metal, plastic, glass and cloth by the parameters of glTF.
+    Principled(Arc<PrincipledMaterial>),
     /// One of two materials at each point.
     Mix(Arc<Mixture>),
 }
@@ -150,6 +154,7 @@ impl Material {
             Self::DiffuseTransmission { .. } => "diffusetransmission",
             Self::CoatedDiffuse(_) => "coateddiffuse",
             Self::CoatedConductor(_) => "coatedconductor",
+            Self::Principled(_) => "principled",
             Self::Mix(_) => "mix",
         }
     }
@@ -200,6 +205,7 @@ impl Material {
             }
             Self::CoatedDiffuse(material) => material.bsdf(uv, color, wavelengths),
             Self::CoatedConductor(material) => material.bsdf(uv, color, wavelengths),
+            Self::Principled(material) => material.bsdf(uv, color, wavelengths),
             Self::Mix(mixture) => mixture.materials[0].bsdf(uv, color, wavelengths),
         }
     }
