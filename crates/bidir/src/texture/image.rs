@@ -50,6 +50,8 @@ impl<const N: usize> Image<N> {
 pub enum Wrap {
     /// The image again.
     Repeat,
+    /// The image mirrored, then again.
+    Mirror,
     /// The border's texel.
     Clamp,
     /// Zero.
@@ -114,12 +116,20 @@ impl<const N: usize> ImageMap<N> {
         let (width, height) = (self.image.width as i64, self.image.height as i64);
         let (x, y) = match self.wrap {
             Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
+            Wrap::Mirror => (mirrored(x, width), mirrored(y, height)),
             Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
             Wrap::Black if x < 0 || y < 0 || x >= width || y >= height => return [0.0; N],
             Wrap::Black => (x, y),
         };
         self.image.texel(x as usize, y as usize)
     }
+}
+
+/// The texel that number `x` of a row is which is laid out forwards and backwards by turns.
+#[inline]
+fn mirrored(x: i64, width: i64) -> i64 {
+    let x = x.rem_euclid(2 * width);
+    x.min(2 * width - 1 - x)
 }
 
 #[cfg(test)]
@@ -165,6 +175,9 @@ mod tests {
     #[test]
     fn borders_wrap_as_asked() {
         check(&map(Wrap::Repeat, ImageFilter::Point), -0.75, 1.75, 1.0);
+        check(&map(Wrap::Mirror, ImageFilter::Point), -0.25, 0.75, 1.0);
+        check(&map(Wrap::Mirror, ImageFilter::Point), 1.25, 1.25, 2.0);
+        check(&map(Wrap::Mirror, ImageFilter::Point), 2.25, 0.75, 1.0);
         check(&map(Wrap::Clamp, ImageFilter::Point), 7.0, -3.0, 4.0);
         check(&map(Wrap::Black, ImageFilter::Point), 1.25, 0.5, 0.0);
         check(&map(Wrap::Black, ImageFilter::Bilinear), 0.0, 0.75, 0.5);

@@ -24,6 +24,7 @@ mod shape;
 mod texture;
 
 pub use film::Crop;
+pub(crate) use film::LARGEST_SIDE;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
