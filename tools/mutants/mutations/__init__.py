@@ -7,6 +7,7 @@ from .laboratory import LABORATORY
 from .materials import MATERIALS
 from .paths import PATHS
 from .pictures import PICTURES
+from .principled import PRINCIPLED
 from .scenes import SCENES
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + PRINCIPLED + LABORATORY

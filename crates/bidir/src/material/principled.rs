@@ -228,7 +228,8 @@ mod tests {
             factor: [0.5, 1.0, 2.0],
             texture: Some(ColorTexture::Constant([0.5, 0.25, 0.5])),
         };
-        assert_eq!(color.eval(Vec2::ZERO), [0.25, 0.25, 1.0]);
+        let found = color.eval(Vec2::ZERO).map(f32::to_bits);
+        assert_eq!(found, [0.25f32, 0.25, 1.0].map(f32::to_bits));
         let number = ScaledFloat {
             factor: 3.0,
             texture: Some(FloatTexture::Constant(0.5)),

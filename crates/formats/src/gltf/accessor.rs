@@ -144,9 +144,9 @@ impl<'a> Layout<'a> {
         };
         self.read_sparse(document, &mut values)?;
         if self.accessor.normalized {
-            values
-                .iter_mut()
-                .for_each(|value| *value = self.component.normalise(*value));
+            for value in &mut values {
+                *value = self.component.normalise(*value);
+            }
         }
         Ok(values)
     }

@@ -186,18 +186,15 @@ impl Document {
     ) -> Result<Vec<u8>, GltfFault> {
         let buffer = &self.root.buffers[index];
         let place = Place::of("buffers", index);
-        let mut bytes = match &buffer.uri {
-            Some(uri) => {
-                let bytes = container::resource(&self.folder, uri, &place.key("uri"))?;
-                if !uri.starts_with("data:") {
-                    context.digest.add(Content::Mesh, &bytes);
-                }
-                bytes
+        let mut bytes = if let Some(uri) = &buffer.uri {
+            let bytes = container::resource(&self.folder, uri, &place.key("uri"))?;
+            if !uri.starts_with("data:") {
+                context.digest.add(Content::Mesh, &bytes);
             }
-            None => {
-                let missing = || place.scene("it has no uri, and the file no binary chunk for it");
-                binary.take().filter(|_| index == 0).ok_or_else(missing)?
-            }
+            bytes
+        } else {
+            let missing = || place.scene("it has no uri, and the file no binary chunk for it");
+            binary.take().filter(|_| index == 0).ok_or_else(missing)?
         };
         if bytes.len() < buffer.byte_length {
             let (have, wanted) = (bytes.len(), buffer.byte_length);

@@ -1,6 +1,11 @@
 //! The JSON of a glTF file, as far as it is read. What is not named here is passed over, as the format
 //! wants of programs that do not know it.
 
+#![expect(
+    clippy::struct_field_names,
+    reason = "the names are those of the format"
+)]
+
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

@@ -96,7 +96,7 @@ fn spot(
     let inner = cone.and_then(|cone| cone.inner_cone_angle).unwrap_or(0.0);
     let outer = cone.and_then(|cone| cone.outer_cone_angle);
     let outer = outer.unwrap_or(std::f32::consts::FRAC_PI_4);
-    if !(inner >= 0.0 && inner <= outer && outer > 1e-4 && outer <= 1.5708) {
+    if !(inner >= 0.0 && inner <= outer && outer > 1e-4 && outer < 1.58) {
         let message =
             format!("the cone from {inner} to {outer} is none: 0 <= inner < outer <= pi/2");
         return Err(place.key("spot").scene(message));

@@ -4,7 +4,7 @@ use super::document::{Context, Document};
 use super::json::{Node, Primitive};
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
-use bidir::math::{Vec2, Vec3};
+use bidir::math::Vec2;
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
@@ -262,7 +262,8 @@ impl Surface {
     ) -> Result<Mesh, GltfFault> {
         let mut placed = Vec::with_capacity(self.positions.len());
         for position in positions {
-            if !(position.abs().max_element() <= FARTHEST) {
+            let is_near = position.abs().max_element() <= FARTHEST;
+            if !is_near {
                 let message = format!("a coordinate is beyond {FARTHEST:e}");
                 return Err(place.fault(ErrorKind::Limit, message));
             }
@@ -271,7 +272,7 @@ impl Surface {
         let uvs = self.uvs[uv.set.min(1)].iter();
         Ok(Mesh {
             positions: placed,
-            normals: normals.map(|n| n.as_vec3()).collect::<Vec<Vec3>>(),
+            normals: normals.map(DVec3::as_vec3).collect(),
             uvs: uvs.map(|&at| uv.apply(at)).collect(),
             triangles: self.triangles.clone(),
             orientation,

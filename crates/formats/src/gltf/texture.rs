@@ -102,7 +102,7 @@ impl Textures {
             self.colors.insert(key, Arc::new(image));
         }
         let image = Arc::clone(&self.colors[&key]);
-        Ok(ColorTexture::Image(map(context, image, sampler, lookup)?))
+        Ok(ColorTexture::Image(map(context, image, &sampler, lookup)?))
     }
 
     /// A texture of numbers: one channel of a linear image, changed.
@@ -124,7 +124,7 @@ impl Textures {
             self.numbers.insert(key.clone(), Arc::new(image));
         }
         let image = Arc::clone(&self.numbers[&key]);
-        Ok(FloatTexture::Image(map(context, image, sampler, lookup)?))
+        Ok(FloatTexture::Image(map(context, image, &sampler, lookup)?))
     }
 
     fn decode(
@@ -230,7 +230,7 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
 fn map<const N: usize>(
     context: &mut Context<'_>,
     image: Arc<Image<N>>,
-    sampler: Sampler,
+    sampler: &Sampler,
     lookup: Lookup<'_>,
 ) -> Result<ImageMap<N>, GltfFault> {
     let place = lookup.place;

@@ -99,7 +99,7 @@ fn read(
         }
     };
     let (yfov, aspect) = (perspective.yfov, perspective.aspect_ratio);
-    if !(yfov > 1e-4 && yfov < 3.1415) {
+    if !(yfov > 1e-4 && yfov < 3.1) {
         return Err(place
             .key("perspective")
             .scene(format!("`yfov` of {yfov} is no angle of view")));
@@ -130,7 +130,7 @@ fn rigid(world_from_node: &DAffine3) -> Affine3A {
 
 fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
     let right = forward.cross(up);
-    let columns = [right, up, forward, eye].map(|column| column.as_vec3a());
+    let columns = [right, up, forward, eye].map(DVec3::as_vec3a);
     Affine3A::from_cols(columns[0], columns[1], columns[2], columns[3])
 }
 
@@ -193,7 +193,7 @@ impl View {
 /// A place on the side of +z from which a box between two corners fills a view of half size `half`
 /// at distance 1.
 fn in_front(corners: [Vec3; 2], half: DVec3) -> Affine3A {
-    let [low, high] = corners.map(|corner| corner.as_dvec3());
+    let [low, high] = corners.map(Vec3::as_dvec3);
     let (centre, size) = if low.cmple(high).all() {
         ((low + high) / 2.0, (high - low) / 2.0)
     } else {

@@ -1,5 +1,10 @@
 //! Cameras, lights, materials and textures.
 
+#![expect(
+    clippy::float_cmp,
+    reason = "numbers of a file come through as they are"
+)]
+
 use super::{Draft, F32, floats, load_bytes, mesh};
 use crate::error::ErrorKind;
 use crate::image::encode_png;
