@@ -181,7 +181,8 @@ impl Principled {
         };
         let mixed = PrincipledParameters {
             transmission: 0.6,
-            ..glass(0.0, Wall::Solid)
+            wall: Wall::Solid,
+            ..coated(0.0, 0.0)
         };
         [
             ("principled plastic", plain(0.25, 0.25)),
@@ -197,7 +198,10 @@ impl Principled {
             ("principled glass, rough", glass(0.3, Wall::Solid)),
             ("principled glass", glass(0.0, Wall::Solid)),
             ("principled, half of glass", half),
-            ("principled, smooth and part of glass", mixed),
+            (
+                "principled, smooth and part of glass under smooth coat",
+                mixed,
+            ),
         ]
         .into_iter()
         .map(|(name, parameters)| (name, Self::new(&parameters)))
