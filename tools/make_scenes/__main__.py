@@ -16,6 +16,7 @@ import readme
 import room
 import torture_camera
 import torture_materials
+import torture_views
 from writer import Project
 
 
@@ -29,6 +30,7 @@ def main():
     cornell.write_all(project)
     torture_materials.write_all(project)
     torture_camera.write_all(project)
+    torture_views.write_all(project)
     broken.write_all(project)
     readme.write(project)
     for path, triangles, title in project.scenes:

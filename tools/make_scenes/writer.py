@@ -82,11 +82,13 @@ class SceneText:
 
     def header(self, film, camera, integrator="bdpt", maxdepth=8, filter_text='"gaussian"',
                sampler='"sobol" "integer pixelsamples" 64', film_extra=""):
-        """film: (width, height); camera: (eye, target, fov, extra parameters)."""
+        """film: (width, height); camera: (eye, target, fov, extra parameters), or a text in
+        place of the angle where it is another camera than `perspective`."""
         name = os.path.basename(self.path)[:-5] + ".exr"
         eye, target, fov, extra = camera
         self.line("LookAt %s  %s  0 1 0" % (nums(eye), nums(target)))
-        self.line('Camera "perspective" "float fov" %s%s' % (num(fov), extra))
+        kind = fov if isinstance(fov, str) else '"perspective" "float fov" ' + num(fov)
+        self.line("Camera %s%s" % (kind, extra))
         self.line('Film "rgb" "integer xresolution" %d "integer yresolution" %d%s'
                   % (film[0], film[1], film_extra))
         self.line('  "string filename" "%s"' % name)

@@ -53,6 +53,7 @@
 mod aabb;
 mod builder;
 mod bvh;
+mod cylinder;
 mod disk;
 mod exact;
 mod instance;
@@ -69,6 +70,7 @@ mod validate;
 
 pub use aabb::Aabb;
 pub use bvh::{BuildError, BuildOptions, Bvh, InstanceError};
+pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use instance::Instance;
 pub use isa::{Isa, UnknownIsa};

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3, Vec3};
 
 use crate::aabb::Aabb;
+use crate::cylinder::Cylinder;
 use crate::disk::Disk;
 use crate::quadric::to_f64;
 use crate::sphere::Sphere;
@@ -16,6 +17,8 @@ pub enum Primitive {
     Sphere(Sphere),
     /// A disk, ring or sector, or its image under an affine map.
     Disk(Disk),
+    /// A cylinder without caps, part of one, or its image under an affine map.
+    Cylinder(Cylinder),
 }
 
 impl Primitive {
@@ -31,6 +34,7 @@ impl Primitive {
             Self::Triangle(vertices) => Aabb::around(vertices),
             Self::Sphere(sphere) => sphere.bounds(),
             Self::Disk(disk) => disk.bounds(),
+            Self::Cylinder(cylinder) => cylinder.bounds(),
         }
     }
 }

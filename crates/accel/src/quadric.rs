@@ -8,6 +8,7 @@ use std::f64::consts::TAU;
 use glam::{DAffine3, DVec3};
 
 use crate::aabb::Aabb;
+use crate::cylinder::CylinderTest;
 use crate::disk::DiskTest;
 use crate::primitive::Primitive;
 use crate::ray::Ray;
@@ -29,6 +30,7 @@ pub(crate) struct Quadric {
 enum Shape {
     Sphere(SphereTest),
     Disk(DiskTest),
+    Cylinder(CylinderTest),
 }
 
 /// A line in the space of a quadric.
@@ -57,6 +59,10 @@ impl Quadric {
                 Shape::Sphere(SphereTest::new(sphere)),
             ),
             Primitive::Disk(disk) => (disk.local_from_world, Shape::Disk(DiskTest::new(disk))),
+            Primitive::Cylinder(cylinder) => (
+                cylinder.local_from_world,
+                Shape::Cylinder(CylinderTest::new(cylinder)),
+            ),
         };
         Some(Self {
             primitive: index,
@@ -79,6 +85,7 @@ impl Quadric {
         let roots = match &self.shape {
             Shape::Sphere(sphere) => sphere.roots(&line),
             Shape::Disk(disk) => disk.roots(&line),
+            Shape::Cylinder(cylinder) => cylinder.roots(&line),
         };
         for t in roots {
             // Also false for the NaN of a missing root.
@@ -86,6 +93,7 @@ impl Quadric {
                 let parameters = match &self.shape {
                     Shape::Sphere(sphere) => sphere.parameters(line.at(t)),
                     Shape::Disk(disk) => disk.parameters(line.at(t)),
+                    Shape::Cylinder(cylinder) => cylinder.parameters(line.at(t)),
                 };
                 // A shape without height, width or angle divides zero by zero.
                 if let Some(parameters) = parameters.filter(|[u, v]| u.is_finite() && v.is_finite())

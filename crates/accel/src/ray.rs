@@ -39,11 +39,12 @@ pub struct Hit {
     /// was built from.
     pub primitive: u32,
     /// First surface parameter, in `[0, 1]`.
-    /// Triangle: the weight of vertex 1. Sphere and disk: the angle φ over its maximum.
+    /// Triangle: the weight of vertex 1. Quadrics: the angle φ over its maximum.
     pub u: f32,
     /// Second surface parameter, in `[0, 1]`.
     /// Triangle: the weight of vertex 2; `1 - u - v` can fall below zero by one rounding.
-    /// Sphere: 0 at `z_min`, 1 at `z_max`, linear in θ. Disk: 0 at the rim, 1 at the inner radius.
+    /// Sphere: 0 at `z_min`, 1 at `z_max`, linear in θ. Disk: 0 at the rim, 1 at the inner radius. Cylinder: 0 at
+    /// `z_min`, 1 at `z_max`, linear in z.
     pub v: f32,
 }
 

@@ -9,7 +9,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::stats::LISTED_DROPS;
-use bidir::texture::{ColorTexture, Image, ImageFilter, ImageMap, Wrap};
+use bidir::texture::{Beyond, Change, ColorTexture, Image, ImageFilter, ImageMap, Mapping, Wrap};
 use common::{add_walls, builder, diffuse, emission, quad};
 use std::sync::Arc;
 
@@ -24,13 +24,13 @@ fn room_with_a_broken_texture() -> Scene {
     let image = Arc::new(Image::new(2, texels).expect("two rows of two texels"));
     let map = ImageMap {
         image,
-        wrap: Wrap::Clamp,
+        wrap: Wrap::all(Beyond::Clamp),
         filter: ImageFilter::Point,
-        scale: Vec2::ONE,
-        offset: Vec2::ZERO,
+        change: Change::Scale(1.0),
+        mapping: Mapping::IDENTITY,
     };
     let broken = builder.material(Material::Diffuse {
-        reflectance: ColorTexture::Image(map),
+        reflectance: ColorTexture::Image(Arc::new(map)),
     });
     let mut panel = quad(Vec3::new(-1.0, -1.0, 1.5), Vec3::Y * 2.0, Vec3::X * 2.0);
     panel.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];

@@ -12,6 +12,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::path::{MisHeuristic, PathSettings};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
+use bidir::texture::TexturePoint;
 use common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use common::{
     add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
@@ -171,9 +172,10 @@ fn a_mixture_is_its_parts_in_the_given_shares() {
         let n = 100_000;
         let white = (0..n).filter(|&i| {
             let u = (i as f32 + 0.5) / n as f32;
-            let chosen = nested.choose(Vec2::ZERO, || u);
+            let at = TexturePoint::of_parameters(Vec2::ZERO);
+            let chosen = nested.choose(&at, || u);
             matches!(chosen, Material::Diffuse { reflectance }
-                if reflectance.eval(Vec2::ZERO)[0] > 0.5)
+                if reflectance.eval(&at)[0] > 0.5)
         });
         white.count() as f32 / n as f32
     };

@@ -198,8 +198,9 @@ fn whole_path(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) ->
     path[0] = Vertex::light(context, index, &at);
     path[0].beta = Spectrum::splat(1.0 / path[0].pdf_fwd);
     // An end of a subpath is connected, whatever its walk did next.
-    path.iter_mut()
-        .for_each(|vertex| vertex.went_by_delta = false);
+    for vertex in &mut path {
+        vertex.went_by_delta = false;
+    }
     path
 }
 

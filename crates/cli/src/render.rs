@@ -40,7 +40,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let load = start.elapsed();
     let mut settings = settings::resolve(&args.estimator, loaded.settings.clone());
-    settings.layers = args.layers.layers(loaded.scene.group_names());
+    let own = loaded.settings.layers.aovs();
+    settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {

@@ -4,7 +4,7 @@ use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use bidir::driver::Settings;
-use bidir::film::{Film, FilmSettings, LayerImage, Picture};
+use bidir::film::{self, Film, FilmSettings, LayerImage, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
@@ -52,6 +52,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         ..Settings::default()
     };
     settings.path.max_depth = Some(loaded.settings.max_depth);
+    settings.layers = film::Layers::new(&loaded.settings.aovs, &[], 0);
     let mut warnings = loaded.warnings;
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.scene)));
     Ok(LoadedScene {

@@ -6,6 +6,7 @@
 mod bytes;
 mod error;
 mod source;
+mod spectra;
 
 pub mod file;
 pub mod film;

@@ -8,7 +8,7 @@ use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, PathSettings};
 use bidir::scene::Scene;
-use bidir_formats::pbrt::{LoadOptions, Loaded, load};
+use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
 use statistics::{Replicates, WHOLE, check_agree, replicates};
 use std::path::Path;
 
@@ -28,11 +28,16 @@ struct Case<'a> {
 }
 
 fn open(name: &str) -> Loaded {
+    open_part(name, None)
+}
+
+fn open_part(name: &str, crop: Option<Crop>) -> Loaded {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../../scenes/torture")
         .join(name);
     let options = LoadOptions {
         resolution: Some(RESOLUTION),
+        crop,
         ..LoadOptions::default()
     };
     load(&file, &options).expect("the project's scenes are valid")
@@ -128,6 +133,24 @@ fn half_covered_lens() {
     case.check_bdpt(&reference);
     // Splats from what is close to the lens are few and bright.
     case.with_effort(8).check_light(&reference);
+}
+
+#[test]
+fn parallel_rays() {
+    let loaded = open("parallel.pbrt");
+    let case = Case::new(&loaded, 2304);
+    case.check_bdpt(&case.path());
+    // Nothing but the camera's own rays can see the sky: below it is the ground.
+    let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
+    let case = Case::new(&ground, 4608);
+    case.check_light(&case.path());
+}
+
+#[test]
+fn pictures_of_all_directions() {
+    for name in ["around-longitude.pbrt", "around-octahedron.pbrt"] {
+        Case::new(&open(name), 2304).check_all();
+    }
 }
 
 #[test]

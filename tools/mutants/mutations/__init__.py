@@ -9,5 +9,6 @@ from .paths import PATHS
 from .pictures import PICTURES
 from .principled import PRINCIPLED
 from .scenes import SCENES
+from .textures import TEXTURES
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + PRINCIPLED + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + PRINCIPLED + TEXTURES + LABORATORY

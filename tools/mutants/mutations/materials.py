@@ -35,8 +35,8 @@ MATERIALS = [
     (
         "radiance within a varnish not compressed",
         "crates/bidir/src/bsdf/coated_diffuse.rs",
-        "rho * series * INV_PI / sqr(coat.eta())",
-        "rho * series * INV_PI",
+        "rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())",
+        "rho * all_orders(rho * trip) * INV_PI",
         unit("a_varnish_scatters"),
     ),
     (
@@ -49,8 +49,8 @@ MATERIALS = [
     (
         "a varnish loses what its interface throws back",
         "crates/bidir/src/bsdf/coat/mod.rs",
-        "(1.0 - libm::powf(x, terms as f32)) / (1.0 - x)",
-        "1.0",
+        "1.0 / (1.0 - x.min(0.9999))",
+        "1.0 + 0.0 * x",
         unit("a_varnish_scatters"),
     ),
     (
@@ -63,8 +63,8 @@ MATERIALS = [
     (
         "a mixture within a mixture chooses by the same number",
         "crates/bidir/src/material/mod.rs",
-        "material.choose(uv, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
-        "material.choose(uv, || u)",
+        "material.choose(at, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
+        "material.choose(at, || u)",
         materials("in_the_given_shares"),
     ),
 ]

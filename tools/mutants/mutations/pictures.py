@@ -48,8 +48,8 @@ PICTURES = [
     (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
-        "depth: (surface.point - lens.point).dot(lens.n_g),",
-        "depth: (surface.point - lens.point).length(),",
+        "depth: context.scene.camera().depth(surface.point),",
+        "depth: surface.point.length(),",
         layers("features"),
     ),
     (

@@ -28,6 +28,16 @@ def materials(filter_):
     return ("bidir", "--test materials", filter_)
 
 
+def relief(filter_):
+    """Tests of surfaces whose shading normals are bumped, and of what pixels cover of textures."""
+    return ("bidir", "--test relief", filter_)
+
+
+def reader(filter_):
+    """The unit tests of the `formats` crate whose names contain `filter_`."""
+    return ("bidir-formats", "--lib", filter_)
+
+
 def lab(filter_):
     """The unit tests of the `lab` crate whose names contain `filter_`."""
     return ("bidir-lab", "--lib", filter_)

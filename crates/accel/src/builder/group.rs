@@ -37,7 +37,7 @@ impl Reference {
     pub(super) fn new(index: u32, primitive: &Primitive, bounds: Aabb) -> Self {
         let kind = match primitive {
             Primitive::Triangle(_) => Kind::Triangle,
-            Primitive::Sphere(_) | Primitive::Disk(_) => Kind::Quadric,
+            Primitive::Sphere(_) | Primitive::Disk(_) | Primitive::Cylinder(_) => Kind::Quadric,
         };
         Self {
             bounds,

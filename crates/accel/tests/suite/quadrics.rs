@@ -1,11 +1,13 @@
-//! Spheres and disks against formulas.
+//! Quadrics against formulas.
 
 use std::f64::consts::{PI, TAU};
 
-use bidir_accel::{BuildError, BuildOptions, Bvh, Disk, Hit, Primitive, Ray, Sphere, accept_all};
+use bidir_accel::{
+    BuildError, BuildOptions, Bvh, Cylinder, Disk, Hit, Primitive, Ray, Sphere, accept_all,
+};
 use glam::{Affine3A, DVec3, Mat3, Vec3};
 
-use crate::scenes::{Random, build, disk, sphere};
+use crate::scenes::{Random, build, cylinder, disk, sphere};
 
 /// A point of the surface in local space, from its parameters by the definition.
 fn local_point(primitive: &Primitive, hit: &Hit) -> DVec3 {
@@ -26,6 +28,12 @@ fn local_point(primitive: &Primitive, hit: &Hit) -> DVec3 {
                 f64::from(disk.height),
             )
         }
+        Primitive::Cylinder(cylinder) => {
+            let [low, high] = [cylinder.z_min, cylinder.z_max].map(f64::from);
+            let around = from_angles(0.5 * PI, u * f64::from(cylinder.phi_max));
+            let across = f64::from(cylinder.radius) * around;
+            DVec3::new(across.x, across.y, low + v * (high - low))
+        }
         Primitive::Triangle(_) => unreachable!("not a quadric"),
     }
 }
@@ -39,6 +47,7 @@ fn local_from_world(primitive: &Primitive) -> impl Fn(DVec3) -> DVec3 {
     let map = match primitive {
         Primitive::Sphere(sphere) => sphere.local_from_world,
         Primitive::Disk(disk) => disk.local_from_world,
+        Primitive::Cylinder(cylinder) => cylinder.local_from_world,
         Primitive::Triangle(_) => unreachable!("not a quadric"),
     };
     let matrix = Mat3::from(map.matrix3).as_dmat3();
@@ -51,18 +60,13 @@ fn passages(primitive: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
     let kept = |p: DVec3, phi_max: f32| p.y.atan2(p.x).rem_euclid(TAU) <= f64::from(phi_max);
     match primitive {
         Primitive::Sphere(sphere) => {
-            let (a, b) = (d.dot(d), 2.0 * o.dot(d));
-            let c = o.dot(o) - f64::from(sphere.radius * sphere.radius);
-            let root = (b * b - 4.0 * a * c).sqrt();
-            let roots = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)];
-            let inside = |z: f64| z >= f64::from(sphere.z_min) && z <= f64::from(sphere.z_max);
-            let point = |t: f64| o + t * d;
-            let is_kept = |t: f64| inside(point(t).z) && kept(point(t), sphere.phi_max);
-            roots
-                .into_iter()
-                .filter(|t| t.is_finite())
-                .map(|t| (t, is_kept(t)))
-                .collect()
+            let cuts = [sphere.z_min, sphere.z_max, sphere.phi_max];
+            roots(o, d, sphere.radius, (o, d), cuts)
+        }
+        Primitive::Cylinder(cylinder) => {
+            let cuts = [cylinder.z_min, cylinder.z_max, cylinder.phi_max];
+            let across = DVec3::new(1.0, 1.0, 0.0);
+            roots(o * across, d * across, cylinder.radius, (o, d), cuts)
         }
         Primitive::Disk(disk) => {
             let t = (f64::from(disk.height) - o.z) / d.z;
@@ -76,6 +80,27 @@ fn passages(primitive: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
         }
         Primitive::Triangle(_) => unreachable!("not a quadric"),
     }
+}
+
+/// The solutions of |o + t d| = radius, and whether the points there of `line` are between the cuts.
+fn roots(
+    o: DVec3,
+    d: DVec3,
+    radius: f32,
+    line: (DVec3, DVec3),
+    [z_min, z_max, phi_max]: [f32; 3],
+) -> Vec<(f64, bool)> {
+    let (a, b) = (d.dot(d), 2.0 * o.dot(d));
+    let c = o.dot(o) - f64::from(radius) * f64::from(radius);
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let roots = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)];
+    let is_kept = |t: f64| {
+        let p = line.0 + t * line.1;
+        let inside = p.z >= f64::from(z_min) && p.z <= f64::from(z_max);
+        inside && p.y.atan2(p.x).rem_euclid(TAU) <= f64::from(phi_max)
+    };
+    let finite = roots.into_iter().filter(|t| t.is_finite());
+    finite.map(|t| (t, is_kept(t))).collect()
 }
 
 /// Whether a surface point moves in or out of the kept part with a change of `1e-4`.
@@ -152,6 +177,33 @@ fn spheres_agree_with_the_formula() {
 #[test]
 fn disks_agree_with_the_formula() {
     check_against_formula(disk);
+}
+
+#[test]
+fn cylinders_agree_with_the_formula() {
+    check_against_formula(cylinder);
+}
+
+fn unit_cylinder() -> Cylinder {
+    Cylinder {
+        local_from_world: Affine3A::IDENTITY,
+        radius: 1.0,
+        z_min: -1.0,
+        z_max: 1.0,
+        phi_max: 2.0 * std::f32::consts::PI,
+    }
+}
+
+/// A ray along the axis meets nothing, on the surface or off it.
+#[test]
+fn a_cylinder_has_no_caps() {
+    let bvh = build(&[Primitive::Cylinder(unit_cylinder())]);
+    for x in [0.0, 0.5, 1.0, 2.0] {
+        let ray = Ray::new(Vec3::new(x, 0.0, 3.0), -Vec3::Z);
+        assert_eq!(bvh.closest(&ray, accept_all), None, "{x}");
+    }
+    let ray = Ray::new(Vec3::new(0.0, 0.0, 3.0), Vec3::new(1.0, 0.0, -2.5));
+    assert!(bvh.closest(&ray, accept_all).is_some());
 }
 
 fn unit_sphere() -> Sphere {
@@ -325,6 +377,31 @@ fn pointless_parameters_are_never_hit() {
         .map(Primitive::Sphere)
         .into_iter()
         .chain(disks.map(Primitive::Disk));
+    check_never_hit(all);
+}
+
+#[test]
+fn pointless_cylinders_are_never_hit() {
+    let cylinders = [
+        Cylinder {
+            radius: 0.0,
+            ..unit_cylinder()
+        },
+        Cylinder {
+            z_min: 0.5,
+            z_max: 0.5,
+            ..unit_cylinder()
+        },
+        Cylinder {
+            phi_max: 0.0,
+            ..unit_cylinder()
+        },
+    ];
+    check_never_hit(cylinders.map(Primitive::Cylinder));
+}
+
+#[track_caller]
+fn check_never_hit(all: impl IntoIterator<Item = Primitive>) {
     let mut random = Random(31);
     for primitive in all {
         let bvh = build(&[primitive]);
@@ -367,10 +444,12 @@ fn maps_must_be_invertible_and_finite() {
 fn bounds_contain_the_surface() {
     let mut random = Random(32);
     for _ in 0..500 {
-        for primitive in [sphere(&mut random), disk(&mut random)] {
+        for make in [sphere, disk, cylinder] {
+            let primitive = make(&mut random);
             let map = match &primitive {
                 Primitive::Sphere(sphere) => sphere.local_from_world,
                 Primitive::Disk(disk) => disk.local_from_world,
+                Primitive::Cylinder(cylinder) => cylinder.local_from_world,
                 Primitive::Triangle(_) => unreachable!("not a quadric"),
             };
             let bounds = primitive.bounds();

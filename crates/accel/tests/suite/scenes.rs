@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
-use bidir_accel::{BuildOptions, Bvh, Disk, Isa, Primitive, Ray, Sphere};
+use bidir_accel::{BuildOptions, Bvh, Cylinder, Disk, Isa, Primitive, Ray, Sphere};
 use glam::{Affine3A, Quat, Vec3};
 
 /// The generator `SplitMix64`.
@@ -196,15 +196,27 @@ pub(crate) fn disk(random: &mut Random) -> Primitive {
     })
 }
 
-/// Triangles, spheres and disks, shuffled.
+pub(crate) fn cylinder(random: &mut Random) -> Primitive {
+    let z_min = 0.4 * (random.unit() - 0.5);
+    Primitive::Cylinder(Cylinder {
+        local_from_world: random.map(),
+        radius: 0.05 + 0.3 * random.unit(),
+        z_min,
+        z_max: z_min + 0.05 + 0.4 * random.unit(),
+        phi_max: if random.below(2) == 0 {
+            TAU
+        } else {
+            0.5 + 5.0 * random.unit()
+        },
+    })
+}
+
+/// Triangles and quadrics, shuffled.
 pub(crate) fn mixed(random: &mut Random, count: usize) -> Vec<Primitive> {
     let mut primitives = triangle_soup(random, count / 2, 0.2);
     while primitives.len() < count {
-        primitives.push(if random.below(2) == 0 {
-            sphere(random)
-        } else {
-            disk(random)
-        });
+        let make = [sphere, disk, cylinder][random.below(3)];
+        primitives.push(make(random));
     }
     for i in (1..count).rev() {
         primitives.swap(i, random.below(i + 1));

@@ -7,14 +7,14 @@
 //! between both surfaces say.
 //!
 //! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
-//! E(wo) E(wi) / (π Ē) · F̄² Σ_k (F̄ s)^k / Σ_k s^k, as if it had forgotten where it came from
-//! [Kulla17]; E, what white metal so reflects, and s, how much less each time, are tabulated by a
+//! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
+//! \[Kulla17\]; E, what white metal so reflects, and m_k, the share of k reflections, are tabulated by a
 //! walk ([`Reflections`]). Where both surfaces are smooth there is one mirrored
 //! direction, and the sum over all reflections is exact.
 //!
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
 
-use super::coat::{Coat, Curve, Layer, Reflections, geometric_sum, seen_through};
+use super::coat::{Coat, Curve, Layer, Reflections, all_orders, seen_through};
 use super::microfacet::Ggx;
 use super::{BsdfSample, Filling, fresnel, same_hemisphere};
 use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
@@ -27,12 +27,10 @@ pub struct CoatedConductor {
     metal: CoatedMetal,
     /// E.
     trapped: Curve,
-    /// F̄² Σ_k (F̄ s)^k / (π Ē Σ_k s^k).
+    /// Σ_k m_k F̄^k / (π Ē).
     multiple: Spectrum,
     /// ∫ E M cosθ dω of the brightest lane.
     escape: f32,
-    /// The most reflections at the metal.
-    orders: u32,
 }
 
 /// A metal under a layer.
@@ -65,14 +63,12 @@ enum Lobe {
 }
 
 impl CoatedConductor {
-    /// `metal` under an interface of `ggx`; `tables` are those of the two surfaces, and `orders` is
-    /// the most reflections at the metal, `u32::MAX` for all.
+    /// `metal` under an interface of `ggx`; `tables` are those of the two surfaces.
     pub fn new(
         tables: (&Layer, &Reflections),
         ggx: Ggx,
         filling: &Filling,
         metal: CoatedMetal,
-        orders: u32,
     ) -> Self {
         let (layer, reflections) = tables;
         let absorption = filling.absorption();
@@ -84,11 +80,8 @@ impl CoatedConductor {
         // Metals reflect much the same from all but grazing directions.
         let average = metal.fresnel(0.7);
         let trip = absorption.map(|depth| libm::expf(-depth * layer.path));
-        let terms = reflections.orders.saturating_sub(1);
-        let white = geometric_sum(reflections.again, terms).max(1.0);
         let multiple = average.zip(trip, |average, trip| {
-            let series = geometric_sum(average * trip * reflections.again, terms) / white;
-            sqr(average) * trip * series * INV_PI / reflections.mean
+            reflections.remaining(average, trip) * INV_PI / reflections.mean
         });
         Self {
             coat,
@@ -96,7 +89,6 @@ impl CoatedConductor {
             trapped: reflections.part,
             multiple,
             escape: multiple.max_lane() * PI * reflections.mean,
-            orders,
         }
     }
 
@@ -105,7 +97,7 @@ impl CoatedConductor {
         self.metal.ggx.is_smooth()
     }
 
-    /// What leaves along the mirrored direction where all is smooth: F + T² Σ_k (F_m a)^k F^{k-1}, a
+    /// What leaves along the mirrored direction where all is smooth: F + T² a F_m / (1 - F a F_m), a
     /// what the layer leaves of one trip.
     #[inline]
     fn mirror_reflectance(&self, wo: Vec3) -> Spectrum {
@@ -114,17 +106,14 @@ impl CoatedConductor {
             return Spectrum::ONE;
         };
         let trip = self.metal.fresnel(inner.z.abs()) * self.coat.attenuation(wo, wo);
-        trip.map(|trip| {
-            let series = geometric_sum(reflected * trip, self.orders);
-            reflected + sqr(1.0 - reflected) * trip * if self.orders > 0 { series } else { 0.0 }
-        })
+        trip.map(|trip| reflected + sqr(1.0 - reflected) * trip * all_orders(reflected * trip))
     }
 
     /// About the part of light along `w` that each lobe scatters. It depends on |cosθ| alone.
     #[inline]
     fn shares(&self, w: Vec3) -> [Spectrum; 3] {
         let coat = Spectrum::splat(self.coat.reflectance(w));
-        let (Some(inner), 1..) = (self.coat.refracted(w), self.orders) else {
+        let Some(inner) = self.coat.refracted(w) else {
             return [coat, Spectrum::ZERO, Spectrum::ZERO];
         };
         let once = self.metal.fresnel(inner.z.abs()) * sqr(self.coat.transmittance(w));
@@ -161,7 +150,7 @@ impl CoatedConductor {
         }
         let coat = Spectrum::splat(self.coat.eval(wo, wi));
         let inner = (self.coat.refracted(wo), self.coat.refracted(wi));
-        let ((Some(inner_o), Some(inner_i)), 1..) = (inner, self.orders) else {
+        let (Some(inner_o), Some(inner_i)) = inner else {
             return coat;
         };
         let (facets, cos) = self.metal.ggx.mirror(inner_o, inner_i);
@@ -236,10 +225,10 @@ impl CoatedConductor {
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
-        let coated = |eta, coat: f32, metal: [f32; 2], thickness, orders| {
+        let coated = |eta, coat: f32, metal: [f32; 2], thickness| {
             let (ggx, facets) = (Ggx::new(coat, coat), Ggx::new(metal[0], metal[1]));
             let (layer, alpha) = (Layer::new(eta, coat), facets.mean_alpha());
-            let reflections = Reflections::new(&layer, [coat, alpha], orders);
+            let reflections = Reflections::new(&layer, [coat, alpha]);
             let filling = Filling {
                 thickness,
                 albedo: Spectrum::splat(0.0),
@@ -250,28 +239,22 @@ impl CoatedConductor {
                 k: Spectrum([2.4, 1.7, 1.6, 1.6]),
                 ggx: facets,
             };
-            Self::new((&layer, &reflections), ggx, &filling, metal, orders)
+            Self::new((&layer, &reflections), ggx, &filling, metal)
         };
         [
-            (
-                "coated conductor smooth",
-                coated(1.5, 0.0, [0.0; 2], 0.01, 5),
-            ),
+            ("coated conductor smooth", coated(1.5, 0.0, [0.0; 2], 0.01)),
             (
                 "coated conductor under smooth coat",
-                coated(1.5, 0.0, [0.3; 2], 0.01, 5),
+                coated(1.5, 0.0, [0.3; 2], 0.01),
             ),
             (
                 "coated conductor under rough coat",
-                coated(1.5, 0.3, [0.0; 2], 0.2, 5),
+                coated(1.5, 0.3, [0.0; 2], 0.2),
             ),
-            (
-                "coated conductor rough",
-                coated(1.3, 0.4, [0.6; 2], 0.01, u32::MAX),
-            ),
+            ("coated conductor rough", coated(1.3, 0.4, [0.6; 2], 0.01)),
             (
                 "coated conductor anisotropic",
-                coated(1.5, 0.0, [0.5, 0.15], 0.0, 5),
+                coated(1.5, 0.0, [0.5, 0.15], 0.0),
             ),
         ]
         .into_iter()

@@ -3,13 +3,13 @@
 //!
 //! The base is Lambertian, so light that the interface throws back comes to it as any diffuse light
 //! does: each round trip leaves the part ρ r of it, r = R̄ exp(-τ l) with R̄ and the mean path l of
-//! [`Layer`]. The sum is pbrt-v4's random walk in closed form [PBRT4, §14.3], cut after as many
-//! reflections at the base where the scene says so.
+//! [`Layer`]. The sum over all k is 1 / (1 - ρ r): pbrt-v4's random walk in closed form
+//! [PBRT4, §14.3], without its limit of events.
 //!
 //! A layer that scatters with albedo ϖ absorbs the optical depth τ (1-ϖ), and lies as a diffuser over
 //! the base: that is an approximation, exact for ϖ = 0 and where nothing is absorbed.
 
-use super::coat::{Coat, Layer, geometric_sum};
+use super::coat::{Coat, Layer, all_orders};
 use super::microfacet::Ggx;
 use super::{BsdfSample, same_hemisphere};
 use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
@@ -19,7 +19,7 @@ use crate::spectrum::Spectrum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDiffuse {
     coat: Coat,
-    /// ρ Σ_k (ρ r)^k / (π η²).
+    /// ρ / (π η² (1 - ρ r)).
     base: Spectrum,
     /// ∫ T cosθ dω: what of the base leaves the layer.
     escape: f32,
@@ -57,21 +57,13 @@ impl Filling {
 }
 
 impl CoatedDiffuse {
-    /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`; `orders` is the
-    /// most reflections at the base, `u32::MAX` for all.
-    pub fn new(
-        layer: &Layer,
-        ggx: Ggx,
-        filling: &Filling,
-        reflectance: Spectrum,
-        orders: u32,
-    ) -> Self {
+    /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`.
+    pub fn new(layer: &Layer, ggx: Ggx, filling: &Filling, reflectance: Spectrum) -> Self {
         let absorption = filling.absorption();
         let coat = Coat::new(layer, ggx, absorption);
         let trips = absorption.map(|depth| layer.internal * libm::expf(-depth * layer.path));
         let base = filling.cover(reflectance).zip(trips, |rho, trip| {
-            let series = geometric_sum((rho * trip).min(0.9999), orders);
-            rho * series * INV_PI / sqr(coat.eta())
+            rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())
         });
         Self {
             coat,
@@ -157,7 +149,7 @@ impl CoatedDiffuse {
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
-        let coated = |eta, [x, y]: [f32; 2], thickness, albedo, orders| {
+        let coated = |eta, [x, y]: [f32; 2], thickness, albedo| {
             let ggx = Ggx::new(x, y);
             let filling = Filling {
                 thickness,
@@ -170,20 +162,16 @@ impl CoatedDiffuse {
                 ggx,
                 &filling,
                 reflectance,
-                orders,
             )
         };
         [
-            ("coated diffuse smooth", coated(1.5, [0.0; 2], 0.01, 0.0, 5)),
-            (
-                "coated diffuse, thick",
-                coated(1.3, [0.0; 2], 0.7, 0.0, u32::MAX),
-            ),
-            ("coated diffuse sharp", coated(1.5, [0.1; 2], 0.01, 0.0, 5)),
-            ("coated diffuse rough", coated(1.5, [0.4; 2], 0.3, 0.8, 5)),
+            ("coated diffuse smooth", coated(1.5, [0.0; 2], 0.01, 0.0)),
+            ("coated diffuse, thick", coated(1.3, [0.0; 2], 0.7, 0.0)),
+            ("coated diffuse sharp", coated(1.5, [0.1; 2], 0.01, 0.0)),
+            ("coated diffuse rough", coated(1.5, [0.4; 2], 0.3, 0.8)),
             (
                 "coated diffuse anisotropic",
-                coated(1.8, [0.5, 0.2], 0.0, 0.0, 3),
+                coated(1.8, [0.5, 0.2], 0.0, 0.0),
             ),
         ]
         .into_iter()

@@ -204,11 +204,10 @@ impl Bsdf {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Diffuse(_) => false,
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) => false,
             Self::Conductor(bsdf) => bsdf.is_smooth(),
             Self::Dielectric(bsdf) => bsdf.is_smooth(),
             Self::ThinDielectric(_) => true,
-            Self::DiffuseTransmission(_) => false,
             Self::CoatedDiffuse(bsdf) => bsdf.is_delta(),
             Self::CoatedConductor(bsdf) => bsdf.is_delta(),
             Self::Principled(bsdf) => bsdf.is_delta(),

@@ -18,7 +18,7 @@ pub struct ThinDielectric {
 impl ThinDielectric {
     /// R'.
     #[inline]
-    fn reflectance(&self, w: Vec3) -> f32 {
+    fn reflectance(self, w: Vec3) -> f32 {
         // Light enters from outside on both sides.
         let once = fresnel::dielectric(w.z.abs(), self.eta);
         // R + T² R / (1 - R²), without the quotient that is 0/0 at grazing incidence.
@@ -26,7 +26,7 @@ impl ThinDielectric {
     }
 
     #[inline]
-    pub(super) fn sample(&self, wo: Vec3, u_lobe: f32) -> Option<BsdfSample> {
+    pub(super) fn sample(self, wo: Vec3, u_lobe: f32) -> Option<BsdfSample> {
         if wo.z == 0.0 {
             return None;
         }

@@ -8,29 +8,37 @@
 //!   over the lens and the directions of one pixel is 1;
 //! - the density of ω given p is dx/dω: expected camera samples per pixel, 1.
 //!
-//! A pinhole's position is a Dirac distribution; its area counts 1.
+//! A pinhole's position is a Dirac distribution; its area counts 1. A camera of parallel rays is one
+//! in direction instead, and stands at infinity: dx/dA takes the place of dx/dω.
 //!
 //! **Adding one**: a file, a variant in [`Camera`] with an arm in each match, and a mapping in the
 //! scene reader.
 
+mod orthographic;
 mod perspective;
+mod pose;
+mod spherical;
 
 #[cfg(test)]
 mod tests;
 
+pub use orthographic::{Orthographic, OrthographicSettings};
 pub use perspective::{Perspective, PerspectiveSettings};
+pub use spherical::{Spherical, SphericalMapping};
 
 use crate::math::{Vec2, Vec3};
 
 /// A point on the lens.
 #[derive(Clone, Copy, Debug)]
 pub struct LensSample {
-    /// The point. Space: world.
+    /// The point; for parallel rays the unit direction towards the camera. Space: world.
     pub point: Vec3,
-    /// The optical axis, towards the scene: the lens's normal.
+    /// The optical axis, towards the scene: the lens's normal. Zero where there is no lens.
     pub n_g: Vec3,
-    /// Its density. Measure: area, 1/m²; 1 for a pinhole.
+    /// Its density. Measure: area, 1/m²; 1 for a pinhole and for parallel rays.
     pub pdf: f32,
+    /// True for parallel rays.
+    pub is_infinite: bool,
 }
 
 /// A ray that leaves the lens.
@@ -38,6 +46,8 @@ pub struct LensSample {
 pub struct CameraRay {
     /// Where it leaves.
     pub lens: LensSample,
+    /// The point from which it looks: the lens point, where that is finite.
+    pub origin: Vec3,
     /// The unit direction.
     pub direction: Vec3,
 }
@@ -47,6 +57,10 @@ pub struct CameraRay {
 pub enum Camera {
     /// A pinhole or thin lens in front of a plane.
     Perspective(Perspective),
+    /// Parallel rays.
+    Orthographic(Orthographic),
+    /// All directions from a point.
+    Spherical(Spherical),
 }
 
 impl Camera {
@@ -54,6 +68,8 @@ impl Camera {
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Perspective(_) => "perspective",
+            Self::Orthographic(_) => "orthographic",
+            Self::Spherical(_) => "spherical",
         }
     }
 
@@ -62,6 +78,8 @@ impl Camera {
     pub fn sample_lens(&self, u: Vec2) -> LensSample {
         match self {
             Self::Perspective(camera) => camera.sample_lens(u),
+            Self::Orthographic(camera) => camera.lens(),
+            Self::Spherical(camera) => camera.lens(),
         }
     }
 
@@ -70,15 +88,29 @@ impl Camera {
     pub fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
         match self {
             Self::Perspective(camera) => camera.sample_ray(raster, u),
+            Self::Orthographic(camera) => camera.sample_ray(raster),
+            Self::Spherical(camera) => camera.sample_ray(raster),
         }
     }
 
-    /// The raster position of the ray from the lens point `p` along the unit direction `w`.
-    /// None: it leaves backwards.
+    /// The raster position of the ray through `p` along the unit direction `w`, `p` being a lens
+    /// point, or for parallel rays any point of the ray. None: it leaves backwards.
     #[inline]
     pub fn raster(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
         match self {
             Self::Perspective(camera) => camera.raster(p, w),
+            Self::Orthographic(camera) => camera.raster(p),
+            Self::Spherical(camera) => Some(camera.raster(w)),
+        }
+    }
+
+    /// How far in front of the camera a point is: along the axis, where there is one.
+    #[inline]
+    pub fn depth(&self, p: Vec3) -> f32 {
+        match self {
+            Self::Perspective(camera) => camera.depth(p),
+            Self::Orthographic(camera) => camera.depth(p),
+            Self::Spherical(camera) => camera.depth(p),
         }
     }
 
@@ -87,15 +119,30 @@ impl Camera {
     pub fn importance(&self, w: Vec3) -> f32 {
         match self {
             Self::Perspective(camera) => camera.importance(w),
+            Self::Orthographic(camera) => camera.density(w),
+            Self::Spherical(camera) => camera.density(w),
         }
     }
 
     /// The density of leaving the lens along `w`. Measure: solid angle, camera samples per pass
-    /// and sr.
+    /// and sr; for parallel rays area across them, camera samples per pass and m².
     #[inline]
     pub fn pdf_direction(&self, w: Vec3) -> f32 {
         match self {
             Self::Perspective(camera) => camera.pdf_direction(w),
+            Self::Orthographic(camera) => camera.density(w),
+            Self::Spherical(camera) => camera.density(w),
+        }
+    }
+
+    /// How wide a pixel is at the point `p`, across the view: what textures there are averaged over.
+    /// A function of the point alone, of any point of the world, seen or not. Unit: m.
+    #[inline]
+    pub fn pixel_width(&self, p: Vec3) -> f32 {
+        match self {
+            Self::Perspective(camera) => camera.pixel_width(p),
+            Self::Orthographic(camera) => camera.pixel_width(),
+            Self::Spherical(camera) => camera.pixel_width(p),
         }
     }
 }

@@ -4,6 +4,7 @@
 //!
 //! The lens is round and ideal: no distortion and no aberration.
 
+use super::pose::Pose;
 use super::{CameraRay, LensSample};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
 
@@ -25,10 +26,7 @@ pub struct PerspectiveSettings {
 /// A pinhole or thin lens in front of a plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective {
-    origin: Vec3,
-    right: Vec3,
-    up: Vec3,
-    forward: Vec3,
+    pose: Pose,
     /// Screen position = `screen_origin` + raster · `screen_per_raster`.
     screen_origin: Vec2,
     screen_per_raster: Vec2,
@@ -42,29 +40,19 @@ impl Perspective {
     /// The camera. None: its map is no even scaling with rotation and mirroring, or a size is not
     /// finite and positive where it must be.
     pub fn new(settings: &PerspectiveSettings) -> Option<Self> {
-        let m = settings.world_from_camera.matrix3;
-        let axes = [m.x_axis, m.y_axis, m.z_axis].map(Vec3::from);
-        let scale = axes[0].length();
-        let even = axes
-            .iter()
-            .all(|axis| (axis.length() - scale).abs() <= 1e-3 * scale);
-        let square = (0..3).all(|i| axes[i].dot(axes[(i + 1) % 3]).abs() <= 1e-3 * sqr(scale));
+        let pose = Pose::new(&settings.world_from_camera)?;
         let screen_per_raster = (settings.screen[1] - settings.screen[0]) / settings.resolution;
         let raster_density = 1.0 / (screen_per_raster.x * screen_per_raster.y).abs();
         let finite = raster_density.is_finite()
-            && settings.world_from_camera.is_finite()
             && settings.lens_radius >= 0.0
             && settings.focal_distance > 0.0;
-        (even && square && scale > 0.0 && finite).then(|| Self {
-            origin: settings.world_from_camera.translation.into(),
-            right: axes[0] / scale,
-            up: axes[1] / scale,
-            forward: axes[2] / scale,
+        finite.then(|| Self {
+            pose,
             screen_origin: settings.screen[0],
             screen_per_raster,
             raster_density,
-            lens_radius: settings.lens_radius * scale,
-            focal_distance: settings.focal_distance * scale,
+            lens_radius: settings.lens_radius * pose.scale,
+            focal_distance: settings.focal_distance * pose.scale,
         })
     }
 
@@ -72,9 +60,10 @@ impl Perspective {
     pub(super) fn sample_lens(&self, u: Vec2) -> LensSample {
         let offset = warp::concentric_disk(u) * self.lens_radius;
         LensSample {
-            point: self.origin + self.right * offset.x + self.up * offset.y,
-            n_g: self.forward,
+            point: self.pose.origin + self.pose.right * offset.x + self.pose.up * offset.y,
+            n_g: self.pose.forward,
             pdf: 1.0 / self.lens_area(),
+            is_infinite: false,
         }
     }
 
@@ -92,36 +81,41 @@ impl Perspective {
     pub(super) fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
         let lens = self.sample_lens(u);
         let screen = self.screen_origin + raster * self.screen_per_raster;
-        let through_centre = self.right * screen.x + self.up * screen.y + self.forward;
+        let through_centre = self.pose.to_world(screen.extend(1.0));
         // All rays of a raster position meet in the plane of focus; a pinhole needs no plane.
         let direction = if self.lens_radius > 0.0 {
-            self.origin + through_centre * self.focal_distance - lens.point
+            self.pose.origin + through_centre * self.focal_distance - lens.point
         } else {
             through_centre
         };
         CameraRay {
             lens,
+            origin: lens.point,
             direction: direction.normalize(),
         }
     }
 
     #[inline]
     pub(super) fn raster(&self, p: Vec3, w: Vec3) -> Option<Vec2> {
-        let cos = self.forward.dot(w);
-        if cos <= 0.0 {
+        let local = self.pose.to_local(w);
+        if local.z <= 0.0 {
             return None;
         }
-        let direction = Vec2::new(self.right.dot(w), self.up.dot(w)) / cos;
-        let from_centre = p - self.origin;
-        let lens = Vec2::new(self.right.dot(from_centre), self.up.dot(from_centre));
+        let direction = local.truncate() / local.z;
+        let lens = self.pose.to_local(p - self.pose.origin).truncate();
         let screen = direction + lens / self.focal_distance;
         Some((screen - self.screen_origin) / self.screen_per_raster)
+    }
+
+    #[inline]
+    pub(super) fn depth(&self, p: Vec3) -> f32 {
+        self.pose.forward.dot(p - self.pose.origin)
     }
 
     /// dx/dω = raster density / cos³θ: the plane z = 1 seen at an angle.
     #[inline]
     pub(super) fn pdf_direction(&self, w: Vec3) -> f32 {
-        let cos = self.forward.dot(w);
+        let cos = self.pose.forward.dot(w);
         if cos <= 0.0 {
             0.0
         } else {
@@ -129,9 +123,15 @@ impl Perspective {
         }
     }
 
+    /// Distance times the width of a pixel in the middle of the view, one unit in front.
+    #[inline]
+    pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
+        p.distance(self.pose.origin) / self.raster_density.sqrt()
+    }
+
     #[inline]
     pub(super) fn importance(&self, w: Vec3) -> f32 {
-        let cos = self.forward.dot(w);
+        let cos = self.pose.forward.dot(w);
         if cos <= 0.0 {
             0.0
         } else {

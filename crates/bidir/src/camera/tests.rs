@@ -1,6 +1,9 @@
-//! Pinholes and lenses, scaled, turned and mirrored: rays, importance and the lens.
+//! Cameras, scaled, turned and mirrored: rays, importance and the lens.
 
-use super::{Camera, Perspective, PerspectiveSettings};
+use super::{
+    Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings, Spherical,
+    SphericalMapping,
+};
 use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3, sqr};
 use crate::sampler::{Dimension, Purpose};
 use crate::testing::{Battery, Domain, Grid, check_close, samples};
@@ -29,7 +32,8 @@ fn camera(scale: Vec3, screen: [Vec2; 2], lens_radius: f32) -> Camera {
     Camera::Perspective(Perspective::new(&settings).unwrap())
 }
 
-/// Cameras with the radius of their lens in the world. All see nothing beyond 1 - cosθ = 0.45.
+/// Pinholes and lenses with the radius of the lens in the world. All see nothing beyond
+/// 1 - cosθ = 0.45.
 fn examples() -> [(&'static str, Camera, f32); 5] {
     let centred = [Vec2::new(-0.8, 0.6), Vec2::new(0.8, -0.6)];
     let shifted = [Vec2::new(-0.2, 0.9), Vec2::new(0.9, 0.1)];
@@ -51,19 +55,51 @@ fn examples() -> [(&'static str, Camera, f32); 5] {
     ]
 }
 
-const VARIANTS: usize = 1;
+/// Cameras without a lens: of parallel rays, and of all directions.
+fn others() -> [(&'static str, Camera); 4] {
+    let map = |scale| Affine3A::from_mat3_translation(turn() * Mat3::from_diagonal(scale), EYE);
+    let mirror = Vec3::new(-1.5, 1.5, 1.5);
+    let parallel = |scale| {
+        let settings = OrthographicSettings {
+            world_from_camera: map(scale),
+            resolution: RESOLUTION,
+            screen: [Vec2::new(-0.8, 0.6), Vec2::new(0.9, -0.4)],
+        };
+        Camera::Orthographic(Orthographic::new(&settings).unwrap())
+    };
+    let around = |scale, mapping| {
+        Camera::Spherical(Spherical::new(&map(scale), RESOLUTION, mapping).unwrap())
+    };
+    [
+        ("parallel", parallel(Vec3::splat(2.0))),
+        ("parallel, mirrored", parallel(mirror)),
+        (
+            "longitude and latitude",
+            around(mirror, SphericalMapping::Equirectangular),
+        ),
+        (
+            "equal areas",
+            around(Vec3::splat(2.0), SphericalMapping::EqualArea),
+        ),
+    ]
+}
+
+const VARIANTS: usize = 3;
 
 /// A new variant does not compile before it has a number here.
 fn variant(camera: &Camera) -> usize {
     match camera {
         Camera::Perspective(_) => 0,
+        Camera::Orthographic(_) => 1,
+        Camera::Spherical(_) => 2,
     }
 }
 
 #[test]
 fn every_variant_has_an_example() {
     let mut seen = [false; VARIANTS];
-    for (_, camera, _) in examples() {
+    let lenses = examples().into_iter().map(|(_, camera, _)| camera);
+    for camera in lenses.chain(others().map(|(_, camera)| camera)) {
         seen[variant(&camera)] = true;
     }
     assert_eq!(seen, [true; VARIANTS]);
@@ -209,5 +245,105 @@ fn a_lens_is_sharp_at_its_focal_distance() {
         for u_lens in [Vec2::ZERO, Vec2::new(0.9, 0.2), Vec2::new(0.1, 0.7)] {
             assert!((meet(u_lens) - focus).length() < 1e-4, "{name}");
         }
+    }
+}
+
+/// A ray of any camera leads back to its raster position, and what it sees has the depth of its way.
+#[test]
+fn rays_without_a_lens_lead_back_to_the_film() {
+    for (name, camera) in others() {
+        for sample in samples(name, 1000) {
+            let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
+            let ray = camera.sample_ray(raster, Vec2::splat(0.5));
+            let seen = ray.origin + ray.direction * 7.0;
+            let back = camera.raster(seen, ray.direction).unwrap();
+            assert!(
+                (back - raster).length() < 2e-3,
+                "{name}: {back} instead of {raster}"
+            );
+            check_close(camera.depth(seen), 7.0, 1e-5, name);
+            let densities = [camera.importance(ray.direction), ray.lens.pdf];
+            check_close(
+                densities[0],
+                camera.pdf_direction(ray.direction) * densities[1],
+                1e-6,
+                name,
+            );
+        }
+    }
+}
+
+/// dx/dω of all directions, dx/dA of parallel rays: a pixel's extent by differences.
+#[test]
+fn the_density_of_rays_without_a_lens_is_the_jacobian() {
+    for (name, camera) in others() {
+        // Off the edges of the octahedron's faces, where the map has kinks.
+        for raster in [(33.3, 7.2), (3.1, 22.6), (21.7, 16.4)].map(Vec2::from) {
+            let at = |x: f32, y: f32| {
+                let ray = camera.sample_ray(raster + Vec2::new(x, y), Vec2::splat(0.5));
+                // One of the two is the same for all.
+                ray.origin + ray.direction
+            };
+            let h = 0.02;
+            let (dx, dy) = (at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h));
+            let extent = dx.cross(dy).length() / sqr(2.0 * h);
+            let w = camera.sample_ray(raster, Vec2::splat(0.5)).direction;
+            check_close(extent * camera.pdf_direction(w), 1.0, 5e-3, name);
+        }
+    }
+}
+
+#[test]
+fn pictures_of_all_directions_have_the_camera_upright() {
+    let map = Affine3A::IDENTITY;
+    let size = Vec2::new(40.0, 20.0);
+    let camera = |mapping| Spherical::new(&map, size, mapping).unwrap();
+    let check = |mapping, w: Vec3, expected: Vec2| {
+        let raster = camera(mapping).raster(w);
+        assert!(
+            (raster - expected).length() < 1e-3,
+            "{mapping:?} {w}: {raster}"
+        );
+    };
+    let across = SphericalMapping::Equirectangular;
+    check(across, Vec3::Z, Vec2::new(10.0, 10.0));
+    check(across, -Vec3::X, Vec2::new(20.0, 10.0));
+    check(across, -Vec3::Z, Vec2::new(30.0, 10.0));
+    check(
+        across,
+        Vec3::new(0.0, 1.0, 1.0).normalize(),
+        Vec2::new(10.0, 5.0),
+    );
+    check(SphericalMapping::EqualArea, Vec3::Y, Vec2::new(20.0, 10.0));
+    check(SphericalMapping::EqualArea, Vec3::X, Vec2::new(40.0, 10.0));
+    check(SphericalMapping::EqualArea, Vec3::Z, Vec2::new(20.0, 20.0));
+}
+
+#[test]
+fn parallel_rays_see_nothing_behind_their_plane() {
+    let (_, camera) = others()[0];
+    assert!(camera.raster(EYE - forward(), forward()).is_none());
+    assert!(camera.importance(-forward()) <= 0.0 && camera.pdf_direction(-forward()) <= 0.0);
+}
+
+/// The width of a pixel is that of the widest on the film, by differences of rays, at any distance.
+#[test]
+fn pixels_are_as_wide_as_their_rays_are_apart() {
+    let cameras = examples().map(|(name, camera, _)| (name, camera));
+    for (name, camera) in cameras.into_iter().chain(others()) {
+        let distance = 7.0;
+        let at = |raster: Vec2| {
+            let ray = camera.sample_ray(raster, Vec2::splat(0.5));
+            ray.origin + ray.direction * distance
+        };
+        let h = 0.05;
+        let width = |raster: Vec2| {
+            let along = |axis: Vec2| (at(raster + axis * h) - at(raster - axis * h)) / (2.0 * h);
+            along(Vec2::X).cross(along(Vec2::Y)).length().sqrt()
+        };
+        let middles = (0..1200).map(|i| Vec2::new((i % 40) as f32, (i / 40) as f32) + 0.5);
+        let ratios = middles.map(|raster| width(raster) / camera.pixel_width(at(raster)));
+        let widest = ratios.fold(0.0, f32::max);
+        assert!((0.9..1.02).contains(&widest), "{name}: {widest}");
     }
 }

@@ -37,8 +37,9 @@ impl Deposit<'_> {
     }
 
     fn rgb(&self, value: Spectrum) -> Rgb {
-        let color = self.context.scene.color();
-        color.to_rgb(value, &self.context.wavelengths)
+        let scene = self.context.scene;
+        let light = scene.color().to_rgb(value, &self.context.wavelengths);
+        scene.film().sensor.respond(light)
     }
 
     /// Adds to the parts of the sample's own pixel.

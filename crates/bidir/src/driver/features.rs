@@ -91,7 +91,7 @@ impl FirstSurface {
     /// None: the ray escapes.
     fn find(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) -> Option<Self> {
         match workspace.camera.vertices.as_slice() {
-            [lens, surface, ..] => Some(Self::new(context, lens, surface)),
+            [_, surface, ..] => Some(Self::new(context, surface)),
             [_] => None,
             [] => {
                 let (ray, _) = camera_ray(context, sample);
@@ -99,16 +99,16 @@ impl FirstSurface {
                 let chances = Chances::new(&sample.camera, 1);
                 let hit = context
                     .scene
-                    .intersect(ray.lens.point, ray.direction, chances)?;
+                    .intersect(ray.origin, ray.direction, chances)?;
                 let u_mix = || sample.camera.get_1d(Dimension::at(1, Purpose::Mix));
                 let (wo, beta) = (-ray.direction, Spectrum::ONE);
                 let surface = Vertex::surface(context, &hit, wo, beta, u_mix);
-                Some(Self::new(context, &Vertex::camera(&ray.lens), &surface))
+                Some(Self::new(context, &surface))
             }
         }
     }
 
-    fn new(context: &PathContext<'_>, lens: &Vertex, surface: &Vertex) -> Self {
+    fn new(context: &PathContext<'_>, surface: &Vertex) -> Self {
         let (wo, n_s) = (surface.wo, surface.shading.z);
         let albedo = surface.bsdf.albedo(surface.shading.to_local(wo));
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
@@ -117,7 +117,7 @@ impl FirstSurface {
             point: surface.point,
             n_g: toward_camera(surface.n_g),
             n_s: toward_camera(n_s),
-            depth: (surface.point - lens.point).dot(lens.n_g),
+            depth: context.scene.camera().depth(surface.point),
         }
     }
 }

@@ -22,6 +22,7 @@ pub mod fixed;
 mod layers;
 mod pass;
 mod passes;
+mod sensor;
 mod settings;
 
 pub use develop::{LayerImage, Picture};
@@ -29,6 +30,7 @@ pub use filter::{Filter, FilterKind};
 pub use layers::{Aov, AovKind, Channels, Layers, StrategyImages};
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
+pub use sensor::Sensor;
 pub use settings::{FilmError, FilmSettings, PixelRect};
 
 use fixed::{MOMENT_SCALE, VALUE_SCALE};

@@ -1,7 +1,7 @@
 //! What a film is before anything is rendered: its pixels, crop, filter and exposure. Lengths are
 //! in pixels, (0, 0) the top left one of the whole film, whatever the crop.
 
-use super::Filter;
+use super::{Filter, Sensor};
 use crate::math::Vec2;
 use thiserror::Error;
 
@@ -61,6 +61,8 @@ pub struct FilmSettings {
     pub filter: Filter,
     /// What developed values are multiplied by.
     pub exposure: f32,
+    /// What sums are made of.
+    pub sensor: Sensor,
 }
 
 impl FilmSettings {
@@ -75,6 +77,7 @@ impl FilmSettings {
             crop,
             filter,
             exposure: 1.0,
+            sensor: Sensor::default(),
         }
     }
 

@@ -3,9 +3,10 @@
 //! is divided by the number of light paths by the film, not here.
 
 use super::{Integrator, Link, Sample, Splat, Term, Workspace};
-use crate::math::Vec2;
+use crate::math::{Vec2, Vec3};
 use crate::path::{PathContext, Strategy, Vertex, VertexKind, connect};
 use crate::sampler::{Dimension, Purpose};
+use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
 
 /// Light tracing: strategies t = 1 alone, each with weight 1.
@@ -33,6 +34,8 @@ pub(super) struct LightImage {
     strategy: Strategy,
     light: u32,
     pub(super) lens: Vertex,
+    /// The camera's end of the shadow ray.
+    camera_end: SegmentEnd,
     raster: Vec2,
     contribution: Spectrum,
 }
@@ -55,7 +58,15 @@ pub(super) fn light_image(
         .light
         .get_2d(Dimension::at(s, Purpose::LightImageLens));
     let lens = Vertex::camera(&scene.camera().sample_lens(u_lens));
-    let raster = scene.camera().raster(lens.point, lens.toward(end))?;
+    if lens.is_infinite && end.is_infinite {
+        return None;
+    }
+    let on_ray = if lens.is_infinite {
+        end.point
+    } else {
+        lens.point
+    };
+    let raster = scene.camera().raster(on_ray, lens.toward(end))?;
     if !reaches_film(context, raster) {
         return None;
     }
@@ -63,10 +74,26 @@ pub(super) fn light_image(
     (contribution != Spectrum::ZERO).then_some(LightImage {
         strategy: Strategy::new(s, 1),
         light: start,
+        camera_end: camera_end(context, &lens, end),
         lens,
         raster,
         contribution,
     })
+}
+
+/// Where a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
+/// camera's plane, behind which nothing is in its way.
+fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> SegmentEnd {
+    if !lens.is_infinite {
+        return lens.segment_end();
+    }
+    let depth = context.scene.camera().depth(end.point);
+    SegmentEnd {
+        point: end.point + lens.point * depth,
+        n_g: Vec3::ZERO,
+        is_infinite: false,
+        ..lens.segment_end()
+    }
 }
 
 /// True where the filter of some pixel of the crop may reach `raster`.
@@ -106,7 +133,7 @@ impl Workspace {
                 .get_2d(Dimension::at(s, Purpose::LightImagePixel)),
         };
         let end = self.light.vertices[s - 1].segment_end();
-        let ends = [end, image.lens.segment_end()];
+        let ends = [end, image.camera_end];
         self.count(term, |_| Link::LightImage(ends, splat));
         if self.accepts(sample, strategy, term.value())
             && let Some(arrives) = self.trace(context.scene, strategy, &ends)

@@ -8,7 +8,7 @@ use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::scene::clamped_coverage;
 use crate::shape::{Shape, ShapeSample};
 use crate::spectrum::{Rgb, luminance};
-use crate::texture::FloatTexture;
+use crate::texture::{FloatTexture, TexturePoint};
 
 /// Which sides of a surface emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,7 +96,9 @@ impl AreaLight {
         LightSample {
             at,
             pdf: drawn.pdf * prob,
-            coverage: coverage.map_or(1.0, |alpha| clamped_coverage(alpha.eval(drawn.surface.uv))),
+            coverage: coverage.map_or(1.0, |alpha| {
+                clamped_coverage(alpha.eval(&TexturePoint::new(&drawn.surface)))
+            }),
         }
     }
 
@@ -133,6 +135,7 @@ impl AreaLight {
             // A primitive by area and a point evenly on it: evenly over all.
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
             Shape::Sphere(sphere) => sphere.pdf(at.point),
+            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
         }
     }
 
@@ -167,6 +170,7 @@ impl AreaLight {
         match &context.shapes[self.shape] {
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
             Shape::Sphere(sphere) => sphere.pdf_from(reference, at.point, at.n_g),
+            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3};
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
 use crate::texture::Image;
 
@@ -33,6 +33,12 @@ impl Surroundings {
                 Shape::Sphere(Sphere::new(map, 0.5, front)),
                 Shape::Sphere(Sphere::new(stretched, 0.5, Orientation::Reversed)),
                 Shape::Disk(Disk::new(stretched, 0.1, [0.2, 1.0], 5.0, front)),
+                Shape::Cylinder(Cylinder::new(
+                    stretched,
+                    0.4,
+                    Vec3::new(-0.2, 0.6, 5.0),
+                    front,
+                )),
             ],
         }
     }
@@ -94,6 +100,7 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
         ("ball", area(1, EmissionSides::Front)),
         ("ellipsoid, reversed", area(2, EmissionSides::Front)),
         ("ring, both sides", area(3, EmissionSides::Both)),
+        ("cylinder", area(4, EmissionSides::Front)),
         (
             "point",
             Light::Point(PointLight {

@@ -8,7 +8,7 @@ use crate::bsdf::coat::{Layer, Reflections};
 use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling};
 use crate::math::{Vec2, sqr};
 use crate::spectrum::{ColorModel, Wavelengths};
-use crate::texture::{ColorTexture, FloatTexture};
+use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 use std::sync::Arc;
 
 /// A dielectric layer.
@@ -24,16 +24,19 @@ pub struct CoatSettings {
     pub albedo: ColorTexture,
     /// The mean cosine of the angle of scattering.
     pub g: FloatTexture,
-    /// The most reflections at the base, `u32::MAX` for all.
-    pub orders: u32,
 }
 
 impl CoatSettings {
-    fn filling(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Filling {
+    fn needs(&self) -> Needs {
+        let filling = self.thickness.needs().and(self.g.needs());
+        filling.and(self.albedo.needs()).and(self.roughness.needs())
+    }
+
+    fn filling(&self, at: &TexturePoint, color: ColorModel, wavelengths: &Wavelengths) -> Filling {
         Filling {
-            thickness: self.thickness.eval(uv).max(0.0),
-            albedo: color.albedo(unit(self.albedo.eval(uv)), wavelengths),
-            g: self.g.eval(uv).clamp(-1.0, 1.0),
+            thickness: self.thickness.eval(at).max(0.0),
+            albedo: color.albedo(unit(self.albedo.eval(at)), wavelengths),
+            g: self.g.eval(at).clamp(-1.0, 1.0),
         }
     }
 }
@@ -47,7 +50,11 @@ impl Axis {
     fn of(roughness: &Roughness) -> Self {
         let is_constant = |texture: &FloatTexture| matches!(texture, FloatTexture::Constant(_));
         if is_constant(&roughness.u) && is_constant(&roughness.v) {
-            return Self(vec![roughness.ggx(Vec2::ZERO).mean_alpha()]);
+            return Self(vec![
+                roughness
+                    .ggx(&TexturePoint::of_parameters(Vec2::ZERO))
+                    .mean_alpha(),
+            ]);
         }
         let steps = 8;
         Self((0..=steps).map(|i| sqr(i as f32 / steps as f32)).collect())
@@ -110,18 +117,21 @@ impl CoatedDiffuseMaterial {
         }
     }
 
-    pub(super) fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
-        let ggx = self.coat.roughness.ggx(uv);
-        let filling = self.coat.filling(uv, color, wavelengths);
-        let reflectance = color.albedo(unit(self.reflectance.eval(uv)), wavelengths);
+    pub(super) fn needs(&self) -> Needs {
+        self.coat.needs().and(self.reflectance.needs())
+    }
+
+    pub(super) fn bsdf(
+        &self,
+        at: &TexturePoint,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> Bsdf {
+        let ggx = self.coat.roughness.ggx(at);
+        let filling = self.coat.filling(at, color, wavelengths);
+        let reflectance = color.albedo(unit(self.reflectance.eval(at)), wavelengths);
         let layer = self.layers.at(ggx.mean_alpha());
-        Bsdf::CoatedDiffuse(CoatedDiffuse::new(
-            &layer,
-            ggx,
-            &filling,
-            reflectance,
-            self.coat.orders,
-        ))
+        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filling, reflectance))
     }
 }
 
@@ -144,8 +154,7 @@ impl CoatedConductorMaterial {
         let metal_axis = Axis::of(&roughness);
         let of_coat = |layer: &Layer, alpha: f32| {
             let metal = metal_axis.0.iter();
-            let orders = coat.orders;
-            let tables = metal.map(|&metal| Reflections::new(layer, [alpha, metal], orders));
+            let tables = metal.map(|&metal| Reflections::new(layer, [alpha, metal]));
             tables.collect::<Vec<_>>()
         };
         let coats = layers.layers.iter().zip(&layers.axis.0);
@@ -172,10 +181,20 @@ impl CoatedConductorMaterial {
         row(low).lerp(&row(high), t)
     }
 
-    pub(super) fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
-        let (ggx, facets) = (self.coat.roughness.ggx(uv), self.roughness.ggx(uv));
-        let filling = self.coat.filling(uv, color, wavelengths);
-        let (eta, k) = self.index.eval(uv, color, wavelengths);
+    pub(super) fn needs(&self) -> Needs {
+        let metal = self.index.needs().and(self.roughness.needs());
+        self.coat.needs().and(metal)
+    }
+
+    pub(super) fn bsdf(
+        &self,
+        at: &TexturePoint,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> Bsdf {
+        let (ggx, facets) = (self.coat.roughness.ggx(at), self.roughness.ggx(at));
+        let filling = self.coat.filling(at, color, wavelengths);
+        let (eta, k) = self.index.eval(at, color, wavelengths);
         let metal = CoatedMetal {
             eta: eta / self.coat.eta,
             k: k / self.coat.eta,
@@ -185,13 +204,7 @@ impl CoatedConductorMaterial {
         let layer = self.layers.at(coat_alpha);
         let reflections = self.reflections(coat_alpha, metal_alpha);
         let tables = (&layer, &reflections);
-        Bsdf::CoatedConductor(CoatedConductor::new(
-            tables,
-            ggx,
-            &filling,
-            metal,
-            self.coat.orders,
-        ))
+        Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, &filling, metal))
     }
 }
 
@@ -231,7 +244,7 @@ mod tests {
                     g: 0.0,
                 };
                 let white = Spectrum::ONE;
-                let bsdf = CoatedDiffuse::new(&layer, ggx, &filling, white, u32::MAX);
+                let bsdf = CoatedDiffuse::new(&layer, ggx, &filling, white);
                 Bsdf::CoatedDiffuse(bsdf).albedo(Vec3::Z)[0]
             });
             assert!((between - exact).abs() < 0.02, "{between} and {exact}");

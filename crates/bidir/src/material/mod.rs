@@ -7,15 +7,17 @@
 
 mod coated;
 mod principled;
+mod relief;
 
 pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
 pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};
+pub use relief::{Bitangent, Embossed, NormalMap, Relief};
 
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, ThinDielectric};
-use crate::math::{ONE_MINUS_EPSILON, Vec2};
+use crate::math::ONE_MINUS_EPSILON;
 use crate::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
-use crate::texture::{ColorTexture, FloatTexture};
+use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 use std::sync::Arc;
 
 /// How a described roughness becomes a slope α.
@@ -46,10 +48,14 @@ impl Roughness {
         mapping: RoughnessMapping::Identity,
     };
 
+    fn needs(&self) -> Needs {
+        self.u.needs().and(self.v.needs())
+    }
+
     #[inline]
-    fn ggx(&self, uv: Vec2) -> Ggx {
+    fn ggx(&self, at: &TexturePoint) -> Ggx {
         let [x, y] = [&self.u, &self.v].map(|texture| {
-            let roughness = texture.eval(uv).max(0.0);
+            let roughness = texture.eval(at).max(0.0);
             match self.mapping {
                 RoughnessMapping::SquareRoot => roughness.sqrt(),
                 RoughnessMapping::Identity => roughness,
@@ -74,14 +80,26 @@ pub enum ConductorIndex {
 }
 
 impl ConductorIndex {
+    fn needs(&self) -> Needs {
+        match self {
+            Self::Complex { eta, k } => eta.needs().and(k.needs()),
+            Self::Reflectance(reflectance) => reflectance.needs(),
+        }
+    }
+
     /// Real and imaginary part.
     #[inline]
-    fn eval(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> (Spectrum, Spectrum) {
+    fn eval(
+        &self,
+        at: &TexturePoint,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> (Spectrum, Spectrum) {
         let unbounded = |rgb: Rgb| color.unbounded(rgb, wavelengths);
         match self {
-            Self::Complex { eta, k } => (unbounded(eta.eval(uv)), unbounded(k.eval(uv))),
+            Self::Complex { eta, k } => (unbounded(eta.eval(at)), unbounded(k.eval(at))),
             Self::Reflectance(r) => {
-                let k = unit(r.eval(uv)).map(absorption_of_reflectance);
+                let k = unit(r.eval(at)).map(absorption_of_reflectance);
                 (Spectrum::ONE, unbounded(k))
             }
         }
@@ -141,11 +159,13 @@ pub enum Material {
     Principled(Arc<PrincipledMaterial>),
     /// One of two materials at each point.
     Mix(Arc<Mixture>),
+    /// A material whose shading frame turns.
+    Embossed(Arc<Embossed>),
 }
 
 impl Material {
     /// The name of its kind, in one word.
-    pub const fn kind(&self) -> &'static str {
+    pub fn kind(&self) -> &'static str {
         match self {
             Self::Diffuse { .. } => "diffuse",
             Self::Conductor { .. } => "conductor",
@@ -156,37 +176,72 @@ impl Material {
             Self::CoatedConductor(_) => "coatedconductor",
             Self::Principled(_) => "principled",
             Self::Mix(_) => "mix",
+            Self::Embossed(embossed) => embossed.material.kind(),
         }
     }
 
-    /// The material that a mixture is at `uv`, chosen by the number `u`; itself where it is none.
+    /// What turns the shading frame. None: nothing does, or each part of a mixture for itself.
     #[inline]
-    pub fn choose(&self, uv: Vec2, u: impl FnOnce() -> f32) -> &Self {
+    pub fn relief(&self) -> Option<&Relief> {
         match self {
-            Self::Mix(mixture) => mixture.choose(uv, u()),
+            Self::Embossed(embossed) => Some(&embossed.relief),
+            _ => None,
+        }
+    }
+
+    /// The material that a mixture is at a point, chosen by the number `u`; itself where it is none.
+    #[inline]
+    pub fn choose(&self, at: &TexturePoint, u: impl FnOnce() -> f32) -> &Self {
+        match self {
+            Self::Mix(mixture) => mixture.choose(at, u()),
             material => material,
         }
     }
 
-    /// The scattering at `uv`, that of a mixture's first material: [`choose`](Self::choose) first.
+    /// What its textures depend on beside the parameters, and what its relief does.
+    pub fn needs(&self) -> Needs {
+        match self {
+            Self::Diffuse { reflectance } => reflectance.needs(),
+            Self::Conductor { index, roughness } => index.needs().and(roughness.needs()),
+            Self::Dielectric { roughness, .. } => roughness.needs(),
+            Self::ThinDielectric { .. } => Needs::NOTHING,
+            Self::DiffuseTransmission {
+                reflectance,
+                transmittance,
+                ..
+            } => reflectance.needs().and(transmittance.needs()),
+            Self::CoatedDiffuse(material) => material.needs(),
+            Self::CoatedConductor(material) => material.needs(),
+            Self::Principled(material) => material.needs(),
+            Self::Mix(mixture) => {
+                let [first, second] = &mixture.materials;
+                let parts = first.needs().and(second.needs());
+                parts.and(mixture.amount.needs())
+            }
+            // Tangents, and the width of a pixel between heights that are compared.
+            Self::Embossed(_) => Needs::ALL,
+        }
+    }
+
+    /// The scattering at a point, that of a mixture's first material: [`choose`](Self::choose) first.
     #[inline]
-    pub fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
-        let albedo = |texture: &ColorTexture| color.albedo(unit(texture.eval(uv)), wavelengths);
+    pub fn bsdf(&self, at: &TexturePoint, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
+        let albedo = |texture: &ColorTexture| color.albedo(unit(texture.eval(at)), wavelengths);
         match self {
             Self::Diffuse { reflectance } => Bsdf::Diffuse(Diffuse {
                 reflectance: albedo(reflectance),
             }),
             Self::Conductor { index, roughness } => {
-                let (eta, k) = index.eval(uv, color, wavelengths);
+                let (eta, k) = index.eval(at, color, wavelengths);
                 Bsdf::Conductor(Conductor {
                     eta,
                     k,
-                    ggx: roughness.ggx(uv),
+                    ggx: roughness.ggx(at),
                 })
             }
             Self::Dielectric { eta, roughness } => Bsdf::Dielectric(Dielectric {
                 eta: *eta,
-                ggx: roughness.ggx(uv),
+                ggx: roughness.ggx(at),
             }),
             Self::ThinDielectric { eta } => Bsdf::ThinDielectric(ThinDielectric { eta: *eta }),
             Self::DiffuseTransmission {
@@ -195,7 +250,7 @@ impl Material {
                 scale,
             } => {
                 let part = |texture: &ColorTexture| {
-                    let scaled = texture.eval(uv).map(|channel| channel * scale);
+                    let scaled = texture.eval(at).map(|channel| channel * scale);
                     color.albedo(unit(scaled), wavelengths)
                 };
                 Bsdf::DiffuseTransmission(DiffuseTransmission {
@@ -203,18 +258,19 @@ impl Material {
                     transmittance: part(transmittance),
                 })
             }
-            Self::CoatedDiffuse(material) => material.bsdf(uv, color, wavelengths),
-            Self::CoatedConductor(material) => material.bsdf(uv, color, wavelengths),
-            Self::Principled(material) => material.bsdf(uv, color, wavelengths),
-            Self::Mix(mixture) => mixture.materials[0].bsdf(uv, color, wavelengths),
+            Self::CoatedDiffuse(material) => material.bsdf(at, color, wavelengths),
+            Self::CoatedConductor(material) => material.bsdf(at, color, wavelengths),
+            Self::Principled(material) => material.bsdf(at, color, wavelengths),
+            Self::Mix(mixture) => mixture.materials[0].bsdf(at, color, wavelengths),
+            Self::Embossed(embossed) => embossed.material.bsdf(at, color, wavelengths),
         }
     }
 }
 
 impl Mixture {
     /// The number is stretched for what is chosen, so that mixtures within mixtures can use it again.
-    fn choose(&self, uv: Vec2, u: f32) -> &Material {
-        let amount = self.amount.eval(uv).clamp(0.0, 1.0);
+    fn choose(&self, at: &TexturePoint, u: f32) -> &Material {
+        let amount = self.amount.eval(at).clamp(0.0, 1.0);
         let [first, second] = &self.materials;
         // Where the amount is not a number, the first stands for both.
         let (material, rest) = if u < amount {
@@ -222,7 +278,7 @@ impl Mixture {
         } else {
             (first, (u - amount) / (1.0 - amount))
         };
-        material.choose(uv, || rest.clamp(0.0, ONE_MINUS_EPSILON))
+        material.choose(at, || rest.clamp(0.0, ONE_MINUS_EPSILON))
     }
 }
 

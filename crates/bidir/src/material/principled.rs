@@ -3,9 +3,9 @@
 use super::unit;
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
-use crate::math::{Vec2, sin_cos, sqr};
+use crate::math::{Vec2, sqr};
 use crate::spectrum::{ColorModel, Rgb, Wavelengths};
-use crate::texture::{ColorTexture, FloatTexture};
+use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
 
 /// A colour times a texture.
 #[derive(Clone, Debug)]
@@ -25,13 +25,26 @@ impl ScaledColor {
         }
     }
 
-    /// The product at `uv`.
+    /// True where the product is this value everywhere.
     #[inline]
-    pub fn eval(&self, uv: Vec2) -> Rgb {
+    fn is_all(&self, value: f32) -> bool {
+        let is_black = self.factor == [0.0; 3] && value == 0.0;
+        is_black || (self.texture.is_none() && self.factor == [value; 3])
+    }
+
+    fn needs(&self) -> Needs {
+        self.texture
+            .as_ref()
+            .map_or(Needs::NOTHING, ColorTexture::needs)
+    }
+
+    /// The product at a point.
+    #[inline]
+    pub fn eval(&self, at: &TexturePoint) -> Rgb {
         match &self.texture {
             None => self.factor,
             Some(texture) => {
-                let texel = texture.eval(uv);
+                let texel = texture.eval(at);
                 std::array::from_fn(|i| self.factor[i] * texel[i])
             }
         }
@@ -56,19 +69,29 @@ impl ScaledFloat {
         }
     }
 
-    /// The product at `uv`.
+    /// The product at a point.
     #[inline]
-    pub fn eval(&self, uv: Vec2) -> f32 {
+    pub fn eval(&self, at: &TexturePoint) -> f32 {
         let texel = self
             .texture
             .as_ref()
-            .map_or(1.0, |texture| texture.eval(uv));
+            .map_or(1.0, |texture| texture.eval(at));
         self.factor * texel
     }
 
+    fn needs(&self) -> Needs {
+        self.texture
+            .as_ref()
+            .map_or(Needs::NOTHING, FloatTexture::needs)
+    }
+
+    /// The product between 0 and 1; where the number is 0 nothing is looked up.
     #[inline]
-    fn share(&self, uv: Vec2) -> f32 {
-        self.eval(uv).clamp(0.0, 1.0)
+    fn share(&self, at: &TexturePoint) -> f32 {
+        if self.factor == 0.0 {
+            return 0.0;
+        }
+        self.eval(at).clamp(0.0, 1.0)
     }
 }
 
@@ -77,8 +100,8 @@ impl ScaledFloat {
 pub struct Anisotropy {
     /// 0: not at all. Range: `[0, 1]`.
     pub strength: f32,
-    /// The angle from the tangent to the direction that highlights stretch in. Unit: radians.
-    pub rotation: f32,
+    /// The direction that highlights stretch in: cosine and sine of its angle to the tangent.
+    pub direction: Vec2,
     /// The direction in the first two channels, 0.5 standing for 0, and what strength is scaled by in
     /// the third. None: (1, 0) and 1.
     pub texture: Option<ColorTexture>,
@@ -87,17 +110,13 @@ pub struct Anisotropy {
 impl Anisotropy {
     /// Strength, and the direction as cosine and sine.
     #[inline]
-    fn eval(&self, uv: Vec2) -> (f32, Vec2) {
-        let (sin, cos) = sin_cos(self.rotation);
-        let Some(texture) = &self.texture else {
-            return (self.strength, Vec2::new(cos, sin));
+    fn eval(&self, at: &TexturePoint) -> (f32, Vec2) {
+        let Some(texture) = self.texture.as_ref().filter(|_| self.strength > 0.0) else {
+            return (self.strength, self.direction);
         };
-        let [x, y, scale] = texture.eval(uv);
+        let [x, y, scale] = texture.eval(at);
         let direction = Vec2::new(2.0 * x - 1.0, 2.0 * y - 1.0).normalize_or(Vec2::X);
-        let turned = Vec2::new(
-            direction.x * cos - direction.y * sin,
-            direction.x * sin + direction.y * cos,
-        );
+        let turned = self.direction.rotate(direction);
         (self.strength * scale.clamp(0.0, 1.0), turned)
     }
 }
@@ -148,7 +167,7 @@ impl Default for PrincipledMaterial {
             roughness: one.clone(),
             anisotropy: Anisotropy {
                 strength: 0.0,
-                rotation: 0.0,
+                direction: Vec2::X,
                 texture: None,
             },
             ior: 1.5,
@@ -169,35 +188,80 @@ impl Default for PrincipledMaterial {
 impl PrincipledMaterial {
     /// Slopes along the grain and across, and where the grain points.
     #[inline]
-    fn facets(&self, uv: Vec2) -> (Ggx, Vec2) {
-        let across = sqr(self.roughness.share(uv));
-        let (strength, grain) = self.anisotropy.eval(uv);
+    fn facets(&self, at: &TexturePoint) -> (Ggx, Vec2) {
+        let across = sqr(self.roughness.share(at));
+        let (strength, grain) = self.anisotropy.eval(at);
         let along = across + (1.0 - across) * sqr(strength);
         (Ggx::new(along, across), grain)
     }
 
-    pub(super) fn bsdf(&self, uv: Vec2, color: ColorModel, wavelengths: &Wavelengths) -> Bsdf {
-        let albedo = |of: &ScaledColor| color.albedo(unit(of.eval(uv)), wavelengths);
-        let (ggx, grain) = self.facets(uv);
-        Bsdf::Principled(Principled::new(&PrincipledParameters {
-            color: albedo(&self.color),
-            metallic: self.metallic.share(uv),
-            ggx,
+    #[inline]
+    fn coat(&self, at: &TexturePoint) -> PrincipledCoat {
+        let cover = self.coat.share(at);
+        let alpha = if cover > 0.0 {
+            sqr(self.coat_roughness.share(at))
+        } else {
+            0.0
+        };
+        PrincipledCoat { cover, alpha }
+    }
+
+    pub(super) fn needs(&self) -> Needs {
+        let colors = [
+            &self.color,
+            &self.specular_color,
+            &self.diffuse_transmission_color,
+            &self.sheen,
+        ];
+        let numbers = [
+            &self.metallic,
+            &self.roughness,
+            &self.specular,
+            &self.transmission,
+            &self.diffuse_transmission,
+            &self.coat,
+            &self.coat_roughness,
+            &self.sheen_roughness,
+        ];
+        let grain = self.anisotropy.texture.as_ref();
+        let all = colors.into_iter().map(ScaledColor::needs);
+        let all = all.chain(numbers.into_iter().map(ScaledFloat::needs));
+        all.chain(grain.map(ColorTexture::needs))
+            .fold(Needs::NOTHING, Needs::and)
+    }
+
+    /// The scattering at a point. What the material has not is not looked up.
+    pub(super) fn bsdf(
+        &self,
+        at: &TexturePoint,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> Bsdf {
+        let albedo = |of: &ScaledColor| color.albedo(unit(of.eval(at)), wavelengths);
+        let (ggx, grain) = self.facets(at);
+        let mut parameters = PrincipledParameters {
+            metallic: self.metallic.share(at),
             grain,
             ior: self.ior,
-            specular: self.specular.share(uv),
-            specular_color: color.unbounded(self.specular_color.eval(uv), wavelengths),
-            transmission: self.transmission.share(uv),
+            specular: self.specular.share(at),
+            transmission: self.transmission.share(at),
             wall: self.wall,
-            diffuse_transmission: self.diffuse_transmission.share(uv),
-            diffuse_transmission_color: albedo(&self.diffuse_transmission_color),
-            coat: PrincipledCoat {
-                cover: self.coat.share(uv),
-                alpha: sqr(self.coat_roughness.share(uv)),
-            },
-            sheen: albedo(&self.sheen),
-            sheen_alpha: sqr(self.sheen_roughness.share(uv)),
-        }))
+            diffuse_transmission: self.diffuse_transmission.share(at),
+            coat: self.coat(at),
+            ..PrincipledParameters::plain(albedo(&self.color), ggx)
+        };
+        if !self.specular_color.is_all(1.0) {
+            let tint = self.specular_color.eval(at);
+            parameters.specular_color = color.unbounded(tint, wavelengths);
+        }
+        if parameters.diffuse_transmission > 0.0 {
+            parameters.diffuse_transmission_color = albedo(&self.diffuse_transmission_color);
+        }
+        if !self.sheen.is_all(0.0) {
+            parameters.sheen = albedo(&self.sheen);
+            parameters.sheen_alpha = sqr(self.sheen_roughness.share(at));
+        }
+        Bsdf::Principled(Principled::new(&parameters))
     }
 }
 
@@ -207,15 +271,14 @@ mod tests {
 
     #[test]
     fn highlights_stretch_along_the_direction_of_the_grain() {
-        let quarter = std::f32::consts::FRAC_PI_2;
         let texture = ColorTexture::Constant([0.5, 1.0, 0.5]);
         let anisotropy = |texture| Anisotropy {
             strength: 0.8,
-            rotation: quarter,
+            direction: Vec2::Y,
             texture,
         };
         let check = |anisotropy: Anisotropy, strength: f32, direction: Vec2| {
-            let (found, grain) = anisotropy.eval(Vec2::ZERO);
+            let (found, grain) = anisotropy.eval(&TexturePoint::of_parameters(Vec2::ZERO));
             assert!((found - strength).abs() < 1e-6 && grain.distance(direction) < 1e-6);
         };
         check(anisotropy(None), 0.8, Vec2::Y);
@@ -228,12 +291,13 @@ mod tests {
             factor: [0.5, 1.0, 2.0],
             texture: Some(ColorTexture::Constant([0.5, 0.25, 0.5])),
         };
-        let found = color.eval(Vec2::ZERO).map(f32::to_bits);
+        let at = TexturePoint::of_parameters(Vec2::ZERO);
+        let found = color.eval(&at).map(f32::to_bits);
         assert_eq!(found, [0.25f32, 0.25, 1.0].map(f32::to_bits));
         let number = ScaledFloat {
             factor: 3.0,
             texture: Some(FloatTexture::Constant(0.5)),
         };
-        assert_eq!(number.share(Vec2::ZERO).to_bits(), 1.0f32.to_bits());
+        assert_eq!(number.share(&at).to_bits(), 1.0f32.to_bits());
     }
 }

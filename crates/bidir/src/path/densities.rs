@@ -81,6 +81,11 @@ impl PathDensities {
             }
         }
         self.join(context, light, camera, junction);
+        // Of a camera and a light both at infinity no connection makes a path: the camera has to see
+        // the light by itself.
+        if n == 2 && light[0].is_infinite && camera[0].is_infinite {
+            self.vertices[0].from_light = 0.0;
+        }
         self.describe_light(context, light, camera, n);
     }
 

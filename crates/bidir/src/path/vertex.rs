@@ -11,11 +11,13 @@ use crate::light::LightPoint;
 use crate::math::{Frame, Vec3};
 use crate::scene::{SegmentEnd, SurfaceHit};
 use crate::spectrum::Spectrum;
+use crate::texture::TexturePoint;
 
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
-    /// A point on the lens: the start of a camera subpath.
+    /// A point on the lens, or the direction towards a camera at infinity: the start of a camera
+    /// subpath.
     Camera,
     /// A point on a light, or a direction towards one at infinity: the start of a light subpath.
     Light,
@@ -28,7 +30,7 @@ pub enum VertexKind {
 pub struct Vertex {
     /// What it is.
     pub kind: VertexKind,
-    /// The point; for a light at infinity the unit direction towards it.
+    /// The point; for a light or camera at infinity the unit direction towards it.
     pub point: Vec3,
     /// The geometric normal; zero for a point in space.
     pub n_g: Vec3,
@@ -58,7 +60,7 @@ pub struct Vertex {
     pub light: Option<u32>,
     /// The primitive of the light's shape.
     pub light_primitive: u32,
-    /// True for a light at infinity.
+    /// True for a light or camera at infinity.
     pub is_infinite: bool,
 }
 
@@ -91,11 +93,12 @@ impl Vertex {
         }
     }
 
-    /// A lens point; `beta` is one over its density.
+    /// A lens point, or a camera at infinity; `beta` is one over its density.
     pub fn camera(lens: &LensSample) -> Self {
         Self {
             beta: Spectrum::splat(1.0 / lens.pdf),
             pdf_fwd: lens.pdf,
+            is_infinite: lens.is_infinite,
             ..Self::endpoint(VertexKind::Camera, lens.point, lens.n_g)
         }
     }
@@ -129,17 +132,24 @@ impl Vertex {
         beta: Spectrum,
         u_mix: impl FnOnce() -> f32,
     ) -> Self {
-        let surface = &hit.surface;
-        let material = context.scene.material(hit.material);
-        let material = material.choose(surface.uv, u_mix);
-        let bsdf = material.bsdf(surface.uv, context.scene.color(), &context.wavelengths);
+        let (scene, surface) = (context.scene, &hit.surface);
+        let mut at = TexturePoint::new(surface);
+        if let Some(differentials) = &hit.differentials {
+            at = at.seen(scene.footprint(surface.point), differentials);
+        }
+        let material = scene.material(hit.material).choose(&at, u_mix);
+        let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
+        let shading = match (material.relief(), &hit.differentials) {
+            (Some(relief), Some(differentials)) => relief.frame(surface, differentials, &at),
+            _ => surface.shading,
+        };
         Self {
             error: surface.error,
-            shading: surface.shading,
+            shading,
             wo,
             bsdf,
             beta,
-            albedo_fwd: bsdf.albedo(surface.shading.to_local(wo)).max_lane(),
+            albedo_fwd: bsdf.albedo(shading.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             ..Self::endpoint(VertexKind::Surface, surface.point, surface.n_g)
@@ -198,7 +208,7 @@ impl Vertex {
         }
     }
 
-    /// G = |cosθ cosθ'| / d²; towards a light at infinity only the cosine of the other end.
+    /// G = |cosθ cosθ'| / d²; towards an end at infinity only the cosine of the other end.
     /// Visibility is no part of it. Unit: 1/m².
     #[inline]
     pub fn geometry_term(&self, other: &Self) -> f32 {

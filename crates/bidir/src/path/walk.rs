@@ -73,7 +73,7 @@ pub fn camera_subpath(
         beta: Spectrum::splat(weight),
         pdf_w: context.scene.camera().pdf_direction(ray.direction),
     };
-    walker.walk(subpath, ray.lens.point, step, &mut stats.rays.camera);
+    walker.walk(subpath, ray.origin, step, &mut stats.rays.camera);
 }
 
 /// Walks a light subpath.

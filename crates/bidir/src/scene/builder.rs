@@ -3,7 +3,7 @@
 
 use super::check::{check_crop, check_shape};
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, Scene, Surface, clamped_coverage};
+use super::{Presence, Scene, Surface, TextureFiltering, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
@@ -47,7 +47,7 @@ pub enum SceneError {
         /// The number of vertices.
         vertices: usize,
     },
-    /// A mesh has normals or parameters, but not one per vertex.
+    /// A mesh has normals, tangents or parameters, but not one per vertex.
     #[error("the mesh has {vertices} vertices, but {count} {what}")]
     AttributeCount {
         /// The shape, in the order of addition.
@@ -105,6 +105,7 @@ pub struct SceneBuilder {
     objects: Objects,
     coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
+    filtering: TextureFiltering,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
     light_groups: Vec<u32>,
@@ -126,6 +127,7 @@ impl SceneBuilder {
             objects: Objects::default(),
             coverages: Vec::new(),
             materials: Vec::new(),
+            filtering: TextureFiltering::default(),
             lights: Vec::new(),
             light_groups: Vec::new(),
             group_names: Vec::new(),
@@ -143,6 +145,12 @@ impl SceneBuilder {
     /// Sets the instruction set of the intersector; by default the best that the machine has.
     pub fn isa(&mut self, isa: accel::Isa) -> &mut Self {
         self.isa = isa;
+        self
+    }
+
+    /// Says whether textures are averaged over what a pixel covers.
+    pub fn texture_filtering(&mut self, filtering: TextureFiltering) -> &mut Self {
+        self.filtering = filtering;
         self
     }
 
@@ -175,6 +183,7 @@ impl SceneBuilder {
             material: material.0,
             light,
             presence: Presence::Whole,
+            is_detailed: self.materials[material.0 as usize].needs().footprint,
         });
         self.shapes.push(shape);
     }
@@ -298,6 +307,7 @@ impl SceneBuilder {
             instances,
             coverages: self.coverages,
             materials: self.materials,
+            filtering: self.filtering,
             lights: self.lights,
             light_choice,
             bvh,

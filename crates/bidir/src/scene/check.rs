@@ -46,10 +46,11 @@ pub(super) fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError
             mesh.positions
                 .iter()
                 .chain(&mesh.normals)
+                .chain(&mesh.tangents)
                 .all(|v| v.is_finite())
                 && mesh.uvs.iter().all(|uv| uv.is_finite())
         }
-        Shape::Sphere(_) | Shape::Disk(_) => {
+        Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => {
             let bounds = shape.primitive(0).bounds();
             bounds.min.is_finite() && bounds.max.is_finite() && shape.primitive_area(0).is_finite()
         }
@@ -65,6 +66,7 @@ fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
     let vertices = mesh.positions.len();
     for (what, count) in [
         ("normals", mesh.normals.len()),
+        ("tangents", mesh.tangents.len()),
         ("parameters", mesh.uvs.len()),
     ] {
         if count != 0 && count != vertices {

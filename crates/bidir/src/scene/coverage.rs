@@ -8,11 +8,12 @@
 //!
 //! Light that a light sample draws on such a surface carries α as a factor
 //! ([`LightSample::coverage`](crate::light::LightSample::coverage)); where a walk hits the light, it
-//! has decided by then.
+//! has decided by then. Textures of α are never averaged over pixels: they are the same for all rays.
 
 use super::{Presence, Scene};
 use crate::math::Vec2;
 use crate::sampler::{Dimension, Purpose, SampleStream};
+use crate::texture::TexturePoint;
 use accel::Hit;
 use std::ops::ControlFlow;
 
@@ -46,17 +47,26 @@ impl<'a> Chances<'a> {
 impl Scene {
     /// α where a surface is hit: 1 where it is opaque, or where a texture is no number.
     #[inline]
-    fn coverage(&self, hit: &Hit) -> f32 {
-        let (_, primitive) = self.resolve(hit);
-        let shape = primitive.shape as usize;
-        let texture = match self.surfaces[shape].presence {
+    fn coverage(&self, ray: &accel::Ray, hit: &Hit) -> f32 {
+        let (placed, primitive) = self.resolve(hit);
+        let (number, index) = (primitive.shape as usize, primitive.index as usize);
+        let texture = match self.surfaces[number].presence {
             Presence::Whole => return 1.0,
-            Presence::Part(texture) => texture,
+            Presence::Part(texture) => &self.coverages[texture as usize],
             Presence::Absent => return 0.0,
         };
-        let parameters = Vec2::new(hit.u, hit.v);
-        let uv = self.shapes[shape].uv(primitive.index as usize, parameters);
-        clamped_coverage(self.coverages[texture as usize].eval(uv))
+        let (shape, uv) = (&self.shapes[number], Vec2::new(hit.u, hit.v));
+        // Almost always the parameters are enough, and nothing else has to be known of the surface.
+        let at = if texture.needs().surface {
+            let point = ray.origin + ray.direction * hit.t;
+            TexturePoint::new(&match placed {
+                None => shape.surface_point(index, uv, point),
+                Some(placed) => shape.surface_point_at(&placed.place, index, uv, point),
+            })
+        } else {
+            TexturePoint::of_parameters(shape.uv(index, uv))
+        };
+        clamped_coverage(texture.eval(&at))
     }
 
     /// The nearest surface that a ray of a walk does not pass.
@@ -65,7 +75,7 @@ impl Scene {
         if self.coverages.is_empty() {
             return self.bvh.closest(ray, accel::accept_all);
         }
-        self.bvh.closest(ray, |hit| match self.coverage(hit) {
+        self.bvh.closest(ray, |hit| match self.coverage(ray, hit) {
             alpha if alpha >= 1.0 => true,
             alpha => alpha > 0.0 && chances.draw(hit) < alpha,
         })
@@ -78,7 +88,7 @@ impl Scene {
             return f32::from(!self.bvh.occluded(ray, accel::accept_all));
         }
         let mut factors = Factors::default();
-        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(hit) {
+        let flow = self.bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {
             alpha if alpha >= 1.0 => ControlFlow::Break(()),
             alpha => {
                 if alpha > 0.0 {

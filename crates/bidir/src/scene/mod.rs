@@ -25,7 +25,7 @@ use crate::film::FilmSettings;
 use crate::light::{Light, LightChoice, LightContext, LightPoint};
 use crate::material::Material;
 use crate::math::{Vec2, Vec3};
-use crate::shape::{Shape, SurfacePoint};
+use crate::shape::{Differentials, Shape, SurfacePoint};
 use crate::spectrum::ColorModel;
 use crate::texture::FloatTexture;
 
@@ -43,6 +43,8 @@ struct Surface {
     material: u32,
     light: Option<u32>,
     presence: Presence,
+    /// True where the material asks how the surface changes along its parameters.
+    is_detailed: bool,
 }
 
 /// How much of a surface is there.
@@ -56,11 +58,27 @@ enum Presence {
     Absent,
 }
 
+/// Whether textures are averaged over what a pixel covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TextureFiltering {
+    /// Those that ask for it are.
+    #[default]
+    AsAsked,
+    /// None is: a pixel's samples average them.
+    Disabled,
+}
+
+/// The part of a pixel that textures are averaged over: its samples and its filter average too, and
+/// pbrt-v4 takes as much where a pixel has four samples.
+const FILTERED_PART: f32 = 0.5;
+
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
     /// Local geometry.
     pub surface: SurfacePoint,
+    /// How it changes along the parameters. None: the material does not ask.
+    pub differentials: Option<Differentials>,
     /// The material, by index.
     pub material: u32,
     /// The light that the surface is, by index, with the light point that was hit.
@@ -81,6 +99,7 @@ pub struct Scene {
     /// The textures of surfaces that are not all there. Without any, rays do not ask.
     coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
+    filtering: TextureFiltering,
     lights: Vec<Light>,
     light_choice: LightChoice,
     /// The group of each light, by index into the names.
@@ -170,6 +189,16 @@ impl Scene {
         &self.materials[i as usize]
     }
 
+    /// How wide what textures are averaged over is at the point `p`: a function of the point and the
+    /// camera, however a path came there. Unit: m.
+    #[inline]
+    pub fn footprint(&self, p: Vec3) -> f32 {
+        match self.filtering {
+            TextureFiltering::AsAsked => FILTERED_PART * self.camera.pixel_width(p),
+            TextureFiltering::Disabled => 0.0,
+        }
+    }
+
     /// All shapes, those of objects once, in the object's space.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
@@ -222,8 +251,13 @@ impl Scene {
         let light = of_shape
             .light
             .map(|light| (light, LightPoint::on_surface(&surface, primitive.index)));
+        let place = placed.map(|placed| &placed.place);
+        let differentials = of_shape
+            .is_detailed
+            .then(|| shape.differentials(place, (index, uv), &surface));
         Some(SurfaceHit {
             surface,
+            differentials,
             material: of_shape.material,
             light,
         })

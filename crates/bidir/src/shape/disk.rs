@@ -1,7 +1,7 @@
 //! A flat ring or a part of one. An affine map scales all of its area alike, so that points are
 //! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
 
-use super::{Orientation, Place, Placement, ShapeSample, SurfacePoint};
+use super::{Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos, sqr};
 
 /// The ring at `z = height` with radii from `inner_radius` to `radius` and azimuth below
@@ -74,6 +74,17 @@ impl Disk {
         local.z = self.height;
         self.placement
             .surface_point(local, Vec3::Z, self.orientation, uv)
+    }
+
+    /// Along azimuth, and inwards.
+    pub(super) fn differentials(&self, point: Vec3) -> Differentials {
+        let local = self.placement.local_from_world.transform_point3(point);
+        let along = Vec3::new(-local.y, local.x, 0.0) * self.phi_max;
+        let outwards = Vec3::new(local.x, local.y, 0.0).normalize_or_zero();
+        let inwards = outwards * (self.inner_radius - self.radius);
+        let unchanged = (Vec3::Z, [Vec3::ZERO; 2]);
+        self.placement
+            .differentials([along, inwards], unchanged, self.orientation)
     }
 
     /// Evenly over the area: azimuth, then the square of the radius.

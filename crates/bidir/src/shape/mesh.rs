@@ -4,7 +4,8 @@
 //! Normals and parameters are interpolated linearly. Shading normals change the frame, never the
 //! point.
 
-use super::{Orientation, Place, ShapeSample, SurfacePoint, position_error};
+use super::differentials::normal_derivative;
+use super::{Differentials, Orientation, Place, ShapeSample, SurfacePoint, position_error};
 use crate::math::{Frame, Vec2, Vec3, warp};
 
 /// Triangles that share vertices, in world space.
@@ -14,6 +15,9 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Shading normals per vertex; empty: the surface is faceted.
     pub normals: Vec<Vec3>,
+    /// Where the shading frame's x points, per vertex; empty: along ∂p/∂u. Of any length; what of
+    /// them is along the normal has no effect.
+    pub tangents: Vec<Vec3>,
     /// Parameters per vertex; empty: each triangle has (0,0), (1,0), (1,1).
     pub uvs: Vec<Vec2>,
     /// Three vertices per triangle.
@@ -67,6 +71,15 @@ impl Mesh {
         moved.surface_point(b, error)
     }
 
+    /// The derivatives along the parameters at barycentric coordinates `b`.
+    pub(super) fn differentials(&self, place: Option<&Place>, i: usize, b: Vec2) -> Differentials {
+        let corners = self.corners(i);
+        match place {
+            None => corners.differentials(b),
+            Some(place) => corners.at(place).differentials(b),
+        }
+    }
+
     #[inline]
     pub(super) fn uv(&self, i: usize, b: Vec2) -> Vec2 {
         interpolate(self.triangle_uvs(i), b)
@@ -78,6 +91,7 @@ impl Mesh {
         Corners {
             positions: self.triangle(i),
             normals: (!self.normals.is_empty()).then(|| of_vertices(&self.normals)),
+            tangents: (!self.tangents.is_empty()).then(|| of_vertices(&self.tangents)),
             uvs: self.triangle_uvs(i),
             winding_sign: self.orientation.sign(),
         }
@@ -96,6 +110,7 @@ impl Mesh {
 struct Corners {
     positions: [Vec3; 3],
     normals: Option<[Vec3; 3]>,
+    tangents: Option<[Vec3; 3]>,
     uvs: [Vec2; 3],
     /// -1 where the front is not what the winding says.
     winding_sign: f32,
@@ -115,6 +130,9 @@ impl Corners {
         Self {
             positions: self.positions.map(|p| place.point(p)),
             normals: self.normals.map(|normals| normals.map(|n| place.normal(n))),
+            tangents: self
+                .tangents
+                .map(|tangents| tangents.map(|t| place.vector(t))),
             uvs: self.uvs,
             winding_sign: self.winding_sign * place.sign(),
         }
@@ -122,7 +140,7 @@ impl Corners {
 
     #[inline]
     fn surface_point(&self, b: Vec2, error: f32) -> SurfacePoint {
-        let ([p0, p1, p2], uvs) = (self.positions, self.uvs);
+        let [p0, p1, p2] = self.positions;
         let b0 = 1.0 - b.x - b.y;
         let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
         let n_g = winding * self.winding_sign;
@@ -132,8 +150,35 @@ impl Corners {
             point: p0 * b0 + p1 * b.x + p2 * b.y,
             error,
             n_g,
-            shading: Frame::from_z_and_tangent(n_s, tangent(self.positions, uvs)),
-            uv: interpolate(uvs, b),
+            shading: Frame::from_z_and_tangent(n_s, self.tangent(b0, b)),
+            uv: interpolate(self.uvs, b),
+        }
+    }
+
+    /// Positions and normals change linearly over the triangle; the unit normal follows.
+    fn differentials(&self, b: Vec2) -> Differentials {
+        let [uv0, uv1, uv2] = self.uvs;
+        let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
+        let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+        let along = |[v0, v1, v2]: [Vec3; 3]| {
+            let (d1, d2) = (v1 - v0, v2 - v0);
+            [d1 * duv2.y - d2 * duv1.y, d2 * duv1.x - d1 * duv2.x].map(|d| d / determinant)
+        };
+        let n_g = {
+            let [p0, p1, p2] = self.positions;
+            (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z)
+        };
+        let flat = Differentials::flat(n_g, along(self.positions));
+        let Some(normals) = self.normals.filter(|_| determinant != 0.0) else {
+            return flat;
+        };
+        let [n0, n1, n2] = normals;
+        let n = n0 * (1.0 - b.x - b.y) + n1 * b.x + n2 * b.y;
+        let [dn_du, dn_dv] = along(normals).map(|change| normal_derivative(n, change));
+        Differentials {
+            dn_du,
+            dn_dv,
+            ..flat
         }
     }
 
@@ -142,6 +187,15 @@ impl Corners {
     fn shading_normal(&self, b0: f32, b: Vec2) -> Option<Vec3> {
         let [n0, n1, n2] = self.normals?;
         (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
+    }
+
+    /// The interpolated tangent, else ∂p/∂u up to scale.
+    #[inline]
+    fn tangent(&self, b0: f32, b: Vec2) -> Vec3 {
+        match self.tangents {
+            Some([t0, t1, t2]) => t0 * b0 + t1 * b.x + t2 * b.y,
+            None => along_u(self.positions, self.uvs),
+        }
     }
 }
 
@@ -152,7 +206,7 @@ fn interpolate([uv0, uv1, uv2]: [Vec2; 3], b: Vec2) -> Vec2 {
 
 /// ∂p/∂u, up to scale; zero where the parameters are degenerate.
 #[inline]
-fn tangent([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
+fn along_u([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
     let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
     let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     ((p1 - p0) * duv2.y - (p2 - p0) * duv1.y) * determinant.signum() * f32::from(determinant != 0.0)

@@ -10,6 +10,8 @@
 //! **Adding one**: a file, a variant in [`Shape`] with an arm in each match, its intersection in
 //! `accel`, and a mapping in the scene reader.
 
+mod cylinder;
+mod differentials;
 mod disk;
 mod mesh;
 mod place;
@@ -18,6 +20,8 @@ mod sphere;
 #[cfg(test)]
 mod tests;
 
+pub use cylinder::Cylinder;
+pub use differentials::Differentials;
 pub use disk::Disk;
 pub use mesh::Mesh;
 pub use place::Place;
@@ -59,6 +63,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// A disk or ring, or a sector of one, under any affine map.
     Disk(Disk),
+    /// A cylinder without caps, or part of one, under any affine map.
+    Cylinder(Cylinder),
 }
 
 impl Shape {
@@ -68,6 +74,7 @@ impl Shape {
             Self::Mesh(_) => "mesh",
             Self::Sphere(_) => "sphere",
             Self::Disk(_) => "disk",
+            Self::Cylinder(_) => "cylinder",
         }
     }
 
@@ -75,7 +82,7 @@ impl Shape {
     pub fn primitive_count(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.triangle_count(),
-            Self::Sphere(_) | Self::Disk(_) => 1,
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => 1,
         }
     }
 
@@ -85,6 +92,7 @@ impl Shape {
             Self::Mesh(mesh) => accel::Primitive::Triangle(mesh.triangle(i)),
             Self::Sphere(sphere) => accel::Primitive::Sphere(sphere.primitive()),
             Self::Disk(disk) => accel::Primitive::Disk(disk.primitive()),
+            Self::Cylinder(cylinder) => accel::Primitive::Cylinder(cylinder.primitive()),
         }
     }
 
@@ -96,6 +104,7 @@ impl Shape {
             Self::Mesh(mesh) => mesh.surface_point(i, uv),
             Self::Sphere(sphere) => sphere.surface_point(uv, point),
             Self::Disk(disk) => disk.surface_point(uv, point),
+            Self::Cylinder(cylinder) => cylinder.surface_point(uv, point),
         }
     }
 
@@ -104,7 +113,7 @@ impl Shape {
     pub fn uv(&self, i: usize, uv: Vec2) -> Vec2 {
         match self {
             Self::Mesh(mesh) => mesh.uv(i, uv),
-            Self::Sphere(_) | Self::Disk(_) => uv,
+            Self::Sphere(_) | Self::Disk(_) | Self::Cylinder(_) => uv,
         }
     }
 
@@ -119,9 +128,38 @@ impl Shape {
                 sphere.magnitude(),
             ),
             Self::Disk(disk) => (disk.at(place).surface_point(uv, point), disk.magnitude()),
+            Self::Cylinder(cylinder) => (
+                cylinder.at(place).surface_point(uv, point),
+                cylinder.magnitude(),
+            ),
         };
         surface.error += place.error(magnitude);
         surface
+    }
+
+    /// The derivatives along the parameters at such a hit, of a shape of the world or of an object at
+    /// `place`; `surface` is what [`surface_point`](Self::surface_point) gave.
+    pub fn differentials(
+        &self,
+        place: Option<&Place>,
+        (i, uv): (usize, Vec2),
+        surface: &SurfacePoint,
+    ) -> Differentials {
+        match self {
+            Self::Mesh(mesh) => mesh.differentials(place, i, uv),
+            Self::Sphere(sphere) => match place {
+                None => sphere.differentials(surface.point),
+                Some(place) => sphere.at(place).differentials(surface.point),
+            },
+            Self::Disk(disk) => match place {
+                None => disk.differentials(surface.point),
+                Some(place) => disk.at(place).differentials(surface.point),
+            },
+            Self::Cylinder(cylinder) => match place {
+                None => cylinder.differentials(surface.point),
+                Some(place) => cylinder.at(place).differentials(surface.point),
+            },
+        }
     }
 
     /// The area of primitive `i`. Unit: m².
@@ -130,6 +168,7 @@ impl Shape {
             Self::Mesh(mesh) => mesh.triangle_area(i),
             Self::Sphere(sphere) => sphere.area(),
             Self::Disk(disk) => disk.area(),
+            Self::Cylinder(cylinder) => cylinder.area(),
         }
     }
 
@@ -140,6 +179,7 @@ impl Shape {
             Self::Mesh(mesh) => mesh.sample(i, u),
             Self::Sphere(sphere) => sphere.sample(u),
             Self::Disk(disk) => disk.sample(u),
+            Self::Cylinder(cylinder) => cylinder.sample(u),
         }
     }
 
@@ -150,6 +190,7 @@ impl Shape {
             Self::Mesh(mesh) => 1.0 / mesh.triangle_area(i),
             Self::Sphere(sphere) => sphere.pdf(point),
             Self::Disk(disk) => 1.0 / disk.area(),
+            Self::Cylinder(cylinder) => cylinder.pdf(point),
         }
     }
 
@@ -157,7 +198,7 @@ impl Shape {
     #[inline]
     pub fn sample_from(&self, i: usize, reference: Vec3, u: Vec2) -> ShapeSample {
         match self {
-            Self::Mesh(_) | Self::Disk(_) => self.sample(i, u),
+            Self::Mesh(_) | Self::Disk(_) | Self::Cylinder(_) => self.sample(i, u),
             Self::Sphere(sphere) => sphere.sample_from(reference, u),
         }
     }
@@ -167,7 +208,7 @@ impl Shape {
     #[inline]
     pub fn pdf_from(&self, i: usize, reference: Vec3, point: Vec3, n_g: Vec3) -> f32 {
         match self {
-            Self::Mesh(_) | Self::Disk(_) => self.pdf(i, point),
+            Self::Mesh(_) | Self::Disk(_) | Self::Cylinder(_) => self.pdf(i, point),
             Self::Sphere(sphere) => sphere.pdf_from(reference, point, n_g),
         }
     }

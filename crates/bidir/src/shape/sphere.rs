@@ -4,7 +4,7 @@
 //! - for a receiver outside a whole, undistorted sphere, evenly in the cone that it is seen in:
 //!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
 
-use super::{Orientation, Place, Placement, ShapeSample, SurfacePoint};
+use super::{Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint};
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 
 /// The part of a sphere with z in `[z_min, z_max]` and azimuth below `phi_max`, in its own space,
@@ -129,6 +129,23 @@ impl Sphere {
     fn at_local(&self, n: Vec3, uv: Vec2) -> SurfacePoint {
         self.placement
             .surface_point(n * self.radius, n, self.orientation, uv)
+    }
+
+    /// Along azimuth, and up from z_min.
+    pub(super) fn differentials(&self, point: Vec3) -> Differentials {
+        let local = self.placement.local_from_world.transform_point3(point);
+        let n = local.normalize_or(Vec3::Z);
+        let rho = (sqr(n.x) + sqr(n.y)).sqrt();
+        let theta = |z: f32| libm::acosf((z / self.radius).clamp(-1.0, 1.0));
+        let up = theta(self.z_min) - theta(self.z_max);
+        let tangents = [
+            Vec3::new(-n.y, n.x, 0.0) * self.phi_max,
+            Vec3::new(-n.x * n.z / rho, -n.y * n.z / rho, rho) * up,
+        ];
+        let changes = (n, tangents);
+        let tangents = tangents.map(|tangent| tangent * self.radius);
+        self.placement
+            .differentials(tangents, changes, self.orientation)
     }
 
     /// The local point with even local area over the unit square.

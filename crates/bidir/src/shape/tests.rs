@@ -4,7 +4,7 @@ mod directions;
 mod geometry;
 mod points;
 
-use super::{Disk, Mesh, Orientation, Shape, Sphere};
+use super::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::math::{Affine3A, Mat3, PI, Vec2, Vec3};
 
 /// A map that stretches unevenly, shears and turns.
@@ -94,6 +94,26 @@ fn sphere(name: &'static str, map: Affine3A, radius: f32, limits: Vec3) -> Examp
     }
 }
 
+/// `limits` are `z_min`, `z_max` and `phi_max`.
+fn cylinder(name: &'static str, map: Affine3A, radius: f32, limits: Vec3) -> Example {
+    let [z_min, z_max, phi_max] = limits.to_array();
+    Example {
+        name,
+        shape: Shape::Cylinder(Cylinder::new(map, radius, limits, Orientation::Natural)),
+        point: Box::new(move |x, y| {
+            let z = f64::from(z_min) + f64::from(z_max - z_min) * x;
+            let (sin, cos) = libm::sincos(f64::from(phi_max) * y);
+            let radius = f64::from(radius);
+            place(&map, [radius * cos, radius * sin, z])
+        }),
+        square: Box::new(move |p| {
+            let local = map.inverse().transform_point3(p);
+            Vec2::new((local.z - z_min) / (z_max - z_min), azimuth(local, phi_max))
+        }),
+        world_from_local: map,
+    }
+}
+
 fn disk(name: &'static str, map: Affine3A, radii: [f32; 2], phi_max: f32) -> Example {
     let height = 0.3;
     let [inner, outer] = radii;
@@ -165,10 +185,28 @@ fn examples() -> Vec<Example> {
         disk("ring sector", moved(Vec3::ONE, 1.0), [0.5, 1.2], 4.5),
         disk("ring sector, uneven", uneven(), [0.2, 1.0], 3.0),
         disk("disk, mirrored", mirrored(), [0.0, 1.0], 2.0 * PI),
+        cylinder(
+            "cylinder",
+            moved(Vec3::ONE, 1.5),
+            0.7,
+            Vec3::new(-0.5, 0.9, 2.0 * PI),
+        ),
+        cylinder(
+            "partial cylinder, mirrored",
+            mirrored(),
+            0.6,
+            Vec3::new(-0.2, 0.3, 4.0),
+        ),
+        cylinder(
+            "partial cylinder, uneven",
+            uneven(),
+            0.6,
+            Vec3::new(-0.2, 0.5, 5.0),
+        ),
     ]
 }
 
-const VARIANTS: usize = 3;
+const VARIANTS: usize = 4;
 
 /// A new variant does not compile before it has a number here.
 fn variant(shape: &Shape) -> usize {
@@ -176,6 +214,7 @@ fn variant(shape: &Shape) -> usize {
         Shape::Mesh(_) => 0,
         Shape::Sphere(_) => 1,
         Shape::Disk(_) => 2,
+        Shape::Cylinder(_) => 3,
     }
 }
 

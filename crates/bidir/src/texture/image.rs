@@ -1,8 +1,4 @@
-//! Images laid over a surface: the texel at the point, or four around it interpolated, in linear
-//! values. There are no smaller copies of an image for distant views: a pixel's samples average it.
-
-use crate::math::Vec2;
-use std::sync::Arc;
+//! Rectangles of texels in linear values, with smaller copies for where a pixel covers many.
 
 /// A rectangle of texels with `N` linear channels; row 0 is the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,6 +6,8 @@ pub struct Image<const N: usize> {
     width: usize,
     height: usize,
     texels: Vec<[f32; N]>,
+    /// Each about half as wide and high as the one before, down to one texel; none unless asked for.
+    smaller: Vec<Self>,
 }
 
 impl<const N: usize> Image<N> {
@@ -20,7 +18,40 @@ impl<const N: usize> Image<N> {
             width,
             height: texels.len() / width,
             texels,
+            smaller: Vec::new(),
         })
+    }
+
+    /// The same with its smaller copies, which take a third of its memory.
+    ///
+    /// A texel of a copy is the mean of the texels below it, by the areas that it shares with them:
+    /// every copy has the mean of the image.
+    #[must_use]
+    pub fn with_copies(mut self) -> Self {
+        self.smaller.clear();
+        loop {
+            let last = self.smaller.last().unwrap_or(&self);
+            if last.width == 1 && last.height == 1 {
+                return self;
+            }
+            let next = last.halved();
+            self.smaller.push(next);
+        }
+    }
+
+    /// The number of smaller copies.
+    #[inline]
+    pub fn copies(&self) -> usize {
+        self.smaller.len()
+    }
+
+    /// Copy number `level`; 0 is the image itself.
+    #[inline]
+    pub fn copy(&self, level: usize) -> &Self {
+        match level.checked_sub(1) {
+            None => self,
+            Some(i) => &self.smaller[i],
+        }
     }
 
     /// Texels in a row.
@@ -43,149 +74,112 @@ impl<const N: usize> Image<N> {
     pub fn texel(&self, x: usize, y: usize) -> [f32; N] {
         self.texels[y * self.width + x]
     }
-}
 
-/// What lies beyond an image's border.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wrap {
-    /// The image again.
-    Repeat,
-    /// The image mirrored, then again.
-    Mirror,
-    /// The border's texel.
-    Clamp,
-    /// Zero.
-    Black,
-}
-
-/// How texels become a function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ImageFilter {
-    /// The texel that the point lies in.
-    Point,
-    /// Interpolation between the four nearest texel centres.
-    Bilinear,
-}
-
-/// An image laid over (s, t) = `scale`·(u, v) + `offset`; t = 1 is the top row.
-#[derive(Clone, Debug)]
-pub struct ImageMap<const N: usize> {
-    /// The texels, shared between textures.
-    pub image: Arc<Image<N>>,
-    /// What lies beyond the border.
-    pub wrap: Wrap,
-    /// How texels are interpolated.
-    pub filter: ImageFilter,
-    /// Factors of u and v.
-    pub scale: Vec2,
-    /// Offsets of s and t.
-    pub offset: Vec2,
-}
-
-impl<const N: usize> ImageMap<N> {
-    /// The value at `uv`.
-    #[inline]
-    pub fn eval(&self, uv: Vec2) -> [f32; N] {
-        let st = uv * self.scale + self.offset;
-        let (x, y) = (
-            st.x * self.image.width as f32,
-            (1.0 - st.y) * self.image.height as f32,
-        );
-        match self.filter {
-            ImageFilter::Point => self.fetch(x.floor() as i64, y.floor() as i64),
-            ImageFilter::Bilinear => self.bilinear(x - 0.5, y - 0.5),
+    fn halved(&self) -> Self {
+        let (columns, rows) = (shares(self.width), shares(self.height));
+        let mean = |x: &Shares, y: &Shares| -> [f32; N] {
+            let mut sum = [0.0; N];
+            for (j, row_weight) in y.iter() {
+                for (i, weight) in x.iter() {
+                    let texel = self.texel(i, j);
+                    for (sum, value) in sum.iter_mut().zip(texel) {
+                        *sum += f64::from(value) * weight * row_weight;
+                    }
+                }
+            }
+            sum.map(|sum| sum as f32)
+        };
+        let texels = rows
+            .iter()
+            .flat_map(|y| columns.iter().map(move |x| mean(x, y)));
+        Self {
+            width: columns.len(),
+            height: rows.len(),
+            texels: texels.collect(),
+            smaller: Vec::new(),
         }
     }
+}
 
-    #[inline]
-    fn bilinear(&self, x: f32, y: f32) -> [f32; N] {
-        let (x0, y0) = (x.floor(), y.floor());
-        let (fx, fy) = (x - x0, y - y0);
-        let (i, j) = (x0 as i64, y0 as i64);
-        let [a, b, c, d] =
-            [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].map(|(x, y)| self.fetch(x, y));
-        std::array::from_fn(|channel| {
-            let top = a[channel] * (1.0 - fx) + b[channel] * fx;
-            let bottom = c[channel] * (1.0 - fx) + d[channel] * fx;
-            top * (1.0 - fy) + bottom * fy
-        })
-    }
+/// What a texel of a half as long row has of the longer one: the first index, and the weights of it
+/// and of those after it.
+struct Shares {
+    first: usize,
+    weights: [f64; 3],
+}
 
-    #[inline]
-    fn fetch(&self, x: i64, y: i64) -> [f32; N] {
-        let (width, height) = (self.image.width as i64, self.image.height as i64);
-        let (x, y) = match self.wrap {
-            Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
-            Wrap::Mirror => (mirrored(x, width), mirrored(y, height)),
-            Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
-            Wrap::Black if x < 0 || y < 0 || x >= width || y >= height => return [0.0; N],
-            Wrap::Black => (x, y),
-        };
-        self.image.texel(x as usize, y as usize)
+impl Shares {
+    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        let all = (self.first..).zip(self.weights);
+        all.filter(|&(_, weight)| weight > 0.0)
     }
 }
 
-/// The texel that number `x` of a row is which is laid out forwards and backwards by turns.
-#[inline]
-fn mirrored(x: i64, width: i64) -> i64 {
-    let x = x.rem_euclid(2 * width);
-    x.min(2 * width - 1 - x)
+/// The shares of each texel of a row that is half as long as one of `n`, rounded up.
+fn shares(n: usize) -> Vec<Shares> {
+    let short = n.div_ceil(2);
+    // Lengths are in units of 1 / (n · short) of the row: all borders are whole numbers.
+    let share = |i: usize| {
+        let (begin, end) = (i * n, (i + 1) * n);
+        let first = begin / short;
+        let weights = [0, 1, 2].map(|k| {
+            let (left, right) = ((first + k) * short, (first + k + 1) * short);
+            let shared = right.min(end).saturating_sub(left.max(begin));
+            shared as f64 / n as f64
+        });
+        Shares { first, weights }
+    };
+    (0..short).map(share).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn map(wrap: Wrap, filter: ImageFilter) -> ImageMap<1> {
-        let image = Image::new(2, vec![[1.0], [2.0], [3.0], [4.0]]).unwrap();
-        let image = Arc::new(image);
-        ImageMap {
-            image,
-            wrap,
-            filter,
-            scale: Vec2::ONE,
-            offset: Vec2::ZERO,
-        }
-    }
-
-    #[track_caller]
-    fn check(map: &ImageMap<1>, u: f32, v: f32, expected: f32) {
-        let value = map.eval(Vec2::new(u, v))[0];
-        assert!(
-            (value - expected).abs() < 1e-6,
-            "{value} instead of {expected}"
-        );
-    }
-
-    #[test]
-    fn the_top_row_is_at_v_one() {
-        let point = map(Wrap::Repeat, ImageFilter::Point);
-        check(&point, 0.25, 0.75, 1.0);
-        check(&point, 0.75, 0.75, 2.0);
-        check(&point, 0.25, 0.25, 3.0);
-    }
-
-    #[test]
-    fn texel_centres_keep_their_value_and_the_middle_is_the_mean() {
-        let bilinear = map(Wrap::Repeat, ImageFilter::Bilinear);
-        check(&bilinear, 0.25, 0.75, 1.0);
-        check(&bilinear, 0.5, 0.5, 2.5);
-    }
-
-    #[test]
-    fn borders_wrap_as_asked() {
-        check(&map(Wrap::Repeat, ImageFilter::Point), -0.75, 1.75, 1.0);
-        check(&map(Wrap::Mirror, ImageFilter::Point), -0.25, 0.75, 1.0);
-        check(&map(Wrap::Mirror, ImageFilter::Point), 1.25, 1.25, 2.0);
-        check(&map(Wrap::Mirror, ImageFilter::Point), 2.25, 0.75, 1.0);
-        check(&map(Wrap::Clamp, ImageFilter::Point), 7.0, -3.0, 4.0);
-        check(&map(Wrap::Black, ImageFilter::Point), 1.25, 0.5, 0.0);
-        check(&map(Wrap::Black, ImageFilter::Bilinear), 0.0, 0.75, 0.5);
-    }
-
     #[test]
     fn ragged_and_empty_images_are_refused() {
         assert!(Image::<1>::new(2, vec![[0.0]; 3]).is_none());
         assert!(Image::<1>::new(0, vec![]).is_none());
+    }
+
+    /// Every texel of every copy is the mean of the part of the image that it covers, computed
+    /// from the image alone, texel by texel.
+    #[test]
+    fn copies_are_means_by_area() {
+        for [width, height] in [[8, 8], [7, 5], [1, 9], [2, 1], [13, 6]] {
+            let texels = (0..width * height).map(|i| [((i * 37 + 11) % 101) as f32]);
+            let image = Image::new(width, texels.collect()).unwrap().with_copies();
+            let last = image.copy(image.copies());
+            assert_eq!([last.width(), last.height()], [1, 1]);
+            let mean = |image: &Image<1>| {
+                let sum: f64 = image.texels().iter().map(|texel| f64::from(texel[0])).sum();
+                sum / image.texels().len() as f64
+            };
+            for level in 1..=image.copies() {
+                let copy = image.copy(level);
+                assert!((mean(copy) - mean(&image)).abs() < 1e-4, "{width}x{height}");
+            }
+            let half = image.copy(1);
+            for y in 0..half.height() {
+                for x in 0..half.width() {
+                    let expected = mean_of(&image, [x, y], [half.width(), half.height()]);
+                    let value = f64::from(half.texel(x, y)[0]);
+                    assert!((value - expected).abs() < 1e-4, "{value} and {expected}");
+                }
+            }
+        }
+    }
+
+    /// The mean over cell (x, y) of `cells`, by summing over a grid that divides both evenly.
+    fn mean_of(image: &Image<1>, [x, y]: [usize; 2], [columns, rows]: [usize; 2]) -> f64 {
+        let (width, height) = (image.width(), image.height());
+        let mut sum = 0.0;
+        for j in 0..height {
+            for i in 0..width {
+                let (fine_x, fine_y) = (x * width + i, y * height + j);
+                sum += f64::from(image.texel(fine_x / columns, fine_y / rows)[0]);
+            }
+        }
+        sum / (width * height) as f64
     }
 }

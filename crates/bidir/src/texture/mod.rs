@@ -1,55 +1,294 @@
 //! Quantities that vary over a surface.
 //!
-//! A texture is a function of the surface's (u, v); it never depends on how a walk arrived, so the
-//! integrand stays one function of the path. Colours are linear Rec. 709; the material that asks
-//! says which [`ColorModel`](crate::spectrum::ColorModel) conversion they go through.
+//! A texture is a function of the point, its normal and its parameters, and of how wide a pixel is
+//! there for the camera ([`TexturePoint`]); it never depends on how a walk arrived, so the integrand
+//! stays one function of the path. Colours are linear Rec. 709; the material that asks says which
+//! [`ColorModel`](crate::spectrum::ColorModel) conversion they go through.
 //!
-//! **Adding one**: a file, a variant in the enums here with an arm in each match, and a mapping in
-//! the scene reader.
+//! Numbers and colours share one implementation over [`Value`]. Evaluation allocates nothing, and
+//! takes time in proportion to [`Texture::size`].
+//!
+//! **Adding one**: a file, a variant in [`Texture`] with an arm in each match, and a mapping in the
+//! scene reader.
 
 mod image;
+mod map;
+mod mapping;
+mod noise;
+mod pattern;
+mod point;
 
-pub use image::{Image, ImageFilter, ImageMap, Wrap};
+#[cfg(test)]
+mod tests;
 
-use crate::math::Vec2;
+pub use image::Image;
+pub use map::{Beyond, Change, ImageFilter, ImageMap, Wrap};
+pub use mapping::{Mapping, TextureSpace};
+pub use noise::{Marble, Noise, NoiseKind};
+pub use pattern::{Bilerp, Cells, Checkerboard, Dots};
+pub use point::{Footprint, TexturePoint};
+
+use crate::math::Vec3;
 use crate::spectrum::Rgb;
+use std::fmt::Debug;
+use std::sync::Arc;
 
-/// A colour over a surface.
-#[derive(Clone, Debug)]
-pub enum ColorTexture {
-    /// The same everywhere.
-    Constant(Rgb),
-    /// Looked up in an image of three channels.
-    Image(ImageMap<3>),
+/// What a texture gives: a number or a colour.
+pub trait Value: Copy + Debug {
+    /// An image of such values.
+    type Map: Clone + Debug;
+
+    /// (1 - `t`)·self + `t`·`other`.
+    #[must_use]
+    fn lerp(self, other: Self, t: f32) -> Self;
+
+    /// The product with a number.
+    #[must_use]
+    fn scaled(self, factor: f32) -> Self;
+
+    /// The value of an image.
+    fn look_up(map: &Self::Map, at: &TexturePoint) -> Self;
+
+    /// What looking it up depends on.
+    fn needs(map: &Self::Map) -> Needs;
+
+    /// The colour as such a value: a number is the mean of its channels.
+    fn of_color(color: Rgb) -> Self;
 }
 
-impl ColorTexture {
-    /// The colour at `uv`.
+impl Value for f32 {
+    type Map = ImageMap<1>;
+
     #[inline]
-    pub fn eval(&self, uv: Vec2) -> Rgb {
+    fn lerp(self, other: Self, t: f32) -> Self {
+        self * (1.0 - t) + other * t
+    }
+
+    #[inline]
+    fn scaled(self, factor: f32) -> Self {
+        self * factor
+    }
+
+    #[inline]
+    fn look_up(map: &ImageMap<1>, at: &TexturePoint) -> Self {
+        map.eval(at)[0]
+    }
+
+    fn needs(map: &ImageMap<1>) -> Needs {
+        map.needs()
+    }
+
+    #[inline]
+    fn of_color([r, g, b]: Rgb) -> Self {
+        (r + g + b) / 3.0
+    }
+}
+
+impl Value for Rgb {
+    type Map = ImageMap<3>;
+
+    #[inline]
+    fn lerp(self, other: Self, t: f32) -> Self {
+        std::array::from_fn(|channel| self[channel].lerp(other[channel], t))
+    }
+
+    #[inline]
+    fn scaled(self, factor: f32) -> Self {
+        self.map(|channel| channel * factor)
+    }
+
+    #[inline]
+    fn look_up(map: &ImageMap<3>, at: &TexturePoint) -> Self {
+        map.eval(at)
+    }
+
+    fn needs(map: &ImageMap<3>) -> Needs {
+        map.needs()
+    }
+
+    #[inline]
+    fn of_color(color: Rgb) -> Self {
+        color
+    }
+}
+
+/// A colour over a surface.
+pub type ColorTexture = Texture<Rgb>;
+/// A number over a surface.
+pub type FloatTexture = Texture<f32>;
+
+/// A value over a surface.
+#[derive(Clone, Debug)]
+pub enum Texture<T: Value> {
+    /// The same everywhere.
+    Constant(T),
+    /// Looked up in an image.
+    Image(Arc<T::Map>),
+    /// A texture times a number.
+    Scale(Arc<Scale<T>>),
+    /// A mixture of two textures.
+    Mix(Arc<Mix<T>>),
+    /// A mixture by the surface's direction.
+    DirectionMix(Arc<DirectionMix<T>>),
+    /// Between four corners.
+    Bilerp(Arc<Bilerp<T>>),
+    /// Two textures in turn.
+    Checkerboard(Arc<Checkerboard<T>>),
+    /// Dots in some cells of a grid.
+    Dots(Arc<Dots<T>>),
+    /// Noise, the same in every channel.
+    Noise(Arc<Noise>),
+    /// Veins.
+    Marble(Arc<Marble>),
+}
+
+/// `texture` times `factor`.
+#[derive(Clone, Debug)]
+pub struct Scale<T: Value> {
+    /// What is multiplied.
+    pub texture: Texture<T>,
+    /// By what.
+    pub factor: FloatTexture,
+}
+
+/// (1 - `amount`) of the first and `amount` of the second.
+#[derive(Clone, Debug)]
+pub struct Mix<T: Value> {
+    /// What is mixed.
+    pub textures: [Texture<T>; 2],
+    /// The part of the second.
+    pub amount: FloatTexture,
+}
+
+/// |n·d| of the first and 1 - |n·d| of the second, with n the shading normal before any relief.
+#[derive(Clone, Debug)]
+pub struct DirectionMix<T: Value> {
+    /// What is mixed.
+    pub textures: [Texture<T>; 2],
+    /// The unit direction d. Space: world.
+    pub direction: Vec3,
+}
+
+impl<T: Value> Texture<T> {
+    /// The value at a point.
+    pub fn eval(&self, at: &TexturePoint) -> T {
         match self {
-            Self::Constant(color) => *color,
-            Self::Image(map) => map.eval(uv),
+            Self::Constant(value) => *value,
+            Self::Image(map) => T::look_up(map, at),
+            Self::Scale(scale) => scale.texture.eval(at).scaled(scale.factor.eval(at)),
+            Self::Mix(mix) => mix.eval(at),
+            Self::DirectionMix(mix) => mix.eval(at),
+            Self::Bilerp(bilerp) => bilerp.eval(at),
+            Self::Checkerboard(board) => board.cell(at).eval(at),
+            Self::Dots(dots) => dots.cell(at).eval(at),
+            Self::Noise(noise) => T::of_color([noise.eval(at); 3]),
+            Self::Marble(marble) => T::of_color(marble.eval(at)),
+        }
+    }
+
+    /// What its values depend on beside the parameters (u, v).
+    pub fn needs(&self) -> Needs {
+        let own = match self {
+            Self::Image(map) => T::needs(map),
+            Self::Bilerp(bilerp) => bilerp.mapping.needs(),
+            Self::Checkerboard(board) => board.cells.needs(),
+            Self::Dots(dots) => dots.mapping.needs(),
+            Self::DirectionMix(_) => Needs::SURFACE,
+            Self::Noise(_) | Self::Marble(_) => Needs::ALL,
+            Self::Constant(_) | Self::Scale(_) | Self::Mix(_) => Needs::NOTHING,
+        };
+        let parts = self.parts().iter().map(Self::needs);
+        let all = parts.fold(own, Needs::and);
+        self.number().map_or(all, |number| all.and(number.needs()))
+    }
+
+    /// How many textures it is made of, itself included; what is used twice counts twice.
+    pub fn size(&self) -> usize {
+        let parts: usize = self.parts().iter().map(Self::size).sum();
+        1 + parts + self.number().map_or(0, Texture::size)
+    }
+
+    /// The textures that it chooses or mixes its values from.
+    fn parts(&self) -> &[Self] {
+        match self {
+            Self::Scale(scale) => std::slice::from_ref(&scale.texture),
+            Self::Mix(mix) => &mix.textures,
+            Self::DirectionMix(mix) => &mix.textures,
+            Self::Checkerboard(board) => &board.textures,
+            Self::Dots(dots) => &dots.textures,
+            Self::Constant(_)
+            | Self::Image(_)
+            | Self::Bilerp(_)
+            | Self::Noise(_)
+            | Self::Marble(_) => &[],
+        }
+    }
+
+    /// The number that it multiplies or mixes by.
+    fn number(&self) -> Option<&FloatTexture> {
+        match self {
+            Self::Scale(scale) => Some(&scale.factor),
+            Self::Mix(mix) => Some(&mix.amount),
+            _ => None,
         }
     }
 }
 
-/// A number over a surface.
-#[derive(Clone, Debug)]
-pub enum FloatTexture {
-    /// The same everywhere.
-    Constant(f32),
-    /// Looked up in an image of one channel.
-    Image(ImageMap<1>),
+impl<T: Value> Mix<T> {
+    fn eval(&self, at: &TexturePoint) -> T {
+        let amount = self.amount.eval(at);
+        let [first, second] = &self.textures;
+        // What has no part is not looked up: that saves time, and keeps what is not finite out.
+        if amount == 0.0 {
+            first.eval(at)
+        } else if 1.0 - amount == 0.0 {
+            second.eval(at)
+        } else {
+            first.eval(at).lerp(second.eval(at), amount)
+        }
+    }
 }
 
-impl FloatTexture {
-    /// The number at `uv`.
-    #[inline]
-    pub fn eval(&self, uv: Vec2) -> f32 {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Image(map) => map.eval(uv)[0],
+impl<T: Value> DirectionMix<T> {
+    fn eval(&self, at: &TexturePoint) -> T {
+        let along = at.normal.dot(self.direction).abs();
+        let [first, second] = &self.textures;
+        second.eval(at).lerp(first.eval(at), along)
+    }
+}
+
+/// What a texture depends on beside the parameters (u, v).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// True where the point or the normal matters.
+    pub surface: bool,
+    /// True where it matters how wide a pixel is.
+    pub footprint: bool,
+}
+
+impl Needs {
+    /// The parameters alone.
+    pub const NOTHING: Self = Self {
+        surface: false,
+        footprint: false,
+    };
+    /// The point or the normal.
+    pub const SURFACE: Self = Self {
+        surface: true,
+        footprint: false,
+    };
+    /// Everything.
+    pub const ALL: Self = Self {
+        surface: true,
+        footprint: true,
+    };
+
+    /// What two textures need together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            surface: self.surface || other.surface,
+            footprint: self.footprint || other.footprint,
         }
     }
 }

@@ -92,7 +92,6 @@ fn coat(alpha: f32) -> CoatSettings {
         thickness: FloatTexture::Constant(0.05),
         albedo: CLEAR,
         g: FloatTexture::Constant(0.0),
-        orders: 5,
     }
 }
 
@@ -131,7 +130,7 @@ pub(crate) fn principled_rough() -> Material {
         roughness: ScaledFloat::constant(0.55),
         anisotropy: Anisotropy {
             strength: 0.6,
-            rotation: 0.7,
+            direction: Vec2::new(0.8, 0.6),
             texture: None,
         },
         transmission: ScaledFloat::constant(0.4),

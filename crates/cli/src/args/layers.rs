@@ -16,7 +16,8 @@ pub(crate) struct LayerArgs {
     /// Z), shading-normal (Ns.X, Y, Z), in world space, depth along the view (Z), coverage (Coverage).
     /// How certain the picture is: samples (Samples), variance (Variance.R, G, B of a pixel's mean, and
     /// RelativeVariance). What it cost: time in seconds (Time), rays (Rays). Images of time differ
-    /// from run to run.
+    /// from run to run. Unless given, those of the scene's film: the film `gbuffer` has albedo,
+    /// position, normal, shading-normal and variance.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = named(aov_names()))]
     pub(crate) aov: Vec<AovName>,
     /// Take the noise out of the picture with Open Image Denoise, guided by albedo and shading normals.
@@ -68,12 +69,15 @@ impl LayerArgs {
         !self.aov.is_empty() || self.light_groups || has_strategies
     }
 
-    /// The layers that are asked for, in a scene with these groups of lights.
-    pub(crate) fn layers(&self, light_groups: &[String]) -> Layers {
-        let aovs = self.aov.iter().flat_map(|name| match name {
+    /// The layers that are asked for, in a scene with these groups of lights, whose film has images
+    /// of its own.
+    pub(crate) fn layers(&self, light_groups: &[String], own_aovs: &[Aov]) -> Layers {
+        let asked = self.aov.iter().flat_map(|name| match name {
             AovName::All => Aov::NAMES.map(|(_, aov)| aov).to_vec(),
             AovName::One(aov) => vec![*aov],
         });
+        let own = own_aovs.iter().copied().filter(|_| self.aov.is_empty());
+        let aovs = asked.chain(own);
         let guides = [Aov::Albedo, Aov::ShadingNormal];
         let aovs = aovs.chain(guides.into_iter().filter(|_| self.denoise));
         let light_groups = if self.light_groups { light_groups } else { &[] };

@@ -8,7 +8,11 @@ use super::texture::{Change, Lookup, Part, Textures, uv_map};
 use crate::image::Encoding;
 use bidir::bsdf::Wall;
 use bidir::light::EmissionSides;
-use bidir::material::{Anisotropy, Material, PrincipledMaterial, ScaledColor, ScaledFloat};
+use bidir::material::{
+    Anisotropy, Bitangent, Material, NormalMap, PrincipledMaterial, Relief, ScaledColor,
+    ScaledFloat,
+};
+use bidir::math::{Vec2, sin_cos};
 use bidir::scene::{Emission, MaterialId, SceneBuilder};
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture};
@@ -69,9 +73,9 @@ impl Materials {
             described,
             place,
         };
-        let material = reader.principled(color)?;
+        let material = reader.material(color)?;
         let built = Built {
-            id: builder.material(Material::Principled(Arc::new(material))),
+            id: builder.material(material),
             emission: reader.emission()?,
             coverage: reader.coverage(color[3])?,
             uv: reader.baked,
@@ -189,6 +193,19 @@ impl Reader<'_, '_> {
             .number(self.context, self.document, lookup, (part, change))
     }
 
+    /// The material, under its relief where it has one.
+    fn material(&mut self, color: [f32; 4]) -> Result<Material, GltfFault> {
+        let material = Material::Principled(Arc::new(self.principled(color)?));
+        let Some(info) = &self.described.normal_texture else {
+            return Ok(material);
+        };
+        Ok(material.embossed(Relief::NormalMap(NormalMap {
+            texture: self.image(info, Encoding::Linear)?,
+            scale: info.scale.unwrap_or(1.0),
+            bitangent: Bitangent::AlongV,
+        })))
+    }
+
     fn principled(&mut self, color: [f32; 4]) -> Result<PrincipledMaterial, GltfFault> {
         let pbr = &self.described.pbr_metallic_roughness;
         let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
@@ -237,9 +254,10 @@ impl Reader<'_, '_> {
         if let Some(anisotropy) = &extensions.anisotropy {
             let texture = anisotropy.anisotropy_texture.as_ref();
             let texture = texture.map(|info| self.image(info, Encoding::Linear));
+            let (sin, cos) = sin_cos(anisotropy.anisotropy_rotation);
             material.anisotropy = Anisotropy {
                 strength: anisotropy.anisotropy_strength.clamp(0.0, 1.0),
-                rotation: anisotropy.anisotropy_rotation,
+                direction: Vec2::new(cos, sin),
                 texture: texture.transpose()?,
             };
         }
@@ -307,10 +325,6 @@ impl Reader<'_, '_> {
     fn tell_departures(&mut self) {
         let extensions = &self.described.extensions;
         let departures = [
-            (
-                self.described.normal_texture.is_some(),
-                "the normal texture has no effect yet",
-            ),
             (
                 extensions.unlit.is_some(),
                 "a surface without lighting is lit as any other",

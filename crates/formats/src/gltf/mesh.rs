@@ -4,7 +4,7 @@ use super::document::{Context, Document};
 use super::json::{Node, Primitive};
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
-use bidir::math::Vec2;
+use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
@@ -18,6 +18,8 @@ pub(super) struct Surface {
     pub(super) positions: Vec<[f32; 3]>,
     /// Empty: the surface is flat.
     pub(super) normals: Vec<[f32; 3]>,
+    /// Empty: along the texture coordinates' first axis.
+    pub(super) tangents: Vec<[f32; 3]>,
     /// Two sets; empty where there are none.
     pub(super) uvs: [Vec<[f32; 2]>; 2],
     pub(super) triangles: Vec<[u32; 3]>,
@@ -92,6 +94,13 @@ impl Surface {
         };
         if let Some((index, place)) = find("NORMAL") {
             self.normals = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
+        }
+        // Where normals are missing the format wants tangents to be passed over.
+        let is_smooth = !self.normals.is_empty();
+        if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
+            let tangents = document.finite_vectors::<4>(index, &place)?;
+            let tangents = tangents.into_iter().map(|[x, y, z, _]| [x, y, z]);
+            self.tangents = self.per_vertex(tangents.collect(), &place)?;
         }
         for (set, name) in ["TEXCOORD_0", "TEXCOORD_1"].into_iter().enumerate() {
             if let Some((index, place)) = find(name) {
@@ -194,6 +203,7 @@ impl Surface {
             for (name, values) in [
                 ("POSITION", &mut self.positions),
                 ("NORMAL", &mut self.normals),
+                ("TANGENT", &mut self.tangents),
             ] {
                 let Some(&accessor) = target.get(name) else {
                     continue;
@@ -217,17 +227,16 @@ impl Surface {
         let normal_matrix = normal_matrix(world_from_mesh);
         let positions = self.positions.iter();
         let positions = positions.map(|&p| world_from_mesh.transform_point3(vector(p)));
-        let normals = self
-            .normals
-            .iter()
-            .map(|&n| (normal_matrix * vector(n)).normalize_or_zero());
+        let normals = self.normals.iter().map(|&n| normal_matrix * vector(n));
+        let tangents = self.tangents.iter();
+        let tangents = tangents.map(|&t| world_from_mesh.transform_vector3(vector(t)));
         let is_mirrored = world_from_mesh.matrix3.determinant() < 0.0;
         let orientation = if is_mirrored {
             Orientation::Reversed
         } else {
             Orientation::Natural
         };
-        self.mesh(positions, normals, (orientation, uv), place)
+        self.mesh((positions, normals, tangents), (orientation, uv), place)
     }
 
     /// The mesh as its joints move it, each by a map from the mesh to the world.
@@ -249,14 +258,20 @@ impl Surface {
         let positions = self.positions.iter().zip(&maps);
         let positions = positions.map(|(&p, map)| map.transform_point3(vector(p)));
         let normals = self.normals.iter().zip(&maps);
-        let normals = normals.map(|(&n, map)| (normal_matrix(map) * vector(n)).normalize_or_zero());
-        self.mesh(positions, normals, (Orientation::Natural, uv), place)
+        let normals = normals.map(|(&n, map)| normal_matrix(map) * vector(n));
+        let tangents = self.tangents.iter().zip(&maps);
+        let tangents = tangents.map(|(&t, map)| map.transform_vector3(vector(t)));
+        let vertices = (positions, normals, tangents);
+        self.mesh(vertices, (Orientation::Natural, uv), place)
     }
 
     fn mesh(
         &self,
-        positions: impl Iterator<Item = DVec3>,
-        normals: impl Iterator<Item = DVec3>,
+        (positions, normals, tangents): (
+            impl Iterator<Item = DVec3>,
+            impl Iterator<Item = DVec3>,
+            impl Iterator<Item = DVec3>,
+        ),
         (orientation, uv): (Orientation, &UvMap),
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
@@ -272,7 +287,8 @@ impl Surface {
         let uvs = self.uvs[uv.set.min(1)].iter();
         Ok(Mesh {
             positions: placed,
-            normals: normals.map(DVec3::as_vec3).collect(),
+            normals: normals.map(unit).collect(),
+            tangents: tangents.map(unit).collect(),
             uvs: uvs.map(|&at| uv.apply(at)).collect(),
             triangles: self.triangles.clone(),
             orientation,
@@ -282,6 +298,10 @@ impl Surface {
 
 fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
+}
+
+fn unit(v: DVec3) -> Vec3 {
+    v.normalize_or_zero().as_vec3()
 }
 
 /// What normals are mapped by, up to scale: the matrix of cofactors, which is there for flat maps too.

@@ -1,6 +1,6 @@
 //! glTF 2.0: `.gltf` with its files beside it, and `.glb`.
 //!
-//! The JSON becomes plain structures ([`json`]) whose extensions have names and types; accessors are
+//! The JSON becomes plain structures (`json`) whose extensions have names and types; accessors are
 //! checked against the bytes they lie in before anything is taken for them; and what is built is a
 //! scene like any other. What is wrong is told with line, column and the way to it in the JSON.
 //!
@@ -57,6 +57,7 @@ const SETTINGS: SceneSettings = SceneSettings {
     samples_per_pixel: 64,
     seed: None,
     output: None,
+    aovs: Vec::new(),
 };
 
 /// True for names of files in this format.

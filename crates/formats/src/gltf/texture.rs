@@ -9,7 +9,9 @@ use crate::error::ErrorKind;
 use crate::image::{self, Encoding, Format, ImageData};
 use crate::pbrt::Content;
 use bidir::math::{Vec2, sin_cos};
-use bidir::texture::{ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Wrap};
+use bidir::texture::{
+    self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping, Wrap,
+};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -102,7 +104,8 @@ impl Textures {
             self.colors.insert(key, Arc::new(image));
         }
         let image = Arc::clone(&self.colors[&key]);
-        Ok(ColorTexture::Image(map(context, image, &sampler, lookup)?))
+        let map = map(context, image, &sampler, lookup)?;
+        Ok(ColorTexture::Image(Arc::new(map)))
     }
 
     /// A texture of numbers: one channel of a linear image, changed.
@@ -124,7 +127,8 @@ impl Textures {
             self.numbers.insert(key.clone(), Arc::new(image));
         }
         let image = Arc::clone(&self.numbers[&key]);
-        Ok(FloatTexture::Image(map(context, image, &sampler, lookup)?))
+        let map = map(context, image, &sampler, lookup)?;
+        Ok(FloatTexture::Image(Arc::new(map)))
     }
 
     fn decode(
@@ -238,17 +242,10 @@ fn map<const N: usize>(
         Some(9728) => ImageFilter::Point,
         _ => ImageFilter::Bilinear,
     };
-    let [s, t] = [sampler.wrap_s, sampler.wrap_t].map(|wrap| wrap.unwrap_or(10497));
-    if s != t {
-        let what = "another way to wrap along u than along v";
-        context.unsupported(place, what, "that of u stands in for both")?;
-    }
-    let wrap = match s {
-        33071 => Wrap::Clamp,
-        33648 => Wrap::Mirror,
-        10497 => Wrap::Repeat,
-        other => return Err(place.scene(format!("{other} is no way to wrap a texture"))),
-    };
+    let wrap = Wrap::Axes([
+        beyond(sampler.wrap_s, place)?,
+        beyond(sampler.wrap_t, place)?,
+    ]);
     let wanted = uv_map(lookup.info);
     let (scale, offset) = if wanted == lookup.baked {
         (Vec2::ONE, Vec2::ZERO)
@@ -259,9 +256,19 @@ fn map<const N: usize>(
         image,
         wrap,
         filter,
-        scale,
-        offset,
+        change: texture::Change::Scale(1.0),
+        mapping: Mapping::Parameters { scale, offset },
     })
+}
+
+/// What a sampler has beyond the borders that one coordinate crosses.
+fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
+    match wrap.unwrap_or(10497) {
+        33071 => Ok(Beyond::Clamp),
+        33648 => Ok(Beyond::Mirror),
+        10497 => Ok(Beyond::Repeat),
+        other => Err(place.scene(format!("{other} is no way to wrap a texture"))),
+    }
 }
 
 /// Scale and offset of a texture that differs from what the mesh has.

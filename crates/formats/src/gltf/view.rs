@@ -1,15 +1,16 @@
 //! The camera and the film: those of the file, or a view of all that is there.
 
 use super::document::{Context, Document};
-use super::json::Perspective as Described;
+use super::json;
 use super::node::Nodes;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::pbrt::{Crop, LARGEST_SIDE};
-use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use glam::{DAffine3, DVec3};
+use std::ops::RangeInclusive;
 
 /// Rows of the film where nothing says how many.
 const HEIGHT: u32 = 720;
@@ -18,18 +19,29 @@ const WIDTH: u32 = 1280;
 /// The vertical angle of the view where no camera says one. Unit: radians.
 const ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
+/// Width over height of what cameras see.
+const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
+
+/// How a camera sees, and half the height of what it sees.
+#[derive(Clone, Copy)]
+enum Screen {
+    /// At distance 1.
+    Perspective(f64),
+    /// Everywhere.
+    Orthographic(f64),
+}
+
 /// What is looked from.
 pub(super) struct View {
     /// x right, y up, z forward. None: so that all is in view.
     world_from_camera: Option<Affine3A>,
-    /// The whole vertical angle. Unit: radians.
-    yfov: f64,
+    screen: Screen,
     /// Width over height of what has to be in view. None: as the film is.
     aspect: Option<f64>,
     place: Place,
 }
 
-/// Finds the first camera of the scene that is supported.
+/// Finds the first camera of the scene.
 pub(super) fn find(
     context: &mut Context<'_>,
     document: &Document,
@@ -47,7 +59,7 @@ pub(super) fn find(
         );
         return Ok(View {
             world_from_camera: None,
-            yfov: ANGLE,
+            screen: Screen::Perspective(libm::tan(ANGLE / 2.0)),
             aspect: None,
             place: Place::TOP,
         });
@@ -60,61 +72,68 @@ pub(super) fn find(
         context.warn(&Place::of("nodes", node), message);
     }
     let world_from_node = nodes.world_from_node[node].unwrap_or(DAffine3::IDENTITY);
-    read(context, document, camera, &world_from_node)
+    read(document, camera, &world_from_node)
 }
 
-fn read(
-    context: &mut Context<'_>,
-    document: &Document,
-    index: usize,
-    world_from_node: &DAffine3,
-) -> Result<View, GltfFault> {
+fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result<View, GltfFault> {
     let place = Place::of("cameras", index);
     let count = document.root.cameras.len();
     let missing = || place.scene(format!("there is no camera {index}: the file has {count}"));
     let camera = document.root.cameras.get(index).ok_or_else(missing)?;
-    let stand_in = Described {
-        aspect_ratio: camera
-            .orthographic
-            .as_ref()
-            .map(|camera| camera.xmag / camera.ymag),
-        yfov: ANGLE,
-    };
-    let perspective = match (camera.kind.as_str(), &camera.perspective) {
-        ("perspective", Some(perspective)) => perspective,
-        ("orthographic", _) => {
-            context.unsupported(
-                &place,
-                "the orthographic camera",
-                "a perspective one stands in",
-            )?;
-            &stand_in
+    let (screen, aspect) = match (
+        camera.kind.as_str(),
+        &camera.perspective,
+        &camera.orthographic,
+    ) {
+        ("perspective", Some(camera), _) => perspective(camera, &place.key("perspective"))?,
+        ("orthographic", _, Some(camera)) => orthographic(camera, &place.key("orthographic"))?,
+        (kind @ ("perspective" | "orthographic"), ..) => {
+            return Err(place.scene(format!("`{kind}` is missing")));
         }
-        ("perspective", None) => return Err(place.scene("`perspective` is missing")),
-        (other, _) => {
+        (other, ..) => {
             let fault = place
                 .key("type")
                 .scene(format!("unknown type of camera `{other}`"));
             return Err(fault.with_nearest(other, ["perspective", "orthographic"]));
         }
     };
-    let (yfov, aspect) = (perspective.yfov, perspective.aspect_ratio);
-    if !(yfov > 1e-4 && yfov < 3.1) {
-        return Err(place
-            .key("perspective")
-            .scene(format!("`yfov` of {yfov} is no angle of view")));
-    }
-    if let Some(aspect) = aspect.filter(|aspect| !(*aspect > 1e-3 && *aspect < 1e3)) {
-        return Err(place
-            .key("perspective")
-            .scene(format!("`aspectRatio` of {aspect} is no ratio")));
-    }
     Ok(View {
         world_from_camera: Some(rigid(world_from_node)),
-        yfov,
+        screen,
         aspect,
         place,
     })
+}
+
+/// What a perspective camera sees, and width over height of it.
+fn perspective(
+    camera: &json::Perspective,
+    place: &Place,
+) -> Result<(Screen, Option<f64>), GltfFault> {
+    let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
+    if !(yfov > 1e-4 && yfov < 3.1) {
+        return Err(place.scene(format!("`yfov` of {yfov} is no angle of view")));
+    }
+    if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
+        return Err(place.scene(format!("`aspectRatio` of {aspect} is no ratio")));
+    }
+    let screen = Screen::Perspective(libm::tan(yfov / 2.0));
+    Ok((screen, aspect))
+}
+
+/// The same of an orthographic one.
+fn orthographic(
+    camera: &json::Orthographic,
+    place: &Place,
+) -> Result<(Screen, Option<f64>), GltfFault> {
+    let (width, height) = (camera.xmag, camera.ymag);
+    let is_size = |side: f64| side > 0.0 && side <= 1e12;
+    if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
+        return Err(place.scene(format!(
+            "`xmag` of {width} and `ymag` of {height} are no size of a view"
+        )));
+    }
+    Ok((Screen::Orthographic(height), Some(width / height)))
 }
 
 /// The place of a camera that looks along -z of its node, whose scale does not matter.
@@ -170,23 +189,39 @@ impl View {
         resolution: [u32; 2],
         corners: [Vec3; 2],
     ) -> Result<Camera, GltfFault> {
+        let half = self.half(resolution);
+        let [x, y] = [half.x as f32, half.y as f32];
+        let screen = [Vec2::new(-x, y), Vec2::new(x, -y)];
+        let resolution = Vec2::from(resolution.map(|side| side as f32));
+        let placed = self.world_from_camera;
+        let world_from_camera = placed.unwrap_or_else(|| in_front(corners, half));
+        let camera = match self.screen {
+            Screen::Perspective(_) => Perspective::new(&PerspectiveSettings {
+                world_from_camera,
+                resolution,
+                screen,
+                lens_radius: 0.0,
+                focal_distance: 1e6,
+            })
+            .map(Camera::Perspective),
+            Screen::Orthographic(_) => Orthographic::new(&OrthographicSettings {
+                world_from_camera,
+                resolution,
+                screen,
+            })
+            .map(Camera::Orthographic),
+        };
+        camera.ok_or_else(|| self.place.scene("the camera's place is not finite"))
+    }
+
+    /// Half the size of what a film of `resolution` shows, z being 0.
+    fn half(&self, resolution: [u32; 2]) -> DVec3 {
         let [width, height] = resolution.map(f64::from);
-        let mut half = libm::tan(self.yfov / 2.0);
+        let (Screen::Perspective(mut half) | Screen::Orthographic(mut half)) = self.screen;
         if let Some(aspect) = self.aspect {
             half *= (aspect * height / width).max(1.0);
         }
-        let half = DVec3::new(half * width / height, half, 0.0);
-        let placed = self.world_from_camera;
-        let [x, y] = [half.x as f32, half.y as f32];
-        let settings = PerspectiveSettings {
-            world_from_camera: placed.unwrap_or_else(|| in_front(corners, half)),
-            resolution: Vec2::new(width as f32, height as f32),
-            screen: [Vec2::new(-x, y), Vec2::new(x, -y)],
-            lens_radius: 0.0,
-            focal_distance: 1e6,
-        };
-        let camera = Perspective::new(&settings).map(Camera::Perspective);
-        camera.ok_or_else(|| self.place.scene("the camera's place is not finite"))
+        DVec3::new(half * width / height, half, 0.0)
     }
 }
 

@@ -6,7 +6,8 @@ use std::fmt;
 /// The beginning of what is hashed: another layout has another number.
 const VERSION: &[u8] = b"bidir scene digest 1\n";
 
-/// The identity of a scene: SHA-256 of all texts, then all meshes and images, in the order read.
+/// The identity of a scene: SHA-256 of all texts, then all meshes, images and spectra, in the
+/// order read.
 ///
 /// Bytes are hashed as they are after unpacking, each file's with its kind and length before them;
 /// names and times are not. So a copied or packed scene is the same, and one with another byte is
@@ -29,6 +30,7 @@ pub(crate) enum Content {
     Text = 0,
     Mesh = 1,
     Image = 2,
+    Spectrum = 3,
 }
 
 /// A digest in the making.

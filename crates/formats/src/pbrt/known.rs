@@ -107,6 +107,31 @@ pub(super) const FILMS: Names = Names {
     old: &[("image", "write `rgb`, and `iso` = 100·scale for `scale`")],
 };
 
+pub(super) const SENSORS: Names = Names {
+    what: "sensor",
+    known: &[
+        "cie1931",
+        "canon_eos_100d",
+        "canon_eos_1dx_mkii",
+        "canon_eos_200d",
+        "canon_eos_200d_mkii",
+        "canon_eos_5d",
+        "canon_eos_5d_mkii",
+        "canon_eos_5d_mkiii",
+        "canon_eos_5d_mkiv",
+        "canon_eos_5ds",
+        "canon_eos_m",
+        "hasselblad_l1d_20c",
+        "nikon_d810",
+        "nikon_d850",
+        "sony_ilce_6400",
+        "sony_ilce_7m3",
+        "sony_ilce_7rm3",
+        "sony_ilce_9",
+    ],
+    old: &[],
+};
+
 pub(super) const FILTERS: Names = Names {
     what: "pixel filter",
     known: &["box", "gaussian", "mitchell", "sinc", "triangle"],

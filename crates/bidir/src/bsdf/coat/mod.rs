@@ -211,15 +211,8 @@ fn spread_cosine(cos: f32, grazing: f32) -> f32 {
     (sqr(cos) + (1.0 - sqr(cos)).max(0.0) * sqr(grazing)).sqrt()
 }
 
-/// Σ x^k over k < `terms`: light that is thrown back `k` times.
+/// Σ x^k over all k: light that is thrown back k times. Finite even where a layer keeps all of it.
 #[inline]
-pub(super) fn geometric_sum(x: f32, terms: u32) -> f32 {
-    if terms == u32::MAX {
-        return 1.0 / (1.0 - x);
-    }
-    if x > 0.999 {
-        // Close to x = 1 the quotient has no digits left.
-        return (0..terms.min(4096)).rev().fold(0.0, |sum, _| 1.0 + x * sum);
-    }
-    (1.0 - libm::powf(x, terms as f32)) / (1.0 - x)
+pub(super) fn all_orders(x: f32) -> f32 {
+    1.0 / (1.0 - x.min(0.9999))
 }

@@ -1,8 +1,8 @@
 //! What leaves a layer over white metal, after one reflection at the metal and after more.
 //!
 //! E₁(μ) is the part of light that leaves after exactly one reflection, E(μ) after two or more, and
-//! after each of these the next leaves about s times as much. They are integrated by walks between
-//! the two surfaces, with facets on both, by numbers that do not depend on the scene.
+//! m_k the share of that which leaves after exactly k, from all directions. They are integrated by
+//! walks between the two surfaces, with facets on both, by numbers that do not depend on the scene.
 //!
 //! The closed form of one reflection has a factor T = (1 - F(μ̂)) q(√μ) for each direction. Here q is
 //! such that it scatters E₁: a fixed point, which is near after some rounds because the reflected
@@ -17,8 +17,10 @@ use crate::spectrum::Spectrum;
 
 /// Walks for each value of the curve.
 const WALKS: u64 = 1 << 13;
-/// The most reflections of a walk, where the scene sets no limit.
-const MOST: u32 = 32;
+/// The most reflections of a walk: few need as many.
+const MOST: usize = 100;
+/// Reflections that are told apart; the last stands for all that are more.
+const ORDERS: usize = 32;
 /// Points of an integral over facets, in each dimension.
 const FACETS: usize = 32;
 /// Rounds towards the fixed point.
@@ -33,24 +35,19 @@ pub struct Reflections {
     pub(in crate::bsdf) part: Curve,
     /// Ē = ∫ 2μ E dμ.
     pub(in crate::bsdf) mean: f32,
-    /// s.
-    pub(in crate::bsdf) again: f32,
-    /// The most reflections that are in E.
-    pub(in crate::bsdf) orders: u32,
+    /// m_k, from k = 2.
+    shares: [f32; ORDERS - 1],
 }
 
 /// Two surfaces, one above the other.
 struct Surfaces {
     coat: Dielectric,
     metal: Conductor,
-    orders: u32,
 }
 
 impl Reflections {
-    /// Integrates for a layer with facets of slope `coat_alpha`, over metal of slope `metal_alpha`,
-    /// which reflects at most `orders` times.
-    pub fn new(layer: &Layer, [coat_alpha, metal_alpha]: [f32; 2], orders: u32) -> Self {
-        let orders = orders.min(MOST);
+    /// Integrates for a layer with facets of slope `coat_alpha`, over metal of slope `metal_alpha`.
+    pub fn new(layer: &Layer, [coat_alpha, metal_alpha]: [f32; 2]) -> Self {
         let surfaces = Surfaces {
             coat: Dielectric {
                 eta: layer.eta,
@@ -61,17 +58,18 @@ impl Reflections {
                 k: Spectrum::ONE,
                 ggx: Ggx::new(metal_alpha, metal_alpha),
             },
-            orders,
         };
         let leaving = KNOTS.map(|knot| surfaces.leaving(sqr(knot)));
-        let [once, part, twice, thrice] =
-            [0, 1, 2, 3].map(|i| Curve(leaving.map(|parts| parts[i])));
+        let once = Curve(leaving.map(|parts| parts[0]));
+        let part = Curve(leaving.map(|parts| parts[1..].iter().sum()));
+        let of_order = |k: usize| Curve(leaving.map(|parts| parts[k - 1])).mean();
+        let shares: [f32; ORDERS - 1] = std::array::from_fn(|i| of_order(i + 2).max(0.0));
+        let sum = shares.iter().sum::<f32>().max(1e-6);
         Self {
             ratio: surfaces.ratio(layer, once),
             part,
             mean: part.mean().max(1e-6),
-            again: (thrice.mean() / twice.mean().max(1e-6)).clamp(0.0, 0.99),
-            orders,
+            shares: shares.map(|share| share / sum),
         }
     }
 
@@ -83,9 +81,17 @@ impl Reflections {
             ratio: self.ratio.lerp(other.ratio, t),
             part: self.part.lerp(other.part, t),
             mean: mix(self.mean, other.mean),
-            again: mix(self.again, other.again),
-            orders: self.orders,
+            shares: std::array::from_fn(|i| mix(self.shares[i], other.shares[i])),
         }
+    }
+
+    /// Σ m_k F^k a^(k-1) over k ≥ 2: what a metal of reflectance `fresnel` leaves of E, under a layer
+    /// that leaves the part `trip` between two reflections.
+    #[inline]
+    pub(in crate::bsdf) fn remaining(&self, fresnel: f32, trip: f32) -> f32 {
+        let x = fresnel * trip;
+        let sum = self.shares.iter().rev().fold(0.0, |sum, m| m + x * sum);
+        sum * fresnel * x
     }
 }
 
@@ -93,7 +99,7 @@ impl Surfaces {
     /// q: that the closed form of one reflection scatters `once`.
     fn ratio(&self, layer: &Layer, once: Curve) -> Curve {
         let (coat, metal) = (self.coat.ggx, self.metal.ggx);
-        if coat.is_smooth() || self.orders == 0 {
+        if coat.is_smooth() {
             return Curve::ONE;
         }
         let metal = seen_through(metal, coat, layer.eta);
@@ -112,23 +118,16 @@ impl Surfaces {
         ratio
     }
 
-    /// The parts of light with cosine `cos` that leave after one reflection, after two or more, after
-    /// two, and after three.
-    fn leaving(&self, cos: f32) -> [f32; 4] {
+    /// The parts of light with cosine `cos` that leave after one reflection, after two, and so on.
+    fn leaving(&self, cos: f32) -> [f32; ORDERS] {
         let wo = Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos);
         let sampler = Sampler::new(SamplerKind::Sobol, 0);
-        let mut sums = [0.0; 4];
+        let mut sums = [0.0; ORDERS];
         for index in 0..WALKS {
             let stream = sampler.stream(Domain::Light, 0, index);
-            let Some((reflections, weight)) = self.walk(wo, &stream) else {
-                continue;
-            };
-            match reflections {
-                1 => sums[0] += weight,
-                2 | 3 => sums[reflections] += weight,
-                _ => {}
+            if let Some((reflections, weight)) = self.walk(wo, &stream) {
+                sums[reflections.min(ORDERS) - 1] += weight;
             }
-            sums[1] += if reflections > 1 { weight } else { 0.0 };
         }
         sums.map(|sum| sum / WALKS as f32)
     }
@@ -140,7 +139,7 @@ impl Surfaces {
         if w.z > 0.0 {
             return None;
         }
-        for reflections in 1..=self.orders as usize {
+        for reflections in 1..=MOST {
             let at = Dimension::at(reflections, Purpose::Scatter);
             let reflected = self.metal.sample(-w, stream.get_2d(at))?;
             let (next, passed) = self.meet_coat(-reflected.wi, stream, reflections)?;

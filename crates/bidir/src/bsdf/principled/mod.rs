@@ -4,11 +4,11 @@
 //! f = C(o) C(i) { S(o) S(i) [ F(m) D G₂ / (4 |cosθ_o cosθ_i|) + k(o) k(i) ρ / (π k̄) + T(m) … ] + sheen }
 //! + coat, 1/sr, where
 //!
-//! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ [Schlick94] of metal and opaque dielectric, plus Fresnel's own
+//! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ \[Schlick94\] of metal and opaque dielectric, plus Fresnel's own
 //!   reflectance for the transparent part, which T takes its rest of: refraction [Walter07, eq. 21],
 //!   or for a thin wall the lobe of F mirrored to the other side;
 //! - k = 1 - Ẽ is what the dielectric's reflection leaves of each direction and k̄ its mean, so that a
-//!   white base under it is white [Kelemen01];
+//!   white base under it is white \[Kelemen01\];
 //! - S and C are what sheen and coat leave, 1 - Ẽ likewise (`under`).
 //!
 //! Each factor belongs to one direction, or is symmetric in both, so f is; and no layer hands on more
@@ -132,8 +132,13 @@ impl Principled {
     /// k: what the dielectric's reflection leaves for a diffuse base.
     #[inline]
     fn uncovered(&self, w: Vec3) -> f32 {
+        self.uncovered_at(under::facet_weight(w.z.abs(), self.alpha()))
+    }
+
+    /// The same, given W̃.
+    #[inline]
+    fn uncovered_at(&self, weight: f32) -> f32 {
         let [f0, f90] = self.cover;
-        let weight = under::facet_weight(w.z.abs(), self.alpha());
         (1.0 - f0 - (f90 - f0) * weight).clamp(0.0, 1.0)
     }
 
@@ -183,9 +188,8 @@ impl Principled {
     /// About the part of light along `w` that each lobe scatters.
     #[inline]
     fn shares(&self, w: Vec3) -> [Spectrum; 4] {
-        let coat = self.coat_albedo(w);
-        let sheen = (1.0 - coat) * self.sheen_albedo(w);
-        let below = self.layers(w);
+        let [coat, fibres] = [self.coat_albedo(w), self.sheen_albedo(w)];
+        let below = (1.0 - coat) * (1.0 - fibres);
         let weight = under::facet_weight(w.z.abs(), self.alpha());
         let (_, crossing) = self.facet(w.z);
         // Facets tilted away from `w` reflect where the bound says that none does.
@@ -195,8 +199,8 @@ impl Principled {
         [
             Spectrum::splat(coat),
             facets * below,
-            diffuse * (PI * below * self.uncovered(w)),
-            self.sheen.map(|lane| lane.min(1.0)) * sheen,
+            diffuse * (PI * below * self.uncovered_at(weight)),
+            self.sheen.map(|lane| lane.min(1.0)) * ((1.0 - coat) * fibres),
         ]
     }
 

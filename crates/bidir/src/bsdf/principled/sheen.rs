@@ -1,5 +1,5 @@
 //! Sheen, the light on fibres of cloth: D / (4 |cosθ_o cosθ_i| (1 + Λ(o) + Λ(i))) with
-//! D(m) = (2 + 1/α) sin^{1/α} θ_m / (2π) and a fitted Λ [Conty17]. Unit: 1/sr.
+//! D(m) = (2 + 1/α) sin^{1/α} θ_m / (2π) and a fitted Λ \[Conty17\]. Unit: 1/sr.
 //!
 //! Below a slope of 0.1 the fit lets more light leave than arrives, so slopes end there.
 

@@ -58,17 +58,16 @@ fn coated() -> Vec<Bsdf> {
     for eta in [1.0, 1.0 + 1e-5, 0.7, 1.5, 3.0, 1e3, 1e-3] {
         for alpha in [0.0, 1.1e-3, 0.3, 1.0] {
             let layer = Layer::new(eta, alpha);
-            let reflections = Reflections::new(&layer, [alpha, 0.2], 5);
+            let reflections = Reflections::new(&layer, [alpha, 0.2]);
             let ggx = Ggx::new(alpha, alpha);
-            for (thickness, albedo, orders) in [(0.0, 0.0, u32::MAX), (1e4, 1.0, 5), (2.0, 0.5, 0)]
-            {
+            for (thickness, albedo) in [(0.0, 0.0), (1e4, 1.0), (2.0, 0.5)] {
                 let filling = Filling {
                     thickness,
                     albedo: Spectrum::splat(albedo),
                     g: -1.0,
                 };
                 let white = Spectrum::ONE;
-                let varnished = CoatedDiffuse::new(&layer, ggx, &filling, white, orders);
+                let varnished = CoatedDiffuse::new(&layer, ggx, &filling, white);
                 all.push(Bsdf::CoatedDiffuse(varnished));
                 let metal = CoatedMetal {
                     eta: Spectrum::ZERO,
@@ -76,7 +75,7 @@ fn coated() -> Vec<Bsdf> {
                     ggx: Ggx::new(0.2, 0.2),
                 };
                 let tables = (&layer, &reflections);
-                let lacquered = CoatedConductor::new(tables, ggx, &filling, metal, orders);
+                let lacquered = CoatedConductor::new(tables, ggx, &filling, metal);
                 all.push(Bsdf::CoatedConductor(lacquered));
             }
         }

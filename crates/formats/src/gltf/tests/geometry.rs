@@ -202,6 +202,25 @@ fn morph_targets_are_added_by_default_weights() {
     assert_eq!(at(&draft), Vec3::new(1.0, 0.0, 4.0));
 }
 
+/// Tangents move as the surface does, and need normals beside them.
+#[test]
+fn tangents_are_those_of_the_file() {
+    let mut draft = Draft::triangle();
+    let normals = draft.accessor(&floats(&[0.0, 0.0, 1.0].repeat(3)), (F32, "VEC3", 3));
+    let tangents = draft.accessor(&floats(&[0.6, 0.8, 0.0, -1.0].repeat(3)), (F32, "VEC4", 3));
+    draft.primitive()["attributes"]["TANGENT"] = json!(tangents);
+    assert!(mesh(&draft.load().unwrap(), 0).tangents.is_empty());
+    draft.primitive()["attributes"]["NORMAL"] = json!(normals);
+    draft.json["nodes"][0]["scale"] = json!([-4, 3, 1]);
+    let expected = [-1.0, 1.0, 0.0].map(|x: f32| x * 0.5f32.sqrt());
+    check_points(&mesh(&draft.load().unwrap(), 0).tangents, &[expected; 3]);
+    let target = draft.accessor(&floats(&[0.0, -1.6, 0.0].repeat(3)), (F32, "VEC3", 3));
+    draft.primitive()["targets"] = json!([{ "TANGENT": target }]);
+    draft.json["meshes"][0]["weights"] = json!([1]);
+    let expected = [-1.0, -1.0, 0.0].map(|x: f32| x * 0.5f32.sqrt());
+    check_points(&mesh(&draft.load().unwrap(), 0).tangents, &[expected; 3]);
+}
+
 #[test]
 fn skinned_vertices_follow_their_joints_and_not_their_node() {
     let mut draft = Draft::triangle();

@@ -11,9 +11,10 @@ use crate::image::encode_png;
 use crate::pbrt::{Crop, LoadOptions, Loaded};
 use bidir::bsdf::Wall;
 use bidir::light::{Light, LightPoint};
-use bidir::material::{Material, PrincipledMaterial};
+use bidir::material::{Bitangent, Material, PrincipledMaterial, Relief};
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::SegmentEnd;
+use bidir::texture::TexturePoint;
 use serde_json::{Value, json};
 
 /// A triangle with a texture of 2 × 2 texels: red and green above, blue and white below.
@@ -49,7 +50,9 @@ fn principled(loaded: &Loaded) -> &PrincipledMaterial {
 fn color(loaded: &Loaded, uv: [f32; 2]) -> [f32; 3] {
     let [a, b, c] = [0, 1, 2].map(|i| mesh(loaded, 0).uvs[i]);
     let at = a + (b - a) * uv[0] + (c - a) * uv[1];
-    principled(loaded).color.eval(at)
+    principled(loaded)
+        .color
+        .eval(&TexturePoint::of_parameters(at))
 }
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -105,13 +108,39 @@ fn textures_of_a_material_may_have_different_places() {
         json!({ "index": 0 });
     let loaded = draft.load().unwrap();
     check_color(&loaded, [0.1, 0.1], GREEN);
-    let uv = mesh(&loaded, 0).uvs[0] + Vec2::new(0.1, -0.1);
+    let at = mesh(&loaded, 0).uvs[0] + Vec2::new(0.1, -0.1);
+    let at = TexturePoint::of_parameters(at);
     // Green is roughness, blue metal; the texel is red.
     let material = principled(&loaded);
-    assert!(material.roughness.eval(uv) <= 0.0 && material.metallic.eval(uv) <= 0.0);
+    assert!(material.roughness.eval(&at) <= 0.0 && material.metallic.eval(&at) <= 0.0);
     let info = &mut draft.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
     info["extensions"]["KHR_texture_transform"]["rotation"] = json!(1.0);
     assert_eq!(draft.error().kind(), ErrorKind::Unsupported);
+}
+
+#[test]
+fn normal_textures_turn_the_shading_frame() {
+    let mut draft = textured();
+    let texels = [[0.5, 0.5, 1.0]; 1];
+    let view = draft.view(&encode_png([1, 1], &texels).unwrap());
+    draft.json["images"] = json!([{ "bufferView": view, "mimeType": "image/png" }]);
+    draft.json["materials"][0]["normalTexture"] = json!({ "index": 0, "scale": 0.25 });
+    let loaded = draft.load().unwrap();
+    let Some(Relief::NormalMap(map)) = loaded.scene.materials()[0].relief() else {
+        panic!("{:?}", loaded.scene.materials());
+    };
+    assert_eq!((map.scale, map.bitangent), (0.25, Bitangent::AlongV));
+    // Stored as it is meant, not as sRGB.
+    let stored = map.texture.eval(&TexturePoint::of_parameters(Vec2::ZERO));
+    let encoded = 188.0 / 255.0;
+    let distance = (Vec3::from(stored) - Vec3::new(encoded, encoded, 1.0)).length();
+    assert!(distance < 0.01, "{stored:?}");
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .all(|warning| !warning.contains("normal"))
+    );
 }
 
 #[test]
@@ -122,6 +151,11 @@ fn images_repeat_as_their_sampler_says() {
         draft.json["samplers"][0]["wrapT"] = json!(wrap);
         check_color(&draft.load().unwrap(), [1.1, 0.1], beyond);
     }
+    let mut draft = textured();
+    draft.json["samplers"][0]["wrapS"] = json!(33071);
+    let loaded = draft.load().unwrap();
+    check_color(&loaded, [1.1, 0.1], GREEN);
+    check_color(&loaded, [0.1, 1.1], RED);
 }
 
 #[test]
@@ -148,16 +182,15 @@ fn extensions_of_materials_are_read() {
     ];
     for (number, expected) in numbers {
         assert!(
-            (number.eval(Vec2::ZERO) - expected).abs() < 1e-6,
+            (number.eval(&TexturePoint::of_parameters(Vec2::ZERO)) - expected).abs() < 1e-6,
             "{expected}"
         );
     }
     assert_eq!(material.sheen.factor, [0.1, 0.2, 0.3]);
     assert_eq!(material.specular_color.factor, [2.0, 1.0, 0.5]);
-    assert_eq!(
-        (material.anisotropy.strength, material.anisotropy.rotation),
-        (0.6, 1.5)
-    );
+    assert_eq!(material.anisotropy.strength, 0.6);
+    let direction = Vec2::new(libm::cosf(1.5), libm::sinf(1.5));
+    assert!(material.anisotropy.direction.distance(direction) < 1e-6);
     let volume = &mut draft.json["materials"][0]["extensions"]["KHR_materials_volume"];
     *volume = json!({ "thicknessFactor": 0.0 });
     assert_eq!(principled(&draft.load().unwrap()).wall, Wall::Thin);
@@ -305,18 +338,43 @@ fn without_a_camera_all_is_in_view_and_without_light_it_is_lit() {
 }
 
 #[test]
-fn crops_and_orthographic_cameras() {
-    let ortho = json!({ "type": "orthographic", "orthographic":
-        { "xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 9 } });
-    let draft = with_camera(&ortho);
-    assert_eq!(draft.error().kind(), ErrorKind::Unsupported);
+fn orthographic_cameras_see_parallel_rays() {
+    let draft = with_camera(&json!({ "type": "orthographic", "orthographic":
+        { "xmag": 3, "ymag": 2, "znear": 0.1, "zfar": 9 } }));
+    let loaded = draft.load().unwrap();
+    assert_eq!(loaded.scene.film().resolution, [1080, 720]);
+    let at = |loaded: &Loaded, point: Vec3| {
+        let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
+        let raster = loaded.scene.camera().raster(point, -Vec3::Z).unwrap();
+        raster / Vec2::new(width, height)
+    };
+    for depth in [0.0, -70.0] {
+        let corner = Vec3::new(3.0, 2.0, depth);
+        assert!(at(&loaded, corner).distance(Vec2::X) < 1e-5);
+        assert!(at(&loaded, -corner.with_z(-depth)).distance(Vec2::Y) < 1e-5);
+    }
     let options = LoadOptions {
-        lenient: true,
+        resolution: Some([100, 100]),
+        ..LoadOptions::default()
+    };
+    let square = load_bytes("a.gltf", &draft.gltf(), &options).unwrap();
+    assert!(at(&square, Vec3::new(3.0, 3.0, 0.0)).distance(Vec2::X) < 1e-5);
+    for size in [json!(0), json!(-1)] {
+        let mut draft = draft.clone();
+        draft.json["cameras"][0]["orthographic"]["ymag"] = size;
+        assert_eq!(draft.error().kind(), ErrorKind::Scene);
+    }
+}
+
+#[test]
+fn crops_are_parts_of_the_film() {
+    let draft = Draft::triangle();
+    let options = LoadOptions {
         crop: Some(Crop::Fractions([0.0, 0.5, 0.5, 1.0])),
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).unwrap();
-    assert_eq!(loaded.scene.film().crop.max, [360, 720]);
+    assert_eq!(loaded.scene.film().crop.max, [640, 720]);
     let options = LoadOptions {
         crop: Some(Crop::Pixels([5000, 6000, 0, 10])),
         ..options

@@ -28,6 +28,7 @@ fn shorts(values: &[u16]) -> Vec<u8> {
 }
 
 /// A file in the making: its buffer grows with every accessor.
+#[derive(Clone)]
 struct Draft {
     json: Value,
     buffer: Vec<u8>,

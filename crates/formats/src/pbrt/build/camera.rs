@@ -2,11 +2,14 @@
 
 use super::context::Context;
 use super::reader::Reader;
+use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
-use crate::pbrt::scene::Entity;
 use crate::pbrt::transform::Transforms;
 use crate::source::{Fault, SourceMap, Span};
-use bidir::camera::{Camera, Perspective, PerspectiveSettings};
+use bidir::camera::{
+    Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings, Spherical,
+    SphericalMapping,
+};
 use bidir::math::{Affine3A, Vec2};
 
 /// A camera but for the film's size.
@@ -14,12 +17,28 @@ pub(super) struct CameraSettings {
     /// Seconds between opening and closing of the shutter.
     pub(super) exposure_time: f32,
     world_from_camera: Affine3A,
-    fov: f32,
+    view: View,
+    pub(super) span: Span,
+}
+
+/// What a camera sees.
+enum View {
+    /// The angle `fov` spans the screen from -1 to 1. Unit: degrees.
+    Perspective {
+        fov: f32,
+        screen: Screen,
+    },
+    /// A screen in the scene's unit.
+    Orthographic(Screen),
+    Spherical(SphericalMapping),
+}
+
+/// The film's place in front of the lens.
+struct Screen {
     aspect: Option<f32>,
-    screen_window: Option<[f32; 4]>,
+    window: Option<[f32; 4]>,
     lens_radius: f32,
     focal_distance: f32,
-    pub(super) span: Span,
 }
 
 /// Reads the camera; without one it is the format's default.
@@ -38,56 +57,90 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
     }
     let mut reader = Reader::new(&camera.entity);
-    let kind = camera.entity.kind.as_str();
-    if kind != "perspective" {
-        let what = format!("the camera `{kind}`");
-        context.unsupported(camera.entity.span, &what, "`perspective` stands in")?;
-        let world_from_camera = place(&camera.transforms);
-        return Ok(CameraSettings {
-            world_from_camera,
-            ..CameraSettings::default_at(camera.entity.span)
-        });
-    }
-    let settings = read_perspective(&mut reader, &camera.entity, &camera.transforms)?;
+    let view = match camera.entity.kind.as_str() {
+        "perspective" => View::Perspective {
+            fov: reader.float_within("fov", 90.0, [1e-3, 179.999])?,
+            screen: Screen::read(&mut reader)?,
+        },
+        "orthographic" => View::Orthographic(Screen::read(&mut reader)?),
+        "spherical" => {
+            let mapping = mapping(&mut reader)?;
+            // The format lets it have a screen, which it has no use for.
+            Screen::read(&mut reader)?;
+            View::Spherical(mapping)
+        }
+        kind => {
+            let what = format!("the camera `{kind}`");
+            context.unsupported(camera.entity.span, &what, "`perspective` stands in")?;
+            return Ok(CameraSettings {
+                world_from_camera: place(&camera.transforms),
+                ..CameraSettings::default_at(camera.entity.span)
+            });
+        }
+    };
+    let exposure_time = exposure_time(&mut reader)?;
     reader.finish()?;
-    Ok(settings)
+    Ok(CameraSettings {
+        exposure_time,
+        world_from_camera: place(&camera.transforms),
+        view,
+        span: camera.entity.span,
+    })
 }
 
 fn place(camera_from_world: &Transforms) -> Affine3A {
     camera_from_world.start.inverse().as_affine3a()
 }
 
-fn read_perspective(
-    reader: &mut Reader<'_>,
-    entity: &Entity,
-    transforms: &Transforms,
-) -> Result<CameraSettings, Fault> {
-    let (open, close) = (
-        reader.float("shutteropen", 0.0)?,
-        reader.float("shutterclose", 1.0)?,
-    );
-    if close <= open {
-        return Err(Fault::scene(
-            entity.span,
-            "the shutter closes before it opens",
-        ));
+fn exposure_time(reader: &mut Reader<'_>) -> Result<f32, Fault> {
+    let open = reader.float("shutteropen", 0.0)?;
+    let close = reader.float("shutterclose", 1.0)?;
+    if close > open {
+        return Ok(close - open);
     }
-    let screen_window = reader.floats(ParameterType::Float, "screenwindow");
-    let wrong = |_| Fault::scene(entity.span, "`screenwindow` is left, right, bottom and top");
-    let screen_window = screen_window
-        .map(|window| window.try_into().map_err(wrong))
-        .transpose()?;
-    let aspect = reader.float_within("frameaspectratio", 0.0, [0.0, f32::MAX])?;
-    Ok(CameraSettings {
-        exposure_time: close - open,
-        world_from_camera: place(transforms),
-        fov: reader.float_within("fov", 90.0, [1e-3, 179.999])?,
-        aspect: (aspect > 0.0).then_some(aspect),
-        screen_window,
-        lens_radius: reader.float_within("lensradius", 0.0, [0.0, f32::MAX])?,
-        focal_distance: reader.float_within("focaldistance", 1e6, [f32::MIN_POSITIVE, f32::MAX])?,
-        span: entity.span,
-    })
+    let message = "the shutter closes before it opens";
+    Err(Fault::scene(reader.span(), message))
+}
+
+fn mapping(reader: &mut Reader<'_>) -> Result<SphericalMapping, Fault> {
+    match reader.string("mapping")? {
+        None | Some(("equalarea", _)) => Ok(SphericalMapping::EqualArea),
+        Some(("equirectangular", _)) => Ok(SphericalMapping::Equirectangular),
+        Some((name, span)) => {
+            let fault = Fault::scene(span, format!("unknown mapping `{}`", shorten(name)));
+            Err(fault.with_nearest(name, ["equalarea", "equirectangular"]))
+        }
+    }
+}
+
+impl Screen {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        let window = reader.floats(ParameterType::Float, "screenwindow");
+        let span = reader.span();
+        let wrong = |_| Fault::scene(span, "`screenwindow` is left, right, bottom and top");
+        let window = window
+            .map(|window| window.try_into().map_err(wrong))
+            .transpose()?;
+        let aspect = reader.float_within("frameaspectratio", 0.0, [0.0, f32::MAX])?;
+        let near = [f32::MIN_POSITIVE, f32::MAX];
+        Ok(Self {
+            aspect: (aspect > 0.0).then_some(aspect),
+            window,
+            lens_radius: reader.float_within("lensradius", 0.0, [0.0, f32::MAX])?,
+            focal_distance: reader.float_within("focaldistance", 1e6, near)?,
+        })
+    }
+
+    /// Top left and bottom right corner, for a film of this size.
+    fn corners(&self, film: Vec2) -> [Vec2; 2] {
+        let aspect = self.aspect.unwrap_or(film.x / film.y);
+        let [left, right, bottom, top] = self.window.unwrap_or(if aspect > 1.0 {
+            [-aspect, aspect, -1.0, 1.0]
+        } else {
+            [-1.0, 1.0, -1.0 / aspect, 1.0 / aspect]
+        });
+        [Vec2::new(left, top), Vec2::new(right, bottom)]
+    }
 }
 
 impl CameraSettings {
@@ -95,44 +148,70 @@ impl CameraSettings {
         Self {
             exposure_time: 1.0,
             world_from_camera: Affine3A::IDENTITY,
-            fov: 90.0,
-            aspect: None,
-            screen_window: None,
-            lens_radius: 0.0,
-            focal_distance: 1e6,
+            view: View::Perspective {
+                fov: 90.0,
+                screen: Screen {
+                    aspect: None,
+                    window: None,
+                    lens_radius: 0.0,
+                    focal_distance: 1e6,
+                },
+            },
             span,
         }
     }
 
+    /// True where the film's edges lie next to each other in the scene.
+    pub(super) fn sees_all_around(&self) -> bool {
+        matches!(self.view, View::Spherical(_))
+    }
+
     /// The camera in front of a film of `resolution`, with the view of one of `own_resolution`.
-    ///
-    /// The angle `fov` spans the screen from -1 to 1; the longer side reaches further.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
         own_resolution: [u32; 2],
     ) -> Result<Camera, Fault> {
-        let [resolution, own] =
-            [resolution, own_resolution].map(|[w, h]| Vec2::new(w as f32, h as f32));
-        let aspect = self.aspect.unwrap_or(own.x / own.y);
-        let [left, right, bottom, top] = self.screen_window.unwrap_or(if aspect > 1.0 {
-            [-aspect, aspect, -1.0, 1.0]
-        } else {
-            [-1.0, 1.0, -1.0 / aspect, 1.0 / aspect]
-        });
-        let half = libm::tan(f64::from(self.fov).to_radians() / 2.0) as f32;
-        let settings = PerspectiveSettings {
-            world_from_camera: self.world_from_camera,
-            resolution,
-            screen: [Vec2::new(left, top) * half, Vec2::new(right, bottom) * half],
-            lens_radius: self.lens_radius,
-            focal_distance: self.focal_distance,
+        let [film, own] = [resolution, own_resolution].map(|[w, h]| Vec2::new(w as f32, h as f32));
+        let place = &self.world_from_camera;
+        let camera = match &self.view {
+            View::Perspective { fov, screen } => {
+                let half = libm::tan(f64::from(*fov).to_radians() / 2.0) as f32;
+                let corners = screen.corners(own).map(|corner| corner * half);
+                self.lens(screen, film, corners)
+            }
+            // Rays from all over a lens through a point in focus are those of any lens: the point
+            // lies where the parallel ray crosses the plane of focus.
+            View::Orthographic(screen) if screen.lens_radius > 0.0 => {
+                let corners = screen.corners(own);
+                self.lens(screen, film, corners.map(|c| c / screen.focal_distance))
+            }
+            View::Orthographic(screen) => Orthographic::new(&OrthographicSettings {
+                world_from_camera: *place,
+                resolution: film,
+                screen: screen.corners(own),
+            })
+            .map(Camera::Orthographic),
+            View::Spherical(mapping) => {
+                Spherical::new(place, film, *mapping).map(Camera::Spherical)
+            }
         };
-        let camera = Perspective::new(&settings);
-        camera.map(Camera::Perspective).ok_or_else(|| {
+        camera.ok_or_else(|| {
             let message =
                 "the camera's screen is empty, or its transformation is sheared or uneven";
             Fault::scene(self.span, message)
         })
+    }
+
+    /// A lens in front of a film with these corners on the plane z = 1.
+    fn lens(&self, screen: &Screen, resolution: Vec2, corners: [Vec2; 2]) -> Option<Camera> {
+        let settings = PerspectiveSettings {
+            world_from_camera: self.world_from_camera,
+            resolution,
+            screen: corners,
+            lens_radius: screen.lens_radius,
+            focal_distance: screen.focal_distance,
+        };
+        Perspective::new(&settings).map(Camera::Perspective)
     }
 }

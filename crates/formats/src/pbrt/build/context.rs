@@ -1,12 +1,14 @@
 //! What building knows throughout: the description, what the caller wants, warnings, what was read.
 
 use super::LoadOptions;
+use crate::bytes;
 use crate::error::ErrorKind;
 use crate::image::{self, Encoding, ImageData};
 use crate::pbrt::digest::{Content, DigestBuilder};
 use crate::pbrt::scene::{SceneDescription, Warning, warn};
 use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, Span};
+use crate::spectra::Spectrum;
 use std::path::Path;
 
 /// Whether something simpler may replace what is not supported yet.
@@ -61,6 +63,19 @@ impl<'a> Context<'a> {
         let inspect = |bytes: &[u8]| self.digest.add(Content::Image, bytes);
         image::read_inspected(path, encoding, inspect)
             .map_err(|error| Fault::from_error(span, &error))
+    }
+
+    /// Reads a spectrum, which `span` names.
+    pub(super) fn read_spectrum(&mut self, path: &Path, span: Span) -> Result<Spectrum, Fault> {
+        const LONGEST: u64 = 1 << 24;
+        let bytes = bytes::read(path, LONGEST).map_err(|error| Fault::from_error(span, &error))?;
+        self.digest.add(Content::Spectrum, &bytes);
+        let refuse = |message: String| {
+            let message = format!("{}: {message}", path.display());
+            Fault::scene(span, message)
+        };
+        let text = std::str::from_utf8(&bytes).map_err(|_| refuse("is no text".into()))?;
+        Spectrum::parse(text).map_err(|error| refuse(error.to_string()))
     }
 
     pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {

@@ -100,6 +100,7 @@ fn split(mesh: &Mesh) -> Vec<Shape> {
             .collect(),
         triangles: vec![[0, 1, 2]],
         orientation: mesh.orientation,
+        ..Mesh::default()
     });
     triangles.map(Shape::Mesh).collect()
 }

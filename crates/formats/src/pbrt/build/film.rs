@@ -4,11 +4,13 @@ use super::camera::CameraSettings;
 use super::context::Context;
 use super::filter;
 use super::reader::Reader;
+use super::sensor;
 use crate::error::ErrorKind;
+use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterList, ParameterType, Values};
 use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
-use bidir::film::{FilmSettings, PixelRect};
+use bidir::film::{Aov, FilmSettings, PixelRect};
 
 /// The most pixels along one side.
 pub(crate) const LARGEST_SIDE: u32 = 1 << 16;
@@ -50,6 +52,8 @@ pub(super) struct BuiltFilm {
     pub(super) own_resolution: [u32; 2],
     /// The name of the image.
     pub(super) output: Option<String>,
+    /// The images that it has beside the picture.
+    pub(super) aovs: Vec<Aov>,
 }
 
 /// Builds the film that is exposed by `camera`.
@@ -57,7 +61,7 @@ pub(super) fn build(
     context: &mut Context<'_>,
     camera: &CameraSettings,
 ) -> Result<BuiltFilm, Fault> {
-    let filter = filter::build(context)?;
+    let filter = filter::build(context, camera)?;
     let default = default_film();
     let film = context.description.film.as_ref().unwrap_or(&default);
     let span = film.entity.span;
@@ -68,7 +72,7 @@ pub(super) fn build(
             "the image has the primaries of sRGB, not those of its `ColorSpace`",
         );
     }
-    film_kind(context, &mut reader, &film.entity)?;
+    let aovs = film_kind(context, &mut reader, &film.entity)?;
     let own = [
         reader.integer("xresolution", 1280, 1)?,
         reader.integer("yresolution", 720, 1)?,
@@ -77,14 +81,17 @@ pub(super) fn build(
     let mut settings = FilmSettings::new(resolution, filter);
     settings.crop = crop(context, &mut reader, own, resolution)?;
     settings.exposure = exposure(&mut reader, camera)?;
+    settings.sensor = sensor::build(context, &mut reader, settings.exposure)?;
     let output = reader.string("filename")?.map(|(name, _)| name.to_owned());
-    film_details(context, &mut reader)?;
+    reader.ignore(context, ParameterType::Bool, "savefp16");
+    reader.ignore(context, ParameterType::Float, "diagonal");
     reader.finish()?;
     warn_of_stretching(context, span, own, resolution);
     Ok(BuiltFilm {
         settings,
         own_resolution: own,
         output,
+        aovs,
     })
 }
 
@@ -164,38 +171,51 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     }
 }
 
+/// What a film of `gbuffer` keeps beside the picture.
+const GBUFFER: [Aov; 5] = [
+    Aov::Albedo,
+    Aov::Position,
+    Aov::Normal,
+    Aov::ShadingNormal,
+    Aov::Variance,
+];
+
+/// The images that this kind of film has beside the picture.
 fn film_kind(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
     film: &Entity,
-) -> Result<(), Fault> {
-    if film.kind == "rgb" {
-        return Ok(());
-    }
-    context.unsupported(
-        film.span,
-        &format!("the film `{}`", film.kind),
-        "`rgb` stands in",
-    )?;
-    reader.ignore(context, ParameterType::String, "coordinatesystem");
-    reader.ignore(context, ParameterType::Integer, "nbuckets");
-    reader.ignore(context, ParameterType::Float, "lambdamin");
-    reader.ignore(context, ParameterType::Float, "lambdamax");
-    Ok(())
-}
-
-/// The parameters of all films that concern neither their size nor their brightness.
-fn film_details(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    reader.ignore(context, ParameterType::Bool, "savefp16");
-    reader.ignore(context, ParameterType::Float, "diagonal");
-    let clamp = (ParameterType::Float, "maxcomponentvalue");
-    reader.unsupported(context, clamp, "nothing is clamped")?;
-    let balance = (ParameterType::Float, "whitebalance");
-    reader.unsupported(context, balance, "the colours stay as they are")?;
-    match reader.string("sensor")? {
-        None | Some(("cie1931", _)) => Ok(()),
-        Some((name, span)) => {
-            context.unsupported(span, &format!("the sensor `{name}`"), "`cie1931` stands in")
+) -> Result<Vec<Aov>, Fault> {
+    match film.kind.as_str() {
+        "rgb" => Ok(Vec::new()),
+        "gbuffer" => {
+            let space = reader.string("coordinatesystem")?;
+            match space.map_or(("camera", film.span), |space| space) {
+                ("world", _) => {}
+                ("camera", span) => {
+                    context.warn(
+                        span,
+                        "positions and normals of the image are in world space",
+                    );
+                }
+                (name, span) => {
+                    let message = format!("unknown coordinate system `{}`", shorten(name));
+                    let fault = Fault::scene(span, message);
+                    return Err(fault.with_nearest(name, ["camera", "world"]));
+                }
+            }
+            context.warn(
+                film.span,
+                "the image has no channels `dzdx`, `dzdy`, `u` and `v`",
+            );
+            Ok(GBUFFER.to_vec())
+        }
+        kind => {
+            context.unsupported(film.span, &format!("the film `{kind}`"), "`rgb` stands in")?;
+            reader.ignore(context, ParameterType::Integer, "nbuckets");
+            reader.ignore(context, ParameterType::Float, "lambdamin");
+            reader.ignore(context, ParameterType::Float, "lambdamax");
+            Ok(Vec::new())
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The pixel filter.
 
+use super::camera::CameraSettings;
 use super::context::Context;
 use super::reader::Reader;
 use crate::pbrt::scene::Entity;
@@ -17,9 +18,16 @@ const SHAPES: [f32; 2] = [0.05, 100.0];
 /// A filter that is narrower than this along an axis is warned of. Unit: pixels.
 const NARROW: f32 = 0.25;
 
-/// Builds the pixel filter; without one it is the format's default.
-pub(super) fn build(context: &mut Context<'_>) -> Result<Filter, Fault> {
+/// Builds the pixel filter of what `camera` sees; without one it is the format's default.
+///
+/// Where a camera sees all around, the film's edges meet, which no filter reaches over: there it is
+/// a box of one pixel.
+pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Result<Filter, Fault> {
+    let pixel = Filter::new(FilterKind::Box, Vec2::splat(0.5));
     let Some(entity) = &context.description.filter else {
+        if camera.sees_all_around() {
+            return Ok(pixel);
+        }
         let kind = FilterKind::Gaussian { sigma: 0.5 };
         return Ok(Filter::new(kind, Vec2::splat(1.5)));
     };
@@ -30,6 +38,12 @@ pub(super) fn build(context: &mut Context<'_>) -> Result<Filter, Fault> {
         reader.float_within("yradius", radius, RADII)?,
     );
     reader.finish()?;
+    if camera.sees_all_around() && radius.max_element() > 0.5 {
+        let message = "the filter would reach over the edges of a picture of all directions: a box of \
+                       one pixel stands in";
+        context.warn(entity.span, message);
+        return Ok(pixel);
+    }
     let narrowest = effective_radius(kind, radius.x).min(effective_radius(kind, radius.y));
     if narrowest < NARROW {
         let message = format!(

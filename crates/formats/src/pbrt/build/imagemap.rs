@@ -1,32 +1,41 @@
 //! Textures that look up an image.
 
 use super::context::Context;
+use super::mapping;
 use super::reader::Reader;
 use crate::image::{Encoding, ImageData};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::TextureDescription;
 use crate::source::{Fault, Span};
-use bidir::math::Vec2;
-use bidir::texture::{Image, ImageFilter, ImageMap, Wrap};
+use bidir::texture::{Beyond, Change, Image, ImageFilter, ImageMap, Mapping, Wrap};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The parameters of an `imagemap`.
 pub(super) struct ImageSettings {
+    file: ImageFile,
+    change: Change,
+    wrap: Wrap,
+    filter: ImageFilter,
+    mapping: Mapping,
+}
+
+/// An image and what its bytes mean.
+pub(super) struct ImageFile {
     path: PathBuf,
     /// Of the file's name.
     span: Span,
     encoding: Option<Encoding>,
-    change: Change,
-    wrap: Wrap,
-    filter: ImageFilter,
-    scale: Vec2,
-    offset: Vec2,
 }
 
 impl ImageSettings {
-    pub(super) fn read(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Self, Fault> {
+    pub(super) fn read(
+        context: &mut Context<'_>,
+        texture: &TextureDescription,
+        reader: &mut Reader<'_>,
+    ) -> Result<Self, Fault> {
         let Some((name, span)) = reader.string("filename")? else {
             return Err(Fault::scene(
                 reader.span(),
@@ -37,41 +46,52 @@ impl ImageSettings {
         let encoding = encoding
             .map(|(name, span)| parse_encoding(name, span))
             .transpose()?;
-        let change = Change {
-            scale: reader.float("scale", 1.0)?,
-            invert: reader.bool("invert", false)?,
+        let scale = reader.float("scale", 1.0)?;
+        let change = if reader.bool("invert", false)? {
+            Change::ScaleAndInvert(scale)
+        } else {
+            Change::Scale(scale)
         };
-        let wrap = read_wrap(context, reader)?;
+        let wrap = read_wrap(reader)?;
         let filter = read_filter(context, reader)?;
         reader.ignore(context, ParameterType::Float, "maxanisotropy");
-        let (scale, offset) = read_mapping(context, reader)?;
-        let path = context.description.resolve(name);
-        Ok(Self {
-            path,
+        let file = ImageFile {
+            path: context.description.resolve(name),
             span,
             encoding,
+        };
+        let mapping = mapping::read(context, texture, reader)?;
+        Ok(Self {
+            file,
             change,
             wrap,
             filter,
-            scale,
-            offset,
+            mapping,
         })
     }
 
-    pub(super) fn map<const N: usize>(&self, image: Arc<Image<N>>) -> ImageMap<N> {
-        let Self {
-            wrap,
-            filter,
-            scale,
-            offset,
-            ..
-        } = *self;
+    /// The normals of an image.
+    pub(super) fn of_normals(context: &Context<'_>, name: &str, span: Span) -> Self {
+        Self {
+            file: ImageFile {
+                path: context.description.resolve(name),
+                span,
+                encoding: Some(Encoding::Linear),
+            },
+            change: Change::Scale(1.0),
+            wrap: Wrap::all(Beyond::Repeat),
+            filter: ImageFilter::Bilinear,
+            mapping: Mapping::IDENTITY,
+        }
+    }
+
+    fn map<const N: usize>(&self, image: Arc<Image<N>>) -> ImageMap<N> {
         ImageMap {
             image,
-            wrap,
-            filter,
-            scale,
-            offset,
+            wrap: self.wrap,
+            filter: self.filter,
+            change: self.change,
+            mapping: self.mapping,
         }
     }
 }
@@ -92,22 +112,15 @@ fn parse_encoding(name: &str, span: Span) -> Result<Encoding, Fault> {
     }
 }
 
-fn read_wrap(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Wrap, Fault> {
+fn read_wrap(reader: &mut Reader<'_>) -> Result<Wrap, Fault> {
     let Some((name, span)) = reader.string("wrap")? else {
-        return Ok(Wrap::Repeat);
+        return Ok(Wrap::all(Beyond::Repeat));
     };
     match name {
-        "repeat" => Ok(Wrap::Repeat),
-        "clamp" => Ok(Wrap::Clamp),
-        "black" => Ok(Wrap::Black),
-        "octahedralsphere" => {
-            context.unsupported(
-                span,
-                "the wrap mode `octahedralsphere`",
-                "`clamp` stands in",
-            )?;
-            Ok(Wrap::Clamp)
-        }
+        "repeat" => Ok(Wrap::all(Beyond::Repeat)),
+        "clamp" => Ok(Wrap::all(Beyond::Clamp)),
+        "black" => Ok(Wrap::all(Beyond::Black)),
+        "octahedralsphere" => Ok(Wrap::OctahedralSphere),
         _ => {
             let fault = Fault::scene(span, format!("unknown wrap mode `{}`", shorten(name)));
             Err(fault.with_nearest(name, ["repeat", "clamp", "black", "octahedralsphere"]))
@@ -122,12 +135,13 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
     match name {
         "point" => Ok(ImageFilter::Point),
         "bilinear" => Ok(ImageFilter::Bilinear),
-        "trilinear" | "ewa" | "EWA" => {
+        "trilinear" => Ok(ImageFilter::Trilinear),
+        "ewa" | "EWA" => {
             context.warn(
                 span,
-                format!("the texture filter `{name}` is taken as `bilinear`"),
+                format!("the texture filter `{name}` is taken as `trilinear`"),
             );
-            Ok(ImageFilter::Bilinear)
+            Ok(ImageFilter::Trilinear)
         }
         _ => {
             let fault = Fault::scene(span, format!("unknown texture filter `{}`", shorten(name)));
@@ -136,47 +150,10 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
     }
 }
 
-fn read_mapping(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(Vec2, Vec2), Fault> {
-    match reader.string("mapping")? {
-        None | Some(("uv", _)) => {}
-        Some((mapping @ ("spherical" | "cylindrical" | "planar"), span)) => {
-            context.unsupported(span, &format!("the mapping `{mapping}`"), "`uv` stands in")?;
-            for name in ["v1", "v2"] {
-                reader.ignore(context, ParameterType::Vector3, name);
-            }
-        }
-        Some((name, span)) => {
-            let fault = Fault::scene(span, format!("unknown mapping `{}`", shorten(name)));
-            return Err(fault.with_nearest(name, ["uv", "spherical", "cylindrical", "planar"]));
-        }
-    }
-    let scale = Vec2::new(reader.float("uscale", 1.0)?, reader.float("vscale", 1.0)?);
-    let offset = Vec2::new(reader.float("udelta", 0.0)?, reader.float("vdelta", 0.0)?);
-    Ok((scale, offset))
-}
-
-/// What happens to stored values: multiplied first, inverted then.
-#[derive(Clone, Copy)]
-struct Change {
-    scale: f32,
-    invert: bool,
-}
-
-impl Change {
-    fn apply(self, value: f32) -> f32 {
-        let scaled = value * self.scale;
-        if self.invert {
-            (1.0 - scaled).max(0.0)
-        } else {
-            scaled
-        }
-    }
-}
-
-/// What makes two image textures share their texels.
+/// What makes two image textures share their texels: the file, and what its bytes mean.
 type Key = (PathBuf, String);
 
-/// Images that are read already.
+/// Images that are read already: each file once for colours and once for numbers.
 #[derive(Default)]
 pub(super) struct Files {
     colors: BTreeMap<Key, Arc<Image<3>>>,
@@ -188,27 +165,20 @@ impl Files {
         &mut self,
         context: &mut Context<'_>,
         settings: &ImageSettings,
-    ) -> Result<Arc<Image<3>>, Fault> {
-        let change = |data: ImageData| {
-            data.rgb()
-                .map(|rgb| rgb.map(|value| settings.change.apply(value)))
-                .collect()
-        };
-        shared(&mut self.colors, context, settings, change)
+    ) -> Result<ImageMap<3>, Fault> {
+        let texels = |data: ImageData| data.rgb().collect();
+        let image = shared(&mut self.colors, context, settings, texels)?;
+        Ok(settings.map(image))
     }
 
     pub(super) fn float(
         &mut self,
         context: &mut Context<'_>,
         settings: &ImageSettings,
-    ) -> Result<Arc<Image<1>>, Fault> {
-        let change = |data: ImageData| {
-            numbers(&data)
-                .into_iter()
-                .map(|value| [settings.change.apply(value)])
-                .collect()
-        };
-        shared(&mut self.floats, context, settings, change)
+    ) -> Result<ImageMap<1>, Fault> {
+        let texels = |data: ImageData| numbers(&data).into_iter().map(|value| [value]).collect();
+        let image = shared(&mut self.floats, context, settings, texels)?;
+        Ok(settings.map(image))
     }
 }
 
@@ -221,21 +191,32 @@ fn numbers(data: &ImageData) -> Vec<f32> {
     data.rgb().map(|[r, g, b]| (r + g + b) / 3.0).collect()
 }
 
+/// The image of a file, with smaller copies where they are looked up.
 fn shared<const N: usize>(
     images: &mut BTreeMap<Key, Arc<Image<N>>>,
     context: &mut Context<'_>,
     settings: &ImageSettings,
     texels: impl FnOnce(ImageData) -> Vec<[f32; N]>,
 ) -> Result<Arc<Image<N>>, Fault> {
-    let Change { scale, invert } = settings.change;
-    let key = (
-        settings.path.clone(),
-        format!("{:?} {scale} {invert}", settings.encoding),
-    );
-    if let Some(image) = images.get(&key) {
-        return Ok(Arc::clone(image));
+    let file = &settings.file;
+    let key = (file.path.clone(), format!("{:?}", file.encoding));
+    let mut image = match images.get(&key) {
+        Some(image) => Arc::clone(image),
+        None => Arc::new(read_image(context, file, texels)?),
+    };
+    if settings.filter == ImageFilter::Trilinear && image.copies() == 0 {
+        image = Arc::new(Arc::unwrap_or_clone(image).with_copies());
     }
-    let data = context.read_image(&settings.path, settings.encoding, settings.span)?;
+    images.insert(key, Arc::clone(&image));
+    Ok(image)
+}
+
+fn read_image<const N: usize>(
+    context: &mut Context<'_>,
+    file: &ImageFile,
+    texels: impl FnOnce(ImageData) -> Vec<[f32; N]>,
+) -> Result<Image<N>, Fault> {
+    let data = context.read_image(&file.path, file.encoding, file.span)?;
     let width = data.width;
     let mut texels = texels(data);
     let replaced = texels
@@ -245,11 +226,7 @@ fn shared<const N: usize>(
     let count = replaced.map(|value| *value = 0.0).count();
     if count > 0 {
         let message = format!("{count} numbers of the image are not finite and taken as 0");
-        context.warn(settings.span, message);
+        context.warn(file.span, message);
     }
-    let image = Image::new(width, texels)
-        .ok_or_else(|| Fault::scene(settings.span, "the image has no pixels"))?;
-    let image = Arc::new(image);
-    images.insert(key, Arc::clone(&image));
-    Ok(image)
+    Image::new(width, texels).ok_or_else(|| Fault::scene(file.span, "the image has no pixels"))
 }

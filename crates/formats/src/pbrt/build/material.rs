@@ -2,9 +2,10 @@
 //!
 //! A mixture names its parts, which are built before it; what names itself through others is refused.
 
-use super::color::{self, Purpose};
+use super::color::Purpose;
 use super::context::Context;
 use super::reader::Reader;
+use super::spectral;
 use super::texture::Textures;
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
@@ -12,8 +13,8 @@ use crate::pbrt::parameters::{ParameterType, Values};
 use crate::pbrt::scene::{Entity, MaterialDescription};
 use crate::source::{Fault, Span};
 use bidir::material::{
-    CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, Material,
-    Mixture, Roughness, RoughnessMapping,
+    Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
+    Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
 use bidir::texture::{ColorTexture, FloatTexture};
 use std::collections::BTreeMap;
@@ -62,7 +63,7 @@ impl<'a> Materials<'a> {
             "conductor" => conductor(context, textures, &mut reader)?,
             "dielectric" => dielectric(context, textures, &mut reader)?,
             "thindielectric" => Material::ThinDielectric {
-                eta: color::read_eta(context, &mut reader, "eta")?,
+                eta: spectral::read_eta(context, &mut reader, "eta")?,
             },
             "coateddiffuse" => coated_diffuse(context, textures, &mut reader)?,
             "coatedconductor" => coated_conductor(context, textures, &mut reader)?,
@@ -77,9 +78,12 @@ impl<'a> Materials<'a> {
             }
             _ => return stand_in(context, textures, entity),
         };
-        bump(context, &mut reader)?;
+        let relief = relief(context, textures, &mut reader)?;
         reader.finish()?;
-        Ok(Some(material))
+        Ok(Some(match relief {
+            Some(relief) => material.embossed(relief),
+            None => material,
+        }))
     }
 
     fn mix(
@@ -147,10 +151,22 @@ fn grey() -> Material {
     }
 }
 
-fn bump(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<(), Fault> {
-    let flat = "the surface stays smooth";
-    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
-    reader.unsupported(context, (ParameterType::String, "normalmap"), flat)
+/// Reads what turns the shading frame: an image of normals, or else a texture of heights.
+fn relief(
+    context: &mut Context<'_>,
+    textures: &mut Textures<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Option<Relief>, Fault> {
+    let height = textures.float(context, reader, "displacement")?;
+    let normals = textures.normals(context, reader, "normalmap")?;
+    if let Some(texture) = normals {
+        return Ok(Some(Relief::NormalMap(NormalMap {
+            texture,
+            scale: 1.0,
+            bitangent: Bitangent::RightHanded,
+        })));
+    }
+    Ok(height.map(Relief::Displacement))
 }
 
 fn diffuse(
@@ -198,19 +214,34 @@ fn conductor_index(
     [eta, k]: [&'static str; 2],
 ) -> Result<ConductorIndex, Fault> {
     let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    let real = textures.color(context, reader, eta, Purpose::Unbounded)?;
-    let imaginary = textures.color(context, reader, k, Purpose::Unbounded)?;
-    match (reflectance, real, imaginary) {
-        (Some(reflectance), None, None) => Ok(ConductorIndex::Reflectance(reflectance)),
-        (Some(_), _, _) => {
+    if let Some(reflectance) = reflectance {
+        let kinds = [
+            ParameterType::Texture,
+            ParameterType::Spectrum,
+            ParameterType::Rgb,
+        ];
+        let mut is_given = |name| kinds.iter().any(|&kind| reader.find(kind, name).is_some());
+        if is_given(eta) || is_given(k) {
             let message = format!("a conductor has `reflectance` or `{eta}` and `{k}`, not both");
-            Err(Fault::scene(reader.span(), message))
+            return Err(Fault::scene(reader.span(), message));
         }
-        (None, real, imaginary) => Ok(ConductorIndex::Complex {
-            eta: real.unwrap_or(ColorTexture::Constant(color::COPPER.0)),
-            k: imaginary.unwrap_or(ColorTexture::Constant(color::COPPER.1)),
-        }),
+        return Ok(ConductorIndex::Reflectance(reflectance));
     }
+    if let Some((eta, k)) = spectral::read_metal(context, reader, [eta, k])? {
+        return Ok(ConductorIndex::Complex {
+            eta: ColorTexture::Constant(eta),
+            k: ColorTexture::Constant(k),
+        });
+    }
+    let (of_copper, k_of_copper) = spectral::copper();
+    let mut part = |name, copper| -> Result<ColorTexture, Fault> {
+        let given = textures.color(context, reader, name, Purpose::Unbounded)?;
+        Ok(given.unwrap_or(ColorTexture::Constant(copper)))
+    };
+    Ok(ConductorIndex::Complex {
+        eta: part(eta, of_copper)?,
+        k: part(k, k_of_copper)?,
+    })
 }
 
 fn dielectric(
@@ -218,7 +249,7 @@ fn dielectric(
     textures: &mut Textures<'_>,
     reader: &mut Reader<'_>,
 ) -> Result<Material, Fault> {
-    let eta = color::read_eta(context, reader, "eta")?;
+    let eta = spectral::read_eta(context, reader, "eta")?;
     Ok(Material::Dielectric {
         eta,
         roughness: roughness(context, textures, reader, &SURFACE)?,
@@ -263,16 +294,14 @@ fn coat(
     let thickness = textures.float(context, reader, "thickness")?;
     let albedo = textures.color(context, reader, "albedo", Purpose::Albedo)?;
     let g = textures.float(context, reader, "g")?;
-    let reflections = reader.integer("maxdepth", 10, 0)?.div_ceil(2);
+    reader.ignore(context, ParameterType::Integer, "maxdepth");
     reader.ignore(context, ParameterType::Integer, "nsamples");
     Ok(CoatSettings {
-        eta: color::read_eta(context, reader, eta)?,
+        eta: spectral::read_eta(context, reader, eta)?,
         roughness: roughness(context, textures, reader, names)?,
         thickness: thickness.unwrap_or(FloatTexture::Constant(0.01)),
         albedo: albedo.unwrap_or(CLEAR),
         g: g.unwrap_or(FloatTexture::Constant(0.0)),
-        // Every other event of a walk in the layer is a reflection at the base.
-        orders: reflections,
     })
 }
 
@@ -323,14 +352,10 @@ fn stand_in(
     let what = format!("the material `{}`", entity.kind);
     let mut accept = |stand_in| context.unsupported(entity.span, &what, stand_in);
     let mut reader = Reader::new(entity);
-    match entity.kind.as_str() {
-        "subsurface" => {
-            accept("`diffuse` of its reflectance stands in")?;
-            diffuse(context, textures, &mut reader).map(Some)
-        }
-        _ => {
-            accept("`diffuse` of 0.5 stands in")?;
-            Ok(Some(grey()))
-        }
+    if entity.kind == "subsurface" {
+        accept("`diffuse` of its reflectance stands in")?;
+        return diffuse(context, textures, &mut reader).map(Some);
     }
+    accept("`diffuse` of 0.5 stands in")?;
+    Ok(Some(grey()))
 }

@@ -3,8 +3,7 @@
 //! What the format has and the renderer has not is refused where it stands. With
 //! [`LoadOptions::lenient`] something simpler stands in for it, and a warning says what.
 //!
-//! Colours are linear Rec. 709 throughout: spectra are known by their names only, and by three
-//! values each. Objects are shared by their instances (`object`). Quadrics keep their outside in front under mirroring
+//! Colours are linear Rec. 709 throughout: a spectrum becomes one here. Objects are shared by their instances (`object`). Quadrics keep their outside in front under mirroring
 //! transformations, where the reference program contradicts itself.
 
 mod camera;
@@ -16,12 +15,19 @@ mod filter;
 mod group;
 mod imagemap;
 mod light;
+mod mapping;
 mod material;
+mod mesh;
 mod object;
+mod patches;
 mod reader;
+mod sensor;
 mod settings;
 mod shape;
+mod spectral;
+mod subdivision;
 mod texture;
+mod texture_class;
 
 pub use film::Crop;
 pub(crate) use film::LARGEST_SIDE;
@@ -155,10 +161,11 @@ impl<'a> Assembly<'a> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
-        let settings = settings::build(context, film.output)?;
+        let settings = settings::build(context, &film)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
         builder.camera(camera);
+        builder.texture_filtering(settings::texture_filtering(description)?);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }

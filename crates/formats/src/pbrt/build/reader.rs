@@ -160,7 +160,17 @@ impl<'a> Reader<'a> {
         name: &'static str,
         default: [f32; 3],
     ) -> Result<[f32; 3], Fault> {
-        let Some(parameter) = self.find(ParameterType::Point3, name) else {
+        self.triple(ParameterType::Point3, name, default)
+    }
+
+    /// Three numbers of a parameter of this type.
+    pub(super) fn triple(
+        &mut self,
+        kind: ParameterType,
+        name: &'static str,
+        default: [f32; 3],
+    ) -> Result<[f32; 3], Fault> {
+        let Some(parameter) = self.find(kind, name) else {
             return Ok(default);
         };
         three(parameter)

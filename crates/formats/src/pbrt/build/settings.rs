@@ -1,11 +1,15 @@
 //! Sampler, integrator and options.
 
 use super::context::Context;
+use super::film::BuiltFilm;
 use super::reader::Reader;
 use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::SceneDescription;
 use crate::source::Fault;
+use bidir::film::Aov;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
+use bidir::scene::TextureFiltering;
 
 /// What a scene file says about how it is rendered.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,13 +26,12 @@ pub struct SceneSettings {
     pub seed: Option<u64>,
     /// The name of the image, as the file has it. None: where it gives none.
     pub output: Option<String>,
+    /// The images that its film has beside the picture.
+    pub aovs: Vec<Aov>,
 }
 
 /// Everything that is neither scene nor film.
-pub(super) fn build(
-    context: &mut Context<'_>,
-    output: Option<String>,
-) -> Result<SceneSettings, Fault> {
+pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {
     let (integrator, max_depth) = integrator(context)?;
     let mut settings = SceneSettings {
         integrator,
@@ -36,11 +39,29 @@ pub(super) fn build(
         sampler: SamplerKind::Sobol,
         samples_per_pixel: 16,
         seed: None,
-        output,
+        output: film.output.clone(),
+        aovs: film.aovs.clone(),
     };
     options(context, &mut settings)?;
     sampler(context, &mut settings)?;
     Ok(settings)
+}
+
+/// Whether textures are averaged over pixels.
+pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
+    let mut filtering = TextureFiltering::AsAsked;
+    let options = description.options.iter();
+    for option in options.filter(|option| option.name == "disabletexturefiltering") {
+        filtering = match option.value.as_str() {
+            "true" => TextureFiltering::Disabled,
+            "false" => TextureFiltering::AsAsked,
+            _ => {
+                let message = "the option `disabletexturefiltering` is `true` or `false`";
+                return Err(Fault::scene(option.span, message));
+            }
+        };
+    }
+    Ok(filtering)
 }
 
 fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
@@ -50,8 +71,10 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
                 let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
                 settings.seed = Some(value.parse().map_err(wrong)?);
             }
-            // Choices of precision or of what is recorded, and defaults spelled out.
-            ("rendercoordsys" | "pixelstats" | "wavefront", _) | (_, "false") => {}
+            // Choices of precision or of what is recorded, what the scene itself knows, and defaults
+            // spelled out.
+            ("rendercoordsys" | "pixelstats" | "wavefront" | "disabletexturefiltering", _)
+            | (_, "false") => {}
             (name, _) => {
                 context.warn(
                     option.span,

@@ -2,15 +2,15 @@
 
 use super::NOWHERE;
 use super::context::Context;
+use super::mesh;
 use super::reader::Reader;
 use super::texture::Textures;
 use crate::error::ErrorKind;
-use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::ShapeDescription;
 use crate::ply::PlyMesh;
 use crate::source::{Fault, Span};
 use bidir::math::{Vec2, Vec3};
-use bidir::shape::{Disk, Mesh, Orientation, Shape, Sphere};
+use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
 use glam::{DAffine3, DVec3};
 
@@ -21,6 +21,8 @@ pub(super) enum Geometry {
     Sphere(f32, Vec3),
     /// Height, inner and outer radius, largest azimuth (radians).
     Disk(f32, [f32; 2], f32),
+    /// Radius, then lowest and highest z and largest azimuth (radians).
+    Cylinder(f32, Vec3),
 }
 
 impl Geometry {
@@ -34,8 +36,10 @@ impl Geometry {
         let entity = &shape.entity;
         let mut reader = Reader::new(entity);
         let geometry = match entity.kind.as_str() {
-            "trianglemesh" => Self::Mesh(triangle_mesh(context, &mut reader)?),
-            "plymesh" => Self::Mesh(ply_mesh(context, &mut reader)?),
+            "trianglemesh" => Self::Mesh(mesh::triangle_mesh(context, &mut reader)?),
+            "plymesh" => Self::Mesh(mesh::ply_mesh(context, &mut reader)?),
+            "bilinearmesh" => Self::Mesh(mesh::patch_mesh(context, &mut reader)?),
+            "loopsubdiv" => Self::Mesh(mesh::subdivided_mesh(context, &mut reader)?),
             "sphere" => {
                 let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
                 let z = [
@@ -43,6 +47,11 @@ impl Geometry {
                     reader.float("zmax", radius)?,
                 ];
                 Self::Sphere(radius, Vec3::new(z[0], z[1], phi_max(&mut reader)?))
+            }
+            "cylinder" => {
+                let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
+                let z = [reader.float("zmin", -1.0)?, reader.float("zmax", 1.0)?];
+                Self::Cylinder(radius, Vec3::new(z[0], z[1], phi_max(&mut reader)?))
             }
             "disk" => {
                 let height = reader.float("height", 0.0)?;
@@ -68,7 +77,7 @@ impl Geometry {
     pub(super) fn primitives(&self) -> u64 {
         match self {
             Self::Mesh(mesh) => mesh.triangles.len() as u64,
-            Self::Sphere(..) | Self::Disk(..) => 1,
+            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => 1,
         }
     }
 
@@ -79,6 +88,9 @@ impl Geometry {
         match self {
             Self::Sphere(radius, limits) => {
                 Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
+            }
+            Self::Cylinder(radius, limits) => {
+                Shape::Cylinder(Cylinder::new(affine, *radius, *limits, orientation))
             }
             Self::Disk(height, radii, phi_max) => {
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
@@ -140,7 +152,7 @@ pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
     let is_near = |p: Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
     let fits = match shape {
         Shape::Mesh(mesh) => mesh.positions.iter().all(|&p| is_near(p)),
-        Shape::Sphere(_) | Shape::Disk(_) => {
+        Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => {
             let bounds = shape.primitive(0).bounds();
             is_near(bounds.min) && is_near(bounds.max)
         }
@@ -166,6 +178,7 @@ fn place_mesh(mesh: &PlyMesh, world_from_local: &DAffine3, orientation: Orientat
         } else {
             orientation
         },
+        ..Mesh::default()
     }
 }
 
@@ -189,95 +202,4 @@ fn phi_max(reader: &mut Reader<'_>) -> Result<f32, Fault> {
     Ok(reader
         .float_within("phimax", 360.0, [0.0, 360.0])?
         .to_radians())
-}
-
-fn ply_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {
-    let Some((name, span)) = reader.string("filename")? else {
-        return Err(Fault::scene(
-            reader.span(),
-            "the parameter `string filename` is missing",
-        ));
-    };
-    let flat = "the mesh stays as it is";
-    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
-    reader.ignore(context, ParameterType::Float, "edgelength");
-    let path = context.description.resolve(name);
-    let mesh = context.read_mesh(&path, span)?;
-    if mesh.skipped_faces > 0 {
-        let count = mesh.skipped_faces;
-        let message =
-            format!("{count} faces are neither triangles nor quadrilaterals and are left out");
-        context.warn(span, message);
-    }
-    Ok(mesh)
-}
-
-fn triangle_mesh(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<PlyMesh, Fault> {
-    let positions = triples(reader.floats(ParameterType::Point3, "P"));
-    if positions.is_empty() {
-        return Err(Fault::scene(
-            reader.span(),
-            "the parameter `point3 P` is missing or empty",
-        ));
-    }
-    let vertices = positions.len();
-    let indices = reader.find(ParameterType::Integer, "indices");
-    let triangles = match indices {
-        Some(parameter) => triangles(context, parameter, vertices)?,
-        None if vertices == 3 => vec![[0, 1, 2]],
-        None => {
-            return Err(Fault::scene(
-                reader.span(),
-                "the parameter `integer indices` is missing",
-            ));
-        }
-    };
-    let normals = triples(reader.floats(ParameterType::Normal, "N"));
-    let uvs = reader
-        .floats(ParameterType::Point2, "uv")
-        .unwrap_or_default();
-    let uvs = uvs.as_chunks::<2>().0.to_vec();
-    for (name, count) in [("N", normals.len()), ("uv", uvs.len())] {
-        if count != 0 && count != vertices {
-            let message = format!("the mesh has {vertices} points, but {count} values of `{name}`");
-            return Err(Fault::scene(reader.span(), message));
-        }
-    }
-    reader.ignore(context, ParameterType::Vector3, "S");
-    reader.ignore(context, ParameterType::Integer, "faceIndices");
-    Ok(PlyMesh {
-        positions,
-        normals,
-        uvs,
-        triangles,
-        skipped_faces: 0,
-    })
-}
-
-fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
-    values.unwrap_or_default().as_chunks::<3>().0.to_vec()
-}
-
-fn triangles(
-    context: &mut Context<'_>,
-    parameter: &Parameter,
-    vertices: usize,
-) -> Result<Vec<[u32; 3]>, Fault> {
-    let Values::Integers(indices) = &parameter.values else {
-        return Ok(Vec::new());
-    };
-    let is_vertex = |&index: &i32| usize::try_from(index).is_ok_and(|index| index < vertices);
-    if let Some(index) = indices.iter().find(|index| !is_vertex(index)) {
-        let message = format!("index {index} is not that of a point: there are {vertices}");
-        return Err(Fault::scene(parameter.value_span, message));
-    }
-    let (triangles, rest) = indices.as_chunks::<3>();
-    if !rest.is_empty() {
-        let message = "the indices are no whole number of triangles: the last ones are left out";
-        context.warn(parameter.value_span, message);
-    }
-    Ok(triangles
-        .iter()
-        .map(|corners| corners.map(|corner| corner as u32))
-        .collect())
 }

@@ -1,39 +1,149 @@
-//! Textures: built when a material asks for them, as what it needs them for.
+//! Textures: built when something asks for them, as what it needs them for.
+//!
+//! Numbers and colours go one way, [`Element`] says what is different. What a texture's parameters say
+//! is a [`Source`]; only those that are used become textures, and only then are images read.
 
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::imagemap::{Files, ImageSettings};
 use super::reader::Reader;
+use super::texture_class::Source;
+use crate::error::ErrorKind;
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::scene::{SceneDescription, TextureDescription, TextureKind};
 use crate::source::{Fault, Span};
 use bidir::spectrum::Rgb;
-use bidir::texture::{ColorTexture, FloatTexture};
+use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-/// What makes a texture different from all others.
-type Key<'a> = (TextureKind, &'a str);
+/// Textures within textures: how deep.
+const DEEPEST: usize = 32;
+/// The most textures that a texture is made of: what it takes to look up one value.
+const LARGEST: usize = 1024;
+
+/// Built textures, by number; colours are checked for each purpose.
+type Built<T> = BTreeMap<(usize, Purpose), Texture<T>>;
 
 /// The textures of a scene.
 pub(super) struct Textures<'a> {
-    described: BTreeMap<Key<'a>, &'a TextureDescription>,
-    asked: BTreeSet<Key<'a>>,
-    /// Those that are built already, by name; colours are checked for each purpose.
-    colors: BTreeMap<(&'a str, Purpose), ColorTexture>,
-    floats: BTreeMap<&'a str, FloatTexture>,
+    described: &'a [TextureDescription],
+    /// The number of each.
+    names: BTreeMap<(TextureKind, &'a str), usize>,
+    asked: BTreeSet<usize>,
+    colors: Built<Rgb>,
+    floats: Built<f32>,
+    /// How many are being built, each a part of the one before.
+    depth: usize,
     files: Files,
+}
+
+/// A number or a colour.
+pub(super) trait Element: Value + 'static {
+    /// The textures that give it.
+    const KIND: TextureKind;
+
+    /// The same number in every channel.
+    fn splat(value: f32) -> Self;
+
+    /// Reads a constant. None: where the file gives none.
+    fn read(
+        context: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        purpose: Purpose,
+    ) -> Result<Option<Self>, Fault>;
+
+    /// Reads an image.
+    fn image(
+        files: &mut Files,
+        context: &mut Context<'_>,
+        settings: &ImageSettings,
+    ) -> Result<Self::Map, Fault>;
+
+    fn built<'t>(textures: &'t mut Textures<'_>) -> &'t mut Built<Self>;
+}
+
+impl Element for f32 {
+    const KIND: TextureKind = TextureKind::Float;
+
+    fn splat(value: f32) -> Self {
+        value
+    }
+
+    fn read(
+        _: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        _: Purpose,
+    ) -> Result<Option<Self>, Fault> {
+        reader.optional_float(name)
+    }
+
+    fn image(
+        files: &mut Files,
+        context: &mut Context<'_>,
+        settings: &ImageSettings,
+    ) -> Result<ImageMap<1>, Fault> {
+        files.float(context, settings)
+    }
+
+    fn built<'t>(textures: &'t mut Textures<'_>) -> &'t mut Built<Self> {
+        &mut textures.floats
+    }
+}
+
+impl Element for Rgb {
+    const KIND: TextureKind = TextureKind::Spectrum;
+
+    fn splat(value: f32) -> Self {
+        [value; 3]
+    }
+
+    fn read(
+        context: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        purpose: Purpose,
+    ) -> Result<Option<Self>, Fault> {
+        color::read(context, reader, name, purpose)
+    }
+
+    fn image(
+        files: &mut Files,
+        context: &mut Context<'_>,
+        settings: &ImageSettings,
+    ) -> Result<ImageMap<3>, Fault> {
+        files.color(context, settings)
+    }
+
+    fn built<'t>(textures: &'t mut Textures<'_>) -> &'t mut Built<Self> {
+        &mut textures.colors
+    }
+}
+
+/// What a parameter that may be textured says.
+#[derive(Clone, Copy)]
+pub(super) enum Operand<T> {
+    /// The same everywhere.
+    Value(T),
+    /// The texture of this number.
+    Texture(usize),
 }
 
 impl<'a> Textures<'a> {
     /// The textures of a description, none of which is built.
     pub(super) fn new(description: &'a SceneDescription) -> Self {
-        let textures = description.textures.iter();
+        let numbered = description.textures.iter().enumerate();
+        let names = numbered.map(|(i, texture)| ((texture.kind, texture.name.as_str()), i));
         Self {
-            described: textures.map(|texture| (key(texture), texture)).collect(),
+            described: &description.textures,
+            names: names.collect(),
             asked: BTreeSet::new(),
             colors: BTreeMap::new(),
             floats: BTreeMap::new(),
+            depth: 0,
             files: Files::default(),
         }
     }
@@ -46,23 +156,7 @@ impl<'a> Textures<'a> {
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<ColorTexture>, Fault> {
-        let Some((name, span)) = reader.texture(name)? else {
-            let color = color::read(context, reader, name, purpose)?;
-            return Ok(color.map(ColorTexture::Constant));
-        };
-        let texture = self.find(TextureKind::Spectrum, name, span)?;
-        let key = (texture.name.as_str(), purpose);
-        if let Some(built) = self.colors.get(&key) {
-            return Ok(Some(built.clone()));
-        }
-        let built = match read_color(context, texture, purpose)? {
-            Source::Constant(color) => ColorTexture::Constant(color),
-            Source::Image(settings) => {
-                ColorTexture::Image(settings.map(self.files.color(context, &settings)?))
-            }
-        };
-        self.colors.insert(key, built.clone());
-        Ok(Some(built))
+        self.get(context, reader, name, purpose)
     }
 
     /// Reads a number or the name of a texture. None: where the file gives none.
@@ -72,106 +166,148 @@ impl<'a> Textures<'a> {
         reader: &mut Reader<'_>,
         name: &'static str,
     ) -> Result<Option<FloatTexture>, Fault> {
-        let Some((name, span)) = reader.texture(name)? else {
-            return Ok(reader.optional_float(name)?.map(FloatTexture::Constant));
-        };
-        let texture = self.find(TextureKind::Float, name, span)?;
-        let key = texture.name.as_str();
-        if let Some(built) = self.floats.get(key) {
-            return Ok(Some(built.clone()));
-        }
-        let built = match read_float(context, texture)? {
-            Source::Constant(number) => FloatTexture::Constant(number),
-            Source::Image(settings) => {
-                FloatTexture::Image(settings.map(self.files.float(context, &settings)?))
-            }
-        };
-        self.floats.insert(key, built.clone());
-        Ok(Some(built))
+        self.get(context, reader, name, Purpose::Unbounded)
     }
 
-    fn find(
+    /// The normals of an image, as colours between 0 and 1. None: where the file gives none.
+    pub(super) fn normals(
         &mut self,
-        kind: TextureKind,
-        name: &str,
-        span: Span,
-    ) -> Result<&'a TextureDescription, Fault> {
+        context: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+    ) -> Result<Option<ColorTexture>, Fault> {
+        let Some((file, span)) = reader.string(name)? else {
+            return Ok(None);
+        };
+        let settings = ImageSettings::of_normals(context, file, span);
+        let map = self.files.color(context, &settings)?;
+        Ok(Some(ColorTexture::Image(Arc::new(map))))
+    }
+
+    fn get<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        purpose: Purpose,
+    ) -> Result<Option<Texture<T>>, Fault> {
+        let operand = self.operand(context, reader, name, purpose)?;
+        let build = |operand| self.resolve(context, operand, purpose);
+        operand.map(build).transpose()
+    }
+
+    /// Reads a value or the name of a texture. None: where the file gives none.
+    pub(super) fn operand<T: Element>(
+        &self,
+        context: &mut Context<'_>,
+        reader: &mut Reader<'_>,
+        name: &'static str,
+        purpose: Purpose,
+    ) -> Result<Option<Operand<T>>, Fault> {
+        match reader.texture(name)? {
+            Some((name, span)) => self
+                .find(T::KIND, name, span)
+                .map(Operand::Texture)
+                .map(Some),
+            None => Ok(T::read(context, reader, name, purpose)?.map(Operand::Value)),
+        }
+    }
+
+    fn find(&self, kind: TextureKind, name: &str, span: Span) -> Result<usize, Fault> {
         let normalized = known::normalized(name);
-        if let Some(&texture) = self.described.get(&(kind, &*normalized)) {
-            self.asked.insert(key(texture));
-            return Ok(texture);
+        if let Some(&number) = self.names.get(&(kind, &*normalized)) {
+            return Ok(number);
         }
         let word = match kind {
             TextureKind::Float => "float",
             TextureKind::Spectrum => "spectrum",
         };
         let fault = Fault::scene(span, format!("unknown {word} texture `{}`", shorten(name)));
-        let of_kind = self.described.keys().filter(|(known, _)| *known == kind);
+        let of_kind = self.names.keys().filter(|(known, _)| *known == kind);
         Err(fault.with_nearest(name, of_kind.map(|&(_, name)| name)))
     }
 
-    /// Looks through the parameters of the textures that no material asked for. No image is read.
+    /// Refuses what texture number `user` must not be made of: images exist before all others, then
+    /// numbers and colours are made, both in the order of the file.
+    pub(super) fn check_order(&self, part: usize, user: usize, span: Span) -> Result<(), Fault> {
+        let (part_of, user_of) = (&self.described[part], &self.described[user]);
+        let is_image = matches!(part_of.entity.kind.as_str(), "imagemap" | "ptex");
+        if is_image || part_of.kind != user_of.kind || part < user {
+            return Ok(());
+        }
+        let name = shorten(&part_of.name);
+        let message = format!("the texture `{name}` is used before it is defined");
+        let hint = "only an `imagemap` may stand below the textures that use it";
+        Err(Fault::scene(span, message).with_hint(hint))
+    }
+
+    /// Builds what a parameter says.
+    pub(super) fn resolve<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        operand: Operand<T>,
+        purpose: Purpose,
+    ) -> Result<Texture<T>, Fault> {
+        let number = match operand {
+            Operand::Value(value) => return Ok(Texture::Constant(value)),
+            Operand::Texture(number) => number,
+        };
+        if let Some(built) = T::built(self).get(&(number, purpose)) {
+            return Ok(built.clone());
+        }
+        self.asked.insert(number);
+        self.depth += 1;
+        let built = self.build::<T>(context, number, purpose);
+        self.depth -= 1;
+        let built = built?;
+        T::built(self).insert((number, purpose), built.clone());
+        Ok(built)
+    }
+
+    fn build<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        number: usize,
+        purpose: Purpose,
+    ) -> Result<Texture<T>, Fault> {
+        let span = self.described[number].entity.span;
+        let too = |message| Err(Fault::new(ErrorKind::Limit, span, message));
+        if self.depth > DEEPEST {
+            return too(format!("textures are nested deeper than {DEEPEST}"));
+        }
+        let source = Source::read(self, context, number, purpose)?;
+        let built = source.build(self, context, purpose)?;
+        if built.size() > LARGEST {
+            return too(format!("the texture is made of more than {LARGEST}"));
+        }
+        Ok(built)
+    }
+
+    pub(super) fn image<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        settings: &ImageSettings,
+    ) -> Result<Texture<T>, Fault> {
+        let map = T::image(&mut self.files, context, settings)?;
+        Ok(Texture::Image(Arc::new(map)))
+    }
+
+    pub(super) fn described(&self, number: usize) -> &'a TextureDescription {
+        &self.described[number]
+    }
+
+    /// Looks through the parameters of the textures that nothing asked for. No image is read.
     pub(super) fn check_unused(&self, context: &mut Context<'_>) -> Result<(), Fault> {
-        for texture in &context.description.textures {
-            if self.asked.contains(&key(texture)) {
+        for (number, texture) in self.described.iter().enumerate() {
+            if self.asked.contains(&number) {
                 continue;
             }
+            let any = Purpose::Unbounded;
             context.unused(|context| match texture.kind {
-                TextureKind::Float => read_float(context, texture).map(drop),
-                TextureKind::Spectrum => read_color(context, texture, Purpose::Unbounded).map(drop),
+                TextureKind::Float => Source::<f32>::read(self, context, number, any).map(drop),
+                TextureKind::Spectrum => Source::<Rgb>::read(self, context, number, any).map(drop),
             })?;
         }
         Ok(())
     }
-}
-
-fn key(texture: &TextureDescription) -> Key<'_> {
-    (texture.kind, &texture.name)
-}
-
-/// What a texture's parameters say: a value, or where an image is and how it is looked up.
-enum Source<T> {
-    Constant(T),
-    Image(ImageSettings),
-}
-
-fn read_color(
-    context: &mut Context<'_>,
-    texture: &TextureDescription,
-    purpose: Purpose,
-) -> Result<Source<Rgb>, Fault> {
-    read(context, texture, [0.5; 3], |context, reader| {
-        let value = color::read(context, reader, "value", purpose)?;
-        Ok(value.unwrap_or([1.0; 3]))
-    })
-}
-
-fn read_float(
-    context: &mut Context<'_>,
-    texture: &TextureDescription,
-) -> Result<Source<f32>, Fault> {
-    read(context, texture, 0.5, |_, reader| {
-        reader.float("value", 1.0)
-    })
-}
-
-/// Reads a texture's parameters, those of a constant by `read_constant`; `grey` is what stands in.
-fn read<T>(
-    context: &mut Context<'_>,
-    texture: &TextureDescription,
-    grey: T,
-    read_constant: impl FnOnce(&mut Context<'_>, &mut Reader<'_>) -> Result<T, Fault>,
-) -> Result<Source<T>, Fault> {
-    let mut reader = Reader::new(&texture.entity);
-    let source = match texture.entity.kind.as_str() {
-        "constant" => Source::Constant(read_constant(context, &mut reader)?),
-        "imagemap" => Source::Image(ImageSettings::read(context, &mut reader)?),
-        class => {
-            let what = format!("the texture class `{class}`");
-            context.unsupported(texture.entity.span, &what, "0.5 stands in")?;
-            return Ok(Source::Constant(grey));
-        }
-    };
-    reader.finish()?;
-    Ok(source)
 }

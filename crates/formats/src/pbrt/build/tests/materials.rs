@@ -3,14 +3,16 @@ use bidir::bsdf::Bsdf;
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::{ColorModel, Wavelengths};
+use bidir::texture::TexturePoint;
 
 /// The scattering of the last material, of which `u` chooses a part.
 #[track_caller]
 fn bsdf(text: &str, u: f32) -> Bsdf {
     let scene = world(&format!("{text} Shape \"sphere\""));
     let material = scene.materials().last().expect("there is a material");
-    let chosen = material.choose(Vec2::ZERO, || u);
-    chosen.bsdf(Vec2::ZERO, ColorModel::Rgb, &Wavelengths::default())
+    let at = TexturePoint::of_parameters(Vec2::ZERO);
+    let chosen = material.choose(&at, || u);
+    chosen.bsdf(&at, ColorModel::Rgb, &Wavelengths::default())
 }
 
 /// Checks that two ways to write a material are one.
@@ -58,7 +60,6 @@ fn every_parameter_of_a_layer_changes_something() {
         "\"float thickness\" .5",
         "\"float eta\" 1.3",
         "\"rgb albedo\" [.5 .5 .5]",
-        "\"integer maxdepth\" 3",
         "\"bool remaproughness\" false",
         "\"float uroughness\" .1",
         "\"float vroughness\" .1",
@@ -76,7 +77,6 @@ fn every_parameter_of_a_layer_changes_something() {
         "\"rgb reflectance\" [.2 .2 .2]",
         "\"rgb conductor.k\" [1 1 1]",
         "\"float thickness\" .5",
-        "\"integer maxdepth\" 2",
         "\"bool remaproughness\" false",
     ] {
         check_different(plain, &format!("{plain} {parameter}"));
@@ -160,6 +160,6 @@ fn misspelt_parameters_of_materials_are_refused() {
     );
     check_world(
         "Material \"diffusetransmission\" \"float scale\" -1 Shape \"sphere\"",
-        "s.pbrt:2:45: `scale` is -1, but has to be at least 0",
+        "s.pbrt:2:46: `scale` is -1, but has to be at least 0",
     );
 }

@@ -5,10 +5,12 @@ mod film;
 mod lights;
 mod materials;
 mod refusals;
+mod relief;
 mod robust;
 mod settings;
 mod shapes;
 mod textures;
+mod views;
 
 use super::{LoadOptions, Loaded, build};
 use crate::error::Error;

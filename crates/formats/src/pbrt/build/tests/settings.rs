@@ -16,6 +16,7 @@ fn settings_come_from_the_file_or_the_format() {
         samples_per_pixel: 16,
         seed: None,
         output: None,
+        aovs: Vec::new(),
     };
     assert_eq!(defaults.settings, expected);
     let loaded = load_text(
@@ -32,6 +33,7 @@ fn settings_come_from_the_file_or_the_format() {
         samples_per_pixel: 4,
         seed: Some(3),
         output: Some("a.exr".into()),
+        aovs: Vec::new(),
     };
     assert_eq!(loaded.settings, expected);
     let film = loaded.scene.film();

@@ -150,3 +150,34 @@ fn the_side_that_emits_follows_reversal_and_not_mirrors() {
         }
     }
 }
+
+/// The only mesh of a scene.
+fn mesh(text: &str) -> bidir::shape::Mesh {
+    let scene = world(text);
+    match scene.shapes() {
+        [Shape::Mesh(mesh)] => mesh.clone(),
+        _ => panic!("the scene has one mesh"),
+    }
+}
+
+#[test]
+fn patches_and_subdivided_meshes_become_triangles() {
+    let square = "\"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]";
+    let patch = mesh(&format!("Shape \"bilinearmesh\" {square}"));
+    assert_eq!(patch.triangles, [[0, 1, 3], [0, 3, 2]]);
+    let tetrahedron = "\"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \
+        \"integer indices\" [0 2 1 0 1 3 1 2 3 2 0 3]";
+    let smooth = mesh(&format!(
+        "Shape \"loopsubdiv\" \"integer levels\" 2 {tetrahedron}"
+    ));
+    assert_eq!((smooth.triangles.len(), smooth.normals.len()), (64, 34));
+    check_world(
+        &format!("Shape \"loopsubdiv\" \"integer levels\" 30 {tetrahedron}"),
+        "s.pbrt:2:7: 30 steps of subdivision are too many: at most 10, and 67108864 triangles in the end",
+    );
+    check_world(
+        &format!("Shape \"loopsubdiv\" {square} \"integer indices\" [0 1 2 0 1 3]"),
+        "s.pbrt:2:7: two triangles go from point 0 to point 1: the mesh is not oriented, or three \
+         triangles share the edge",
+    );
+}

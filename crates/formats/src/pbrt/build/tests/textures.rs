@@ -3,6 +3,7 @@ use crate::pbrt::load;
 use bidir::material::{ConductorIndex, Material};
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
+use bidir::texture::{ColorTexture, TexturePoint};
 
 /// A folder with a scene and an image of two rows: red above, green below.
 fn textured(parameters: &str) -> Scene {
@@ -27,7 +28,10 @@ fn check_texture(parameters: &str, uv: Vec2, expected: [f32; 3]) {
     let Material::Diffuse { reflectance } = &scene.materials()[1] else {
         panic!("the material is diffuse");
     };
-    assert_eq!(Vec3::from(reflectance.eval(uv)), Vec3::from(expected));
+    assert_eq!(
+        Vec3::from(reflectance.eval(&TexturePoint::of_parameters(uv))),
+        Vec3::from(expected)
+    );
 }
 
 #[test]
@@ -49,7 +53,7 @@ const TWO: &str = "Texture \"two\" \"spectrum\" \"constant\" \"rgb value\" [2 2 
 
 /// The material of the only shape.
 #[track_caller]
-fn material(text: &str) -> Material {
+pub(super) fn material(text: &str) -> Material {
     world(&format!("{text} Shape \"sphere\"")).materials()[1].clone()
 }
 
@@ -64,8 +68,9 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
     else {
         panic!("the material is a conductor with an index");
     };
+    let at = TexturePoint::of_parameters(Vec2::ZERO);
     assert_eq!(
-        [eta, k].map(|part| Vec3::from(part.eval(Vec2::ZERO))),
+        [eta, k].map(|part| Vec3::from(part.eval(&at))),
         [Vec3::splat(2.0); 2]
     );
     // Also after it was used for something that may be so large.
@@ -82,13 +87,232 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
 #[test]
 fn a_stand_in_is_counted_once_however_often_it_is_used() {
     let loaded = load_text(
-        "WorldBegin\nTexture \"dots\" \"spectrum\" \"dots\"\n\
+        "WorldBegin\nTexture \"dots\" \"spectrum\" \"ptex\"\n\
          Material \"diffuse\" \"texture reflectance\" \"dots\" Shape \"sphere\"\n\
          Material \"conductor\" \"texture reflectance\" \"dots\" Shape \"sphere\"",
         &LENIENT,
     );
     assert_eq!(
         loaded.warnings,
-        ["s.pbrt:2:27: the texture class `dots` is not supported yet: 0.5 stands in"]
+        ["s.pbrt:2:27: the texture class `ptex` is not supported yet: 0.5 stands in"]
     );
+}
+
+/// The reflectance of the only shape, which is the texture `t`.
+#[track_caller]
+fn reflectance(text: &str) -> ColorTexture {
+    let material = material(&format!(
+        "{text}\nMaterial \"diffuse\" \"texture reflectance\" \"t\""
+    ));
+    let Material::Diffuse { reflectance } = material else {
+        panic!("the material is diffuse");
+    };
+    reflectance
+}
+
+#[track_caller]
+fn check_value(text: &str, at: &TexturePoint, expected: [f32; 3]) {
+    let value = Vec3::from(reflectance(text).eval(at));
+    let distance = value.distance(Vec3::from(expected));
+    assert!(distance < 1e-5, "{value} instead of {expected:?}");
+}
+
+#[test]
+fn classes_have_the_parameters_and_defaults_of_the_format() {
+    let at = |u, v| TexturePoint::of_parameters(Vec2::new(u, v));
+    let is = |class: &str, at: &TexturePoint, expected: f32| {
+        check_value(
+            &format!("Texture \"t\" \"spectrum\" {class}"),
+            at,
+            [expected; 3],
+        );
+    };
+    is("\"constant\"", &at(0.0, 0.0), 1.0);
+    is("\"scale\" \"float scale\" .25", &at(0.0, 0.0), 0.25);
+    is("\"mix\" \"float amount\" .25", &at(0.0, 0.0), 0.25);
+    is("\"bilerp\"", &at(0.7, 0.25), 0.25);
+    is(
+        "\"bilerp\" \"rgb v10\" [1 1 1] \"rgb v01\" [0 0 0]",
+        &at(0.7, 0.25),
+        0.7,
+    );
+    is("\"checkerboard\"", &at(0.5, 0.5), 1.0);
+    is("\"checkerboard\" \"float uscale\" 2", &at(0.75, 0.5), 0.0);
+    is("\"checkerboard\" \"float udelta\" 1", &at(0.75, 0.5), 0.0);
+    is("\"dots\" \"rgb outside\" [1 1 1]", &at(0.49, 0.49), 1.0);
+    let beside = TexturePoint {
+        point: Vec3::new(-0.5, 0.5, 0.5),
+        ..at(0.5, 0.5)
+    };
+    is("\"checkerboard\" \"integer dimension\" 3", &beside, 0.0);
+    is(
+        "\"checkerboard\" \"string mapping\" \"planar\" \"vector3 v1\" [0 0 4]",
+        &beside,
+        1.0,
+    );
+    let sideways = TexturePoint {
+        normal: Vec3::new(0.6, 0.8, 0.0),
+        ..at(0.0, 0.0)
+    };
+    is("\"directionmix\"", &sideways, 0.2);
+    is("\"directionmix\" \"vector3 dir\" [-2 0 0]", &sideways, 0.4);
+    for class in ["fbm", "wrinkled", "windy"] {
+        let text = format!(
+            "Texture \"t\" \"float\" \"{class}\" Material \"conductor\" \"texture roughness\" \"t\""
+        );
+        assert_eq!(material(&text).kind(), "conductor");
+    }
+    reflectance(
+        "Texture \"t\" \"spectrum\" \"marble\" \"integer octaves\" 3 \"float variation\" .5",
+    );
+}
+
+/// Points go to texture space by the inverse of the transformation at the directive.
+#[test]
+fn textures_stand_where_their_directive_does() {
+    let at = |x: f32, y: f32, z: f32| TexturePoint {
+        point: Vec3::new(x, y, z),
+        ..TexturePoint::of_parameters(Vec2::ZERO)
+    };
+    let text = "Translate 10 0 0 Scale 2 2 2 Texture \"t\" \"spectrum\" \"checkerboard\" \
+                \"integer dimension\" 3 Identity";
+    check_value(text, &at(11.0, 1.0, 1.0), [1.0; 3]);
+    check_value(text, &at(9.0, 1.0, 1.0), [0.0; 3]);
+    check_value(text, &at(12.5, 2.5, 1.0), [1.0; 3]);
+    let text = "Rotate 90 0 0 1 Texture \"t\" \"spectrum\" \"directionmix\" Identity";
+    let normal = Vec3::X;
+    check_value(
+        text,
+        &TexturePoint {
+            normal,
+            ..at(0.0, 0.0, 0.0)
+        },
+        [0.0; 3],
+    );
+}
+
+#[test]
+fn textures_are_made_of_textures_above_them() {
+    let half = "Texture \"half\" \"spectrum\" \"constant\" \"rgb value\" [.5 .5 .5]";
+    let board = "Texture \"b\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"half\"";
+    let amount = "Texture \"a\" \"float\" \"scale\" \"float tex\" .5 \"float scale\" .5";
+    let mix = "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"b\" \"texture amount\" \"a\"";
+    let at = |u| TexturePoint::of_parameters(Vec2::new(u, 0.5));
+    // Numbers may stand below the colours that are made with them.
+    let text = format!("{half} {board} {mix} {amount}");
+    check_value(&text, &at(0.5), [0.625; 3]);
+    check_value(&text, &at(1.5), [0.25; 3]);
+    check_world(
+        &format!("{half}\n{mix}\n{board} {amount}"),
+        "s.pbrt:3:45: the texture `b` is used before it is defined; \
+         only an `imagemap` may stand below the textures that use it",
+    );
+    check_world(
+        "Texture \"t\" \"float\" \"scale\" \"texture tex\" \"t\"",
+        "s.pbrt:2:43: the texture `t` is used before it is defined; \
+         only an `imagemap` may stand below the textures that use it",
+    );
+    check_world(
+        &format!("{half}\nTexture \"t\" \"spectrum\" \"dots\" \"texture inside\" \"hlaf\""),
+        "s.pbrt:3:48: unknown spectrum texture `hlaf`; did you mean `half`?",
+    );
+}
+
+#[test]
+fn wrong_textures_are_told() {
+    for (text, expected) in [
+        (
+            "\"float\" \"marble\"",
+            "s.pbrt:2:21: a texture of class `marble` is of type `spectrum`",
+        ),
+        (
+            "\"spectrum\" \"windy\"",
+            "s.pbrt:2:24: a texture of class `windy` is of type `float`",
+        ),
+        (
+            "\"float\" \"checkerboard\" \"integer dimension\" 4",
+            "s.pbrt:2:21: a checkerboard has 2 or 3 dimensions, not 4",
+        ),
+        (
+            "\"float\" \"bilerp\" \"texture v00\" \"t\"",
+            "s.pbrt:2:30: `v00` is not of type `texture`; write `float v00`",
+        ),
+        (
+            "\"float\" \"dots\" \"string mapping\" \"sphericl\"",
+            "s.pbrt:2:45: unknown mapping `sphericl`; did you mean `spherical`?",
+        ),
+        (
+            "\"float\" \"fbm\" \"float roughnes\" 1",
+            "s.pbrt:2:27: unknown parameter `roughnes` of `fbm`; did you mean `roughness`?",
+        ),
+        (
+            "\"spectrum\" \"directionmix\" \"vector3 dir\" [0 0 0]",
+            "s.pbrt:2:24: the direction `dir` has no length",
+        ),
+    ] {
+        check_world(&format!("Texture \"t\" {text}"), expected);
+    }
+}
+
+/// A chain that is too long is refused, and one that doubles at each step.
+#[test]
+fn nesting_has_limits() {
+    let chain = |class: &str, count: usize| {
+        let first = "Texture \"t0\" \"float\" \"fbm\"".to_owned();
+        (1..count).fold(first, |text, i| {
+            let part = class.replace('?', &format!("t{}", i - 1));
+            format!("{text}\nTexture \"t{i}\" \"float\" {part}")
+        })
+    };
+    let used = |text: &str, count: usize| {
+        format!(
+            "{text}\nMaterial \"conductor\" \"texture roughness\" \"t{}\" Shape \"sphere\"",
+            count - 1
+        )
+    };
+    let scale = "\"scale\" \"texture tex\" \"?\"";
+    world(&used(&chain(scale, 30), 30));
+    check_world(
+        &used(&chain(scale, 40), 40),
+        "s.pbrt:9:22: textures are nested deeper than 32",
+    );
+    let double = "\"mix\" \"texture tex1\" \"?\" \"texture tex2\" \"?\"";
+    check_world(
+        &used(&chain(double, 20), 20),
+        "s.pbrt:11:22: the texture is made of more than 1024",
+    );
+}
+
+/// A file that several textures look at, each in its way, is kept once.
+#[test]
+fn images_are_read_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("t.png");
+    crate::image::write_png(&image, [2, 1], &[[1.0; 3], [0.25; 3]]).unwrap();
+    let look = |name: &str, filter: &str, scale: f32| {
+        format!(
+            "Texture \"{name}\" \"spectrum\" \"imagemap\" \"string filename\" \"t.png\" \
+             \"string filter\" \"{filter}\" \"float scale\" {scale}\n\
+             Material \"diffuse\" \"texture reflectance\" \"{name}\" Shape \"sphere\"\n"
+        )
+    };
+    let text = look("a", "trilinear", 1.0) + &look("b", "point", 0.5);
+    let path = folder.path().join("s.pbrt");
+    std::fs::write(&path, format!("WorldBegin {text}")).unwrap();
+    let scene = load(&path, &STRICT)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .scene;
+    let maps = scene.materials()[1..]
+        .iter()
+        .map(|material| match material {
+            Material::Diffuse {
+                reflectance: ColorTexture::Image(map),
+            } => map,
+            _ => panic!("the material shows an image"),
+        });
+    let maps: Vec<_> = maps.collect();
+    assert!(std::sync::Arc::ptr_eq(&maps[0].image, &maps[1].image));
+    assert_eq!(maps[0].image.copies(), 1);
+    let at = TexturePoint::of_parameters(Vec2::new(0.75, 0.5));
+    assert!((maps[1].eval(&at)[0] - 0.125).abs() < 1e-2);
 }

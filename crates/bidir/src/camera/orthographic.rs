@@ -1,0 +1,98 @@
+//! W_e = dx/dA · δ(ω - forward): parallel rays that start on a plane. Densities are raster area per
+//! area of the plane, 1/m²; the direction is a Dirac distribution, whose coefficient counts 1.
+//!
+//! On a path such a camera is what a distant light is at the other end: a vertex at infinity. Its
+//! "point" is the direction towards it, and the next vertex's density is raster area per area of a
+//! surface, dx/dA |cosθ|.
+
+use super::pose::Pose;
+use super::{CameraRay, LensSample};
+use crate::math::{Affine3A, Vec2, Vec3};
+
+/// What an [`Orthographic`] camera is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct OrthographicSettings {
+    /// The camera's place: x right, y up, z forward. Even scaling and mirroring are allowed.
+    pub world_from_camera: Affine3A,
+    /// The film's width and height. Unit: pixels.
+    pub resolution: Vec2,
+    /// Top left and bottom right corner of the film on the plane z = 0 of camera space.
+    pub screen: [Vec2; 2],
+}
+
+/// Parallel rays from a plane. What lies behind the plane is not seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Orthographic {
+    pose: Pose,
+    /// Place on the plane = `screen_origin` + raster · `screen_per_raster`, in the world's unit.
+    screen_origin: Vec2,
+    screen_per_raster: Vec2,
+    /// Raster area per area of the plane.
+    raster_density: f32,
+}
+
+impl Orthographic {
+    /// The camera. None: its map is no even scaling with rotation and mirroring, or the screen has
+    /// no area.
+    pub fn new(settings: &OrthographicSettings) -> Option<Self> {
+        let pose = Pose::new(&settings.world_from_camera)?;
+        let screen = settings.screen.map(|corner| corner * pose.scale);
+        let screen_per_raster = (screen[1] - screen[0]) / settings.resolution;
+        let raster_density = 1.0 / (screen_per_raster.x * screen_per_raster.y).abs();
+        raster_density.is_finite().then_some(Self {
+            pose,
+            screen_origin: screen[0],
+            screen_per_raster,
+            raster_density,
+        })
+    }
+
+    #[inline]
+    pub(super) fn lens(&self) -> LensSample {
+        LensSample {
+            point: -self.pose.forward,
+            n_g: self.pose.forward,
+            pdf: 1.0,
+            is_infinite: true,
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample_ray(&self, raster: Vec2) -> CameraRay {
+        let screen = self.screen_origin + raster * self.screen_per_raster;
+        CameraRay {
+            lens: self.lens(),
+            origin: self.pose.origin + self.pose.right * screen.x + self.pose.up * screen.y,
+            direction: self.pose.forward,
+        }
+    }
+
+    /// The raster position that sees the point `p`. None: it is behind the plane.
+    #[inline]
+    pub(super) fn raster(&self, p: Vec3) -> Option<Vec2> {
+        let local = self.pose.to_local(p - self.pose.origin);
+        let raster = (local.truncate() - self.screen_origin) / self.screen_per_raster;
+        (local.z > 0.0).then_some(raster)
+    }
+
+    #[inline]
+    pub(super) fn depth(&self, p: Vec3) -> f32 {
+        self.pose.forward.dot(p - self.pose.origin)
+    }
+
+    /// The width of a pixel, the same everywhere.
+    #[inline]
+    pub(super) fn pixel_width(&self) -> f32 {
+        1.0 / self.raster_density.sqrt()
+    }
+
+    /// dx/dA along the axis, the one direction there is.
+    #[inline]
+    pub(super) fn density(&self, w: Vec3) -> f32 {
+        if self.pose.forward.dot(w) > 0.0 {
+            self.raster_density
+        } else {
+            0.0
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! W_e = dx/dω: a picture of everything around a point, which has no lens and no cosine. Densities
+//! are raster area per solid angle, 1/sr.
+//!
+//! Two maps from the film to directions, y being up: by **longitude and latitude**, where
+//! dx/dω = A / (2π² sinθ) of a film of area A, and by **equal areas**, where it is A / 4π.
+//!
+//! Beyond the film's edge lies its other edge, which a pixel filter knows nothing of: it has to stay
+//! within its pixel.
+
+use super::pose::Pose;
+use super::{CameraRay, LensSample};
+use crate::math::{Affine3A, PI, Vec2, Vec3, direction_to_square, square_to_direction};
+
+/// How directions lie on the film of a [`Spherical`] camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SphericalMapping {
+    /// Longitude to the right, from the camera's right side over the front; latitude down, from
+    /// above.
+    Equirectangular,
+    /// The octahedral square of equal areas, the camera's up in its middle.
+    EqualArea,
+}
+
+/// A point that sees all around it.
+#[derive(Clone, Copy, Debug)]
+pub struct Spherical {
+    pose: Pose,
+    resolution: Vec2,
+    mapping: SphericalMapping,
+}
+
+impl Spherical {
+    /// The camera at a place: x right, y up, z forward; even scaling and mirroring are allowed. Unit
+    /// of `resolution`: pixels. None: the map is another, or the film is empty.
+    pub fn new(
+        world_from_camera: &Affine3A,
+        resolution: Vec2,
+        mapping: SphericalMapping,
+    ) -> Option<Self> {
+        let pose = Pose::new(world_from_camera)?;
+        resolution.cmpgt(Vec2::ZERO).all().then_some(Self {
+            pose,
+            resolution,
+            mapping,
+        })
+    }
+
+    #[inline]
+    pub(super) fn lens(&self) -> LensSample {
+        LensSample {
+            point: self.pose.origin,
+            n_g: Vec3::ZERO,
+            pdf: 1.0,
+            is_infinite: false,
+        }
+    }
+
+    #[inline]
+    pub(super) fn sample_ray(&self, raster: Vec2) -> CameraRay {
+        let p = raster / self.resolution;
+        let local = match self.mapping {
+            SphericalMapping::Equirectangular => {
+                let (sin, cos) = libm::sincosf(PI * p.y);
+                let (sin_phi, cos_phi) = libm::sincosf(2.0 * PI * p.x);
+                Vec3::new(sin * cos_phi, cos, sin * sin_phi)
+            }
+            SphericalMapping::EqualArea => {
+                let d = square_to_direction(p.clamp(Vec2::ZERO, Vec2::ONE));
+                Vec3::new(d.x, d.z, d.y)
+            }
+        };
+        CameraRay {
+            lens: self.lens(),
+            origin: self.pose.origin,
+            direction: self.pose.to_world(local).normalize(),
+        }
+    }
+
+    #[inline]
+    pub(super) fn raster(&self, w: Vec3) -> Vec2 {
+        let local = self.pose.to_local(w);
+        let p = match self.mapping {
+            SphericalMapping::Equirectangular => {
+                let around = libm::atan2f(local.z, local.x) / (2.0 * PI);
+                let around = if around < 0.0 { around + 1.0 } else { around };
+                let across = libm::hypotf(local.x, local.z);
+                Vec2::new(around, libm::atan2f(across, local.y) / PI)
+            }
+            SphericalMapping::EqualArea => {
+                direction_to_square(Vec3::new(local.x, local.z, local.y))
+            }
+        };
+        p * self.resolution
+    }
+
+    #[inline]
+    pub(super) fn depth(&self, p: Vec3) -> f32 {
+        p.distance(self.pose.origin)
+    }
+
+    /// Distance times the width of a pixel, at the horizon where they are wider than elsewhere.
+    #[inline]
+    pub(super) fn pixel_width(&self, p: Vec3) -> f32 {
+        let area = self.resolution.x * self.resolution.y;
+        let solid_angle = match self.mapping {
+            SphericalMapping::Equirectangular => 2.0 * PI * PI / area,
+            SphericalMapping::EqualArea => 4.0 * PI / area,
+        };
+        self.depth(p) * solid_angle.sqrt()
+    }
+
+    /// dx/dω.
+    #[inline]
+    pub(super) fn density(&self, w: Vec3) -> f32 {
+        let area = self.resolution.x * self.resolution.y;
+        match self.mapping {
+            SphericalMapping::Equirectangular => {
+                let local = self.pose.to_local(w);
+                let sin = libm::hypotf(local.x, local.z);
+                // At the pole itself a whole row of pixels sees one direction.
+                area / (2.0 * PI * PI * sin.max(1e-6))
+            }
+            SphericalMapping::EqualArea => area / (4.0 * PI),
+        }
+    }
+}

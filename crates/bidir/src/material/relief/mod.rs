@@ -1,0 +1,159 @@
+//! Relief: a shading frame that turns over the surface, as if it had bumps. Points stay where they
+//! are, and so does the geometric normal.
+//!
+//! The frame is a function of the point and of the camera, so that the integrand stays one function of
+//! the path; what the two normals disagree on is dealt with where light scatters
+//! ([`Vertex::scatter`](crate::path::Vertex::scatter)).
+
+use super::{Material, Mixture};
+use crate::math::{Frame, Vec2, Vec3};
+use crate::shape::{Differentials, SurfacePoint};
+use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
+use std::sync::Arc;
+
+/// What turns the shading frame of a surface.
+#[derive(Clone, Debug)]
+pub enum Relief {
+    /// The normals of the surface pushed out along its normal by a height. Unit: m.
+    Displacement(FloatTexture),
+    /// The normals of an image.
+    NormalMap(NormalMap),
+}
+
+/// Normals in the frame of the surface, stored as colours (n + 1)/2.
+#[derive(Clone, Debug)]
+pub struct NormalMap {
+    /// The colours, linear as stored.
+    pub texture: ColorTexture,
+    /// What their x and y are multiplied by.
+    pub scale: f32,
+    /// Where their y points.
+    pub bitangent: Bitangent,
+}
+
+/// Where the y of a [`NormalMap`] points; its x follows the surface's tangent, its z is the shading
+/// normal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bitangent {
+    /// So that the frame is right-handed, as in pbrt-v4.
+    RightHanded,
+    /// To the left of x, or to the right where the parameters are mirrored: to the side of ∂p/∂v
+    /// where x is that of ∂p/∂u. Mirrored parameters mirror the relief.
+    AlongV,
+}
+
+/// A material under a relief.
+#[derive(Clone, Debug)]
+pub struct Embossed {
+    pub(super) material: Material,
+    pub(super) relief: Relief,
+}
+
+impl Material {
+    /// The material under `relief`; of a mixture every part that has none of its own.
+    #[must_use]
+    pub fn embossed(self, relief: Relief) -> Self {
+        match self {
+            Self::Embossed(_) => self,
+            Self::Mix(mixture) => {
+                let emboss = |material: &Self| material.clone().embossed(relief.clone());
+                Self::Mix(Arc::new(Mixture {
+                    materials: mixture.materials.each_ref().map(emboss),
+                    amount: mixture.amount.clone(),
+                }))
+            }
+            material => Self::Embossed(Arc::new(Embossed { material, relief })),
+        }
+    }
+}
+
+impl Relief {
+    /// The shading frame at a point. Its normal is on the side of the geometric normal, as in
+    /// pbrt-v4; where nothing can be told, the frame is that of the surface.
+    pub fn frame(
+        &self,
+        surface: &SurfacePoint,
+        differentials: &Differentials,
+        at: &TexturePoint,
+    ) -> Frame {
+        let (normal, tangent) = match self {
+            Self::Displacement(height) => displaced(height, surface, differentials, at),
+            Self::NormalMap(map) => (map.normal(surface, differentials, at), surface.shading.x),
+        };
+        let Some(normal) = normal.try_normalize() else {
+            return surface.shading;
+        };
+        let front = if normal.dot(surface.n_g) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        Frame::from_z_and_tangent(front, tangent)
+    }
+}
+
+impl NormalMap {
+    fn normal(
+        &self,
+        surface: &SurfacePoint,
+        differentials: &Differentials,
+        at: &TexturePoint,
+    ) -> Vec3 {
+        let stored = Vec3::from(self.texture.eval(at)) * 2.0 - 1.0;
+        let frame = &surface.shading;
+        let side = match self.bitangent {
+            Bitangent::RightHanded => 1.0,
+            Bitangent::AlongV => {
+                let turn = differentials.dp_du.cross(differentials.dp_dv);
+                1f32.copysign(turn.dot(frame.z))
+            }
+        };
+        let scale = Vec3::new(self.scale, self.scale * side, 1.0);
+        frame.to_world(stored * scale)
+    }
+}
+
+/// The normal of p + h n_s, not normalised, and its tangent along u:
+/// ∂p/∂u + ∂h/∂u n_s + h ∂n_s/∂u, crossed with the same along v [PBRT4, §10.5.4].
+///
+/// Tangents are those of the surface that the shading normal is the normal of, so that a constant
+/// height changes nothing on a flat surface. Derivatives of h are differences over a step.
+fn displaced(
+    height: &FloatTexture,
+    surface: &SurfacePoint,
+    d: &Differentials,
+    at: &TexturePoint,
+) -> (Vec3, Vec3) {
+    let n = surface.shading.z;
+    let h = height.eval(at);
+    let tangent = |axis: Vec2, gradient: Vec3, dp: Vec3, dn: Vec3| {
+        let along = dp - n * n.dot(dp);
+        let step = step(at, gradient);
+        let moved = TexturePoint {
+            uv: at.uv + axis * step,
+            point: at.point + along * step,
+            normal: (n + dn * step).normalize_or(n),
+            footprint: at.footprint,
+        };
+        along + n * ((height.eval(&moved) - h) / step) + dn * h
+    };
+    let along_u = tangent(Vec2::X, at.footprint.gradient_u, d.dp_du, d.dn_du);
+    let along_v = tangent(Vec2::Y, at.footprint.gradient_v, d.dp_dv, d.dn_dv);
+    (along_u.cross(along_v), along_u)
+}
+
+/// How far apart the heights are that are compared, in units of a parameter: as a pixel is wide, but
+/// no less than what rounding leaves of differences.
+#[inline]
+fn step(at: &TexturePoint, gradient: Vec3) -> f32 {
+    let wide = at.footprint.width * gradient.length();
+    let step = if wide > 0.0 && wide.is_finite() {
+        wide
+    } else {
+        0.0005
+    };
+    step.max(2e-5 * at.uv.abs().max_element().max(1.0))
+}
+
+#[cfg(test)]
+mod tests;

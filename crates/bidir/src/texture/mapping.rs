@@ -1,0 +1,151 @@
+//! From points of a surface to the plane or space that a texture is defined in.
+//!
+//! Texture space is that of the `Texture` directive in a scene file; here is the map to it from
+//! the world. Points of shared objects are mapped where they stand in the world.
+
+use super::{Footprint, Needs, TexturePoint};
+use crate::math::{Affine3A, PI, Vec2, Vec3, sqr};
+
+/// The space of a texture.
+#[derive(Clone, Copy, Debug)]
+pub struct TextureSpace {
+    from_world: Affine3A,
+    /// The largest factor by which lengths along an axis of the world grow.
+    stretch: f32,
+}
+
+impl TextureSpace {
+    /// The world's own space.
+    pub const WORLD: Self = Self {
+        from_world: Affine3A::IDENTITY,
+        stretch: 1.0,
+    };
+
+    /// The space that `from_world` leads to.
+    pub fn new(from_world: Affine3A) -> Self {
+        let m = from_world.matrix3;
+        let columns = [m.x_axis, m.y_axis, m.z_axis].map(|axis| Vec3::from(axis).length());
+        Self {
+            from_world,
+            stretch: columns.into_iter().fold(0.0, f32::max),
+        }
+    }
+
+    /// The point in this space.
+    #[inline]
+    pub fn point(&self, at: &TexturePoint) -> Vec3 {
+        self.from_world.transform_point3(at.point)
+    }
+
+    /// How wide a pixel is in this space, at most.
+    #[inline]
+    pub fn width(&self, at: &TexturePoint) -> f32 {
+        self.stretch * at.footprint.width
+    }
+
+    /// The gradient over the world of a function with this gradient here.
+    #[inline]
+    fn gradient(&self, local: Vec3) -> Vec3 {
+        self.from_world.matrix3.transpose() * local
+    }
+}
+
+/// From a surface to the (s, t) of a texture.
+#[derive(Clone, Copy, Debug)]
+pub enum Mapping {
+    /// `scale`·(u, v) + `offset`.
+    Parameters {
+        /// Factors of u and v.
+        scale: Vec2,
+        /// Offsets of s and t.
+        offset: Vec2,
+    },
+    /// s = θ/π from +z, t = φ/2π from +x toward +y, as seen from the origin of texture space.
+    Spherical(TextureSpace),
+    /// s = ½ + φ/2π with φ in (-π, π], t = z.
+    Cylindrical(TextureSpace),
+    /// (p·s, p·t) + `offset`, in the world.
+    Planar {
+        /// The gradient of s. Unit: 1/m.
+        s: Vec3,
+        /// The gradient of t.
+        t: Vec3,
+        /// (s, t) at the world's origin.
+        offset: Vec2,
+    },
+}
+
+impl Mapping {
+    /// The parameters as they are.
+    pub const IDENTITY: Self = Self::Parameters {
+        scale: Vec2::ONE,
+        offset: Vec2::ZERO,
+    };
+
+    /// (p·`s`, p·`t`) + `offset` with p in the space that `from_world` leads to.
+    pub fn planar(from_world: &Affine3A, [s, t]: [Vec3; 2], offset: Vec2) -> Self {
+        let space = TextureSpace::new(*from_world);
+        let origin = Vec3::from(from_world.translation);
+        Self::Planar {
+            s: space.gradient(s),
+            t: space.gradient(t),
+            offset: offset + Vec2::new(origin.dot(s), origin.dot(t)),
+        }
+    }
+
+    pub(super) fn needs(&self) -> Needs {
+        match self {
+            Self::Parameters { .. } => Needs::NOTHING,
+            Self::Spherical(_) | Self::Cylindrical(_) | Self::Planar { .. } => Needs::SURFACE,
+        }
+    }
+
+    /// (s, t) of a point.
+    #[inline]
+    pub fn st(&self, at: &TexturePoint) -> Vec2 {
+        match self {
+            Self::Parameters { scale, offset } => at.uv * *scale + *offset,
+            Self::Spherical(space) => {
+                let p = space.point(at);
+                let rho = (sqr(p.x) + sqr(p.y)).sqrt();
+                let theta = libm::atan2f(rho, p.z);
+                let turn = libm::atan2f(p.y, p.x) / (2.0 * PI);
+                Vec2::new(theta / PI, if turn < 0.0 { turn + 1.0 } else { turn })
+            }
+            Self::Cylindrical(space) => {
+                let p = space.point(at);
+                Vec2::new(0.5 + libm::atan2f(p.y, p.x) / (2.0 * PI), p.z)
+            }
+            Self::Planar { s, t, offset } => {
+                Vec2::new(at.point.dot(*s), at.point.dot(*t)) + *offset
+            }
+        }
+    }
+
+    /// ∇s and ∇t over the surface. Unit: 1/m. Zero where they are not known.
+    pub(super) fn gradients(&self, at: &TexturePoint) -> [Vec3; 2] {
+        let Footprint {
+            gradient_u,
+            gradient_v,
+            ..
+        } = at.footprint;
+        let along = |gradient: Vec3| gradient - at.normal * at.normal.dot(gradient);
+        match self {
+            Self::Parameters { scale, .. } => [gradient_u * scale.x, gradient_v * scale.y],
+            Self::Spherical(space) => {
+                let p = space.point(at);
+                let (rho2, r2) = (sqr(p.x) + sqr(p.y), p.length_squared());
+                let rho = rho2.sqrt();
+                let theta = Vec3::new(p.x * p.z / rho, p.y * p.z / rho, -rho) / r2;
+                let phi = Vec3::new(-p.y, p.x, 0.0) / rho2;
+                [theta / PI, phi / (2.0 * PI)].map(|local| along(space.gradient(local)))
+            }
+            Self::Cylindrical(space) => {
+                let p = space.point(at);
+                let phi = Vec3::new(-p.y, p.x, 0.0) / (sqr(p.x) + sqr(p.y));
+                [phi / (2.0 * PI), Vec3::Z].map(|local| along(space.gradient(local)))
+            }
+            Self::Planar { s, t, .. } => [along(*s), along(*t)],
+        }
+    }
+}

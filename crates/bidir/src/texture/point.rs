@@ -1,0 +1,76 @@
+//! Where textures are asked for: at points of surfaces, with the width of a pixel there (metres).
+
+use crate::math::{Vec2, Vec3};
+use crate::shape::{Differentials, SurfacePoint};
+
+/// A point that a texture is asked for, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct TexturePoint {
+    /// The surface's parameters.
+    pub uv: Vec2,
+    /// The point.
+    pub point: Vec3,
+    /// The shading normal before any relief, unit.
+    pub normal: Vec3,
+    /// What a pixel covers.
+    pub footprint: Footprint,
+}
+
+/// What a pixel covers of a surface: a function of the point and the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// How wide it is; 0: textures are as fine as they can be. Unit: m.
+    pub width: f32,
+    /// ∇u over the surface; zero where it is not known. Unit: 1/m.
+    pub gradient_u: Vec3,
+    /// ∇v.
+    pub gradient_v: Vec3,
+}
+
+impl Footprint {
+    /// No extent.
+    pub const POINT: Self = Self {
+        width: 0.0,
+        gradient_u: Vec3::ZERO,
+        gradient_v: Vec3::ZERO,
+    };
+}
+
+impl TexturePoint {
+    /// A point of a surface, without an extent.
+    #[inline]
+    pub fn new(surface: &SurfacePoint) -> Self {
+        Self {
+            uv: surface.uv,
+            point: surface.point,
+            normal: surface.shading.z,
+            footprint: Footprint::POINT,
+        }
+    }
+
+    /// A point of which only the parameters are known.
+    #[inline]
+    pub fn of_parameters(uv: Vec2) -> Self {
+        Self {
+            uv,
+            point: Vec3::ZERO,
+            normal: Vec3::Z,
+            footprint: Footprint::POINT,
+        }
+    }
+
+    /// The same point where a pixel is `width` wide.
+    #[inline]
+    #[must_use]
+    pub fn seen(self, width: f32, differentials: &Differentials) -> Self {
+        let [gradient_u, gradient_v] = differentials.gradients();
+        Self {
+            footprint: Footprint {
+                width,
+                gradient_u,
+                gradient_v,
+            },
+            ..self
+        }
+    }
+}

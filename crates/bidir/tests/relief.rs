@@ -1,0 +1,197 @@
+//! All estimators agree on surfaces with relief and filtered textures: a bumped floor, glossy or
+//! diffuse in patches, and a ball under a map of normals, lit by an area light.
+//!
+//! What a pixel covers decides how fine textures and bumps are. It must be the same from
+//! whichever end a path was walked.
+
+mod common;
+
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
+use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::path::{PathContext, PathSettings, Vertex};
+use bidir::sampler::{Domain, Sampler, SamplerKind};
+use bidir::scene::{Chances, Scene, SceneBuilder};
+use bidir::shape::Shape;
+use bidir::spectrum::{Spectrum, Wavelengths};
+use bidir::texture::{
+    Beyond, Cells, Change, Checkerboard, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap,
+    Mapping, Noise, NoiseKind, TextureSpace, Wrap,
+};
+use common::statistics::{Replicates, WHOLE, check_agree, replicates};
+use common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
+use std::sync::Arc;
+
+/// Pixels in a row: wide enough for bumps and texels to be finer than some, and coarser than others.
+const SIZE: u32 = 64;
+
+/// An image of `N` channels between `low` and `high` without order, many texels to a pixel.
+fn image<const N: usize>(low: [f32; N], high: [f32; N], mapping: Mapping) -> ImageMap<N> {
+    let n = 128;
+    let part = |i: usize| ((i * 7919 + i / n * 104_729) % 251) as f32 / 250.0;
+    let texel = |i: usize| {
+        std::array::from_fn(|channel| {
+            let part = part(i * N + channel);
+            low[channel] * (1.0 - part) + high[channel] * part
+        })
+    };
+    let texels = (0..n * n).map(texel).collect();
+    ImageMap {
+        image: Arc::new(Image::new(n, texels).expect("a square").with_copies()),
+        wrap: Wrap::all(Beyond::Repeat),
+        filter: ImageFilter::Trilinear,
+        change: Change::Scale(1.0),
+        mapping,
+    }
+}
+
+fn bumps() -> Relief {
+    let kind = NoiseKind::Fbm {
+        octaves: 6,
+        roughness: 0.6,
+    };
+    let space = TextureSpace::new(Affine3A::from_scale(Vec3::splat(3.0)));
+    let noise = FloatTexture::Noise(Arc::new(Noise { kind, space }));
+    Relief::Displacement(FloatTexture::Scale(Arc::new(bidir::texture::Scale {
+        texture: noise,
+        factor: FloatTexture::Constant(0.12),
+    })))
+}
+
+fn normals() -> Relief {
+    let map = image([0.2, 0.2, 0.7], [0.8, 0.8, 1.0], Mapping::IDENTITY);
+    Relief::NormalMap(NormalMap {
+        texture: ColorTexture::Image(Arc::new(map)),
+        scale: 0.8,
+        bitangent: Bitangent::AlongV,
+    })
+}
+
+/// Bumped metal and bumped colours in patches, and colours of an image.
+fn floor() -> Material {
+    let cells = Cells::Plane(Mapping::Parameters {
+        scale: Vec2::new(4.0, 3.0),
+        offset: Vec2::ZERO,
+    });
+    let colors = image([0.1, 0.4, 0.1], [0.9, 0.6, 0.5], Mapping::IDENTITY);
+    let colored = Material::Diffuse {
+        reflectance: ColorTexture::Image(Arc::new(colors)),
+    };
+    let mixture = Mixture {
+        materials: [metal(0.3), colored],
+        amount: FloatTexture::Checkerboard(Arc::new(Checkerboard {
+            textures: [0.2, 0.8].map(FloatTexture::Constant),
+            cells,
+        })),
+    };
+    Material::Mix(Arc::new(mixture)).embossed(bumps())
+}
+
+fn add_floor(builder: &mut SceneBuilder, material: Material) {
+    let material = builder.material(material);
+    let mut floor = quad(Vec3::new(-1.9, -1.3, -1.5), Vec3::Z * 3.3, Vec3::X * 3.8);
+    floor.uvs = vec![Vec2::ZERO, Vec2::Y, Vec2::ONE, Vec2::X];
+    builder.shape(Shape::Mesh(floor), material, None);
+}
+
+fn room() -> Scene {
+    let mut builder = builder(SIZE, 0.0);
+    let wall = builder.material(diffuse([0.6, 0.5, 0.4]));
+    add_walls(&mut builder, wall);
+    let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+    builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
+    add_floor(&mut builder, floor());
+    let ball = builder.material(metal(0.4).embossed(normals()));
+    builder.shape(sphere(Vec3::new(-0.5, -0.6, 0.9), 0.6), ball, None);
+    builder.build().expect("the room is valid")
+}
+
+fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates {
+    let path = PathSettings {
+        max_depth: Some(3),
+        ..PathSettings::default()
+    };
+    let settings = Settings {
+        integrator,
+        path,
+        ..Settings::default()
+    };
+    replicates(scene, &settings, passes)
+}
+
+#[test]
+fn estimators_agree_on_relief() {
+    let scene = room();
+    let path = render(&scene, IntegratorKind::Path, 256);
+    let bdpt = render(&scene, IntegratorKind::Bdpt, 64);
+    let light = render(&scene, IntegratorKind::Light, 256);
+    let quarters = [WHOLE, SIZE as usize / 2];
+    check_agree("bdpt and path", &bdpt, &path, &quarters);
+    check_agree("light and path", &light, &path, &quarters);
+}
+
+/// An image of normals that are all the same, in its plainest form.
+fn slant() -> Relief {
+    Relief::NormalMap(NormalMap {
+        texture: ColorTexture::Constant([0.8, 0.5, 0.9]),
+        scale: 1.0,
+        bitangent: Bitangent::RightHanded,
+    })
+}
+
+/// The relief is there: without it the picture is another one.
+#[test]
+fn relief_changes_the_picture() {
+    let mean = |emboss: &dyn Fn(Material) -> Material| {
+        let mut builder = builder(SIZE, 0.0);
+        let wall = builder.material(diffuse([0.0; 3]));
+        let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
+        builder.shape(Shape::Mesh(light), wall, emission([6.0; 3]));
+        add_floor(&mut builder, emboss(diffuse([0.5; 3])));
+        let scene = builder.build().expect("the floor is valid");
+        render(&scene, IntegratorKind::Path, 64).mean()
+    };
+    let smooth = mean(&|material| material);
+    for relief in [bumps(), normals(), slant()] {
+        let rough = mean(&|material| material.embossed(relief.clone()));
+        let name = format!("{smooth} and {rough}: {relief:.30?}");
+        assert!((smooth - rough).abs() > 0.01 * smooth, "{name:.60}");
+    }
+}
+
+/// The vertex where a ray from `origin` meets the floor at `target`.
+fn vertex(context: &PathContext<'_>, origin: Vec3, target: Vec3) -> Vertex {
+    let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
+    let direction = (target - origin).normalize();
+    let chances = Chances::new(&stream, 1);
+    let hit = context.scene.intersect(origin, direction, chances);
+    let hit = hit.expect("the floor is there");
+    Vertex::surface(context, &hit, -direction, Spectrum::ONE, || 0.9)
+}
+
+/// The frame and the albedo of a point are the same from wherever a walk comes.
+#[test]
+fn a_point_looks_the_same_to_every_walk() {
+    let mut builder = builder(SIZE, 0.0);
+    add_floor(&mut builder, floor());
+    let scene = builder.build().expect("the floor is valid");
+    let context = PathContext {
+        scene: &scene,
+        settings: &PathSettings::default(),
+        wavelengths: Wavelengths::default(),
+    };
+    for i in 0..64 {
+        let along = Vec2::new(
+            (0.3 + 0.618 * i as f32).fract(),
+            (0.1 + 0.414 * i as f32).fract(),
+        );
+        let target = Vec3::new(-1.7 + 3.4 * along.x, -1.3, -1.3 + 2.9 * along.y);
+        let near = vertex(&context, target + Vec3::new(0.01, 0.02, 0.01), target);
+        let far = vertex(&context, target + Vec3::new(7.0, 40.0, -9.0), target);
+        let turn = near.shading.z.distance(far.shading.z);
+        assert!(turn < 2e-2, "the normal turns by {turn}");
+        let albedos = [near, far].map(|vertex| vertex.bsdf.albedo(Vec3::Z)[0]);
+        assert!((albedos[0] - albedos[1]).abs() < 1e-2, "{albedos:?}");
+    }
+}

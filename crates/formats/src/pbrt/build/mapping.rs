@@ -1,0 +1,90 @@
+//! From surfaces to textures: the parameter `mapping`, and the space of a `Texture` directive.
+
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::lexer::shorten;
+use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::TextureDescription;
+use crate::source::Fault;
+use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::texture::{Mapping, TextureSpace};
+use glam::DAffine3;
+
+/// The map from the world to the space of a texture.
+fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result<DAffine3, Fault> {
+    let span = texture.entity.span;
+    if texture.transforms.is_animated() {
+        context.warn(span, "a moving texture stays at its first place");
+    }
+    let inverse = texture.transforms.start.inverse();
+    if inverse.is_finite() && inverse.as_affine3a().is_finite() {
+        return Ok(inverse);
+    }
+    let message = "the transformation of the texture cannot be inverted";
+    Err(Fault::scene(span, message))
+}
+
+/// The space of a texture of space.
+pub(super) fn space(
+    context: &mut Context<'_>,
+    texture: &TextureDescription,
+) -> Result<TextureSpace, Fault> {
+    let from_world = from_world(context, texture)?;
+    Ok(TextureSpace::new(from_world.as_affine3a()))
+}
+
+/// A direction of texture space in the world, unit length.
+pub(super) fn direction(
+    texture: &TextureDescription,
+    reader: &mut Reader<'_>,
+    (name, default): (&'static str, Vec3),
+) -> Result<Vec3, Fault> {
+    let local = vector(reader, name, default)?;
+    let world = texture.transforms.start.transform_vector3(local.as_dvec3());
+    let direction = world.try_normalize().map(glam::DVec3::as_vec3);
+    direction.ok_or_else(|| {
+        let message = format!("the direction `{name}` has no length");
+        Fault::scene(reader.span(), message)
+    })
+}
+
+/// Reads how a surface's points become those of a texture of the plane.
+pub(super) fn read(
+    context: &mut Context<'_>,
+    texture: &TextureDescription,
+    reader: &mut Reader<'_>,
+) -> Result<Mapping, Fault> {
+    match reader.string("mapping")? {
+        None | Some(("uv", _)) => {
+            let scale = Vec2::new(reader.float("uscale", 1.0)?, reader.float("vscale", 1.0)?);
+            let offset = offset(reader)?;
+            Ok(Mapping::Parameters { scale, offset })
+        }
+        Some(("spherical", _)) => Ok(Mapping::Spherical(space(context, texture)?)),
+        Some(("cylindrical", _)) => Ok(Mapping::Cylindrical(space(context, texture)?)),
+        Some(("planar", _)) => {
+            let vectors = [
+                vector(reader, "v1", Vec3::X)?,
+                vector(reader, "v2", Vec3::Y)?,
+            ];
+            let from_world: Affine3A = from_world(context, texture)?.as_affine3a();
+            Ok(Mapping::planar(&from_world, vectors, offset(reader)?))
+        }
+        Some((name, span)) => {
+            let fault = Fault::scene(span, format!("unknown mapping `{}`", shorten(name)));
+            Err(fault.with_nearest(name, ["uv", "spherical", "cylindrical", "planar"]))
+        }
+    }
+}
+
+fn offset(reader: &mut Reader<'_>) -> Result<Vec2, Fault> {
+    Ok(Vec2::new(
+        reader.float("udelta", 0.0)?,
+        reader.float("vdelta", 0.0)?,
+    ))
+}
+
+fn vector(reader: &mut Reader<'_>, name: &'static str, default: Vec3) -> Result<Vec3, Fault> {
+    let values = reader.triple(ParameterType::Vector3, name, default.to_array())?;
+    Ok(Vec3::from(values))
+}

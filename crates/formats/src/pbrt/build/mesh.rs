@@ -1,0 +1,193 @@
+//! Meshes of triangles, of patches, and to be subdivided.
+
+use super::context::Context;
+use super::patches::PatchMesh;
+use super::reader::Reader;
+use super::subdivision::ControlMesh;
+use crate::error::ErrorKind;
+use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::ply::PlyMesh;
+use crate::source::Fault;
+use glam::DVec3;
+
+pub(super) fn ply_mesh(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<PlyMesh, Fault> {
+    let Some((name, span)) = reader.string("filename")? else {
+        return Err(Fault::scene(
+            reader.span(),
+            "the parameter `string filename` is missing",
+        ));
+    };
+    let flat = "the mesh stays as it is";
+    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
+    reader.ignore(context, ParameterType::Float, "edgelength");
+    let path = context.description.resolve(name);
+    let mesh = context.read_mesh(&path, span)?;
+    if mesh.skipped_faces > 0 {
+        let count = mesh.skipped_faces;
+        let message =
+            format!("{count} faces are neither triangles nor quadrilaterals and are left out");
+        context.warn(span, message);
+    }
+    Ok(mesh)
+}
+
+/// What vertices have; the lists are empty, or as long as that of the positions.
+struct Vertices {
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+}
+
+impl Vertices {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+        let positions = positions(reader)?;
+        let normals = triples(reader.floats(ParameterType::Normal, "N"));
+        let uvs = reader
+            .floats(ParameterType::Point2, "uv")
+            .unwrap_or_default();
+        let uvs = uvs.as_chunks::<2>().0.to_vec();
+        let vertices = positions.len();
+        for (name, count) in [("N", normals.len()), ("uv", uvs.len())] {
+            if count != 0 && count != vertices {
+                let message =
+                    format!("the mesh has {vertices} points, but {count} values of `{name}`");
+                return Err(Fault::scene(reader.span(), message));
+            }
+        }
+        Ok(Self {
+            positions,
+            normals,
+            uvs,
+        })
+    }
+}
+
+fn positions(reader: &mut Reader<'_>) -> Result<Vec<[f32; 3]>, Fault> {
+    let positions = triples(reader.floats(ParameterType::Point3, "P"));
+    if positions.is_empty() {
+        let message = "the parameter `point3 P` is missing or empty";
+        return Err(Fault::scene(reader.span(), message));
+    }
+    Ok(positions)
+}
+
+pub(super) fn triangle_mesh(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<PlyMesh, Fault> {
+    let vertices = Vertices::read(reader)?;
+    let triangles = faces(context, reader, vertices.positions.len())?;
+    reader.ignore(context, ParameterType::Vector3, "S");
+    reader.ignore(context, ParameterType::Integer, "faceIndices");
+    Ok(PlyMesh {
+        positions: vertices.positions,
+        normals: vertices.normals,
+        uvs: vertices.uvs,
+        triangles,
+        skipped_faces: 0,
+    })
+}
+
+pub(super) fn patch_mesh(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<PlyMesh, Fault> {
+    let vertices = Vertices::read(reader)?;
+    let patches = faces(context, reader, vertices.positions.len())?;
+    reader.ignore(context, ParameterType::Integer, "faceIndices");
+    // It guides the reference program's choice of points on a light, and is not what is emitted.
+    reader.ignore(context, ParameterType::String, "emissionfilename");
+    let mesh = PatchMesh {
+        positions: vertices.positions,
+        normals: vertices.normals,
+        uvs: vertices.uvs,
+        patches,
+    };
+    Ok(mesh.triangulated())
+}
+
+/// The most steps: each makes four triangles of one.
+const MOST_LEVELS: u32 = 10;
+/// The most triangles of a mesh after all steps.
+const MOST_TRIANGLES: u64 = 1 << 26;
+
+pub(super) fn subdivided_mesh(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<PlyMesh, Fault> {
+    let positions = positions(reader)?;
+    let triangles = faces::<3>(context, reader, positions.len())?;
+    let levels = reader.integer("levels", 3, 0)?;
+    reader.ignore(context, ParameterType::String, "scheme");
+    let count = (triangles.len() as u64) << (2 * levels.min(MOST_LEVELS));
+    if levels > MOST_LEVELS || count > MOST_TRIANGLES {
+        let message = format!(
+            "{levels} steps of subdivision are too many: at most {MOST_LEVELS}, and {MOST_TRIANGLES} \
+             triangles in the end"
+        );
+        return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
+    }
+    let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
+    let control = ControlMesh {
+        points: points.collect(),
+        triangles,
+    };
+    let subdivided = control.subdivide(levels);
+    let (mesh, normals) =
+        subdivided.map_err(|error| Fault::scene(reader.span(), error.to_string()))?;
+    let single = |p: &DVec3| p.as_vec3().to_array();
+    Ok(PlyMesh {
+        positions: mesh.points.iter().map(single).collect(),
+        normals: normals.iter().map(single).collect(),
+        uvs: Vec::new(),
+        triangles: mesh.triangles,
+        skipped_faces: 0,
+    })
+}
+
+fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
+    values.unwrap_or_default().as_chunks::<3>().0.to_vec()
+}
+
+/// Faces of `N` corners; without a list of them the vertices are one face.
+fn faces<const N: usize>(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    vertices: usize,
+) -> Result<Vec<[u32; N]>, Fault> {
+    match reader.find(ParameterType::Integer, "indices") {
+        Some(parameter) => listed_faces(context, parameter, vertices),
+        None if vertices == N => Ok(vec![std::array::from_fn(|corner| corner as u32)]),
+        None => {
+            let message = "the parameter `integer indices` is missing";
+            Err(Fault::scene(reader.span(), message))
+        }
+    }
+}
+
+fn listed_faces<const N: usize>(
+    context: &mut Context<'_>,
+    parameter: &Parameter,
+    vertices: usize,
+) -> Result<Vec<[u32; N]>, Fault> {
+    let Values::Integers(indices) = &parameter.values else {
+        return Ok(Vec::new());
+    };
+    let is_vertex = |&index: &i32| usize::try_from(index).is_ok_and(|index| index < vertices);
+    if let Some(index) = indices.iter().find(|index| !is_vertex(index)) {
+        let message = format!("index {index} is not that of a point: there are {vertices}");
+        return Err(Fault::scene(parameter.value_span, message));
+    }
+    let (faces, rest) = indices.as_chunks::<N>();
+    if !rest.is_empty() {
+        let what = if N == 3 { "triangles" } else { "patches" };
+        let message =
+            format!("the indices are no whole number of {what}: the last ones are left out");
+        context.warn(parameter.value_span, message);
+    }
+    let unsigned = |corners: &[i32; N]| corners.map(|corner| corner as u32);
+    Ok(faces.iter().map(unsigned).collect())
+}

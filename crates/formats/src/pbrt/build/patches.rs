@@ -1,0 +1,198 @@
+//! Bilinear patches as triangles: p(u, v) = (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11.
+//!
+//! A parallelogram is two triangles, exactly. Any other patch becomes a grid of n² cells of two
+//! triangles, with the patch's own normals. All patches of a mesh have the same n, and a point on an
+//! edge is computed from the edge's two ends in one order, so that neighbours have no gap.
+
+use crate::ply::PlyMesh;
+use glam::DVec3;
+
+/// Cells along each side of a patch that is no parallelogram.
+const CELLS: usize = 16;
+
+/// Patches that share vertices.
+pub(super) struct PatchMesh {
+    pub(super) positions: Vec<[f32; 3]>,
+    /// Empty, or as many as positions.
+    pub(super) normals: Vec<[f32; 3]>,
+    /// Empty, or as many as positions; without them a patch has its own u and v.
+    pub(super) uvs: Vec<[f32; 2]>,
+    /// The corners 00, 10, 01 and 11 of each.
+    pub(super) patches: Vec<[u32; 4]>,
+}
+
+impl PatchMesh {
+    /// The triangles of all patches.
+    pub(super) fn triangulated(&self) -> PlyMesh {
+        let cells = if self
+            .patches
+            .iter()
+            .all(|patch| self.is_parallelogram(patch))
+        {
+            1
+        } else {
+            CELLS
+        };
+        let mut mesh = PlyMesh::default();
+        for patch in &self.patches {
+            self.add(patch, cells, &mut mesh);
+        }
+        mesh
+    }
+
+    fn is_parallelogram(&self, patch: &[u32; 4]) -> bool {
+        let [p00, p10, p01, p11] = patch.map(|corner| self.position(corner));
+        let size = (p11 - p00).length() + (p10 - p01).length();
+        (p00 + p11 - p10 - p01).length() <= 1e-6 * size
+    }
+
+    fn position(&self, corner: u32) -> DVec3 {
+        DVec3::from(self.positions[corner as usize].map(f64::from))
+    }
+
+    fn add(&self, patch: &[u32; 4], cells: usize, mesh: &mut PlyMesh) {
+        let first = mesh.positions.len() as u32;
+        for j in 0..=cells {
+            for i in 0..=cells {
+                let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
+                mesh.positions.push(self.point(patch, [i, j], cells));
+                mesh.normals.extend(self.normal(patch, [u, v], cells));
+                mesh.uvs.push(self.uv(patch, [u, v]));
+            }
+        }
+        let row = cells as u32 + 1;
+        for j in 0..cells as u32 {
+            for i in 0..cells as u32 {
+                let a = first + j * row + i;
+                mesh.triangles
+                    .extend([[a, a + 1, a + row + 1], [a, a + row + 1, a + row]]);
+            }
+        }
+    }
+
+    fn uv(&self, patch: &[u32; 4], [u, v]: [f64; 2]) -> [f32; 2] {
+        if self.uvs.is_empty() {
+            return [u as f32, v as f32];
+        }
+        blend(patch.map(|corner| self.uvs[corner as usize]), [u, v])
+    }
+
+    /// The corner `[i, j]` of the grid; on an edge by the edge's two ends from the lower vertex to the
+    /// higher, whichever patch asks.
+    fn point(&self, patch: &[u32; 4], [i, j]: [usize; 2], cells: usize) -> [f32; 3] {
+        let [c00, c10, c01, c11] = *patch;
+        let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
+        let along = |a: u32, b: u32, t: f64| {
+            let (a, b, t) = if a <= b { (a, b, t) } else { (b, a, 1.0 - t) };
+            self.position(a) * (1.0 - t) + self.position(b) * t
+        };
+        let point = match (i, j) {
+            (0, _) => along(c00, c01, v),
+            (i, _) if i == cells => along(c10, c11, v),
+            (_, 0) => along(c00, c10, u),
+            (_, j) if j == cells => along(c01, c11, u),
+            _ => along(c00, c10, u) * (1.0 - v) + along(c01, c11, u) * v,
+        };
+        point.as_vec3().to_array()
+    }
+
+    /// The normal given at the corners, blended, or else that of a curved patch. None: the triangle's
+    /// own is right.
+    fn normal(&self, patch: &[u32; 4], [u, v]: [f64; 2], cells: usize) -> Option<[f32; 3]> {
+        if !self.normals.is_empty() {
+            return Some(blend(
+                patch.map(|corner| self.normals[corner as usize]),
+                [u, v],
+            ));
+        }
+        if cells == 1 {
+            return None;
+        }
+        let [p00, p10, p01, p11] = patch.map(|corner| self.position(corner));
+        let du = (p10 - p00) * (1.0 - v) + (p11 - p01) * v;
+        let dv = (p01 - p00) * (1.0 - u) + (p11 - p10) * u;
+        Some(du.cross(dv).normalize_or_zero().as_vec3().to_array())
+    }
+}
+
+/// (1-u)(1-v) a + u(1-v) b + (1-u)v c + uv d.
+fn blend<const N: usize>([a, b, c, d]: [[f32; N]; 4], [u, v]: [f64; 2]) -> [f32; N] {
+    let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
+    std::array::from_fn(|i| {
+        let values = [a[i], b[i], c[i], d[i]].map(f64::from);
+        let terms = values.iter().zip(weights);
+        terms.map(|(value, weight)| value * weight).sum::<f64>() as f32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn saddle() -> PatchMesh {
+        PatchMesh {
+            positions: vec![
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.3],
+                [0.0, 1.0, 0.1],
+                [1.0, 1.2, -0.2],
+                [2.1, 0.1, 0.4],
+                [1.9, 1.0, 0.7],
+            ],
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            // The second is turned: its left edge is the first one's right, the other way round.
+            patches: vec![[0, 1, 2, 3], [5, 3, 4, 1]],
+        }
+    }
+
+    #[test]
+    fn a_parallelogram_is_two_triangles() {
+        let mesh = PatchMesh {
+            positions: vec![[0.0; 3], [2.0, 0.0, 0.0], [0.5, 1.0, 0.0], [2.5, 1.0, 0.0]],
+            patches: vec![[0, 1, 2, 3]],
+            ..saddle()
+        };
+        let triangles = mesh.triangulated();
+        assert_eq!(triangles.triangles, [[0, 1, 3], [0, 3, 2]]);
+        assert!(triangles.normals.is_empty());
+        assert_eq!(
+            triangles.uvs,
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+        );
+    }
+
+    #[test]
+    fn neighbours_share_the_points_of_their_edge() {
+        let mesh = saddle().triangulated();
+        assert_eq!(mesh.triangles.len(), 2 * 2 * CELLS * CELLS);
+        let row = CELLS + 1;
+        let second = row * row;
+        for k in 0..=CELLS {
+            // The first one's edge from corner 1 to corner 3, and the second one's from 3 to 1.
+            let of_first = mesh.positions[k * row + CELLS];
+            let of_second = mesh.positions[second + (CELLS - k) * row + CELLS];
+            assert_eq!(
+                of_first.map(f32::to_bits),
+                of_second.map(f32::to_bits),
+                "{k}"
+            );
+        }
+    }
+
+    #[test]
+    fn points_and_normals_are_those_of_the_patch() {
+        let mesh = saddle().triangulated();
+        let row = CELLS + 1;
+        let middle = (CELLS / 2) * row + CELLS / 2;
+        let [x, y, z] = mesh.positions[middle];
+        assert!((x - 0.5).abs() < 1e-6 && (y - 0.55).abs() < 1e-6 && (z - 0.05).abs() < 1e-6);
+        let normal = DVec3::from(mesh.normals[middle].map(f64::from));
+        let at = |i: usize| DVec3::from(mesh.positions[i].map(f64::from));
+        let [du, dv] = [
+            at(middle + 1) - at(middle - 1),
+            at(middle + row) - at(middle - row),
+        ];
+        assert!((normal - du.cross(dv).normalize()).length() < 1e-6);
+    }
+}

@@ -1,0 +1,68 @@
+//! The film's sensor: how light becomes numbers.
+
+use super::context::Context;
+use super::reader::Reader;
+use crate::pbrt::known::SENSORS;
+use crate::source::Fault;
+use crate::spectra;
+use bidir::film::Sensor;
+
+/// Temperatures of a white that the film is balanced for. Unit: K.
+const WHITES: [f32; 2] = [1000.0, 25000.0];
+/// Cooler whites are those of a blackbody, others those of daylight. Unit: K.
+const COOLEST_DAYLIGHT: f32 = 4000.0;
+
+/// Reads the parameters of all films that say how they respond to light, which is multiplied by
+/// `exposure` after.
+pub(super) fn build(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    exposure: f32,
+) -> Result<Sensor, Fault> {
+    if let Some((name, span)) = reader.string("sensor")? {
+        SENSORS.check(name, span)?;
+        if name != "cie1931" {
+            let what = format!("the sensor `{name}`");
+            context.unsupported(span, &what, "`cie1931` stands in")?;
+        }
+    }
+    Ok(Sensor {
+        balance: balance(reader)?,
+        limit: limit(context, reader, exposure)?,
+    })
+}
+
+/// The matrix that makes a white of the temperature that the file gives white.
+fn balance(reader: &mut Reader<'_>) -> Result<Option<bidir::math::Mat3>, Fault> {
+    if reader.float("whitebalance", 0.0)? == 0.0 {
+        return Ok(None);
+    }
+    let kelvin = reader.float_within("whitebalance", 0.0, WHITES)?;
+    let white = if kelvin < COOLEST_DAYLIGHT {
+        spectra::planckian_white(f64::from(kelvin))
+    } else {
+        spectra::daylight_white(f64::from(kelvin))
+    };
+    Ok(Some(spectra::adapted(white).as_mat3()))
+}
+
+/// The largest value of a sample. None: there is no limit.
+fn limit(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    exposure: f32,
+) -> Result<Option<f32>, Fault> {
+    let Some(most) = reader.optional_float("maxcomponentvalue")? else {
+        return Ok(None);
+    };
+    reader.float_within("maxcomponentvalue", most, [f32::MIN_POSITIVE, f32::MAX])?;
+    if exposure == 0.0 || !(most / exposure).is_finite() {
+        return Ok(None);
+    }
+    let message = format!(
+        "samples are cut at {most}: the picture is darker than the scene, by an amount that depends on \
+         the integrator"
+    );
+    context.warn(reader.span(), message);
+    Ok(Some(most / exposure))
+}

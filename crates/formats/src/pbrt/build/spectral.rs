@@ -1,0 +1,137 @@
+//! Parameters that are spectra: samples, names, files, temperatures.
+
+use super::context::Context;
+use super::reader::{Reader, single};
+use crate::pbrt::lexer::shorten;
+use crate::pbrt::parameters::{Parameter, ParameterType, Values};
+use crate::source::{Fault, nearest};
+use crate::spectra::{self, Beyond, Spectrum};
+use bidir::spectrum::Rgb;
+
+/// Temperatures beyond which light is all outside of the visible. Unit: K.
+const TEMPERATURES: [f32; 2] = [100.0, 1e8];
+
+/// The D line of helium, at which glasses are told apart. Unit: nm.
+const D_LINE: f64 = 587.56;
+
+/// Reads a parameter given as `spectrum` or `blackbody`. None: where the file gives none.
+pub(super) fn read<'a>(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'a>,
+    name: &'static str,
+) -> Result<Option<(Spectrum, &'a Parameter)>, Fault> {
+    if let Some(parameter) = reader.find(ParameterType::Spectrum, name) {
+        return Ok(Some((spectrum(context, parameter)?, parameter)));
+    }
+    let Some(parameter) = reader.find(ParameterType::Blackbody, name) else {
+        return Ok(None);
+    };
+    let kelvin = match &parameter.values {
+        Values::Floats(values) => *single(parameter, values)?,
+        _ => 0.0,
+    };
+    if !(TEMPERATURES[0]..=TEMPERATURES[1]).contains(&kelvin) {
+        let [low, high] = TEMPERATURES;
+        let message = format!("a temperature is between {low} and {high:e} kelvin, found {kelvin}");
+        return Err(Fault::scene(parameter.value_span, message));
+    }
+    Ok(Some((Spectrum::blackbody(f64::from(kelvin)), parameter)))
+}
+
+fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum, Fault> {
+    match &parameter.values {
+        Values::Strings(names) => named(context, parameter, single(parameter, names)?),
+        Values::Floats(values) => {
+            let numbers: Vec<f64> = values.iter().copied().map(f64::from).collect();
+            if numbers.len() == 2 {
+                let message = "a spectrum of one sample is zero at all other wavelengths";
+                context.warn(parameter.value_span, message);
+            }
+            Spectrum::from_pairs(&numbers, Beyond::Zero)
+                .map_err(|error| Fault::scene(parameter.value_span, error.to_string()))
+        }
+        _ => Err(Fault::scene(parameter.value_span, "expected a spectrum")),
+    }
+}
+
+/// A spectrum of the format, or else a file.
+fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result<Spectrum, Fault> {
+    if let Some(spectrum) = spectra::named(name) {
+        return Ok(spectrum);
+    }
+    let span = parameter.value_span;
+    let path = context.description.resolve(name);
+    if path.is_file() {
+        return context.read_spectrum(&path, span);
+    }
+    let known: Vec<String> = spectra::names().collect();
+    let message = format!(
+        "`{}` is neither a spectrum's name nor a file",
+        shorten(name)
+    );
+    let fault = Fault::scene(span, message);
+    Err(match nearest(name, known.iter().map(String::as_str)) {
+        Some(known) => fault.with_hint(format!("did you mean `{known}`?")),
+        None => fault.with_hint("files have pairs of wavelength (nm) and value"),
+    })
+}
+
+/// The index of a metal whose parts, called `eta` and `k`, are spectra or not given: copper's.
+/// None: one of them is something else.
+pub(super) fn read_metal(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    [eta, k]: [&'static str; 2],
+) -> Result<Option<(Rgb, Rgb)>, Fault> {
+    let mut part = |name, copper| -> Result<Option<Spectrum>, Fault> {
+        let is_color = reader.find(ParameterType::Rgb, name).is_some();
+        if is_color || reader.find(ParameterType::Texture, name).is_some() {
+            return Ok(None);
+        }
+        let given = read(context, reader, name)?;
+        Ok(given.map_or_else(|| spectra::named(copper), |(given, _)| Some(given)))
+    };
+    let parts = (part(eta, "metal-Cu-eta")?, part(k, "metal-Cu-k")?);
+    Ok(match parts {
+        (Some(eta), Some(k)) => Some(spectra::conductor(&eta, &k)),
+        _ => None,
+    })
+}
+
+/// η and k of copper: what a conductor is made of unless the file says otherwise.
+pub(super) fn copper() -> (Rgb, Rgb) {
+    let parts = (spectra::named("metal-Cu-eta"), spectra::named("metal-Cu-k"));
+    match parts {
+        (Some(eta), Some(k)) => spectra::conductor(&eta, &k),
+        _ => ([1.0; 3], [0.0; 3]),
+    }
+}
+
+/// Reads the index of refraction of a dielectric, called `name`: a number, or a spectrum's at the
+/// D line.
+pub(super) fn read_eta(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    name: &'static str,
+) -> Result<f32, Fault> {
+    if let Some(eta) = reader.optional_float(name)? {
+        return positive(reader, name, eta);
+    }
+    let Some((spectrum, parameter)) = read(context, reader, name)? else {
+        return Ok(1.5);
+    };
+    let eta = spectrum.at(D_LINE) as f32;
+    let message =
+        format!("`{name}` has no dispersion here: the index is {eta:.4} at every wavelength");
+    context.warn(parameter.value_span, message);
+    positive(reader, name, eta)
+}
+
+fn positive(reader: &Reader<'_>, name: &str, eta: f32) -> Result<f32, Fault> {
+    if eta > 0.0 {
+        Ok(eta)
+    } else {
+        let message = format!("the index of refraction `{name}` is not positive");
+        Err(Fault::scene(reader.span(), message))
+    }
+}

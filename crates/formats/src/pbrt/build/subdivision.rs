@@ -1,0 +1,324 @@
+//! Loop's subdivision of triangle meshes: each step splits every triangle in four and smooths; at the
+//! end points and normals move to the surface that infinitely many steps would give \[Loop87\].
+//!
+//! With n neighbours p_j and the weight β(n), 3/16 for n = 3 and 3/8n else \[Warren95\]:
+//!
+//! - a vertex becomes (1 - nβ) v + β Σ p_j, on a border (3/4) v + (p_first + p_last)/8;
+//! - an edge's middle is 3/8 of both ends and 1/8 of both opposite corners, on a border 1/2 of both
+//!   ends;
+//! - the limit is (1 - nγ) v + γ Σ p_j, γ = 1/(n + 3/8β), on a border (2/3) v + (p_first + p_last)/6.
+
+use glam::DVec3;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::fmt;
+
+/// A mesh that can be subdivided.
+pub(super) struct ControlMesh {
+    pub(super) points: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// Why a mesh cannot be subdivided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SubdivisionError {
+    /// Two triangles go along an edge in the same direction.
+    Edge([u32; 2]),
+    /// A triangle has a vertex twice.
+    Degenerate(usize),
+    /// The triangles around a vertex are not one fan.
+    Vertex(u32),
+}
+
+impl fmt::Display for SubdivisionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Edge([a, b]) => write!(
+                f,
+                "two triangles go from point {a} to point {b}: the mesh is not oriented, or three \
+                 triangles share the edge"
+            ),
+            Self::Degenerate(i) => write!(f, "triangle {i} has a point twice"),
+            Self::Vertex(v) => write!(f, "the triangles around point {v} are more than one fan"),
+        }
+    }
+}
+
+/// The neighbours of a vertex, counterclockwise; on a border the first and last lie along it.
+struct Ring {
+    neighbours: Vec<u32>,
+    is_border: bool,
+}
+
+/// Who is next to whom.
+struct Topology {
+    /// The third corner of the triangle that goes along a directed edge.
+    opposite: HashMap<[u32; 2], u32>,
+    rings: Vec<Ring>,
+}
+
+impl ControlMesh {
+    /// The mesh after `levels` steps, moved to the limit surface, with its normals.
+    pub(super) fn subdivide(mut self, levels: u32) -> Result<(Self, Vec<DVec3>), SubdivisionError> {
+        let mut topology = Topology::new(&self)?;
+        for _ in 0..levels {
+            self = self.refined(&topology);
+            topology = Topology::new(&self)?;
+        }
+        let vertices = 0..self.points.len();
+        let normals = vertices.clone().map(|v| self.normal(v, &topology.rings[v]));
+        let normals = normals.collect();
+        let limit = vertices.map(|v| {
+            let ring = &topology.rings[v];
+            let n = ring.neighbours.len() as f64;
+            self.mixed(v, ring, 1.0 / (n + 3.0 / (8.0 * smoothing(n))), 1.0 / 6.0)
+        });
+        let points = limit.collect();
+        Ok((Self { points, ..self }, normals))
+    }
+
+    /// One step.
+    fn refined(&self, topology: &Topology) -> Self {
+        let vertices = 0..self.points.len();
+        let mut points: Vec<_> = vertices
+            .map(|v| {
+                let ring = &topology.rings[v];
+                let n = ring.neighbours.len() as f64;
+                self.mixed(v, ring, smoothing(n), 0.125)
+            })
+            .collect();
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                points.push(self.middle([a, b], topology));
+                points.len() as u32 - 1
+            })
+        };
+        let mut triangles = Vec::with_capacity(4 * self.triangles.len());
+        for &[a, b, c] in &self.triangles {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        }
+        Self { points, triangles }
+    }
+
+    /// A vertex and its ring: `weight` for each neighbour, or `border` for the two along a border.
+    fn mixed(&self, v: usize, ring: &Ring, weight: f64, border: f64) -> DVec3 {
+        let point = |&v: &u32| self.points[v as usize];
+        match (&*ring.neighbours, ring.is_border) {
+            ([first, .., last], true) => {
+                self.points[v] * (1.0 - 2.0 * border) + (point(first) + point(last)) * border
+            }
+            (ring, _) => {
+                let sum: DVec3 = ring.iter().map(point).sum();
+                self.points[v] * (1.0 - ring.len() as f64 * weight) + sum * weight
+            }
+        }
+    }
+
+    fn middle(&self, [a, b]: [u32; 2], topology: &Topology) -> DVec3 {
+        let point = |v: u32| self.points[v as usize];
+        let across = [[a, b], [b, a]].map(|edge| topology.opposite.get(&edge));
+        match across {
+            [Some(&c), Some(&d)] => (point(a) + point(b)) * 0.375 + (point(c) + point(d)) * 0.125,
+            _ => (point(a) + point(b)) * 0.5,
+        }
+    }
+
+    /// The normal of the limit surface: that of two tangents by the ring \[Biermann00\].
+    fn normal(&self, v: usize, ring: &Ring) -> DVec3 {
+        let points = ring.neighbours.iter().map(|&v| self.points[v as usize]);
+        let points: Vec<_> = points.collect();
+        let [along, across] = if ring.is_border {
+            border_tangents(self.points[v], &points)
+        } else {
+            let step = 2.0 * PI / points.len() as f64;
+            let weighted = |f: fn(f64) -> f64| {
+                let terms = points.iter().enumerate();
+                terms.map(|(j, &p)| p * f(step * j as f64)).sum()
+            };
+            [weighted(libm::cos), weighted(libm::sin)]
+        };
+        along.cross(across).normalize_or_zero()
+    }
+}
+
+fn border_tangents(v: DVec3, ring: &[DVec3]) -> [DVec3; 2] {
+    let [first, .., last] = ring else {
+        return [DVec3::ZERO; 2];
+    };
+    let inwards = match ring {
+        [a, b] => *a + *b - v * 2.0,
+        [_, b, _] => *b - v,
+        [a, b, c, d] => (*b + *c) * 2.0 - *a - *d - v * 2.0,
+        _ => {
+            let step = PI / (ring.len() - 1) as f64;
+            let inner = (1..ring.len() - 1).map(|j| ring[j] * libm::sin(step * j as f64));
+            let inner: DVec3 = inner.sum();
+            inner * (2.0 - 2.0 * libm::cos(step)) - (*first + *last) * libm::sin(step)
+        }
+    };
+    [*first - *last, inwards]
+}
+
+/// β.
+fn smoothing(n: f64) -> f64 {
+    if n < 3.5 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) }
+}
+
+impl Topology {
+    fn new(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
+        let mut opposite = HashMap::with_capacity(3 * mesh.triangles.len());
+        let mut triangles_of = vec![0; mesh.points.len()];
+        // A neighbour of each vertex; on a border the first one.
+        let mut start = vec![None; mesh.points.len()];
+        for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+            if a == b || b == c || c == a {
+                return Err(SubdivisionError::Degenerate(i));
+            }
+            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
+                if opposite.insert([a, b], c).is_some() {
+                    return Err(SubdivisionError::Edge([a, b]));
+                }
+                triangles_of[a as usize] += 1;
+                start[a as usize] = Some(b);
+            }
+        }
+        for &[a, b, c] in &mesh.triangles {
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                if !opposite.contains_key(&[b, a]) {
+                    start[a as usize] = Some(b);
+                }
+            }
+        }
+        let ring = |v: usize| ring(v as u32, start[v], triangles_of[v], &opposite);
+        let rings = (0..mesh.points.len()).map(ring).collect::<Result<_, _>>()?;
+        Ok(Self { opposite, rings })
+    }
+}
+
+/// The ring of vertex `v`, beginning at `start`, which is a corner of this many triangles.
+fn ring(
+    v: u32,
+    start: Option<u32>,
+    triangles: usize,
+    opposite: &HashMap<[u32; 2], u32>,
+) -> Result<Ring, SubdivisionError> {
+    let mut neighbours: Vec<u32> = start.into_iter().collect();
+    let mut is_border = start.is_some();
+    for _ in 0..triangles {
+        let last = neighbours.last().copied().unwrap_or(v);
+        match opposite.get(&[v, last]) {
+            Some(&next) if Some(next) == start => is_border = false,
+            Some(&next) => neighbours.push(next),
+            None => return Err(SubdivisionError::Vertex(v)),
+        }
+        if !is_border {
+            break;
+        }
+    }
+    let found = neighbours.len() - usize::from(is_border && start.is_some());
+    if found == triangles {
+        Ok(Ring {
+            neighbours,
+            is_border,
+        })
+    } else {
+        Err(SubdivisionError::Vertex(v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn octahedron() -> ControlMesh {
+        let axes = [DVec3::X, DVec3::Y, -DVec3::X, -DVec3::Y];
+        let mut points = vec![DVec3::Z, -DVec3::Z];
+        points.extend(axes);
+        let around = |i: u32| [2 + i % 4, 2 + (i + 1) % 4];
+        let faces = (0..4).flat_map(|i| {
+            let [a, b] = around(i);
+            [[0, a, b], [1, b, a]]
+        });
+        ControlMesh {
+            points,
+            triangles: faces.collect(),
+        }
+    }
+
+    /// A plane of two by two squares, bent by `height`.
+    fn sheet(height: impl Fn(f64, f64) -> f64) -> ControlMesh {
+        let n = 6;
+        let at = |i: u32| f64::from(i) / f64::from(n);
+        let points = (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j)));
+        let points = points.map(|(i, j)| DVec3::new(at(i), at(j), height(at(i), at(j))));
+        let corner = |i, j| j * (n + 1) + i;
+        let cells = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
+        let triangles = cells.flat_map(|(i, j)| {
+            let [a, b] = [corner(i, j), corner(i + 1, j)];
+            let [c, d] = [corner(i + 1, j + 1), corner(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        });
+        ControlMesh {
+            points: points.collect(),
+            triangles: triangles.collect(),
+        }
+    }
+
+    #[test]
+    fn an_octahedron_becomes_round_with_normals_outwards() {
+        let (mesh, normals) = octahedron().subdivide(4).unwrap();
+        assert_eq!(mesh.triangles.len(), 8 << 8);
+        let radii = mesh.points.iter().map(|p| p.length());
+        let (low, high) = radii.fold((f64::MAX, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
+        assert!(low > 0.4 && high / low < 1.25, "{low} to {high}");
+        for (point, normal) in mesh.points.iter().zip(&normals) {
+            assert!(point.normalize().dot(*normal) > 0.9, "{point} {normal}");
+        }
+    }
+
+    /// Further steps move no point of the limit surface.
+    #[test]
+    fn the_limit_does_not_depend_on_the_number_of_steps() {
+        let bent = || sheet(|x, y| x * x - 0.5 * x * y + 0.2 * y);
+        for mesh in [octahedron as fn() -> ControlMesh, || {
+            sheet(|x, y| x * x * y)
+        }] {
+            let count = mesh().points.len();
+            let [few, many] = [0, 3].map(|levels| mesh().subdivide(levels).unwrap());
+            for v in 0..count {
+                assert!((few.0.points[v] - many.0.points[v]).length() < 1e-12, "{v}");
+                assert!((few.1[v] - many.1[v]).length() < 1e-12, "{v}");
+            }
+        }
+        assert!(bent().subdivide(1).is_ok());
+    }
+
+    #[test]
+    fn a_plane_stays_a_plane_and_its_border_a_border() {
+        let (mesh, normals) = sheet(|x, y| 0.5 * x + 0.25 * y).subdivide(2).unwrap();
+        let expected = DVec3::new(-0.5, -0.25, 1.0).normalize();
+        for (point, normal) in mesh.points.iter().zip(&normals) {
+            assert!((point.z - 0.5 * point.x - 0.25 * point.y).abs() < 1e-12);
+            assert!((*normal - expected).length() < 1e-9, "{normal} at {point}");
+        }
+        let [least, most] =
+            [f64::min, f64::max].map(|f| mesh.points.iter().map(|p| p.x).fold(0.5, f));
+        assert!(least.abs() < 1e-12 && (most - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_surface_is_refused() {
+        let refuse = |triangles: &[[u32; 3]], error| {
+            let mesh = ControlMesh {
+                points: vec![DVec3::ZERO; 5],
+                triangles: triangles.to_vec(),
+            };
+            assert_eq!(mesh.subdivide(1).err(), Some(error));
+        };
+        refuse(&[[0, 1, 2], [0, 1, 3]], SubdivisionError::Edge([0, 1]));
+        refuse(&[[0, 1, 1]], SubdivisionError::Degenerate(0));
+        refuse(&[[0, 1, 2], [0, 3, 4]], SubdivisionError::Vertex(0));
+    }
+}

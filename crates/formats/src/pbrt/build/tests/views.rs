@@ -1,0 +1,151 @@
+//! Cameras and sensors.
+
+use super::{STRICT, check, load_text, world};
+use bidir::camera::Camera;
+use bidir::film::Aov;
+use bidir::math::Vec3;
+
+fn camera(text: &str) -> Camera {
+    *load_text(&format!("{text} WorldBegin"), &STRICT)
+        .scene
+        .camera()
+}
+
+/// The origin and direction of the ray through the middle of the film and of one at its corner.
+fn rays(text: &str) -> [(Vec3, Vec3); 2] {
+    let film = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20";
+    let camera = camera(&format!("{text} {film}"));
+    [[20.0, 10.0], [0.0, 0.0]].map(|raster| {
+        let ray = camera.sample_ray(raster.into(), [0.5, 0.5].into());
+        (ray.origin, ray.direction)
+    })
+}
+
+#[test]
+fn parallel_rays_begin_on_the_screen() {
+    let [centre, corner] = rays("Scale 0.5 0.5 0.5 Camera \"orthographic\"");
+    assert_eq!(centre, (Vec3::ZERO, Vec3::Z));
+    assert_eq!(corner, (Vec3::new(-4.0, 2.0, 0.0), Vec3::Z));
+}
+
+/// A lens in front of parallel rays: those of one raster position meet where the parallel one
+/// crosses the plane of focus.
+#[test]
+fn a_lens_of_parallel_rays_is_sharp_at_its_focal_distance() {
+    let camera = camera(
+        "Camera \"orthographic\" \"float lensradius\" .3 \"float focaldistance\" 5
+         Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20",
+    );
+    for u in [[0.1, 0.2], [0.7, 0.4], [0.5, 0.9]] {
+        let ray = camera.sample_ray([0.0, 0.0].into(), u.into());
+        let t = 5.0 / ray.direction.z;
+        let met = ray.origin + ray.direction * t;
+        assert!((met - Vec3::new(-2.0, 1.0, 5.0)).length() < 1e-5, "{met}");
+    }
+}
+
+#[test]
+fn pictures_of_all_directions_have_the_filter_of_a_pixel() {
+    let loaded = load_text(
+        "Camera \"spherical\" \"string mapping\" \"equirectangular\" \"float lensradius\" 1
+         PixelFilter \"gaussian\" WorldBegin",
+        &STRICT,
+    );
+    assert!(loaded.scene.film().filter.radius().max_element() <= 0.5);
+    assert_eq!(
+        loaded.warnings,
+        [
+            "s.pbrt:2:22: the filter would reach over the edges of a picture of all directions: a box \
+             of one pixel stands in"
+        ]
+    );
+    check(
+        "Camera \"spherical\" \"string mapping\" \"equiarea\" WorldBegin",
+        "s.pbrt:1:37: unknown mapping `equiarea`; did you mean `equalarea`?",
+    );
+    check(
+        "Camera \"realistic\" WorldBegin",
+        "s.pbrt:1:8: the camera `realistic` is recognised but not supported yet; \
+         with --lenient: `perspective` stands in",
+    );
+}
+
+#[test]
+fn a_sensor_is_balanced_and_cut() {
+    let film = |text: &str| {
+        let text = format!("Film \"rgb\" \"float iso\" 200 {text} WorldBegin");
+        load_text(&text, &STRICT).scene.film().clone()
+    };
+    assert!(film("").sensor.balance.is_none() && film("").sensor.limit.is_none());
+    let warm = film("\"float whitebalance\" 3200");
+    let [r, g, b] = warm.sensor.respond([1.0; 3]);
+    assert!(r < 0.5 && (g - 1.1).abs() < 0.1 && b > 2.5, "{r} {g} {b}");
+    let limited = film("\"float maxcomponentvalue\" 10");
+    // Before exposure, which doubles it.
+    let cut = Vec3::from(limited.sensor.respond([10.0, 5.0, 0.0]));
+    assert!((cut - Vec3::new(5.0, 2.5, 0.0)).length() < 1e-6, "{cut}");
+    check(
+        "Film \"rgb\" \"float whitebalance\" 20 WorldBegin",
+        "s.pbrt:1:33: `whitebalance` is 20, but has to be between 1000 and 25000",
+    );
+    check(
+        "Film \"rgb\" \"string sensor\" \"nikon_d850\" WorldBegin",
+        "s.pbrt:1:28: the sensor `nikon_d850` is recognised but not supported yet; \
+         with --lenient: `cie1931` stands in",
+    );
+    check(
+        "Film \"rgb\" \"string sensor\" \"nikon_d85\" WorldBegin",
+        "s.pbrt:1:28: unknown sensor `nikon_d85`; did you mean `nikon_d850`?",
+    );
+}
+
+#[test]
+fn a_gbuffer_has_images_beside_the_picture() {
+    let loaded = load_text(
+        "Film \"gbuffer\" \"string coordinatesystem\" \"world\" WorldBegin",
+        &STRICT,
+    );
+    assert!(loaded.settings.aovs.contains(&Aov::ShadingNormal));
+    assert_eq!(loaded.warnings.len(), 1);
+    check(
+        "Film \"gbuffer\" \"string coordinatesystem\" \"word\" WorldBegin",
+        "s.pbrt:1:42: unknown coordinate system `word`; did you mean `world`?",
+    );
+}
+
+#[test]
+fn spectra_become_colours() {
+    let intensity = |text: &str| {
+        let scene = world(&format!("LightSource \"point\" {text}"));
+        match scene.lights() {
+            [bidir::light::Light::Point(light)] => light.intensity,
+            _ => panic!("the scene has a point light"),
+        }
+    };
+    let [r, g, b] = intensity("\"blackbody I\" 2856 \"float scale\" 2");
+    // The hue of incandescent lamps, 1 : 0.45 : 0.13.
+    assert!((g / r - 0.448).abs() < 0.01 && (b / r - 0.127).abs() < 0.01);
+    assert!((bidir::spectrum::luminance([r, g, b]) - 2.0).abs() < 1e-2);
+    let even = intensity("\"spectrum I\" [300 7 900 7]");
+    assert!(
+        (bidir::spectrum::luminance(even) - 1.0).abs() < 1e-3,
+        "{even:?}"
+    );
+    check(
+        "WorldBegin LightSource \"point\" \"spectrum I\" \"stdillum-D56\"",
+        "s.pbrt:1:45: `stdillum-D56` is neither a spectrum's name nor a file; \
+         did you mean `stdillum-D50`?",
+    );
+    check(
+        "WorldBegin LightSource \"point\" \"blackbody I\" -3",
+        "s.pbrt:1:46: a temperature is between 100 and 1e8 kelvin, found -3",
+    );
+    check(
+        "WorldBegin LightSource \"point\" \"spectrum I\" [500 1 400 1]",
+        "s.pbrt:1:45: the wavelengths of a spectrum increase",
+    );
+    check(
+        "WorldBegin LightSource \"point\" \"spectrum I\" [500 0 600 0]",
+        "s.pbrt:1:45: the spectrum `I` of a light is black",
+    );
+}

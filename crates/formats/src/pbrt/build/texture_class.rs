@@ -1,0 +1,277 @@
+//! The classes of textures: their parameters, and what is built of them.
+
+use super::color::Purpose;
+use super::context::Context;
+use super::imagemap::ImageSettings;
+use super::mapping;
+use super::reader::Reader;
+use super::texture::{Element, Operand, Textures};
+use crate::error::ErrorKind;
+use crate::pbrt::parameters::ParameterType;
+use crate::pbrt::scene::{TextureDescription, TextureKind};
+use crate::source::Fault;
+use bidir::math::Vec3;
+use bidir::texture::{
+    Bilerp, Cells, Checkerboard, DirectionMix, Dots, Marble, Mix, Noise, NoiseKind, Scale, Texture,
+};
+use std::sync::Arc;
+
+/// What a texture's parameters say: nothing is read but them, and parts are but names.
+pub(super) enum Source<T: Element> {
+    /// A texture without parts.
+    Whole(Texture<T>),
+    Image(ImageSettings),
+    Scale(Operand<T>, Operand<f32>),
+    Mix([Operand<T>; 2], Operand<f32>),
+    DirectionMix([Operand<T>; 2], Vec3),
+    Checkerboard([Operand<T>; 2], Cells),
+    Dots([Operand<T>; 2], bidir::texture::Mapping),
+}
+
+/// The finest octave of noise that anything shows.
+const MOST_OCTAVES: u32 = 64;
+
+impl<T: Element> Source<T> {
+    /// Reads the parameters of texture number `number`.
+    pub(super) fn read(
+        textures: &Textures<'_>,
+        context: &mut Context<'_>,
+        number: usize,
+        purpose: Purpose,
+    ) -> Result<Self, Fault> {
+        let texture = textures.described(number);
+        let mut class = Class {
+            textures,
+            number,
+            texture,
+            reader: Reader::new(&texture.entity),
+            purpose,
+        };
+        let source = class.source(context)?;
+        match source {
+            Some(source) => {
+                class.reader.finish()?;
+                Ok(source)
+            }
+            // What is not supported has parameters that nobody knows here.
+            None => Ok(Self::Whole(Texture::Constant(T::splat(0.5)))),
+        }
+    }
+
+    /// Builds the texture, its parts first.
+    pub(super) fn build(
+        self,
+        textures: &mut Textures<'_>,
+        context: &mut Context<'_>,
+        purpose: Purpose,
+    ) -> Result<Texture<T>, Fault> {
+        Ok(match self {
+            Self::Whole(texture) => texture,
+            Self::Image(settings) => textures.image(context, &settings)?,
+            Self::DirectionMix(parts, direction) => Texture::DirectionMix(Arc::new(DirectionMix {
+                textures: pair(textures, context, parts, purpose)?,
+                direction,
+            })),
+            Self::Checkerboard(parts, cells) => Texture::Checkerboard(Arc::new(Checkerboard {
+                textures: pair(textures, context, parts, purpose)?,
+                cells,
+            })),
+            Self::Dots(parts, mapping) => Texture::Dots(Arc::new(Dots {
+                textures: pair(textures, context, parts, purpose)?,
+                mapping,
+            })),
+            Self::Mix(parts, amount) => Texture::Mix(Arc::new(Mix {
+                textures: pair(textures, context, parts, purpose)?,
+                amount: textures.resolve(context, amount, Purpose::Unbounded)?,
+            })),
+            Self::Scale(part, factor) => Texture::Scale(Arc::new(Scale {
+                texture: textures.resolve(context, part, purpose)?,
+                factor: textures.resolve(context, factor, Purpose::Unbounded)?,
+            })),
+        })
+    }
+}
+
+fn pair<T: Element>(
+    textures: &mut Textures<'_>,
+    context: &mut Context<'_>,
+    [first, second]: [Operand<T>; 2],
+    purpose: Purpose,
+) -> Result<[Texture<T>; 2], Fault> {
+    let first = textures.resolve(context, first, purpose)?;
+    Ok([first, textures.resolve(context, second, purpose)?])
+}
+
+/// A texture whose parameters are being read.
+struct Class<'t, 'a> {
+    textures: &'t Textures<'a>,
+    number: usize,
+    texture: &'a TextureDescription,
+    reader: Reader<'a>,
+    purpose: Purpose,
+}
+
+impl Class<'_, '_> {
+    /// None: something else stands in for what is not supported.
+    fn source<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+    ) -> Result<Option<Source<T>>, Fault> {
+        let class = self.texture.entity.kind.as_str();
+        Ok(Some(match class {
+            "constant" => Source::Whole(Texture::Constant(self.value(context, "value", 1.0)?)),
+            "imagemap" => Source::Image(ImageSettings::read(
+                context,
+                self.texture,
+                &mut self.reader,
+            )?),
+            "scale" => Source::Scale(
+                self.part(context, "tex", 1.0)?,
+                self.part(context, "scale", 1.0)?,
+            ),
+            "mix" => Source::Mix(self.two(context)?, self.part(context, "amount", 0.5)?),
+            "directionmix" => {
+                let name = ("dir", Vec3::Y);
+                let direction = mapping::direction(self.texture, &mut self.reader, name)?;
+                Source::DirectionMix(self.two(context)?, direction)
+            }
+            "bilerp" => Source::Whole(self.bilerp(context)?),
+            "checkerboard" => {
+                let parts = [
+                    self.part(context, "tex1", 1.0)?,
+                    self.part(context, "tex2", 0.0)?,
+                ];
+                Source::Checkerboard(parts, self.cells(context)?)
+            }
+            "dots" => {
+                let parts = [
+                    self.part(context, "outside", 0.0)?,
+                    self.part(context, "inside", 1.0)?,
+                ];
+                let mapping = mapping::read(context, self.texture, &mut self.reader)?;
+                Source::Dots(parts, mapping)
+            }
+            "fbm" | "wrinkled" | "windy" => Source::Whole(self.noise::<T>(context, class)?),
+            "marble" => Source::Whole(self.marble::<T>(context)?),
+            class => {
+                let what = format!("the texture class `{class}`");
+                context.unsupported(self.texture.entity.span, &what, "0.5 stands in")?;
+                return Ok(None);
+            }
+        }))
+    }
+
+    fn value<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        name: &'static str,
+        default: f32,
+    ) -> Result<T, Fault> {
+        let value = T::read(context, &mut self.reader, name, self.purpose)?;
+        Ok(value.unwrap_or(T::splat(default)))
+    }
+
+    fn part<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        name: &'static str,
+        default: f32,
+    ) -> Result<Operand<T>, Fault> {
+        let operand = self
+            .textures
+            .operand(context, &mut self.reader, name, self.purpose)?;
+        if let Some(Operand::<T>::Texture(part)) = operand {
+            let parameters = &self.texture.entity.parameters;
+            let parameter = parameters.get(ParameterType::Texture, name);
+            let span = parameter.map_or(self.texture.entity.span, |named| named.value_span);
+            self.textures.check_order(part, self.number, span)?;
+        }
+        Ok(operand.unwrap_or(Operand::Value(T::splat(default))))
+    }
+
+    fn two<T: Element>(&mut self, context: &mut Context<'_>) -> Result<[Operand<T>; 2], Fault> {
+        Ok([
+            self.part(context, "tex1", 0.0)?,
+            self.part(context, "tex2", 1.0)?,
+        ])
+    }
+
+    fn bilerp<T: Element>(&mut self, context: &mut Context<'_>) -> Result<Texture<T>, Fault> {
+        // The first digit is u.
+        let corners = [
+            self.value(context, "v00", 0.0)?,
+            self.value(context, "v10", 0.0)?,
+            self.value(context, "v01", 1.0)?,
+            self.value(context, "v11", 1.0)?,
+        ];
+        let mapping = mapping::read(context, self.texture, &mut self.reader)?;
+        Ok(Texture::Bilerp(Arc::new(Bilerp { corners, mapping })))
+    }
+
+    fn cells(&mut self, context: &mut Context<'_>) -> Result<Cells, Fault> {
+        match self.reader.integer("dimension", 2, 0)? {
+            2 => mapping::read(context, self.texture, &mut self.reader).map(Cells::Plane),
+            3 => mapping::space(context, self.texture).map(Cells::Space),
+            dimension => {
+                let message = format!("a checkerboard has 2 or 3 dimensions, not {dimension}");
+                Err(Fault::scene(self.reader.span(), message))
+            }
+        }
+    }
+
+    /// Refuses a class that gives only values of another kind.
+    fn expect(&self, kind: TextureKind) -> Result<(), Fault> {
+        if self.texture.kind == kind {
+            return Ok(());
+        }
+        let word = match kind {
+            TextureKind::Float => "float",
+            TextureKind::Spectrum => "spectrum",
+        };
+        let class = &self.texture.entity.kind;
+        let message = format!("a texture of class `{class}` is of type `{word}`");
+        Err(Fault::new(ErrorKind::Scene, self.reader.span(), message))
+    }
+
+    fn noise<T: Element>(
+        &mut self,
+        context: &mut Context<'_>,
+        class: &str,
+    ) -> Result<Texture<T>, Fault> {
+        self.expect(TextureKind::Float)?;
+        let kind = match class {
+            "windy" => NoiseKind::Windy,
+            class => {
+                let (octaves, roughness) = self.octaves(context)?;
+                match class {
+                    "fbm" => NoiseKind::Fbm { octaves, roughness },
+                    _ => NoiseKind::Wrinkled { octaves, roughness },
+                }
+            }
+        };
+        let space = mapping::space(context, self.texture)?;
+        Ok(Texture::Noise(Arc::new(Noise { kind, space })))
+    }
+
+    fn marble<T: Element>(&mut self, context: &mut Context<'_>) -> Result<Texture<T>, Fault> {
+        self.expect(TextureKind::Spectrum)?;
+        let (octaves, roughness) = self.octaves(context)?;
+        Ok(Texture::Marble(Arc::new(Marble {
+            octaves,
+            roughness,
+            scale: self.reader.float("scale", 1.0)?,
+            variation: self.reader.float("variation", 0.2)?,
+            space: mapping::space(context, self.texture)?,
+        })))
+    }
+
+    fn octaves(&mut self, context: &mut Context<'_>) -> Result<(u32, f32), Fault> {
+        let octaves = self.reader.integer("octaves", 8, 0)?;
+        if octaves > MOST_OCTAVES {
+            let message = format!("of the octaves of noise the first {MOST_OCTAVES} are taken");
+            context.warn(self.reader.span(), message);
+        }
+        let roughness = self.reader.float("roughness", 0.5)?;
+        Ok((octaves.min(MOST_OCTAVES), roughness))
+    }
+}

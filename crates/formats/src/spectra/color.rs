@@ -1,0 +1,173 @@
+//! XYZ = ∫ S(λ) (x̄, ȳ, z̄)(λ) dλ and linear RGB of it: sums over whole nanometres from 360 to 830.
+
+use super::Spectrum;
+use super::named::daylight;
+use super::table::OBSERVER;
+use bidir::spectrum::Rgb;
+use glam::{DMat3, DVec3};
+use std::sync::LazyLock;
+
+/// Chromaticities of red, green and blue, and of white.
+pub(crate) struct Primaries {
+    /// Of the three primaries.
+    pub(crate) xy: [[f64; 2]; 3],
+    /// XYZ of white, of luminance 1.
+    pub(crate) white: DVec3,
+}
+
+impl Primaries {
+    /// Linear Rec. 709, which is that of sRGB, under the D65 of the tables.
+    pub(crate) fn rec709() -> Self {
+        Self {
+            xy: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
+            white: OBSERVED.white,
+        }
+    }
+
+    /// XYZ = M · RGB, the primaries scaled so that they add up to white.
+    fn xyz_from_rgb(&self) -> DMat3 {
+        let [r, g, b] = self.xy.map(xyz);
+        let unscaled = DMat3::from_cols(r, g, b);
+        unscaled * DMat3::from_diagonal(unscaled.inverse() * self.white)
+    }
+}
+
+/// XYZ of luminance 1.
+fn xyz([x, y]: [f64; 2]) -> DVec3 {
+    DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
+}
+
+/// What all colours need: the observer and daylight, nanometre by nanometre.
+struct Observed {
+    /// Wavelength, the observer's functions, D65 relative to its luminance.
+    steps: Vec<(f64, DVec3, f64)>,
+    /// XYZ of D65.
+    white: DVec3,
+}
+
+static OBSERVED: LazyLock<Observed> = LazyLock::new(|| {
+    let d65 = daylight([0.31272, 0.32903]);
+    let bars = ["x_bar", "y_bar", "z_bar"].map(|name| OBSERVER.column(name));
+    let bar = |i: usize, nm| bars[i].as_ref().map_or(0.0, |bar| bar.at(nm));
+    let steps = (360..=830).map(|nm| {
+        let nm = f64::from(nm);
+        (
+            nm,
+            DVec3::new(bar(0, nm), bar(1, nm), bar(2, nm)),
+            d65.at(nm),
+        )
+    });
+    let mut steps: Vec<_> = steps.collect();
+    let luminance: f64 = steps.iter().map(|(_, bars, light)| bars.y * light).sum();
+    for (_, _, light) in &mut steps {
+        *light /= luminance;
+    }
+    let white = steps.iter().map(|(_, bars, light)| bars * light).sum();
+    Observed { steps, white }
+});
+
+fn rgb_from_xyz() -> DMat3 {
+    Primaries::rec709().xyz_from_rgb().inverse()
+}
+
+fn rgb(xyz: DVec3) -> Rgb {
+    (rgb_from_xyz() * xyz).as_vec3().into()
+}
+
+/// ∫ value · D65 in linear Rec. 709: that of a reflectance of 1 is white. Not clamped.
+fn under_daylight(value: impl Fn(f64) -> f64) -> Rgb {
+    let steps = OBSERVED.steps.iter();
+    rgb(steps.map(|(nm, bars, d65)| bars * (d65 * value(*nm))).sum())
+}
+
+/// What a reflectance, or another factor, looks like under daylight: linear Rec. 709, not clamped.
+pub(crate) fn reflectance(spectrum: &Spectrum) -> Rgb {
+    under_daylight(|nm| spectrum.at(nm))
+}
+
+/// The colour of a light, with luminance 1; channels outside of Rec. 709 are clamped. None: it has
+/// no luminance.
+pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
+    let steps = OBSERVED.steps.iter();
+    let xyz: DVec3 = steps.map(|(nm, bars, _)| bars * spectrum.at(*nm)).sum();
+    if !(xyz.y > 0.0 && xyz.is_finite()) {
+        return None;
+    }
+    let clamped = (rgb_from_xyz() * xyz).max(DVec3::ZERO);
+    // Clamping adds light, which is taken off again.
+    let luminance = (Primaries::rec709().xyz_from_rgb() * clamped).y;
+    Some((clamped / luminance).as_vec3().into())
+}
+
+/// η and k of the metal whose reflectance at normal incidence, under daylight, is that of the
+/// spectral index: η is the mean that each channel sees, and k follows from
+/// R = ((η - 1)² + k²) / ((η + 1)² + k²).
+pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
+    let sqr = |x: f64| x * x;
+    let normal = |nm: f64| {
+        let (eta, k2) = (eta.at(nm), sqr(k.at(nm)));
+        (sqr(eta - 1.0) + k2) / (sqr(eta + 1.0) + k2)
+    };
+    let seen = reflectance(eta).map(|eta| eta.max(0.0));
+    let reflected = under_daylight(normal).map(|r| f64::from(r).clamp(0.0, 0.9999));
+    let k = std::array::from_fn(|channel| {
+        let (eta, r) = (f64::from(seen[channel]), reflected[channel]);
+        let k2 = (r * sqr(eta + 1.0) - sqr(eta - 1.0)) / (1.0 - r);
+        libm::sqrt(k2.max(0.0)) as f32
+    });
+    (seen, k)
+}
+
+/// Linear Rec. 709 of a colour whose primaries are others: its white becomes `white`.
+pub(crate) fn rgb_from_rgb(from: &Primaries, white: DVec3, color: Rgb) -> Rgb {
+    let xyz = from.xyz_from_rgb() * DVec3::from(color.map(f64::from));
+    rgb(bradford(from.white, white) * xyz)
+}
+
+/// The matrix on linear Rec. 709 that makes a scene lit by `white` look as if lit by D65.
+pub(crate) fn adapted(white: DVec3) -> DMat3 {
+    let primaries = Primaries::rec709();
+    let xyz_from_rgb = primaries.xyz_from_rgb();
+    xyz_from_rgb.inverse() * bradford(white, primaries.white) * xyz_from_rgb
+}
+
+/// Chromatic adaptation: what is white under `from` is white under `to`, by von Kries' rule in the
+/// space of cones of Lam's Bradford matrix.
+fn bradford(from: DVec3, to: DVec3) -> DMat3 {
+    let cones = DMat3::from_cols(
+        DVec3::new(0.8951, -0.7502, 0.0389),
+        DVec3::new(0.2664, 1.7135, -0.0685),
+        DVec3::new(-0.1614, 0.0367, 1.0296),
+    );
+    let ratio = (cones * to) / (cones * from);
+    cones.inverse() * DMat3::from_diagonal(ratio) * cones
+}
+
+/// XYZ of a CIE daylight of luminance 1, `kelvin` from 4000 to 25000 (CIE 15).
+pub(crate) fn daylight_white(kelvin: f64) -> DVec3 {
+    let t = 1e3 / kelvin;
+    let x = if kelvin <= 7000.0 {
+        ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
+    } else {
+        ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.237040
+    };
+    xyz([x, (-3.0 * x + 2.870) * x - 0.275])
+}
+
+/// XYZ of a blackbody of luminance 1.
+pub(crate) fn planckian_white(kelvin: f64) -> DVec3 {
+    let spectrum = Spectrum::blackbody(kelvin);
+    let steps = OBSERVED.steps.iter();
+    let xyz: DVec3 = steps.map(|(nm, bars, _)| bars * spectrum.at(*nm)).sum();
+    xyz / xyz.y
+}
+
+impl Primaries {
+    /// Primaries with a white of this chromaticity.
+    pub(crate) fn new(xy: [[f64; 2]; 3], white: [f64; 2]) -> Self {
+        Self {
+            xy,
+            white: xyz(white),
+        }
+    }
+}

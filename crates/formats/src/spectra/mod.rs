@@ -1,0 +1,151 @@
+//! Spectra, and what they are as colours: functions of wavelength that files give by samples, by
+//! temperature or by name.
+//!
+//! The renderer computes with linear Rec. 709, so a spectrum ends here, once, as three numbers:
+//! what a reflectance looks like under daylight ([`reflectance`]), the hue of a light
+//! ([`emission`]), the index of a metal that reflects as its spectrum does ([`conductor`]).
+
+mod color;
+mod named;
+mod table;
+
+pub(crate) use color::{
+    Primaries, adapted, conductor, daylight_white, emission, planckian_white, reflectance,
+    rgb_from_rgb,
+};
+pub(crate) use named::{named, names};
+
+use std::fmt;
+
+/// What a sampled spectrum is beyond its first and last wavelength.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beyond {
+    /// Nothing.
+    Zero,
+    /// As at the nearest end.
+    Last,
+}
+
+/// A function of wavelength, linear between samples.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Spectrum {
+    /// Wavelength (nm, increasing) and value.
+    samples: Vec<[f64; 2]>,
+    beyond: Beyond,
+}
+
+/// Why numbers are no spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SpectrumError {
+    /// There is no sample at all.
+    Empty,
+    /// A wavelength without a value.
+    Odd,
+    /// Something in line number `.0` is no number.
+    NotANumber(usize),
+    /// Wavelengths do not increase.
+    Order,
+}
+
+impl fmt::Display for SpectrumError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("a spectrum has at least one pair of wavelength and value"),
+            Self::Odd => f.write_str("the last wavelength of the spectrum has no value"),
+            Self::NotANumber(line) => {
+                write!(
+                    f,
+                    "line {line} of the spectrum has something that is no number"
+                )
+            }
+            Self::Order => f.write_str("the wavelengths of a spectrum increase"),
+        }
+    }
+}
+
+impl Spectrum {
+    /// The spectrum of these samples: wavelength (nm) and value.
+    pub(crate) fn new(samples: Vec<[f64; 2]>, beyond: Beyond) -> Result<Self, SpectrumError> {
+        if samples.is_empty() {
+            return Err(SpectrumError::Empty);
+        }
+        if samples.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
+            return Err(SpectrumError::Order);
+        }
+        Ok(Self { samples, beyond })
+    }
+
+    /// The same of a flat list.
+    pub(crate) fn from_pairs(numbers: &[f64], beyond: Beyond) -> Result<Self, SpectrumError> {
+        let (pairs, rest) = numbers.as_chunks::<2>();
+        if !rest.is_empty() {
+            return Err(SpectrumError::Odd);
+        }
+        Self::new(pairs.to_vec(), beyond)
+    }
+
+    /// Reads a text of pairs; `#` begins a comment.
+    pub(crate) fn parse(text: &str) -> Result<Self, SpectrumError> {
+        let mut numbers = Vec::new();
+        for (line, content) in text.lines().enumerate() {
+            let content = content.split('#').next().unwrap_or_default();
+            for word in content.split(|c: char| c.is_whitespace() || c == ',') {
+                if word.is_empty() {
+                    continue;
+                }
+                let number: f64 = word
+                    .parse()
+                    .ok()
+                    .filter(|number: &f64| number.is_finite())
+                    .ok_or(SpectrumError::NotANumber(line + 1))?;
+                numbers.push(number);
+            }
+        }
+        Self::from_pairs(&numbers, Beyond::Zero)
+    }
+
+    /// Planck's law at `kelvin`, relative to its peak.
+    pub(crate) fn blackbody(kelvin: f64) -> Self {
+        // c2 = h c / k. Unit: m K. Wien's displacement constant. Unit: nm K.
+        const C2: f64 = 1.438776877e-2;
+        const WIEN: f64 = 2.897771955e6;
+        let planck = |nm: f64| {
+            let metres = nm * 1e-9;
+            1.0 / (libm::pow(metres, 5.0) * libm::expm1(C2 / (metres * kelvin)))
+        };
+        let peak = planck(WIEN / kelvin);
+        let samples = (360..=830).map(|nm| [f64::from(nm), planck(f64::from(nm)) / peak]);
+        Self {
+            samples: samples.collect(),
+            beyond: Beyond::Last,
+        }
+    }
+
+    /// The value at a wavelength. Unit of `nm`: nanometres.
+    pub(crate) fn at(&self, nm: f64) -> f64 {
+        let next = self.samples.partition_point(|&[x, _]| x < nm);
+        let value = |i: usize| self.samples.get(i).copied();
+        match (next.checked_sub(1).and_then(value), value(next)) {
+            (_, Some([x, y])) if x <= nm => y,
+            (Some([x0, y0]), Some([x1, y1])) => y0 + (y1 - y0) * (nm - x0) / (x1 - x0),
+            (None, Some([_, end])) | (Some([_, end]), None) => match self.beyond {
+                Beyond::Zero => 0.0,
+                Beyond::Last => end,
+            },
+            (None, None) => 0.0,
+        }
+    }
+
+    /// True where no sample is negative.
+    pub(crate) fn is_positive(&self) -> bool {
+        self.samples.iter().all(|&[_, value]| value >= 0.0)
+    }
+
+    /// The largest sample.
+    pub(crate) fn peak(&self) -> f64 {
+        self.samples.iter().fold(0.0, |peak, &[_, y]| peak.max(y))
+    }
+}
+
+#[cfg(test)]
+mod tests;
