@@ -17,6 +17,7 @@ import room
 import torture_camera
 import torture_materials
 import torture_views
+import torture_worlds
 from writer import Project
 
 
@@ -31,6 +32,7 @@ def main():
     torture_materials.write_all(project)
     torture_camera.write_all(project)
     torture_views.write_all(project)
+    torture_worlds.write_all(project)
     broken.write_all(project)
     readme.write(project)
     for path, triangles, title in project.scenes:

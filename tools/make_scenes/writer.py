@@ -39,6 +39,10 @@ class Project:
         with open(os.path.join(self.root, path), "w", encoding="utf-8", newline="\n") as out:
             out.write(text)
 
+    def write_bytes(self, path, data):
+        with open(os.path.join(self.root, path), "wb") as out:
+            out.write(data)
+
     def write_ply(self, name, mesh):
         normals = not mesh.is_flat_shaded()
         head = ["ply", "format binary_little_endian 1.0",

@@ -6,6 +6,7 @@ use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
 use crate::settings::SettingsText;
 use bidir::film::{Film, Layers};
+use bidir::integrator::{BlindSpot, IntegratorKind, blind_spots};
 use bidir::light::Light;
 use bidir::material::Material;
 use bidir::scene::Scene;
@@ -43,7 +44,17 @@ struct Info {
     bounds: Option<[[f32; 3]; 2]>,
     bvh_bytes: usize,
     isa: String,
+    /// Light paths that estimators do not make, by their names.
+    blind_spots: BTreeMap<&'static str, Vec<BlindSpotInfo>>,
     warnings: Vec<String>,
+}
+
+/// Light paths that an estimator does not make, or by chance only.
+#[derive(Debug, Serialize)]
+struct BlindSpotInfo {
+    /// True where they are missing from pictures, and not only noisy.
+    missing: bool,
+    paths: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -99,6 +110,9 @@ impl Info {
             bounds: (scene.placed_primitives() > 0).then_some(corners),
             bvh_bytes: scene.bvh().memory_bytes(),
             isa: scene.bvh().isa().to_string(),
+            blind_spots: IntegratorKind::NAMES
+                .map(|(name, integrator)| (name, blind_spots_of(scene, integrator)))
+                .into(),
             warnings: loaded.warnings.clone(),
         }
     }
@@ -150,7 +164,28 @@ impl Info {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{name:<12} {value}");
         }
+        self.tell_blind_spots(&mut text);
         text
+    }
+
+    /// A line for what each estimator does not see, the scene's own first.
+    fn tell_blind_spots(&self, text: &mut String) {
+        let own = |name: &str| name == self.settings.integrator;
+        let mut estimators: Vec<_> = self.blind_spots.iter().collect();
+        estimators.sort_by_key(|(name, _)| !own(name));
+        for (name, spots) in estimators {
+            if spots.is_empty() {
+                let _ = writeln!(text, "{name:<12} sees all light paths");
+            }
+            for spot in spots {
+                let how = if spot.missing {
+                    "misses"
+                } else {
+                    "finds by chance only"
+                };
+                let _ = writeln!(text, "{name:<12} {how} {}", spot.paths);
+            }
+        }
     }
 
     fn instances_text(&self) -> String {
@@ -188,6 +223,15 @@ impl FilmInfo {
             bytes: Film::memory(film, &Layers::default()),
         }
     }
+}
+
+fn blind_spots_of(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpotInfo> {
+    let spots = blind_spots(scene, integrator).into_iter();
+    let info = |spot: BlindSpot| BlindSpotInfo {
+        missing: spot.is_missing(),
+        paths: spot.description(),
+    };
+    spots.map(info).collect()
 }
 
 fn light_groups(scene: &Scene) -> BTreeMap<String, usize> {

@@ -7,12 +7,14 @@
 //! **Adding one**: a file, and a variant of [`IntegratorKind`] with its name.
 
 mod bdpt;
+mod blind;
 mod journal;
 mod light;
 mod path;
 mod workspace;
 
 pub use bdpt::Bdpt;
+pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use path::PathTracer;

@@ -1,4 +1,5 @@
-//! Surfaces that emit: radiance L wherever the side emits, power π A L for each such side.
+//! Surfaces that emit: radiance L, times a pattern, wherever the side emits; power π ∫ L dA for each
+//! such side.
 //!
 //! A point is drawn by area, or as the receiver sees its shape (1/m²); a direction by |cosθ|/π
 //! (1/sr), half of that where both sides emit.
@@ -6,9 +7,12 @@
 use super::{EmissionSample, LightContext, LightPoint, LightSample};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::scene::clamped_coverage;
-use crate::shape::{Shape, ShapeSample};
+use crate::shape::{Shape, ShapeSample, SurfacePoint};
 use crate::spectrum::{Rgb, luminance};
-use crate::texture::{FloatTexture, TexturePoint};
+use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
+
+/// Points at which a pattern's mean is estimated: lights are chosen by it.
+const PATTERN_POINTS: usize = 4096;
 
 /// Which sides of a surface emit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,12 +24,16 @@ pub enum EmissionSides {
     Both,
 }
 
-/// A shape that emits the same radiance everywhere and in all directions of its emitting sides.
+/// A shape that emits the same radiance in all directions of its emitting sides.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
     /// The shape, by index.
     shape: usize,
     radiance: Rgb,
+    /// What the radiance is multiplied by. None: it is the same everywhere.
+    pattern: Option<ColorTexture>,
+    /// The mean over the area. Unit: luminance.
+    mean: f32,
     sides: EmissionSides,
     /// The choice of a primitive, by area.
     primitives: Distribution1d,
@@ -48,11 +56,53 @@ impl AreaLight {
             inverse_area,
             shape: index,
             radiance,
+            pattern: None,
+            mean: luminance(radiance),
             sides,
             primitives,
             coverage: None,
             is_hidden: false,
         }
+    }
+
+    /// Multiplies the radiance at each point of `shape`, which is the light's. What is negative
+    /// counts as black.
+    pub(crate) fn set_pattern(&mut self, shape: &Shape, pattern: ColorTexture) {
+        self.pattern = Some(pattern);
+        let points = (0..PATTERN_POINTS).map(|i| {
+            // The additive recurrence of the plastic number: even in the square [Roberts18].
+            let u = Vec2::new(0.754_877_7, 0.569_840_3) * (i as f32 + 0.5);
+            let (u, v) = (u.x.fract(), u.y.fract());
+            let (primitive, _, rest) = self.primitives.sample(u);
+            shape.sample(primitive, Vec2::new(rest, v)).surface
+        });
+        let sum: f32 = points
+            .map(|surface| luminance(self.radiance_at(&surface)))
+            .sum();
+        // A light that may emit somewhere has to be chosen now and then.
+        let least = 1e-3 * luminance(self.radiance);
+        self.mean = (sum / PATTERN_POINTS as f32).max(least);
+    }
+
+    /// The radiance of a point of the surface.
+    #[inline]
+    fn radiance_at(&self, surface: &SurfacePoint) -> Rgb {
+        let Some(pattern) = &self.pattern else {
+            return self.radiance;
+        };
+        let factor = pattern.eval(&TexturePoint::new(surface));
+        std::array::from_fn(|channel| self.radiance[channel] * factor[channel].max(0.0))
+    }
+
+    /// The radiance of a light point: whoever drew it, it is the same function of the point.
+    #[inline]
+    fn radiance(&self, context: &LightContext<'_>, at: &LightPoint) -> Rgb {
+        if self.pattern.is_none() {
+            return self.radiance;
+        }
+        let (shape, primitive) = (&context.shapes[self.shape], at.primitive as usize);
+        let parameters = shape.parameters(primitive, at.point);
+        self.radiance_at(&shape.surface_point(primitive, parameters, at.point))
     }
 
     /// Lets no ray meet the surface, though it emits.
@@ -74,13 +124,13 @@ impl AreaLight {
             EmissionSides::Front => 1.0,
             EmissionSides::Both => 2.0,
         };
-        sides * PI * self.primitives.total() as f32 * luminance(self.radiance)
+        sides * PI * self.primitives.total() as f32 * self.mean
     }
 
     #[inline]
-    pub(super) fn emitted(&self, at: &LightPoint, w: Vec3) -> Rgb {
+    pub(super) fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
         if self.sides == EmissionSides::Both || at.n_g.dot(w) > 0.0 {
-            self.radiance
+            self.radiance(context, at)
         } else {
             [0.0; 3]
         }
@@ -125,7 +175,9 @@ impl AreaLight {
             origin: from.at.point,
             direction,
             pdf_direction,
-            emitted_cos: self.radiance.map(|l| l * from.at.n_g.dot(direction).abs()),
+            emitted_cos: self
+                .radiance(context, &from.at)
+                .map(|l| l * from.at.n_g.dot(direction).abs()),
         })
     }
 

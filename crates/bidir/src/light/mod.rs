@@ -186,9 +186,9 @@ impl Light {
     /// Radiance from `at` along the unit direction `w` away from the light; intensity for point
     /// and spot lights, irradiance on a facing surface for a distant light.
     #[inline]
-    pub fn emitted(&self, at: &LightPoint, w: Vec3) -> Rgb {
+    pub fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
         match self {
-            Self::Area(light) => light.emitted(at, w),
+            Self::Area(light) => light.emitted(context, at, w),
             Self::Point(light) => light.intensity,
             Self::Spot(light) => light.intensity(w),
             Self::Distant(light) => light.irradiance,

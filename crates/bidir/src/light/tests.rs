@@ -13,7 +13,8 @@ use crate::math::{Affine3A, Frame, Mat3, PI, Vec2, Vec3};
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use crate::spectrum::Rgb;
-use crate::texture::Image;
+use crate::texture::{Bilerp, ColorTexture, Image, Mapping};
+use std::sync::Arc;
 
 const COLOR: Rgb = [1.0, 2.0, 0.5];
 
@@ -78,6 +79,14 @@ fn environment() -> InfiniteLight {
     InfiniteLight::image(image, 1.5, turn())
 }
 
+/// Bright where u is large, and not at all where v is small.
+fn pattern() -> ColorTexture {
+    ColorTexture::Bilerp(Arc::new(Bilerp {
+        corners: [[-0.5; 3], [1.5, 2.0, 1.0], [0.2; 3], [3.0, 1.0, 2.0]],
+        mapping: Mapping::IDENTITY,
+    }))
+}
+
 fn turn() -> Mat3 {
     Mat3::from_rotation_y(0.9) * Mat3::from_rotation_x(-0.4)
 }
@@ -91,6 +100,12 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
             sides,
         ))
     };
+    let patterned = |index: usize| {
+        let shape = &surroundings.shapes[index];
+        let mut light = AreaLight::new(index, shape, COLOR, EmissionSides::Front);
+        light.set_pattern(shape, pattern());
+        Light::Area(light)
+    };
     let position = Vec3::new(0.3, -2.0, 1.0);
     let axis = Vec3::new(0.6, 0.0, -0.8);
     let spot = |angles| Light::Spot(SpotLight::new(position, axis, COLOR, angles));
@@ -101,6 +116,8 @@ fn examples(surroundings: &Surroundings) -> Vec<(&'static str, Light)> {
         ("ellipsoid, reversed", area(2, EmissionSides::Front)),
         ("ring, both sides", area(3, EmissionSides::Both)),
         ("cylinder", area(4, EmissionSides::Front)),
+        ("patterned ring", patterned(3)),
+        ("patterned mesh", patterned(0)),
         (
             "point",
             Light::Point(PointLight {

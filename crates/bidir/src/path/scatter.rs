@@ -162,7 +162,8 @@ impl PathContext<'_> {
     /// irradiance, as [`Light::emitted`](crate::light::Light::emitted) says.
     #[inline]
     pub(crate) fn emitted(&self, light: u32, at: &LightPoint, w: Vec3) -> Spectrum {
-        let emitted = self.scene.light(light).emitted(at, w);
-        self.scene.color().illuminant(emitted, &self.wavelengths)
+        let scene = self.scene;
+        let emitted = scene.light(light).emitted(&scene.light_context(), at, w);
+        scene.color().illuminant(emitted, &self.wavelengths)
     }
 }

@@ -11,7 +11,7 @@ use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
-use crate::texture::FloatTexture;
+use crate::texture::{ColorTexture, FloatTexture};
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
@@ -19,10 +19,12 @@ use thiserror::Error;
 pub struct MaterialId(u32);
 
 /// The light that a shape emits.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Emission {
     /// Emitted radiance.
     pub radiance: Rgb,
+    /// What it is multiplied by at each point. None: it is even.
+    pub pattern: Option<ColorTexture>,
     /// Which sides emit.
     pub sides: EmissionSides,
 }
@@ -171,7 +173,10 @@ impl SceneBuilder {
         // A broken mesh is found when the scene is built; until then it must not be measured.
         let valid = check_shape(index, &shape).is_ok();
         let light = emission.filter(|_| valid).map(|emission| {
-            let light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
+            let mut light = AreaLight::new(index, &shape, emission.radiance, emission.sides);
+            if let Some(pattern) = emission.pattern {
+                light.set_pattern(&shape, pattern);
+            }
             self.light(Light::Area(light))
         });
         self.push(shape, material, light);

@@ -1,7 +1,9 @@
 //! Cylinders without caps and parts of them, under any affine map. Points are drawn evenly over local
 //! area, 1 / (φ_max r (z_max - z_min)), divided by the stretch of the map: area measure, 1/m².
 
-use super::{Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint};
+use super::{
+    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos};
 
 /// The points at a distance from the z axis with z in `[z_min, z_max]` and azimuth below `phi_max`, in
@@ -104,6 +106,12 @@ impl Cylinder {
         let local = (normal * self.radius).with_z(z);
         self.placement
             .surface_point(local, normal, self.orientation, uv)
+    }
+
+    pub(super) fn parameters_at(&self, p: Vec3) -> Vec2 {
+        let local = self.placement.local_from_world.transform_point3(p);
+        let upwards = (local.z - self.z_min) / (self.z_max - self.z_min);
+        Vec2::new(azimuth_part(local, self.phi_max), upwards.clamp(0.0, 1.0))
     }
 
     /// Along azimuth, and upwards.

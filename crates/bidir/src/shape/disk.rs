@@ -1,7 +1,9 @@
 //! A flat ring or a part of one. An affine map scales all of its area alike, so that points are
 //! drawn with the constant density 1/area (1/m²), from wherever they are looked at.
 
-use super::{Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint};
+use super::{
+    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+};
 use crate::math::{Affine3A, PI, Vec2, Vec3, sin_cos, sqr};
 
 /// The ring at `z = height` with radii from `inner_radius` to `radius` and azimuth below
@@ -74,6 +76,13 @@ impl Disk {
         local.z = self.height;
         self.placement
             .surface_point(local, Vec3::Z, self.orientation, uv)
+    }
+
+    pub(super) fn parameters_at(&self, p: Vec3) -> Vec2 {
+        let local = self.placement.local_from_world.transform_point3(p);
+        let width = self.radius - self.inner_radius;
+        let inwards = (self.radius - local.truncate().length()) / width;
+        Vec2::new(azimuth_part(local, self.phi_max), inwards.clamp(0.0, 1.0))
     }
 
     /// Along azimuth, and inwards.

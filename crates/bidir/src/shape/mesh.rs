@@ -39,6 +39,14 @@ impl Mesh {
         self.triangles[i].map(|vertex| self.positions[vertex as usize])
     }
 
+    /// The weights of the second and third corner of triangle `i` at the point `p` of its plane.
+    pub(super) fn barycentric(&self, i: usize, p: Vec3) -> Vec2 {
+        let [a, b, c] = self.triangle(i);
+        let n = (b - a).cross(c - a);
+        let part = |from: Vec3, to: Vec3| n.dot((to - from).cross(p - from)) / n.length_squared();
+        Vec2::new(part(c, a), part(a, b)).clamp(Vec2::ZERO, Vec2::ONE)
+    }
+
     /// The area of triangle `i`. Unit: m².
     pub fn triangle_area(&self, i: usize) -> f32 {
         let [a, b, c] = self.triangle(i);

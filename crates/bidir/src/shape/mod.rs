@@ -27,7 +27,7 @@ pub use mesh::Mesh;
 pub use place::Place;
 pub use sphere::Sphere;
 
-use crate::math::{Affine3A, Frame, Vec2, Vec3};
+use crate::math::{Affine3A, Frame, PI, Vec2, Vec3};
 
 /// The local geometry at a point of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +105,16 @@ impl Shape {
             Self::Sphere(sphere) => sphere.surface_point(uv, point),
             Self::Disk(disk) => disk.surface_point(uv, point),
             Self::Cylinder(cylinder) => cylinder.surface_point(uv, point),
+        }
+    }
+
+    /// The intersector's parameters of the point `p` of primitive `i`.
+    pub fn parameters(&self, i: usize, p: Vec3) -> Vec2 {
+        match self {
+            Self::Mesh(mesh) => mesh.barycentric(i, p),
+            Self::Sphere(sphere) => sphere.parameters_at(p),
+            Self::Disk(disk) => disk.parameters_at(p),
+            Self::Cylinder(cylinder) => cylinder.parameters_at(p),
         }
     }
 
@@ -212,6 +222,14 @@ impl Shape {
             Self::Sphere(sphere) => sphere.pdf_from(reference, point, n_g),
         }
     }
+}
+
+/// The azimuth of a local point, as part of `phi_max`.
+#[inline]
+fn azimuth_part(local: Vec3, phi_max: f32) -> f32 {
+    let phi = libm::atan2f(local.y, local.x);
+    let phi = if phi < 0.0 { phi + 2.0 * PI } else { phi };
+    (phi / phi_max).min(1.0)
 }
 
 /// Which side of a surface is the front.

@@ -4,7 +4,9 @@
 //! - for a receiver outside a whole, undistorted sphere, evenly in the cone that it is seen in:
 //!   cosθ / (d² 2π (1 - cosθ_max)) [PBRT4, §6.2.4]. All others are drawn by area.
 
-use super::{Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint};
+use super::{
+    Differentials, Orientation, Place, Placement, ShapeSample, SurfacePoint, azimuth_part,
+};
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 
 /// The part of a sphere with z in `[z_min, z_max]` and azimuth below `phi_max`, in its own space,
@@ -223,14 +225,17 @@ impl Sphere {
         cos / (distance2 * 2.0 * PI * height)
     }
 
+    pub(super) fn parameters_at(&self, p: Vec3) -> Vec2 {
+        let local = self.placement.local_from_world.transform_point3(p);
+        self.parameters(local.normalize_or(Vec3::Z))
+    }
+
     /// (u, v) of the point with unit local normal `n`, as the intersector gives them.
     fn parameters(&self, n: Vec3) -> Vec2 {
-        let phi = libm::atan2f(n.y, n.x);
-        let phi = if phi < 0.0 { phi + 2.0 * PI } else { phi };
         let theta = |z: f32| libm::acosf((z / self.radius).clamp(-1.0, 1.0));
         let (bottom, top) = (theta(self.z_min), theta(self.z_max));
         let v = (theta(n.z * self.radius) - bottom) / (top - bottom);
         // Rounding may leave the unit square.
-        Vec2::new(phi / self.phi_max, v).clamp(Vec2::ZERO, Vec2::ONE)
+        Vec2::new(azimuth_part(n, self.phi_max), v.clamp(0.0, 1.0))
     }
 }

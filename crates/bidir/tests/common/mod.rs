@@ -199,6 +199,7 @@ pub(crate) fn add_walls(builder: &mut SceneBuilder, material: MaterialId) {
 pub(crate) fn emission(radiance: Rgb) -> Option<Emission> {
     Some(Emission {
         radiance,
+        pattern: None,
         sides: EmissionSides::Front,
     })
 }

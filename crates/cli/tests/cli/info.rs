@@ -21,6 +21,29 @@ fn a_scene_is_described() {
 }
 
 #[test]
+fn light_paths_that_no_strategy_makes_are_told() {
+    let place = Workplace::new();
+    let glass = crate::common::SCENE.replace(
+        "WorldBegin",
+        "WorldBegin\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .01\n",
+    );
+    place.write("glass.pbrt", &glass);
+    place
+        .run("info glass.pbrt")
+        .expect(0)
+        .prints("bdpt         misses points, spots")
+        .prints("bdpt         finds by chance only caustics")
+        .prints("path         misses light of points")
+        .prints("light        misses everything seen in mirrors");
+    place
+        .run("info room.pbrt")
+        .expect(0)
+        .prints("bdpt         sees all light paths");
+    let info = place.run("info glass.pbrt --json").expect(0).json();
+    assert_eq!(info["blind_spots"]["bdpt"][0]["missing"], true);
+}
+
+#[test]
 fn what_is_odd_is_warned_of() {
     let place = Workplace::new();
     place.write(

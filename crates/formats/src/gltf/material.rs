@@ -115,6 +115,7 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
         diffuse.and_then(|diffuse| diffuse.diffuse_transmission_texture.as_ref()),
         diffuse.and_then(|diffuse| diffuse.diffuse_transmission_color_texture.as_ref()),
         anisotropy.and_then(|anisotropy| anisotropy.anisotropy_texture.as_ref()),
+        described.emissive_texture.as_ref(),
     ];
     all.into_iter().flatten().collect()
 }
@@ -351,7 +352,7 @@ impl Reader<'_, '_> {
             .and_then(|strength| strength.emissive_strength)
             .unwrap_or(1.0);
         let factor = self.described.emissive_factor.unwrap_or_default();
-        let mut radiance = factor.map(|channel| channel * strength);
+        let radiance = factor.map(|channel| channel * strength);
         if radiance
             .iter()
             .any(|channel| !channel.is_finite() || *channel < 0.0)
@@ -362,18 +363,23 @@ impl Reader<'_, '_> {
         if radiance.iter().all(|&channel| channel <= 0.0) {
             return Ok(None);
         }
-        if let Some(info) = &self.described.emissive_texture {
-            let mean = mean(&self.image(info, Encoding::Srgb)?);
-            radiance = std::array::from_fn(|i| radiance[i] * mean[i]);
-            let message = "the emissive texture is taken as its mean colour";
-            self.context.warn(&self.place, message);
+        let pattern = self.described.emissive_texture.as_ref();
+        let pattern = pattern.map(|info| self.image(info, Encoding::Srgb));
+        let pattern = pattern.transpose()?;
+        // Lamps cost time even where they are dark: what is black all over is none.
+        if pattern.as_ref().is_some_and(is_black) {
+            return Ok(None);
         }
         let sides = if self.described.double_sided {
             EmissionSides::Both
         } else {
             EmissionSides::Front
         };
-        Ok(Some(Emission { radiance, sides }))
+        Ok(Some(Emission {
+            radiance,
+            pattern,
+            sides,
+        }))
     }
 
     /// How much of the surface is there, with vertices of alpha `vertex`.
@@ -402,14 +408,11 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The mean of a texture's texels.
-fn mean(texture: &ColorTexture) -> Rgb {
+/// True for an image of black texels.
+fn is_black(texture: &ColorTexture) -> bool {
     let ColorTexture::Image(map) = texture else {
-        return [1.0; 3];
+        return false;
     };
-    let texels = map.image.texels();
-    std::array::from_fn(|k| {
-        let sum: f64 = texels.iter().map(|texel| f64::from(texel[k])).sum();
-        (sum / texels.len() as f64) as f32
-    })
+    let mut channels = map.image.texels().iter().flatten();
+    channels.all(|&channel| channel <= 0.0)
 }

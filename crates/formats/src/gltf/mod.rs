@@ -317,9 +317,10 @@ impl<'a> Assembly<'a> {
         self.count(&shape, place)?;
         self.include(&shape, &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
+        let shape = Shape::Mesh(shape);
         let number = self
             .builder
-            .shape(Shape::Mesh(shape), material.id, material.emission);
+            .shape(shape, material.id, material.emission.clone());
         self.shape_places.push(place.clone());
         if let Some(coverage) = &material.coverage {
             self.builder.coverage(number, coverage.clone());

@@ -152,6 +152,7 @@ fn room(albedo: f32) -> Result<Scene, SceneError> {
     }
     let emission = Emission {
         radiance: [10.0; 3],
+        pattern: None,
         sides: EmissionSides::Front,
     };
     let light = parallelogram(Vec3::new(-0.5, 1.99, -0.5), Vec3::X, Vec3::Z);

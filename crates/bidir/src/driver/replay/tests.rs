@@ -37,6 +37,7 @@ fn scene() -> Scene {
     sphere(0.7, -0.3, 0.6, None);
     let light = Emission {
         radiance: [5.0, 6.0, 7.0],
+        pattern: None,
         sides: EmissionSides::Front,
     };
     sphere(0.6, 0.7, 0.2, Some(light));

@@ -145,7 +145,7 @@ fn environments_are_drawn_by_luminance() {
     let cross_section = PI * sqr(context.radius);
     for sample in samples("luminance", 2000) {
         let at = LightPoint::at_infinity(warp::uniform_sphere(numbers(&sample).0));
-        let expected = luminance(light.emitted(&at, -at.point)) * cross_section;
+        let expected = luminance(light.emitted(&context, &at, -at.point)) * cross_section;
         let power = light.power(&context);
         check_close(
             light.pdf_position(&context, &at),

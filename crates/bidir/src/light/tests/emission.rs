@@ -29,10 +29,11 @@ fn check_emission(light: &Light, context: &LightContext<'_>, drawn: &EmissionSam
     } else {
         1.0
     };
-    for (with_cos, emitted) in drawn
-        .emitted_cos
-        .iter()
-        .zip(light.emitted(at, drawn.direction))
+    for (with_cos, emitted) in
+        drawn
+            .emitted_cos
+            .iter()
+            .zip(light.emitted(context, at, drawn.direction))
     {
         check_close(*with_cos, emitted * cos, 1e-4, case);
     }
@@ -118,7 +119,7 @@ fn sides_that_do_not_emit_are_dark() {
             .sample_next_event(&context, Vec3::ZERO, Vec2::splat(0.3))
             .unwrap();
         let at = &drawn.at;
-        let bright = |w: Vec3| light.emitted(at, w)[1] > 0.0;
+        let bright = |w: Vec3| light.emitted(&context, at, w)[1] > 0.0;
         let drawable = |w: Vec3| light.pdf_direction(&context, at, w) > 0.0;
         assert!(bright(at.n_g) && drawable(at.n_g), "{name}");
         let both = name.ends_with("both sides");

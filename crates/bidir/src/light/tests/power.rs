@@ -19,7 +19,13 @@ fn power_is_the_flux_of_the_rays() {
                 emitted / f64::from(drawn.pdf_direction * drawn.from.pdf)
             })
         });
-        battery.mean(name, flux, f64::from(light.power(&context)));
+        if name.starts_with("patterned") {
+            // An estimate, by which lights are chosen and nothing else.
+            let mean = flux.sum::<f64>() / f64::from(1 << 20);
+            check_close(light.power(&context), mean as f32, 0.01, name);
+        } else {
+            battery.mean(name, flux, f64::from(light.power(&context)));
+        }
     }
     battery.check();
 }

@@ -247,9 +247,35 @@ fn emission_is_of_the_front_unless_both_sides_are_asked_for() {
             n_g: Vec3::Z,
             ..LightPoint::in_space(Vec3::ZERO)
         };
-        assert_eq!(light.emitted(&at, Vec3::Z), [4.0, 8.0, 0.0]);
-        assert_eq!(light.emitted(&at, -Vec3::Z)[1], behind);
+        let context = loaded.scene.light_context();
+        assert_eq!(light.emitted(&context, &at, Vec3::Z), [4.0, 8.0, 0.0]);
+        assert_eq!(light.emitted(&context, &at, -Vec3::Z)[1], behind);
     }
+}
+
+#[test]
+fn emissive_textures_are_pictures_that_shine() {
+    let mut draft = textured();
+    let texture = json!({ "index": 0 });
+    draft.json["materials"] = json!([{ "emissiveFactor": [2, 3, 4], "emissiveTexture": texture }]);
+    let loaded = draft.load().unwrap();
+    for ([x, y], expected) in [
+        ([0.1, 0.1], [2.0, 0.0, 0.0]),
+        ([0.8, 0.1], [0.0, 3.0, 0.0]),
+        ([0.1, 0.8], [0.0, 0.0, 4.0]),
+    ] {
+        let at = LightPoint {
+            n_g: Vec3::Z,
+            ..LightPoint::in_space(Vec3::new(x, y, 0.0))
+        };
+        let context = loaded.scene.light_context();
+        let found = loaded.scene.light(0).emitted(&context, &at, Vec3::Z);
+        assert_eq!(found, expected);
+    }
+    // A picture that is black all over is no lamp.
+    let view = draft.view(&encode_png([1, 1], &[[0.0; 3]]).unwrap());
+    draft.json["images"] = json!([{ "bufferView": view, "mimeType": "image/png" }]);
+    assert_eq!(draft.load().unwrap().summary.area_lights, 0);
 }
 
 #[test]
@@ -272,12 +298,14 @@ fn punctual_lights_shine_along_minus_z_of_their_node() {
     let spot = json!({ "type": "spot", "spot": { "innerConeAngle": 0.2, "outerConeAngle": 0.8 } });
     let light = lights(spot, &mut draft);
     let at = LightPoint::in_space(Vec3::ZERO);
+    let loaded = draft.load().unwrap();
+    let context = loaded.scene.light_context();
     for angle in [0.1f32, 0.4, 0.6, 0.9] {
         let w = Vec3::new(libm::sinf(angle), 0.0, libm::cosf(angle));
         let [inner, outer] = [0.2f32, 0.8].map(libm::cosf);
         let linear = ((libm::cosf(angle) - outer) / (inner - outer)).clamp(0.0, 1.0);
         assert!(
-            (light.emitted(&at, w)[0] - linear * linear).abs() < 1e-5,
+            (light.emitted(&context, &at, w)[0] - linear * linear).abs() < 1e-5,
             "{angle}"
         );
     }

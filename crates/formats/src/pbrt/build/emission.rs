@@ -3,19 +3,24 @@
 use super::color::{self, Purpose};
 use super::context::Context;
 use super::group;
+use super::light;
 use super::reader::Reader;
-use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use bidir::light::EmissionSides;
 use bidir::math::PI;
 use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
+use bidir::spectrum::luminance;
+use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
+use std::sync::Arc;
 
 /// What an area light says about emission.
 #[derive(Clone)]
 pub(super) struct AreaEmission {
     radiance: [f32; 3],
+    /// What it is multiplied by over the surface's parameters, with the mean luminance.
+    pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
     /// What each primitive emits in all. None: the radiance is as given.
     power: Option<f32>,
@@ -35,13 +40,17 @@ impl AreaEmission {
         } else {
             EmissionSides::Front
         };
-        let image = (ParameterType::String, "filename");
-        reader.unsupported(context, image, "the light is even")?;
+        let pattern = pattern(context, &mut reader)?;
+        if radiance.is_some() && pattern.is_some() {
+            let message = "an area light has `L` or `filename`, not both";
+            return Err(Fault::scene(reader.span(), message));
+        }
         let group = group::read(&mut reader)?;
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
         Ok(Self {
             radiance,
+            pattern,
             sides,
             power,
             group,
@@ -62,8 +71,9 @@ impl AreaEmission {
                 let area: f32 = (0..shape.primitive_count())
                     .map(|i| shape.primitive_area(i))
                     .sum();
-                let factor = power / (area * PI * sides);
-                // A triangle without area emits nothing, whatever its radiance.
+                let mean = self.pattern.as_ref().map_or(1.0, |(_, mean)| *mean);
+                let factor = power / (area * PI * sides * mean);
+                // A triangle without area, or an image without light, emits nothing, whatever its radiance.
                 if factor.is_finite() { factor } else { 0.0 }
             }
             None => 1.0,
@@ -72,6 +82,7 @@ impl AreaEmission {
         let radiance = color::check_emission(self.span, radiance)?;
         Ok(Emission {
             radiance,
+            pattern: self.pattern.as_ref().map(|(pattern, _)| pattern.clone()),
             sides: self.sides,
         })
     }
@@ -83,6 +94,30 @@ impl AreaEmission {
             (_, shape) => vec![shape],
         }
     }
+}
+
+/// The image of a light, laid over its shape. None: it is even.
+fn pattern(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+) -> Result<Option<(ColorTexture, f32)>, Fault> {
+    let Some((name, span)) = reader.string("filename")? else {
+        return Ok(None);
+    };
+    let image = light::radiance_image(context, name, span)?;
+    let texels = image.texels().iter().copied();
+    let brightest = texels.clone().flatten().fold(0.0, f32::max);
+    color::check_emission(span, [brightest; 3])?;
+    let sum: f64 = texels.map(|texel| f64::from(luminance(texel))).sum();
+    let mean = sum / image.texels().len() as f64;
+    let pattern = ColorTexture::Image(Arc::new(ImageMap {
+        image: Arc::new(image),
+        wrap: Wrap::all(Beyond::Clamp),
+        filter: ImageFilter::Bilinear,
+        change: Change::Scale(1.0),
+        mapping: Mapping::IDENTITY,
+    }));
+    Ok(Some((pattern, mean as f32)))
 }
 
 /// A mesh for every triangle.

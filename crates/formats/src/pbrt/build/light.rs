@@ -162,15 +162,25 @@ fn infinite(
 
 /// Reads an equal-area image of the sphere.
 fn environment(context: &mut Context<'_>, name: &str, span: Span) -> Result<Image<3>, Fault> {
-    let path = context.description.resolve(name);
-    let data = context.read_image(&path, None, span)?;
-    if data.width != data.height {
-        let (width, height) = (data.width, data.height);
+    let image = radiance_image(context, name, span)?;
+    let (width, height) = (image.width(), image.height());
+    if width != height {
         let message =
             format!("an environment is a square image, this one has {width} × {height} pixels");
         let hint = "convert longitude and latitude with `imgtool makeequiarea`";
         return Err(Fault::scene(span, message).with_hint(hint));
     }
+    Ok(image)
+}
+
+/// Reads an image of radiance.
+pub(super) fn radiance_image(
+    context: &mut Context<'_>,
+    name: &str,
+    span: Span,
+) -> Result<Image<3>, Fault> {
+    let path = context.description.resolve(name);
+    let data = context.read_image(&path, None, span)?;
     let is_radiance = |&channel: &f32| channel.is_finite() && channel >= 0.0;
     let mut texels: Vec<Rgb> = data.rgb().collect();
     let replaced = texels

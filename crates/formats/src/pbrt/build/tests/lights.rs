@@ -49,7 +49,7 @@ fn lights_stand_where_they_are_put() {
     assert!((spot.power(&scene.light_context()) - 10.0).abs() < 1e-3);
     assert_eq!((distant.to_light, distant.irradiance), (Vec3::Y, [4.0; 3]));
     let at = LightPoint::at_infinity(Vec3::Z);
-    let radiance = luminance(infinite.emitted(&at, -Vec3::Z));
+    let radiance = luminance(infinite.emitted(&scene.light_context(), &at, -Vec3::Z));
     assert!((radiance * std::f32::consts::PI - 2.0).abs() < 1e-5);
 }
 
@@ -86,7 +86,9 @@ fn environments_are_square_and_their_numbers_checked() {
     );
     let loaded = load("square.exr").unwrap();
     let at = LightPoint::at_infinity(Vec3::X);
-    let radiance = Vec3::from(loaded.scene.lights()[0].emitted(&at, -Vec3::X));
+    let scene = &loaded.scene;
+    let radiance = scene.lights()[0].emitted(&scene.light_context(), &at, -Vec3::X);
+    let radiance = Vec3::from(radiance);
     assert_eq!(radiance, Vec3::new(2.0, 0.0, 0.0));
     assert!(loaded.warnings[0].ends_with("2 numbers of the image are no radiance and taken as 0"));
 }

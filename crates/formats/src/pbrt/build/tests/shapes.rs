@@ -109,7 +109,7 @@ fn emits_to_the_front(world_text: &str) -> bool {
     let shape = &scene.shapes()[0];
     let surface = shape.surface_point(0, Vec2::splat(0.3), at.point);
     assert!(surface.n_g.dot(at.n_g) > 0.0);
-    let radiance = |w: Vec3| light.emitted(&at, w)[0] > 0.0;
+    let radiance = |w: Vec3| light.emitted(&lights, &at, w)[0] > 0.0;
     assert!(radiance(sample.direction) && !radiance(-sample.direction));
     match shape {
         Shape::Sphere(_) => sample.direction.dot(at.point) > 0.0,

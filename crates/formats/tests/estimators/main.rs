@@ -1,114 +1,20 @@
 //! All estimators agree with the path tracer on the torture scenes, each of which is after one way
 //! to be wrong. The scenes are the project's own, in `scenes/torture`.
+//!
+//! Here are those that need comparisons of their own; `matrix` has every integrator with every choice
+//! of shadow rays on all scenes.
 
-#[path = "../../bidir/tests/common/statistics/mod.rs"]
+mod case;
+mod matrix;
+
+#[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
 
-use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, PathSettings};
-use bidir::scene::Scene;
-use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
-use statistics::{Replicates, WHOLE, check_agree, replicates};
-use std::path::Path;
-
-/// Few pixels with many samples each: then the mean of a pixel is close to normal.
-const RESOLUTION: [u32; 2] = [16, 16];
-/// The film's mean and every pixel are compared.
-const PIXELS: &[usize] = &[WHOLE, 1];
-/// For estimators whose pixels have heavy tails: the film's mean and its quarters.
-const QUARTERS: &[usize] = &[WHOLE, 8];
-
-/// A scene, the limit of depth that its file asks for, and the passes of all replicates.
-#[derive(Clone, Copy)]
-struct Case<'a> {
-    scene: &'a Scene,
-    max_depth: u32,
-    passes: u64,
-}
-
-fn open(name: &str) -> Loaded {
-    open_part(name, None)
-}
-
-fn open_part(name: &str, crop: Option<Crop>) -> Loaded {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../scenes/torture")
-        .join(name);
-    let options = LoadOptions {
-        resolution: Some(RESOLUTION),
-        crop,
-        ..LoadOptions::default()
-    };
-    load(&file, &options).expect("the project's scenes are valid")
-}
-
-impl<'a> Case<'a> {
-    fn new(loaded: &'a Loaded, passes: u64) -> Self {
-        Self {
-            scene: &loaded.scene,
-            max_depth: loaded.settings.max_depth,
-            passes,
-        }
-    }
-
-    /// The case with `factor` times as many passes, for an estimator of more variance.
-    fn with_effort(self, factor: u64) -> Self {
-        Self {
-            passes: self.passes * factor,
-            ..self
-        }
-    }
-
-    /// Renders with settings changed by `change`. The path tracer is cheap and gets more passes.
-    fn render(&self, integrator: IntegratorKind, change: impl Fn(&mut Settings)) -> Replicates {
-        let path = PathSettings {
-            max_depth: Some(self.max_depth),
-            ..PathSettings::default()
-        };
-        let mut settings = Settings {
-            integrator,
-            path,
-            ..Settings::default()
-        };
-        change(&mut settings);
-        let passes = match integrator {
-            IntegratorKind::Path | IntegratorKind::Light => 2 * self.passes,
-            IntegratorKind::Bdpt => self.passes,
-        };
-        replicates(self.scene, &settings, passes)
-    }
-
-    fn bdpt(&self, change: impl Fn(&mut Settings)) -> Replicates {
-        self.render(IntegratorKind::Bdpt, change)
-    }
-
-    fn path(&self) -> Replicates {
-        self.render(IntegratorKind::Path, |_| ())
-    }
-
-    /// Compares the bidirectional path tracer with the path tracer's result.
-    #[track_caller]
-    fn check_bdpt(&self, reference: &Replicates) {
-        check_agree("bdpt", &self.bdpt(|_| ()), reference, PIXELS);
-    }
-
-    /// Compares the light tracer with the path tracer's result.
-    #[track_caller]
-    fn check_light(&self, reference: &Replicates) {
-        let light = self.render(IntegratorKind::Light, |_| ());
-        check_agree("light", &light, reference, QUARTERS);
-    }
-
-    /// Compares all three estimators, and returns the path tracer's result.
-    #[track_caller]
-    fn check_all(&self) -> Replicates {
-        let reference = self.path();
-        self.check_bdpt(&reference);
-        self.check_light(&reference);
-        reference
-    }
-}
+use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette};
+use bidir_formats::pbrt::Crop;
+use case::{Case, PIXELS, QUARTERS, open, open_part};
+use statistics::check_agree;
 
 #[test]
 fn glass_smooth_and_rough() {

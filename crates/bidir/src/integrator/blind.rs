@@ -1,0 +1,151 @@
+//! What estimators cannot see: light paths that none of their strategies makes, and those that only
+//! chance finds.
+//!
+//! In Heckbert's words, with S for a Dirac scattering, D for any other, L for a light and E for the
+//! camera [Heckbert90]: a connection needs two neighbours without S. A light that no ray can hit, a
+//! point or a direction, is therefore never seen along L S+ E nor, by a bidirectional estimator,
+//! along L S+ D S+ E; next-event estimation alone already loses L S+ D. Lights that rays can hit are
+//! found there by hits alone, the rarer the smaller the light is.
+
+use super::IntegratorKind;
+use crate::bsdf::{Bsdf, TransportMode};
+use crate::camera::Camera;
+use crate::light::Light;
+use crate::material::Material;
+use crate::math::{Vec2, Vec3};
+use crate::scene::Scene;
+use crate::spectrum::Wavelengths;
+use crate::texture::TexturePoint;
+
+/// Light paths of a scene that an estimator does not make, or makes by chance only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlindSpot {
+    /// L S+ D of lights that no ray hits.
+    Caustics,
+    /// L S+ E and L S+ D S+ E of lights that no ray hits.
+    CausticsSeenBySpecular,
+    /// S E: whatever is seen in mirrors or through clear glass.
+    SeenBySpecular,
+    /// L E of a sky that parallel rays see.
+    Sky,
+    /// L S+ D of lights that rays hit: by hits alone.
+    ChanceCaustics,
+    /// L S+ D S+ E of lights that rays hit: by hits alone.
+    ChanceCausticsSeenBySpecular,
+}
+
+impl BlindSpot {
+    /// True where the light is missing from pictures, and not only noisy.
+    pub const fn is_missing(self) -> bool {
+        match self {
+            Self::Caustics | Self::CausticsSeenBySpecular | Self::SeenBySpecular | Self::Sky => {
+                true
+            }
+            Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => false,
+        }
+    }
+
+    /// What it is, as a phrase.
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Caustics => {
+                "light of points, spots, distant and hidden lamps by mirrors or clear glass, on any \
+                 surface (L S+ D)"
+            }
+            Self::CausticsSeenBySpecular => {
+                "points, spots, distant and hidden lamps themselves in mirrors or clear glass (L S+ E), \
+                 and the caustics of their light seen in such (L S+ D S+ E)"
+            }
+            Self::SeenBySpecular => "everything seen in mirrors or through clear glass (S E)",
+            Self::Sky => "the sky itself, as parallel rays see it (L E)",
+            Self::ChanceCaustics => {
+                "light of lamps and skies by mirrors or clear glass on other surfaces (L S+ D)"
+            }
+            Self::ChanceCausticsSeenBySpecular => {
+                "caustics of lamps and skies seen in mirrors or through clear glass (L S+ D S+ E)"
+            }
+        }
+    }
+}
+
+/// How a material scatters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lobes {
+    /// By Dirac distributions.
+    pub has_dirac: bool,
+    /// In other ways.
+    pub has_spread: bool,
+}
+
+/// The blind spots of an estimator with all its strategies, in a scene.
+pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> {
+    let lights = scene.lights();
+    let has_specular = scene
+        .materials()
+        .iter()
+        .any(|material| lobes(scene, material).has_dirac);
+    let of_specular: &[(bool, BlindSpot)] = match integrator {
+        IntegratorKind::Path => &[
+            (true, BlindSpot::Caustics),
+            (false, BlindSpot::ChanceCaustics),
+        ],
+        IntegratorKind::Bdpt => &[
+            (true, BlindSpot::CausticsSeenBySpecular),
+            (false, BlindSpot::ChanceCausticsSeenBySpecular),
+        ],
+        IntegratorKind::Light => &[],
+    };
+    let has_light = |is_delta| lights.iter().any(|light| light.is_delta() == is_delta);
+    let mut spots: Vec<_> = of_specular
+        .iter()
+        .filter(|(is_delta, _)| has_specular && has_light(*is_delta))
+        .map(|(_, spot)| *spot)
+        .collect();
+    if integrator == IntegratorKind::Light {
+        let has_sky = lights
+            .iter()
+            .any(|light| matches!(light, Light::Infinite(_)));
+        let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
+        spots.extend(has_specular.then_some(BlindSpot::SeenBySpecular));
+        spots.extend((has_sky && is_parallel).then_some(BlindSpot::Sky));
+    }
+    spots
+}
+
+/// Points of a texture that are asked, along each side.
+const POINTS: usize = 8;
+
+/// How a material scatters anywhere, as far as some points of its textures tell.
+pub fn lobes(scene: &Scene, material: &Material) -> Lobes {
+    let mut lobes = Lobes::default();
+    for i in 0..POINTS * POINTS {
+        let uv = Vec2::new((i % POINTS) as f32, (i / POINTS) as f32) + 0.5;
+        let at = TexturePoint::of_parameters(uv / POINTS as f32);
+        for part in [0.01, 0.5, 0.99] {
+            let material = material.choose(&at, || part);
+            let wavelengths: Wavelengths = scene.color().sample_wavelengths(0.5);
+            lobes.add(&material.bsdf(&at, scene.color(), &wavelengths));
+        }
+    }
+    lobes
+}
+
+impl Lobes {
+    /// Counts what a few draws find.
+    fn add(&mut self, bsdf: &Bsdf) {
+        let directions = [0.9f32, 0.3, -0.9, -0.3].map(|z| Vec3::new((1.0 - z * z).sqrt(), 0.0, z));
+        for wo in directions {
+            for step in 0..8 {
+                let u_lobe = (step as f32 + 0.5) / 8.0;
+                let drawn = bsdf.sample(wo, TransportMode::Radiance, u_lobe, Vec2::splat(0.37));
+                if let Some(drawn) = drawn {
+                    self.has_dirac |= drawn.is_delta;
+                    self.has_spread |= !drawn.is_delta;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,102 @@
+//! Blind spots against what the estimators make of small scenes.
+
+use super::*;
+use crate::camera::{Perspective, PerspectiveSettings};
+use crate::film::{FilmSettings, Filter};
+use crate::light::{InfiniteLight, PointLight};
+use crate::material::{ConductorIndex, Roughness};
+use crate::math::Affine3A;
+use crate::scene::SceneBuilder;
+use crate::texture::{ColorTexture, FloatTexture};
+
+fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
+    let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
+    let camera = Perspective::new(&PerspectiveSettings {
+        world_from_camera: Affine3A::IDENTITY,
+        resolution: Vec2::ONE,
+        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+        lens_radius: 0.0,
+        focal_distance: 1.0,
+    });
+    builder.camera(Camera::Perspective(camera.unwrap()));
+    for material in materials {
+        builder.material(material.clone());
+    }
+    for light in lights {
+        builder.light(light);
+    }
+    builder.build().unwrap()
+}
+
+fn diffuse() -> Material {
+    Material::Diffuse {
+        reflectance: ColorTexture::Constant([0.5; 3]),
+    }
+}
+
+fn metal(roughness: f32) -> Material {
+    Material::Conductor {
+        index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
+        roughness: Roughness {
+            u: FloatTexture::Constant(roughness),
+            v: FloatTexture::Constant(roughness),
+            ..Roughness::SMOOTH
+        },
+    }
+}
+
+fn point() -> Light {
+    Light::Point(PointLight {
+        position: Vec3::ZERO,
+        intensity: [1.0; 3],
+    })
+}
+
+fn sky() -> Light {
+    Light::Infinite(InfiniteLight::constant([1.0; 3]))
+}
+
+#[test]
+fn where_nothing_is_specular_all_is_seen() {
+    let scene = scene(&[diffuse(), metal(0.2)], vec![point(), sky()]);
+    for (_, integrator) in IntegratorKind::NAMES {
+        assert_eq!(blind_spots(&scene, integrator), []);
+    }
+}
+
+#[test]
+fn lights_that_rays_hit_are_noisy_where_others_are_missing() {
+    use BlindSpot::{
+        Caustics, CausticsSeenBySpecular, ChanceCaustics, ChanceCausticsSeenBySpecular,
+        SeenBySpecular,
+    };
+    let both = scene(&[diffuse(), metal(0.0)], vec![point(), sky()]);
+    let of = |integrator| blind_spots(&both, integrator);
+    assert_eq!(of(IntegratorKind::Path), [Caustics, ChanceCaustics]);
+    assert_eq!(of(IntegratorKind::Light), [SeenBySpecular]);
+    let bidirectional = [CausticsSeenBySpecular, ChanceCausticsSeenBySpecular];
+    assert_eq!(of(IntegratorKind::Bdpt), bidirectional);
+    let lit_by_sky = scene(&[metal(0.0)], vec![sky()]);
+    assert_eq!(
+        blind_spots(&lit_by_sky, IntegratorKind::Bdpt),
+        [ChanceCausticsSeenBySpecular]
+    );
+    assert!(Caustics.is_missing() && !ChanceCaustics.is_missing());
+}
+
+#[test]
+fn lobes_are_found_in_parts_of_materials() {
+    let scene = scene(&[], vec![]);
+    let of = |material: &Material| {
+        let lobes = lobes(&scene, material);
+        (lobes.has_dirac, lobes.has_spread)
+    };
+    assert_eq!(of(&diffuse()), (false, true));
+    assert_eq!(of(&metal(0.0)), (true, false));
+    assert_eq!(of(&Material::ThinDielectric { eta: 1.5 }), (true, false));
+    let mixture = crate::material::Mixture {
+        materials: [diffuse(), metal(0.0)],
+        amount: FloatTexture::Constant(0.2),
+    };
+    assert_eq!(of(&Material::Mix(mixture.into())), (true, true));
+}

@@ -1,0 +1,111 @@
+//! A torture scene and how much is spent on it.
+
+use crate::statistics::{Replicates, WHOLE, check_agree, replicates};
+use bidir::driver::Settings;
+use bidir::integrator::IntegratorKind;
+use bidir::path::PathSettings;
+use bidir::scene::Scene;
+use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
+use std::path::Path;
+
+/// Few pixels with many samples each: then the mean of a pixel is close to normal.
+const RESOLUTION: [u32; 2] = [16, 16];
+/// The film's mean and every pixel are compared.
+pub(crate) const PIXELS: &[usize] = &[WHOLE, 1];
+/// For estimators whose pixels have heavy tails: the film's mean and its quarters.
+pub(crate) const QUARTERS: &[usize] = &[WHOLE, 8];
+
+/// A scene, the limit of depth that its file asks for, and the passes of all replicates.
+#[derive(Clone, Copy)]
+pub(crate) struct Case<'a> {
+    scene: &'a Scene,
+    max_depth: u32,
+    passes: u64,
+}
+
+pub(crate) fn open(name: &str) -> Loaded {
+    open_part(name, None)
+}
+
+pub(crate) fn open_part(name: &str, crop: Option<Crop>) -> Loaded {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenes/torture")
+        .join(name);
+    let options = LoadOptions {
+        resolution: Some(RESOLUTION),
+        crop,
+        ..LoadOptions::default()
+    };
+    load(&file, &options).expect("the project's scenes are valid")
+}
+
+impl<'a> Case<'a> {
+    pub(crate) fn new(loaded: &'a Loaded, passes: u64) -> Self {
+        Self {
+            scene: &loaded.scene,
+            max_depth: loaded.settings.max_depth,
+            passes,
+        }
+    }
+
+    /// The case with `factor` times as many passes, for an estimator of more variance.
+    pub(crate) fn with_effort(self, factor: u64) -> Self {
+        Self {
+            passes: self.passes * factor,
+            ..self
+        }
+    }
+
+    /// Renders with settings changed by `change`. The path tracer is cheap and gets more passes.
+    pub(crate) fn render(
+        &self,
+        integrator: IntegratorKind,
+        change: impl Fn(&mut Settings),
+    ) -> Replicates {
+        let path = PathSettings {
+            max_depth: Some(self.max_depth),
+            ..PathSettings::default()
+        };
+        let mut settings = Settings {
+            integrator,
+            path,
+            ..Settings::default()
+        };
+        change(&mut settings);
+        let passes = match integrator {
+            IntegratorKind::Path | IntegratorKind::Light => 2 * self.passes,
+            IntegratorKind::Bdpt => self.passes,
+        };
+        replicates(self.scene, &settings, passes)
+    }
+
+    pub(crate) fn bdpt(&self, change: impl Fn(&mut Settings)) -> Replicates {
+        self.render(IntegratorKind::Bdpt, change)
+    }
+
+    pub(crate) fn path(&self) -> Replicates {
+        self.render(IntegratorKind::Path, |_| ())
+    }
+
+    /// Compares the bidirectional path tracer with the path tracer's result.
+    #[track_caller]
+    pub(crate) fn check_bdpt(&self, reference: &Replicates) {
+        check_agree("bdpt", &self.bdpt(|_| ()), reference, PIXELS);
+    }
+
+    /// Compares the light tracer with the path tracer's result.
+    #[track_caller]
+    pub(crate) fn check_light(&self, reference: &Replicates) {
+        let light = self.render(IntegratorKind::Light, |_| ());
+        check_agree("light", &light, reference, QUARTERS);
+    }
+
+    /// Compares all three estimators, and returns the path tracer's result.
+    #[track_caller]
+    pub(crate) fn check_all(&self) -> Replicates {
+        let reference = self.path();
+        self.check_bdpt(&reference);
+        self.check_light(&reference);
+        reference
+    }
+}

@@ -1,0 +1,172 @@
+//! Every integrator with every choice of shadow rays, on every scene: a part of it always, all of it at
+//! night.
+
+use crate::case::{Case, PIXELS, QUARTERS, open};
+use crate::statistics::{Replicates, check_agree};
+use bidir::integrator::IntegratorKind;
+
+/// The rules of `--shadow-rays`.
+const RULES: [&str; 6] = [
+    "all",
+    "per-light-vertex",
+    "per-camera-vertex",
+    "per-pair",
+    "ray-roulette",
+    "budget:2",
+];
+
+/// A scene of `scenes/torture`.
+struct World {
+    name: &'static str,
+    /// Of the bidirectional path tracer; the path tracer takes `effort` times as many twice.
+    passes: u64,
+    effort: u64,
+    light: Light,
+}
+
+/// What the light tracer makes of a scene.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Light {
+    /// All of the picture, with this many times the passes.
+    Whole(u64),
+    /// Not all of it: something is seen by Dirac lobes, or only the camera's own rays see it.
+    Partial,
+}
+
+const fn world(name: &'static str, [passes, effort]: [u64; 2], light: Light) -> World {
+    World {
+        name,
+        passes,
+        effort,
+        light,
+    }
+}
+
+/// Those that no other test is about.
+const WORLDS: [World; 8] = [
+    world("picture-lamp", [512, 2], Light::Whole(2)),
+    world("sky-alone", [512, 2], Light::Whole(16)),
+    world("within-glass", [512, 2], Light::Partial),
+    world("bulb", [1024, 4], Light::Partial),
+    world("narrow-spot", [768, 12], Light::Whole(2)),
+    world("shapes", [768, 2], Light::Whole(2)),
+    world("leaves", [512, 3], Light::Whole(2)),
+    world("empty-sky", [256, 1], Light::Whole(12)),
+];
+
+/// Those that have tests of their own, and are in the matrix at night.
+const OTHERS: [World; 13] = [
+    world("conductor", [4608, 1], Light::Partial),
+    world("crop", [9216, 1], Light::Whole(2)),
+    world("glass", [4608, 1], Light::Partial),
+    world("lens", [3072, 2], Light::Whole(2)),
+    world("lights", [6912, 1], Light::Whole(2)),
+    world("mirror", [1536, 1], Light::Whole(2)),
+    world("parallel", [2304, 1], Light::Partial),
+    world("around-longitude", [2304, 1], Light::Whole(2)),
+    world("around-octahedron", [2304, 1], Light::Whole(2)),
+    world("red-light-blue-surfaces", [768, 4], Light::Whole(2)),
+    world("scale-tiny", [768, 2], Light::Whole(2)),
+    world("shading-normal", [2304, 1], Light::Whole(2)),
+    world("touching", [1024, 1], Light::Whole(2)),
+];
+
+impl World {
+    /// Compares the bidirectional path tracer under each of `rules`, and the light tracer where it
+    /// sees all, with the path tracer.
+    #[track_caller]
+    fn check(&self, rules: impl IntoIterator<Item = &'static str>) {
+        let loaded = open(&format!("{}.pbrt", self.name));
+        let case = Case::new(&loaded, self.passes);
+        let reference = case.with_effort(self.effort).path();
+        for rule in rules {
+            self.check_rule(&case, rule, &reference);
+        }
+        if let Light::Whole(effort) = self.light {
+            let light = case
+                .with_effort(effort)
+                .render(IntegratorKind::Light, |_| ());
+            let name = format!("{}, light", self.name);
+            check_agree(&name, &light, &reference, QUARTERS);
+        }
+    }
+
+    #[track_caller]
+    fn check_rule(&self, case: &Case<'_>, rule: &str, reference: &Replicates) {
+        let result = case.bdpt(|settings| settings.shadow_rays = rule.parse().expect("a rule"));
+        let name = format!("{}, {rule}", self.name);
+        let blocks = if rule == "all" { PIXELS } else { QUARTERS };
+        check_agree(&name, &result, reference, blocks);
+    }
+}
+
+/// A scene with all shadow rays, and with one of the other rules.
+#[track_caller]
+fn check(name: &str) {
+    let is_meant = |world: &World| world.name == name;
+    let i = WORLDS.iter().position(is_meant).expect("a world");
+    WORLDS[i].check(["all", RULES[1 + i % (RULES.len() - 1)]]);
+}
+
+#[test]
+fn lamps_that_are_pictures() {
+    check("picture-lamp");
+}
+
+#[test]
+fn a_picture_of_the_sky_alone() {
+    check("sky-alone");
+}
+
+#[test]
+fn a_camera_within_glass() {
+    check("within-glass");
+}
+
+#[test]
+fn a_lamp_within_glass_seen_in_a_mirror() {
+    check("bulb");
+}
+
+#[test]
+fn a_narrow_spot() {
+    check("narrow-spot");
+}
+
+#[test]
+fn shapes_of_all_kinds() {
+    check("shapes");
+}
+
+#[test]
+fn leaves_cut_out_and_placed_many_times() {
+    check("leaves");
+}
+
+#[test]
+fn a_sky_over_nothing() {
+    check("empty-sky");
+}
+
+#[test]
+#[ignore = "long: the whole matrix"]
+fn every_integrator_with_every_choice_of_shadow_rays_on_every_world() {
+    for world in WORLDS.iter().chain(&OTHERS) {
+        world.check(RULES);
+    }
+}
+
+/// Without light every estimator is exactly black.
+#[test]
+fn nothing_is_black() {
+    let loaded = open("empty.pbrt");
+    let case = Case::new(&loaded, 64);
+    for integrator in [
+        IntegratorKind::Path,
+        IntegratorKind::Light,
+        IntegratorKind::Bdpt,
+    ] {
+        let picture = case.render(integrator, |_| ());
+        assert!(picture.mean().abs() <= 0.0, "{integrator:?}");
+    }
+}
