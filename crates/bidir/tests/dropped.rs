@@ -9,7 +9,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::stats::LISTED_DROPS;
-use bidir::texture::{Change, ColorTexture, Image, ImageFilter, ImageMap, Mapping, Wrap};
+use bidir::texture::{Beyond, Change, ColorTexture, Image, ImageFilter, ImageMap, Mapping, Wrap};
 use common::{add_walls, builder, diffuse, emission, quad};
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ fn room_with_a_broken_texture() -> Scene {
     let image = Arc::new(Image::new(2, texels).expect("two rows of two texels"));
     let map = ImageMap {
         image,
-        wrap: Wrap::Clamp,
+        wrap: Wrap::all(Beyond::Clamp),
         filter: ImageFilter::Point,
         change: Change::Scale(1.0),
         mapping: Mapping::IDENTITY,

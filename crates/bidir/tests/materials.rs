@@ -15,7 +15,8 @@ use bidir::shape::Shape;
 use bidir::texture::TexturePoint;
 use common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use common::{
-    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, quad, sphere, varnish,
+    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
+    principled_smooth, quad, sphere, varnish,
 };
 
 /// The film's mean and its quarters.
@@ -138,6 +139,28 @@ fn mixtures_within_mixtures() {
     check(rough.clone(), Lobes::Finite);
     let smooth = mix([glass(0.0), varnish(0.0)], 0.6);
     check(mix([rough, smooth], 0.5), Lobes::Dirac);
+}
+
+/// Compares with the balance heuristic alone: every lobe has its turn in the other tests.
+#[track_caller]
+fn check_balance(material: Material, lobes: Lobes) {
+    let balance = |(_, mis): &_| *mis == MisHeuristic::Balance;
+    check_under(
+        material,
+        lobes,
+        MisHeuristic::NAMES.into_iter().filter(balance),
+    );
+}
+
+#[test]
+fn a_principled_surface_of_rough_lobes() {
+    check_balance(principled_rough(), Lobes::Finite);
+}
+
+/// Smooth coat and smooth glass over a base that is partly diffuse: three Dirac lobes beside others.
+#[test]
+fn a_principled_surface_of_smooth_lobes() {
+    check_balance(principled_smooth(), Lobes::Dirac);
 }
 
 /// The albedo of a mixture's camera samples is the mean of its parts'.

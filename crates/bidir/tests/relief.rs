@@ -16,8 +16,8 @@ use bidir::scene::{Chances, Scene, SceneBuilder};
 use bidir::shape::Shape;
 use bidir::spectrum::{Spectrum, Wavelengths};
 use bidir::texture::{
-    Cells, Change, Checkerboard, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping,
-    Noise, NoiseKind, TextureSpace, Wrap,
+    Beyond, Cells, Change, Checkerboard, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap,
+    Mapping, Noise, NoiseKind, TextureSpace, Wrap,
 };
 use common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
@@ -39,7 +39,7 @@ fn image<const N: usize>(low: [f32; N], high: [f32; N], mapping: Mapping) -> Ima
     let texels = (0..n * n).map(texel).collect();
     ImageMap {
         image: Arc::new(Image::new(n, texels).expect("a square").with_copies()),
-        wrap: Wrap::Repeat,
+        wrap: Wrap::all(Beyond::Repeat),
         filter: ImageFilter::Trilinear,
         change: Change::Scale(1.0),
         mapping,

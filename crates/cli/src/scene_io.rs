@@ -8,7 +8,7 @@ use bidir::film::{self, Film, FilmSettings, LayerImage, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
-use formats::pbrt::{Crop, LoadOptions, Summary};
+use formats::scene::{Crop, LoadOptions, Summary};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         crop: film.and_then(crop),
         isa: args.isa,
     };
-    let loaded = formats::pbrt::load(&args.scene, &options)
+    let loaded = formats::scene::load(&args.scene, &options)
         .map_err(|error| Failure::diagnostic(exit_of_scene(&error), error))?;
     let mut settings = Settings {
         integrator: loaded.settings.integrator,

@@ -1,4 +1,4 @@
-//! Bytes to data and back: pbrt-v4 scenes, PLY meshes, images, film files.
+//! Bytes to data and back: scenes of pbrt-v4 and glTF 2.0, PLY meshes, images, film files.
 //!
 //! Nothing here panics, whatever the bytes: a broken file is an [`Error`] that says where the fault
 //! is, whose it is and what to do about it. Counts are checked before memory is taken for them.
@@ -10,9 +10,11 @@ mod spectra;
 
 pub mod file;
 pub mod film;
+pub mod gltf;
 pub mod image;
 pub mod pbrt;
 pub mod ply;
+pub mod scene;
 
 pub use error::{Error, ErrorKind, Result};
 pub use source::{FileId, SourceMap, Span};

@@ -7,8 +7,9 @@ from .laboratory import LABORATORY
 from .materials import MATERIALS
 from .paths import PATHS
 from .pictures import PICTURES
+from .principled import PRINCIPLED
 from .scenes import SCENES
 from .textures import TEXTURES
 from .views import VIEWS
 
-MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + TEXTURES + VIEWS + LABORATORY
+MUTATIONS = PATHS + PICTURES + SCENES + MATERIALS + PRINCIPLED + TEXTURES + VIEWS + LABORATORY

@@ -58,6 +58,11 @@ def coverage(filter_):
     return ("bidir-formats", "--test coverage", filter_)
 
 
+def gltf(filter_):
+    """Tests of files in glTF."""
+    return ("bidir-formats", "--lib", filter_)
+
+
 def estimators(filter_):
     """Tests of estimators against each other on the torture scenes."""
     return ("bidir-formats", ESTIMATORS, filter_)

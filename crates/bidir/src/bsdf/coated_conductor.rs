@@ -8,7 +8,7 @@
 //!
 //! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
 //! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
-//! [Kulla17]; E, what white metal so reflects, and m_k, the share of k reflections, are tabulated by a
+//! \[Kulla17\]; E, what white metal so reflects, and m_k, the share of k reflections, are tabulated by a
 //! walk ([`Reflections`]). Where both surfaces are smooth there is one mirrored
 //! direction, and the sum over all reflections is exact.
 //!

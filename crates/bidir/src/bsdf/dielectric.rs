@@ -24,7 +24,7 @@ pub struct Dielectric {
 
 /// The two things a facet does.
 #[derive(Clone, Copy, PartialEq)]
-enum Lobe {
+pub(super) enum Lobe {
     Reflection,
     Transmission,
 }
@@ -38,19 +38,19 @@ impl Dielectric {
 
     /// η of the other side divided by η of the side of `w`.
     #[inline]
-    fn eta_across(&self, w: Vec3) -> f32 {
+    pub(super) fn eta_across(&self, w: Vec3) -> f32 {
         if w.z > 0.0 { self.eta } else { 1.0 / self.eta }
     }
 
     /// The absolute index on the side of `w`, the outside counting 1.
     #[inline]
-    fn eta_at(&self, w: Vec3) -> f32 {
+    pub(super) fn eta_at(&self, w: Vec3) -> f32 {
         if w.z > 0.0 { 1.0 } else { self.eta }
     }
 
     /// What crossing does to the quantity of `mode` that a walk from `wo` carries.
     #[inline]
-    fn crossing_scale(&self, wo: Vec3, mode: TransportMode) -> f32 {
+    pub(super) fn crossing_scale(&self, wo: Vec3, mode: TransportMode) -> f32 {
         match mode {
             TransportMode::Radiance => 1.0 / sqr(self.eta_across(wo)),
             TransportMode::Importance => 1.0,
@@ -61,7 +61,7 @@ impl Dielectric {
     ///
     /// None: where that facet is seen from behind, or the directions are degenerate.
     #[inline]
-    fn facet(&self, wo: Vec3, wi: Vec3) -> Option<(Vec3, Lobe)> {
+    pub(super) fn facet(&self, wo: Vec3, wi: Vec3) -> Option<(Vec3, Lobe)> {
         if wo.z == 0.0 || wi.z == 0.0 {
             return None;
         }
@@ -81,7 +81,7 @@ impl Dielectric {
 
     /// |dω_m / dω_i| of refraction at `m`, without the |wi·m| factor [Walter07, eq. 17].
     #[inline]
-    fn refraction_jacobian(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
+    pub(super) fn refraction_jacobian(&self, wo: Vec3, wi: Vec3, m: Vec3) -> f32 {
         1.0 / sqr(wi.dot(m) + wo.dot(m) / self.eta_across(wo))
     }
 

@@ -37,6 +37,7 @@ mod diffuse;
 mod diffuse_transmission;
 pub mod fresnel;
 pub mod microfacet;
+mod principled;
 #[cfg(test)]
 mod tests;
 mod thin_dielectric;
@@ -47,6 +48,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use principled::{Principled, PrincipledCoat, PrincipledParameters, Wall};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::math::{Vec2, Vec3};
@@ -135,6 +137,8 @@ pub enum Bsdf {
     CoatedDiffuse(CoatedDiffuse),
     /// A dielectric layer over metal.
     CoatedConductor(CoatedConductor),
+    /// Metal, plastic, glass and cloth by the parameters of glTF.
+    Principled(Principled),
 }
 
 impl Bsdf {
@@ -151,6 +155,7 @@ impl Bsdf {
             Self::DiffuseTransmission(bsdf) => bsdf.eval(wo, wi),
             Self::CoatedDiffuse(bsdf) => bsdf.eval(wo, wi),
             Self::CoatedConductor(bsdf) => bsdf.eval(wo, wi),
+            Self::Principled(bsdf) => bsdf.eval(wo, wi, mode),
         }
     }
 
@@ -173,6 +178,7 @@ impl Bsdf {
             Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, u_lobe, u),
             Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, u_lobe, u),
             Self::CoatedConductor(bsdf) => bsdf.sample(wo, u_lobe, u),
+            Self::Principled(bsdf) => bsdf.sample(wo, mode, u_lobe, u),
         };
         // Where the density underflows there is no sample.
         sample.filter(|sample| sample.pdf > 0.0)
@@ -190,6 +196,7 @@ impl Bsdf {
             Self::DiffuseTransmission(bsdf) => bsdf.pdf(wo, wi),
             Self::CoatedDiffuse(bsdf) => bsdf.pdf(wo, wi),
             Self::CoatedConductor(bsdf) => bsdf.pdf(wo, wi),
+            Self::Principled(bsdf) => bsdf.pdf(wo, wi),
         }
     }
 
@@ -203,6 +210,7 @@ impl Bsdf {
             Self::ThinDielectric(_) => true,
             Self::CoatedDiffuse(bsdf) => bsdf.is_delta(),
             Self::CoatedConductor(bsdf) => bsdf.is_delta(),
+            Self::Principled(bsdf) => bsdf.is_delta(),
         }
     }
 
@@ -218,6 +226,7 @@ impl Bsdf {
             Self::DiffuseTransmission(bsdf) => bsdf.albedo(),
             Self::CoatedDiffuse(bsdf) => bsdf.albedo(wo),
             Self::CoatedConductor(bsdf) => bsdf.albedo(wo),
+            Self::Principled(bsdf) => bsdf.albedo(wo),
         }
     }
 
@@ -235,6 +244,8 @@ impl Bsdf {
         examples.extend(varnish.map(|(name, bsdf)| (name, Self::CoatedDiffuse(bsdf))));
         let lacquer = CoatedConductor::examples();
         examples.extend(lacquer.map(|(name, bsdf)| (name, Self::CoatedConductor(bsdf))));
+        let principled = Principled::examples();
+        examples.extend(principled.map(|(name, bsdf)| (name, Self::Principled(bsdf))));
         examples
     }
 }

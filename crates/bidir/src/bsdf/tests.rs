@@ -40,17 +40,21 @@ fn cases() -> impl Iterator<Item = (String, Bsdf, Vec3)> {
 }
 
 /// The numbers that one scattering takes: for the lobe, and for the direction.
-fn numbers(sample: &SampleStream) -> (f32, Vec2) {
+pub(super) fn numbers(sample: &SampleStream) -> (f32, Vec2) {
     let lobe = sample.get_1d(Dimension::at(2, Purpose::Lobe));
     (lobe, sample.get_2d(Dimension::at(2, Purpose::Scatter)))
 }
 
 /// True where the surface looks alike from above and from below.
 fn is_two_sided(bsdf: &Bsdf) -> bool {
-    !matches!(bsdf, Bsdf::Dielectric(_))
+    match bsdf {
+        Bsdf::Dielectric(_) => false,
+        Bsdf::Principled(bsdf) => !bsdf.is_solid(),
+        _ => true,
+    }
 }
 
-const VARIANTS: usize = 7;
+const VARIANTS: usize = 8;
 
 /// A new variant does not compile before it has a number here.
 fn variant(bsdf: &Bsdf) -> usize {
@@ -62,6 +66,7 @@ fn variant(bsdf: &Bsdf) -> usize {
         Bsdf::DiffuseTransmission(_) => 4,
         Bsdf::CoatedDiffuse(_) => 5,
         Bsdf::CoatedConductor(_) => 6,
+        Bsdf::Principled(_) => 7,
     }
 }
 

@@ -52,6 +52,35 @@ pub struct SpotLight {
     intensity: Rgb,
     full_height: f32,
     end_height: f32,
+    rim: Rim,
+}
+
+/// How intensity falls from the full cone to its rim, as a function of x, 1 and 0 there and linear in
+/// the cosine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rim {
+    /// x² (3 - 2x).
+    SmoothStep,
+    /// x², as glTF suggests.
+    Squared,
+}
+
+impl Rim {
+    #[inline]
+    fn falloff(self, x: f32) -> f32 {
+        match self {
+            Self::SmoothStep => x * x * (3.0 - 2.0 * x),
+            Self::Squared => x * x,
+        }
+    }
+
+    /// The mean of the falloff.
+    fn mean(self) -> f32 {
+        match self {
+            Self::SmoothStep => 1.0 / 2.0,
+            Self::Squared => 1.0 / 3.0,
+        }
+    }
 }
 
 impl SpotLight {
@@ -65,12 +94,22 @@ impl SpotLight {
             intensity,
             full_height,
             end_height,
+            rim: Rim::SmoothStep,
+        }
+    }
+
+    /// The same with the rim of glTF's spots, whose intensity is the square of what falls evenly with
+    /// the cosine.
+    pub fn squared(position: Vec3, axis: Vec3, intensity: Rgb, angles: [f32; 2]) -> Self {
+        Self {
+            rim: Rim::Squared,
+            ..Self::new(position, axis, intensity, angles)
         }
     }
 
     pub(super) fn power(&self) -> f32 {
-        // The mean of the smooth step is a half.
-        PI * (self.full_height + self.end_height) * luminance(self.intensity)
+        let rim = self.rim.mean() * (self.end_height - self.full_height);
+        2.0 * PI * (self.full_height + rim) * luminance(self.intensity)
     }
 
     /// 1 - cosθ of the unit direction `w`.
@@ -79,7 +118,7 @@ impl SpotLight {
         self.axis.z.distance_squared(w) / 2.0
     }
 
-    /// A smooth step in the cosine, from the rim to the full cone.
+    /// The intensity along the unit direction `w`.
     #[inline]
     pub(super) fn intensity(&self, w: Vec3) -> Rgb {
         let height = self.height(w);
@@ -89,7 +128,7 @@ impl SpotLight {
             0.0
         } else {
             let x = (self.end_height - height) / (self.end_height - self.full_height);
-            x * x * (3.0 - 2.0 * x)
+            self.rim.falloff(x)
         };
         self.intensity.map(|i| i * falloff)
     }

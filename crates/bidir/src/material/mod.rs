@@ -6,9 +6,11 @@
 //! **Adding one**: a variant here that builds the [`Bsdf`], and a mapping in the scene reader.
 
 mod coated;
+mod principled;
 mod relief;
 
 pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
+pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};
 pub use relief::{Bitangent, Embossed, NormalMap, Relief};
 
 use crate::bsdf::microfacet::Ggx;
@@ -153,6 +155,8 @@ pub enum Material {
     CoatedDiffuse(CoatedDiffuseMaterial),
     /// A dielectric layer over metal.
     CoatedConductor(CoatedConductorMaterial),
+    /// Metal, plastic, glass and cloth by the parameters of glTF.
+    Principled(Arc<PrincipledMaterial>),
     /// One of two materials at each point.
     Mix(Arc<Mixture>),
     /// A material whose shading frame turns.
@@ -170,6 +174,7 @@ impl Material {
             Self::DiffuseTransmission { .. } => "diffusetransmission",
             Self::CoatedDiffuse(_) => "coateddiffuse",
             Self::CoatedConductor(_) => "coatedconductor",
+            Self::Principled(_) => "principled",
             Self::Mix(_) => "mix",
             Self::Embossed(embossed) => embossed.material.kind(),
         }
@@ -207,6 +212,7 @@ impl Material {
             } => reflectance.needs().and(transmittance.needs()),
             Self::CoatedDiffuse(material) => material.needs(),
             Self::CoatedConductor(material) => material.needs(),
+            Self::Principled(material) => material.needs(),
             Self::Mix(mixture) => {
                 let [first, second] = &mixture.materials;
                 let parts = first.needs().and(second.needs());
@@ -254,6 +260,7 @@ impl Material {
             }
             Self::CoatedDiffuse(material) => material.bsdf(at, color, wavelengths),
             Self::CoatedConductor(material) => material.bsdf(at, color, wavelengths),
+            Self::Principled(material) => material.bsdf(at, color, wavelengths),
             Self::Mix(mixture) => mixture.materials[0].bsdf(at, color, wavelengths),
             Self::Embossed(embossed) => embossed.material.bsdf(at, color, wavelengths),
         }

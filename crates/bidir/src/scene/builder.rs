@@ -49,7 +49,7 @@ pub enum SceneError {
         /// The number of vertices.
         vertices: usize,
     },
-    /// A mesh has normals or parameters, but not one per vertex.
+    /// A mesh has normals, tangents or parameters, but not one per vertex.
     #[error("the mesh has {vertices} vertices, but {count} {what}")]
     AttributeCount {
         /// The shape, in the order of addition.

@@ -46,6 +46,7 @@ pub(super) fn check_shape(number: usize, shape: &Shape) -> Result<(), SceneError
             mesh.positions
                 .iter()
                 .chain(&mesh.normals)
+                .chain(&mesh.tangents)
                 .all(|v| v.is_finite())
                 && mesh.uvs.iter().all(|uv| uv.is_finite())
         }
@@ -65,6 +66,7 @@ fn check_indices(shape: usize, mesh: &Mesh) -> Result<(), SceneError> {
     let vertices = mesh.positions.len();
     for (what, count) in [
         ("normals", mesh.normals.len()),
+        ("tangents", mesh.tangents.len()),
         ("parameters", mesh.uvs.len()),
     ] {
         if count != 0 && count != vertices {

@@ -15,6 +15,9 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Shading normals per vertex; empty: the surface is faceted.
     pub normals: Vec<Vec3>,
+    /// Where the shading frame's x points, per vertex; empty: along ∂p/∂u. Of any length; what of
+    /// them is along the normal has no effect.
+    pub tangents: Vec<Vec3>,
     /// Parameters per vertex; empty: each triangle has (0,0), (1,0), (1,1).
     pub uvs: Vec<Vec2>,
     /// Three vertices per triangle.
@@ -96,6 +99,7 @@ impl Mesh {
         Corners {
             positions: self.triangle(i),
             normals: (!self.normals.is_empty()).then(|| of_vertices(&self.normals)),
+            tangents: (!self.tangents.is_empty()).then(|| of_vertices(&self.tangents)),
             uvs: self.triangle_uvs(i),
             winding_sign: self.orientation.sign(),
         }
@@ -114,6 +118,7 @@ impl Mesh {
 struct Corners {
     positions: [Vec3; 3],
     normals: Option<[Vec3; 3]>,
+    tangents: Option<[Vec3; 3]>,
     uvs: [Vec2; 3],
     /// -1 where the front is not what the winding says.
     winding_sign: f32,
@@ -133,6 +138,9 @@ impl Corners {
         Self {
             positions: self.positions.map(|p| place.point(p)),
             normals: self.normals.map(|normals| normals.map(|n| place.normal(n))),
+            tangents: self
+                .tangents
+                .map(|tangents| tangents.map(|t| place.vector(t))),
             uvs: self.uvs,
             winding_sign: self.winding_sign * place.sign(),
         }
@@ -140,7 +148,7 @@ impl Corners {
 
     #[inline]
     fn surface_point(&self, b: Vec2, error: f32) -> SurfacePoint {
-        let ([p0, p1, p2], uvs) = (self.positions, self.uvs);
+        let [p0, p1, p2] = self.positions;
         let b0 = 1.0 - b.x - b.y;
         let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
         let n_g = winding * self.winding_sign;
@@ -150,8 +158,8 @@ impl Corners {
             point: p0 * b0 + p1 * b.x + p2 * b.y,
             error,
             n_g,
-            shading: Frame::from_z_and_tangent(n_s, tangent(self.positions, uvs)),
-            uv: interpolate(uvs, b),
+            shading: Frame::from_z_and_tangent(n_s, self.tangent(b0, b)),
+            uv: interpolate(self.uvs, b),
         }
     }
 
@@ -188,6 +196,15 @@ impl Corners {
         let [n0, n1, n2] = self.normals?;
         (n0 * b0 + n1 * b.x + n2 * b.y).try_normalize()
     }
+
+    /// The interpolated tangent, else ∂p/∂u up to scale.
+    #[inline]
+    fn tangent(&self, b0: f32, b: Vec2) -> Vec3 {
+        match self.tangents {
+            Some([t0, t1, t2]) => t0 * b0 + t1 * b.x + t2 * b.y,
+            None => along_u(self.positions, self.uvs),
+        }
+    }
 }
 
 #[inline]
@@ -197,7 +214,7 @@ fn interpolate([uv0, uv1, uv2]: [Vec2; 3], b: Vec2) -> Vec2 {
 
 /// ∂p/∂u, up to scale; zero where the parameters are degenerate.
 #[inline]
-fn tangent([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
+fn along_u([p0, p1, p2]: [Vec3; 3], [uv0, uv1, uv2]: [Vec2; 3]) -> Vec3 {
     let (duv1, duv2) = (uv1 - uv0, uv2 - uv0);
     let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
     ((p1 - p0) * duv2.y - (p2 - p0) * duv1.y) * determinant.signum() * f32::from(determinant != 0.0)

@@ -1,6 +1,6 @@
 //! Where a shared object stands: an affine map from its space to the world.
 //!
-//! Points go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
+//! Points and tangents go by the map, normals by its inverse transpose, in `f64`. Neither asks whether the map
 //! mirrors: the front of a surface stays the front.
 
 use super::position_error;
@@ -16,6 +16,12 @@ impl Place {
     #[inline]
     pub(super) fn point(&self, p: Vec3) -> Vec3 {
         self.0.transform_point3(p.as_dvec3()).as_vec3()
+    }
+
+    /// A vector of the object in the world.
+    #[inline]
+    pub(super) fn vector(&self, v: Vec3) -> Vec3 {
+        self.0.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
     /// A normal of the object in the world, unit length; zero where there is none.

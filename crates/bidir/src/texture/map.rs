@@ -5,18 +5,34 @@ use super::{Image, Mapping, Needs, TexturePoint};
 use crate::math::{Vec2, Vec3, sqr};
 use std::sync::Arc;
 
-/// What lies beyond an image's border.
+/// What lies beyond an image's borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
+    /// Beyond the borders that s crosses, and beyond those that t crosses.
+    Axes([Beyond; 2]),
+    /// What lies there on a sphere that the image is the octahedral map of: the other half of the
+    /// same border, mirrored.
+    OctahedralSphere,
+}
+
+/// What lies beyond the borders that one coordinate crosses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beyond {
     /// The image again.
     Repeat,
+    /// The image mirrored, then again.
+    Mirror,
     /// The border's texel.
     Clamp,
     /// Zero.
     Black,
-    /// What lies there on a sphere that the image is the octahedral map of: the other half of the
-    /// same border, mirrored.
-    OctahedralSphere,
+}
+
+impl Wrap {
+    /// The same beyond all borders.
+    pub const fn all(beyond: Beyond) -> Self {
+        Self::Axes([beyond; 2])
+    }
 }
 
 /// How texels become a function.
@@ -137,13 +153,27 @@ impl<const N: usize> ImageMap<N> {
         if (0..width).contains(&x) && (0..height).contains(&y) {
             return image.texel(x as usize, y as usize);
         }
-        let (x, y) = match self.wrap {
-            Wrap::Repeat => (x.rem_euclid(width), y.rem_euclid(height)),
-            Wrap::Clamp => (x.clamp(0, width - 1), y.clamp(0, height - 1)),
-            Wrap::Black => return [0.0; N],
-            Wrap::OctahedralSphere => octahedral([x, y], [width, height]),
+        let inside = match self.wrap {
+            Wrap::Axes([s, t]) => s.index(x, width).zip(t.index(y, height)),
+            Wrap::OctahedralSphere => Some(octahedral([x, y], [width, height])),
         };
-        image.texel(x as usize, y as usize)
+        inside.map_or([0.0; N], |(x, y)| image.texel(x as usize, y as usize))
+    }
+}
+
+impl Beyond {
+    /// The one of `count` texels in a row that lies at `i`. None: zero does.
+    #[inline]
+    fn index(self, i: i64, count: i64) -> Option<i64> {
+        match self {
+            Self::Repeat => Some(i.rem_euclid(count)),
+            Self::Mirror => {
+                let i = i.rem_euclid(2 * count);
+                Some(i.min(2 * count - 1 - i))
+            }
+            Self::Clamp => Some(i.clamp(0, count - 1)),
+            Self::Black => (0..count).contains(&i).then_some(i),
+        }
     }
 }
 

@@ -22,7 +22,7 @@ mod point;
 mod tests;
 
 pub use image::Image;
-pub use map::{Change, ImageFilter, ImageMap, Wrap};
+pub use map::{Beyond, Change, ImageFilter, ImageMap, Wrap};
 pub use mapping::{Mapping, TextureSpace};
 pub use noise::{Marble, Noise, NoiseKind};
 pub use pattern::{Bilerp, Cells, Checkerboard, Dots};

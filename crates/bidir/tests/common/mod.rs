@@ -3,12 +3,14 @@
 
 pub(crate) mod statistics;
 
+use bidir::bsdf::Wall;
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter};
 use bidir::light::EmissionSides;
 use bidir::material::{
-    CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, Material,
-    Mixture, Roughness, RoughnessMapping,
+    Anisotropy, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial,
+    ConductorIndex, Material, Mixture, PrincipledMaterial, Roughness, RoughnessMapping,
+    ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder};
@@ -118,6 +120,41 @@ pub(crate) fn paper() -> Material {
         transmittance: ColorTexture::Constant([0.2, 0.4, 0.7]),
         scale: 0.9,
     }
+}
+
+/// Brushed metal, rough plastic and rough glass by shares, under sheen and a rough coat.
+pub(crate) fn principled_rough() -> Material {
+    Material::Principled(Arc::new(PrincipledMaterial {
+        color: ScaledColor::constant([0.8, 0.5, 0.3]),
+        metallic: ScaledFloat::constant(0.4),
+        roughness: ScaledFloat::constant(0.55),
+        anisotropy: Anisotropy {
+            strength: 0.6,
+            direction: Vec2::new(0.8, 0.6),
+            texture: None,
+        },
+        transmission: ScaledFloat::constant(0.4),
+        wall: Wall::Solid,
+        diffuse_transmission: ScaledFloat::constant(0.3),
+        coat: ScaledFloat::constant(0.7),
+        coat_roughness: ScaledFloat::constant(0.5),
+        sheen: ScaledColor::constant([0.1, 0.3, 0.5]),
+        sheen_roughness: ScaledFloat::constant(0.6),
+        ..PrincipledMaterial::default()
+    }))
+}
+
+/// Plastic and glass by shares, smooth, under a smooth coat.
+pub(crate) fn principled_smooth() -> Material {
+    Material::Principled(Arc::new(PrincipledMaterial {
+        color: ScaledColor::constant([0.8, 0.5, 0.3]),
+        metallic: ScaledFloat::constant(0.1),
+        roughness: ScaledFloat::constant(0.0),
+        transmission: ScaledFloat::constant(0.5),
+        wall: Wall::Solid,
+        coat: ScaledFloat::constant(0.8),
+        ..PrincipledMaterial::default()
+    }))
 }
 
 /// The parallelogram at `corner` with edges `a` and `b`; the front is the side of a × b.

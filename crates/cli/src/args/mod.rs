@@ -181,7 +181,7 @@ pub(crate) enum Command {
 /// Which scene, and how it is read.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
-    /// The scene: a file of pbrt-v4, or `-` for standard input.
+    /// The scene: a file of pbrt-v4, or `-` for standard input; `.gltf` or `.glb` is glTF 2.0.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: PathBuf,
     /// Replace what is not supported by something near, with a warning, instead of stopping.

@@ -113,10 +113,21 @@ pub(crate) fn read_inspected(
 
 /// Decodes an image in memory; see [`read`].
 pub fn decode(format: Format, bytes: &[u8], encoding: Option<Encoding>) -> Result<ImageData> {
+    let encoding = match format {
+        Format::Png => encoding.unwrap_or_default(),
+        Format::Hdr => Encoding::Linear,
+        _ => Encoding::Srgb,
+    };
+    decode_stored(format, bytes, encoding)
+}
+
+/// Decodes an image in memory whose numbers are stored as `encoding` says, whatever the format; EXR
+/// and PFM are linear.
+pub(crate) fn decode_stored(format: Format, bytes: &[u8], encoding: Encoding) -> Result<ImageData> {
     let decode = || match format {
         Format::Exr => exr::decode(bytes),
         Format::Pfm => pfm::decode(bytes),
-        _ => raster::decode(format, bytes, encoding.unwrap_or(Encoding::Srgb)),
+        _ => raster::decode(format, bytes, encoding),
     };
     catch_silently(decode).unwrap_or_else(|_| Err(broken("the decoder gave up")))
 }

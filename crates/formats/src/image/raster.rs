@@ -6,11 +6,11 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
 pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result<ImageData> {
-    let (known, encoding) = match format {
-        Format::Png => (ImageFormat::Png, encoding),
-        Format::Tga => (ImageFormat::Tga, Encoding::Srgb),
-        Format::Hdr => (ImageFormat::Hdr, Encoding::Linear),
-        _ => (ImageFormat::Jpeg, Encoding::Srgb),
+    let known = match format {
+        Format::Png => ImageFormat::Png,
+        Format::Tga => ImageFormat::Tga,
+        Format::Hdr => ImageFormat::Hdr,
+        _ => ImageFormat::Jpeg,
     };
     let mut reader = ImageReader::with_format(Cursor::new(bytes), known);
     let mut limits = Limits::default();

@@ -26,7 +26,7 @@ impl fmt::Display for SceneDigest {
 
 /// What a file is to the scene. The numbers are hashed.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Content {
+pub(crate) enum Content {
     Text = 0,
     Mesh = 1,
     Image = 2,
@@ -34,20 +34,20 @@ pub(super) enum Content {
 }
 
 /// A digest in the making.
-pub(super) struct DigestBuilder(Sha256);
+pub(crate) struct DigestBuilder(Sha256);
 
 impl DigestBuilder {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(Sha256::new_with_prefix(VERSION))
     }
 
-    pub(super) fn add(&mut self, content: Content, bytes: &[u8]) {
+    pub(crate) fn add(&mut self, content: Content, bytes: &[u8]) {
         self.0.update([content as u8]);
         self.0.update((bytes.len() as u64).to_le_bytes());
         self.0.update(bytes);
     }
 
-    pub(super) fn finish(self) -> SceneDigest {
+    pub(crate) fn finish(self) -> SceneDigest {
         SceneDigest(self.0.finalize().into())
     }
 }

@@ -25,8 +25,10 @@ mod v3;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use build::LARGEST_SIDE;
 pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load};
 pub use digest::SceneDigest;
+pub(crate) use digest::{Content, DigestBuilder};
 pub use parameters::{Parameter, ParameterList, ParameterType, Values};
 pub use parser::{parse_file, parse_text};
 pub use scene::{

@@ -6,7 +6,7 @@ use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::scene::Scene;
-use formats::pbrt::LoadOptions;
+use formats::scene::LoadOptions;
 
 /// A scene with what its file says.
 pub(super) struct Stage<'a> {
@@ -40,7 +40,7 @@ impl<'a> Stage<'a> {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
         };
-        let loaded = formats::pbrt::load(&spec.path, &options)?;
+        let loaded = formats::scene::load(&spec.path, &options)?;
         let mut settings = Settings {
             integrator: loaded.settings.integrator,
             sampler: loaded.settings.sampler,

@@ -26,7 +26,10 @@ fn no_draw_gains_energy() {
     for (name, bsdf, wo) in cases() {
         let (sum, largest) = scattered(&bsdf, wo, &name);
         // Lobes of a layer are drawn by about what they scatter.
-        let is_layered = matches!(bsdf, Bsdf::CoatedDiffuse(_) | Bsdf::CoatedConductor(_));
+        let is_layered = matches!(
+            bsdf,
+            Bsdf::CoatedDiffuse(_) | Bsdf::CoatedConductor(_) | Bsdf::Principled(_)
+        );
         let bound = if is_layered { 4.0 } else { 1.0 + 1e-4 };
         assert!(largest <= bound, "{name}: weight {largest}");
         assert!(

@@ -31,12 +31,14 @@ pub struct NormalMap {
     pub bitangent: Bitangent,
 }
 
-/// Where the y of a [`NormalMap`] points; its x follows ∂p/∂u, its z is the shading normal.
+/// Where the y of a [`NormalMap`] points; its x follows the surface's tangent, its z is the shading
+/// normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bitangent {
     /// So that the frame is right-handed, as in pbrt-v4.
     RightHanded,
-    /// To the side of ∂p/∂v: mirrored parameters mirror the relief.
+    /// To the left of x, or to the right where the parameters are mirrored: to the side of ∂p/∂v
+    /// where x is that of ∂p/∂u. Mirrored parameters mirror the relief.
     AlongV,
 }
 
@@ -101,7 +103,10 @@ impl NormalMap {
         let frame = &surface.shading;
         let side = match self.bitangent {
             Bitangent::RightHanded => 1.0,
-            Bitangent::AlongV => 1f32.copysign(differentials.dp_dv.dot(frame.y)),
+            Bitangent::AlongV => {
+                let turn = differentials.dp_du.cross(differentials.dp_dv);
+                1f32.copysign(turn.dot(frame.z))
+            }
         };
         let scale = Vec3::new(self.scale, self.scale * side, 1.0);
         frame.to_world(stored * scale)

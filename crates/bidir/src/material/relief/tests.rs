@@ -196,6 +196,21 @@ fn normal_maps_follow_the_parameters() {
             check_normal(&frame, expected);
         }
     }
+    // With a tangent of its own a surface has the same sides, whatever the parameters' directions.
+    for (uvs, expected) in [
+        (upright, Vec3::new(-0.6, 0.0, 0.8)),
+        (mirrored, n),
+        (upright.map(|uv| -uv), Vec3::new(-0.6, 0.0, 0.8)),
+    ] {
+        let mesh = Mesh {
+            tangents: vec![Vec3::Y; 3],
+            ..triangle(uvs)
+        };
+        let relief = normal_map(stored(sideways), Bitangent::AlongV);
+        for (_, frame) in frames(&Shape::Mesh(mesh), &relief, 0.0) {
+            check_normal(&frame, expected);
+        }
+    }
     let half = Relief::NormalMap(NormalMap {
         texture: ColorTexture::Constant(stored(n)),
         scale: 0.5,

@@ -1,7 +1,7 @@
 use super::{Example, disk, examples, mirrored, moved, sphere, triangle, uneven};
 use crate::math::{ONE_MINUS_EPSILON, PI, Vec2, Vec3};
 use crate::sampler::{Dimension, Purpose};
-use crate::shape::{Disk, Mesh, Orientation, Shape, Sphere, SurfacePoint};
+use crate::shape::{Disk, Mesh, Orientation, Place, Shape, Sphere, SurfacePoint};
 use crate::testing::samples;
 
 /// Points of the surface, drawn.
@@ -168,4 +168,48 @@ fn the_front_of_a_mesh_follows_its_winding_or_its_normals() {
         assert!((front(&smooth).shading.z - tilted).length() < 1e-6);
         assert!((front(&smooth).n_g + winding).length() < 1e-6);
     }
+}
+
+/// Tangents of vertices are interpolated, and count as far as they are not along the normal; objects
+/// bring theirs to the world as points move.
+#[test]
+fn a_mesh_has_the_tangents_of_its_vertices() {
+    let along_u = triangle();
+    let [a, b, c] = along_u.triangle(0);
+    let normal = (b - a).cross(c - a).normalize();
+    let [first, second] = [(b - a).normalize(), (c - a).normalize()];
+    let mesh = Mesh {
+        tangents: vec![first + normal * 3.0, second - normal, Vec3::ZERO],
+        ..along_u.clone()
+    };
+    let at = Vec2::new(0.5, 0.2);
+    let tangent = |mesh: &Mesh, place: Option<&Place>| {
+        let shape = Shape::Mesh(mesh.clone());
+        let point = a * 0.3 + b * 0.5 + c * 0.2;
+        let surface = match place {
+            None => shape.surface_point(0, at, point),
+            Some(place) => shape.surface_point_at(
+                place,
+                0,
+                at,
+                place.0.transform_point3(point.as_dvec3()).as_vec3(),
+            ),
+        };
+        surface.shading.x
+    };
+    let expected = first * 0.3 + second * 0.5;
+    assert!(tangent(&mesh, None).distance(expected.normalize()) < 1e-6);
+    let stretched = glam::DVec3::new(1.0, -3.0, 0.5);
+    let place = Place(glam::DAffine3::from_scale(stretched));
+    let moved = (expected.as_dvec3() * stretched).as_vec3().normalize();
+    let flat = Mesh {
+        tangents: vec![first, second, Vec3::ZERO],
+        ..along_u.clone()
+    };
+    assert!(tangent(&flat, Some(&place)).distance(moved) < 1e-6);
+    let without = Mesh {
+        tangents: vec![normal; 3],
+        ..along_u.clone()
+    };
+    assert!(tangent(&without, None).is_finite());
 }

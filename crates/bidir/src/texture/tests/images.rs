@@ -17,7 +17,7 @@ fn map(wrap: Wrap, filter: ImageFilter) -> ImageMap<1> {
 
 #[test]
 fn the_top_row_is_at_v_one() {
-    let point = map(Wrap::Repeat, ImageFilter::Point);
+    let point = map(Wrap::all(Beyond::Repeat), ImageFilter::Point);
     for ([u, v], expected) in [
         ([0.25, 0.75], 1.0),
         ([0.75, 0.75], 2.0),
@@ -30,7 +30,7 @@ fn the_top_row_is_at_v_one() {
 #[test]
 fn texel_centres_keep_their_value_and_the_middle_is_the_mean() {
     for filter in [ImageFilter::Bilinear, ImageFilter::Trilinear] {
-        let map = map(Wrap::Repeat, filter);
+        let map = map(Wrap::all(Beyond::Repeat), filter);
         check(map.eval(&at(0.25, 0.75))[0], 1.0);
         check(map.eval(&at(0.5, 0.5))[0], 2.5);
     }
@@ -39,14 +39,34 @@ fn texel_centres_keep_their_value_and_the_middle_is_the_mean() {
 #[test]
 fn borders_wrap_as_asked() {
     let value = |wrap, filter, u, v| map(wrap, filter).eval(&at(u, v))[0];
-    check(value(Wrap::Repeat, ImageFilter::Point, -0.75, 1.75), 1.0);
-    check(value(Wrap::Clamp, ImageFilter::Point, 7.0, -3.0), 4.0);
-    check(value(Wrap::Black, ImageFilter::Point, 1.25, 0.5), 0.0);
-    check(value(Wrap::Black, ImageFilter::Bilinear, 0.0, 0.75), 0.5);
+    check(
+        value(Wrap::all(Beyond::Repeat), ImageFilter::Point, -0.75, 1.75),
+        1.0,
+    );
+    let mirrored = Wrap::all(Beyond::Mirror);
+    check(value(mirrored, ImageFilter::Point, -0.25, 0.75), 1.0);
+    check(value(mirrored, ImageFilter::Point, 1.25, 1.25), 2.0);
+    check(value(mirrored, ImageFilter::Point, 2.25, 0.75), 1.0);
+    let each = Wrap::Axes([Beyond::Clamp, Beyond::Repeat]);
+    check(value(each, ImageFilter::Point, 7.25, 1.75), 2.0);
+    check(value(each, ImageFilter::Point, -3.25, -0.25), 1.0);
+    check(
+        value(Wrap::all(Beyond::Clamp), ImageFilter::Point, 7.0, -3.0),
+        4.0,
+    );
+    check(
+        value(Wrap::all(Beyond::Black), ImageFilter::Point, 1.25, 0.5),
+        0.0,
+    );
+    check(
+        value(Wrap::all(Beyond::Black), ImageFilter::Bilinear, 0.0, 0.75),
+        0.5,
+    );
     for wrap in [
-        Wrap::Repeat,
-        Wrap::Clamp,
-        Wrap::Black,
+        Wrap::all(Beyond::Repeat),
+        mirrored,
+        Wrap::all(Beyond::Clamp),
+        Wrap::all(Beyond::Black),
         Wrap::OctahedralSphere,
     ] {
         let far = map(wrap, ImageFilter::Bilinear).eval(&at(f32::MAX, -1e30));
@@ -56,7 +76,7 @@ fn borders_wrap_as_asked() {
 
 #[test]
 fn values_are_scaled_before_they_are_inverted() {
-    let mut map = map(Wrap::Black, ImageFilter::Point);
+    let mut map = map(Wrap::all(Beyond::Black), ImageFilter::Point);
     map.change = Change::ScaleAndInvert(0.25);
     check(map.eval(&at(0.25, 0.75))[0], 0.75);
     check(map.eval(&at(0.75, 0.25))[0], 0.0);
@@ -107,7 +127,7 @@ fn copies_are_chosen_by_the_width_of_a_pixel() {
     let map = ImageMap {
         image: Arc::clone(&image),
         filter: ImageFilter::Trilinear,
-        ..map(Wrap::Repeat, ImageFilter::Trilinear)
+        ..map(Wrap::all(Beyond::Repeat), ImageFilter::Trilinear)
     };
     let uv = Vec2::new(0.37, 0.61);
     let of_copy = |level: usize| {
@@ -136,7 +156,7 @@ fn copies_are_chosen_by_the_width_of_a_pixel() {
 /// Stretched parameters: the direction in which texels are widest decides, so nothing is blurred.
 #[test]
 fn stretched_images_are_not_blurred() {
-    let mut map = map(Wrap::Repeat, ImageFilter::Trilinear);
+    let mut map = map(Wrap::all(Beyond::Repeat), ImageFilter::Trilinear);
     map.mapping = Mapping::Parameters {
         scale: Vec2::new(100.0, 0.1),
         offset: Vec2::ZERO,

@@ -12,7 +12,7 @@ use bidir::math::PI;
 use bidir::scene::Emission;
 use bidir::shape::{Mesh, Shape};
 use bidir::spectrum::luminance;
-use bidir::texture::{Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
+use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
 use std::sync::Arc;
 
 /// What an area light says about emission.
@@ -112,7 +112,7 @@ fn pattern(
     let mean = sum / image.texels().len() as f64;
     let pattern = ColorTexture::Image(Arc::new(ImageMap {
         image: Arc::new(image),
-        wrap: Wrap::Clamp,
+        wrap: Wrap::all(Beyond::Clamp),
         filter: ImageFilter::Bilinear,
         change: Change::Scale(1.0),
         mapping: Mapping::IDENTITY,
@@ -135,6 +135,7 @@ fn split(mesh: &Mesh) -> Vec<Shape> {
             .collect(),
         triangles: vec![[0, 1, 2]],
         orientation: mesh.orientation,
+        ..Mesh::default()
     });
     triangles.map(Shape::Mesh).collect()
 }

@@ -13,7 +13,7 @@ use crate::source::{Fault, SourceMap, Span};
 use bidir::film::{Aov, FilmSettings, PixelRect};
 
 /// The most pixels along one side.
-const LARGEST_SIDE: u32 = 1 << 16;
+pub(crate) const LARGEST_SIDE: u32 = 1 << 16;
 
 /// The part of a film that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub enum Crop {
 impl Crop {
     const WHOLE: Self = Self::Fractions([0.0, 1.0, 0.0, 1.0]);
 
-    fn pixels(self, [width, height]: [u32; 2]) -> PixelRect {
+    pub(crate) fn pixels(self, [width, height]: [u32; 2]) -> PixelRect {
         let [left, right, top, bottom] = match self {
             Self::Pixels(bounds) => bounds,
             Self::Fractions([x0, x1, y0, y1]) => {

@@ -8,7 +8,7 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::TextureDescription;
 use crate::source::{Fault, Span};
-use bidir::texture::{Change, Image, ImageFilter, ImageMap, Mapping, Wrap};
+use bidir::texture::{Beyond, Change, Image, ImageFilter, ImageMap, Mapping, Wrap};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -79,7 +79,7 @@ impl ImageSettings {
                 encoding: Some(Encoding::Linear),
             },
             change: Change::Scale(1.0),
-            wrap: Wrap::Repeat,
+            wrap: Wrap::all(Beyond::Repeat),
             filter: ImageFilter::Bilinear,
             mapping: Mapping::IDENTITY,
         }
@@ -114,12 +114,12 @@ fn parse_encoding(name: &str, span: Span) -> Result<Encoding, Fault> {
 
 fn read_wrap(reader: &mut Reader<'_>) -> Result<Wrap, Fault> {
     let Some((name, span)) = reader.string("wrap")? else {
-        return Ok(Wrap::Repeat);
+        return Ok(Wrap::all(Beyond::Repeat));
     };
     match name {
-        "repeat" => Ok(Wrap::Repeat),
-        "clamp" => Ok(Wrap::Clamp),
-        "black" => Ok(Wrap::Black),
+        "repeat" => Ok(Wrap::all(Beyond::Repeat)),
+        "clamp" => Ok(Wrap::all(Beyond::Clamp)),
+        "black" => Ok(Wrap::all(Beyond::Black)),
         "octahedralsphere" => Ok(Wrap::OctahedralSphere),
         _ => {
             let fault = Fault::scene(span, format!("unknown wrap mode `{}`", shorten(name)));

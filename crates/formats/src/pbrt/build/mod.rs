@@ -30,6 +30,7 @@ mod texture;
 mod texture_class;
 
 pub use film::Crop;
+pub(crate) use film::LARGEST_SIDE;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;

@@ -178,6 +178,7 @@ fn place_mesh(mesh: &PlyMesh, world_from_local: &DAffine3, orientation: Orientat
         } else {
             orientation
         },
+        ..Mesh::default()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Loop's subdivision of triangle meshes: each step splits every triangle in four and smooths; at the
-//! end points and normals move to the surface that infinitely many steps would give [Loop87].
+//! end points and normals move to the surface that infinitely many steps would give \[Loop87\].
 //!
-//! With n neighbours p_j and the weight β(n), 3/16 for n = 3 and 3/8n else [Warren95]:
+//! With n neighbours p_j and the weight β(n), 3/16 for n = 3 and 3/8n else \[Warren95\]:
 //!
 //! - a vertex becomes (1 - nβ) v + β Σ p_j, on a border (3/4) v + (p_first + p_last)/8;
 //! - an edge's middle is 3/8 of both ends and 1/8 of both opposite corners, on a border 1/2 of both
@@ -125,7 +125,7 @@ impl ControlMesh {
         }
     }
 
-    /// The normal of the limit surface: that of two tangents by the ring [Biermann00].
+    /// The normal of the limit surface: that of two tangents by the ring \[Biermann00\].
     fn normal(&self, v: usize, ring: &Ring) -> DVec3 {
         let points = ring.neighbours.iter().map(|&v| self.points[v as usize]);
         let points: Vec<_> = points.collect();

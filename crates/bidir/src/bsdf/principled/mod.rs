@@ -1,0 +1,284 @@
+//! The material of glTF 2.0: metal, or a dielectric layer over a diffuse or transparent base, under
+//! sheen and a clear coat.
+//!
+//! f = C(o) C(i) { S(o) S(i) [ F(m) D G₂ / (4 |cosθ_o cosθ_i|) + k(o) k(i) ρ / (π k̄) + T(m) … ] + sheen }
+//! + coat, 1/sr, where
+//!
+//! - F = f₀ + (f₉₀ - f₀) (1 - o·m)⁵ \[Schlick94\] of metal and opaque dielectric, plus Fresnel's own
+//!   reflectance for the transparent part, which T takes its rest of: refraction [Walter07, eq. 21],
+//!   or for a thin wall the lobe of F mirrored to the other side;
+//! - k = 1 - Ẽ is what the dielectric's reflection leaves of each direction and k̄ its mean, so that a
+//!   white base under it is white \[Kelemen01\];
+//! - S and C are what sheen and coat leave, 1 - Ẽ likewise (`under`).
+//!
+//! Each factor belongs to one direction, or is symmetric in both, so f is; and no layer hands on more
+//! than its own lobe leaves, so nothing gains (docs/derivations/principled.md).
+
+mod draw;
+mod parameters;
+mod sheen;
+#[cfg(test)]
+mod tests;
+mod under;
+mod value;
+
+pub use parameters::{Coat as PrincipledCoat, PrincipledParameters, Wall};
+
+use super::dielectric::{Dielectric, Lobe as Side};
+use super::fresnel;
+use super::microfacet::Ggx;
+use crate::math::{INV_PI, PI, Vec2, Vec3};
+use crate::spectrum::Spectrum;
+
+/// F₀ of a clear coat, whose index is 1.5.
+const COAT_F0: f32 = 0.04;
+/// The density of an even direction on one side. Unit: 1/sr.
+const EVEN: f32 = 0.5 * INV_PI;
+
+/// Metal, plastic, glass, cloth and lacquer, and what lies between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Principled {
+    /// The base colour: of the diffuse part, and what crossing the surface tints.
+    tint: Spectrum,
+    /// f₀ of metal and opaque dielectric, with their shares.
+    f0: Spectrum,
+    /// f₉₀ of both, likewise.
+    f90: f32,
+    /// The share of the transparent part.
+    glass: f32,
+    /// What Fresnel's reflectance of the transparent part is scaled by.
+    specular: f32,
+    /// Index of refraction of the transparent part, inside over outside.
+    eta: f32,
+    /// Facets along the axes of the surface's own grain.
+    ggx: Ggx,
+    /// Cosine and sine of the grain's angle to the tangent.
+    grain: Vec2,
+    /// (share of the diffuse part) / (π k̄).
+    diffuse: f32,
+    /// The same of what goes through diffusely, with its colour.
+    through: Spectrum,
+    /// f₀ and f₉₀ that k is of.
+    cover: [f32; 2],
+    /// How much of the surface a clear coat covers.
+    coat: f32,
+    coat_alpha: f32,
+    sheen: Spectrum,
+    sheen_alpha: f32,
+    wall: Wall,
+}
+
+/// The ways in which light leaves, as they are drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Lobe {
+    Coat,
+    Facets,
+    Diffuse,
+    Sheen,
+}
+
+/// The probabilities of the lobes, seen from one direction.
+#[derive(Clone, Copy)]
+struct Probs {
+    coat: f32,
+    facets: f32,
+    diffuse: f32,
+    sheen: f32,
+}
+
+impl Principled {
+    /// The slope that bounds go by.
+    #[inline]
+    fn alpha(&self) -> f32 {
+        self.ggx.mean_alpha()
+    }
+
+    #[inline]
+    fn coat_ggx(&self) -> Ggx {
+        Ggx::new(self.coat_alpha, self.coat_alpha)
+    }
+
+    /// True where no coat and no sheen lies on the side of `w`: within a solid.
+    #[inline]
+    fn is_bare(&self, w: Vec3) -> bool {
+        self.wall == Wall::Solid && w.z < 0.0
+    }
+
+    /// Ẽ of the coat, times how much it covers.
+    #[inline]
+    fn coat_albedo(&self, w: Vec3) -> f32 {
+        if self.coat <= 0.0 || self.is_bare(w) {
+            return 0.0;
+        }
+        let weight = under::facet_weight(w.z.abs(), self.coat_alpha);
+        self.coat * (COAT_F0 + (1.0 - COAT_F0) * weight).min(1.0)
+    }
+
+    /// Ẽ of the sheen's brightest lane.
+    #[inline]
+    fn sheen_albedo(&self, w: Vec3) -> f32 {
+        if self.sheen.is_black() || self.is_bare(w) {
+            return 0.0;
+        }
+        self.sheen.max_lane() * under::sheen_albedo(w.z.abs(), self.sheen_alpha)
+    }
+
+    /// What coat and sheen leave of light along `w`.
+    #[inline]
+    fn layers(&self, w: Vec3) -> f32 {
+        (1.0 - self.coat_albedo(w)) * (1.0 - self.sheen_albedo(w))
+    }
+
+    /// k: what the dielectric's reflection leaves for a diffuse base.
+    #[inline]
+    fn uncovered(&self, w: Vec3) -> f32 {
+        self.uncovered_at(under::facet_weight(w.z.abs(), self.alpha()))
+    }
+
+    /// The same, given W̃.
+    #[inline]
+    fn uncovered_at(&self, weight: f32) -> f32 {
+        let [f0, f90] = self.cover;
+        (1.0 - f0 - (f90 - f0) * weight).clamp(0.0, 1.0)
+    }
+
+    /// The part of light that facets of the transparent part reflect; `cos` is positive outside.
+    #[inline]
+    fn clear_reflectance(&self, cos: f32) -> f32 {
+        let cos = if self.wall == Wall::Solid {
+            cos
+        } else {
+            cos.abs()
+        };
+        match fresnel::dielectric(cos, self.eta) {
+            total if total >= 1.0 => 1.0,
+            part => part * self.specular,
+        }
+    }
+
+    /// F, where light meets facets at the cosine `cos` and Schlick's weight is `weight`.
+    #[inline]
+    fn reflectance(&self, cos: f32, weight: f32) -> Spectrum {
+        let opaque = self.f0.map(|f0| f0 + (self.f90 - f0) * weight);
+        if self.glass <= 0.0 {
+            return opaque;
+        }
+        opaque + Spectrum::splat(self.glass * self.clear_reflectance(cos))
+    }
+
+    /// F and T at the cosine `cos` between a direction and a facet.
+    #[inline]
+    fn facet(&self, cos: f32) -> (Spectrum, Spectrum) {
+        let reflected = self.reflectance(cos, under::schlick(cos.abs()));
+        if self.glass <= 0.0 {
+            return (reflected, Spectrum::ZERO);
+        }
+        let crossing = self.glass * (1.0 - self.clear_reflectance(cos));
+        (reflected, self.tint * crossing)
+    }
+
+    /// The probability that a facet met at `cos` reflects, where it is drawn. None: it is black.
+    #[inline]
+    fn reflection_prob(&self, cos: f32) -> Option<f32> {
+        let (reflected, crossing) = self.facet(cos);
+        let [r, t] = [reflected, crossing].map(Spectrum::max_lane);
+        (r + t > 0.0).then(|| r / (r + t))
+    }
+
+    /// About the part of light along `w` that each lobe scatters.
+    #[inline]
+    fn shares(&self, w: Vec3) -> [Spectrum; 4] {
+        let [coat, fibres] = [self.coat_albedo(w), self.sheen_albedo(w)];
+        let below = (1.0 - coat) * (1.0 - fibres);
+        let weight = under::facet_weight(w.z.abs(), self.alpha());
+        let (_, crossing) = self.facet(w.z);
+        // Facets tilted away from `w` reflect where the bound says that none does.
+        let tilted = 0.01 * self.f90.max(self.glass);
+        let facets = self.reflectance(w.z, weight) + crossing + Spectrum::splat(tilted);
+        let diffuse = self.tint * self.diffuse + self.through;
+        [
+            Spectrum::splat(coat),
+            facets * below,
+            diffuse * (PI * below * self.uncovered_at(weight)),
+            self.sheen.map(|lane| lane.min(1.0)) * ((1.0 - coat) * fibres),
+        ]
+    }
+
+    /// The probabilities of drawing from each lobe; they depend on |cosθ| and the side alone. None:
+    /// nothing is scattered.
+    #[inline]
+    fn probs(&self, w: Vec3) -> Option<Probs> {
+        let mut shares = self.shares(w).map(Spectrum::max_lane);
+        if self.f0.is_black() && self.f90 <= 0.0 && self.glass <= 0.0 {
+            shares[1] = 0.0;
+        }
+        let sum: f32 = shares.iter().sum();
+        let [coat, facets, diffuse, sheen] = shares.map(|share| share / sum);
+        (sum > 0.0).then_some(Probs {
+            coat,
+            facets,
+            diffuse,
+            sheen,
+        })
+    }
+
+    #[inline]
+    pub(super) fn is_delta(&self) -> bool {
+        let no_base = self.diffuse <= 0.0 || self.tint.is_black();
+        let is_bare = self.coat <= 0.0 || self.coat_ggx().is_smooth();
+        self.ggx.is_smooth()
+            && is_bare
+            && no_base
+            && self.through.is_black()
+            && self.sheen.is_black()
+    }
+
+    #[inline]
+    pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
+        let [coat, facets, diffuse, sheen] = self.shares(wo);
+        (coat + facets + diffuse + sheen).map(|lane| lane.clamp(0.0, 1.0))
+    }
+
+    /// A direction in the axes of the grain.
+    #[inline]
+    fn along_grain(&self, w: Vec3) -> Vec3 {
+        let Vec2 { x: cos, y: sin } = self.grain;
+        Vec3::new(w.x * cos + w.y * sin, w.y * cos - w.x * sin, w.z)
+    }
+
+    #[inline]
+    fn off_grain(&self, w: Vec3) -> Vec3 {
+        let Vec2 { x: cos, y: sin } = self.grain;
+        Vec3::new(w.x * cos - w.y * sin, w.y * cos + w.x * sin, w.z)
+    }
+
+    /// The transparent part alone.
+    #[inline]
+    fn interface(&self) -> Dielectric {
+        Dielectric {
+            eta: self.eta,
+            ggx: self.ggx,
+        }
+    }
+}
+
+#[cfg(test)]
+impl Principled {
+    pub(super) fn is_solid(&self) -> bool {
+        self.wall == Wall::Solid
+    }
+
+    pub(super) fn index_inside(&self) -> f32 {
+        if self.is_solid() { self.eta } else { 1.0 }
+    }
+}
+
+#[inline]
+fn mirrored_below(w: Vec3) -> Vec3 {
+    Vec3::new(w.x, w.y, -w.z)
+}
+
+#[inline]
+fn coat_fresnel(cos: f32) -> f32 {
+    COAT_F0 + (1.0 - COAT_F0) * under::schlick(cos)
+}

@@ -1,0 +1,209 @@
+//! What a principled surface is described by, and what that makes of it.
+
+use super::sheen::SHEEN_ALPHA;
+use super::{Principled, under};
+use crate::bsdf::microfacet::Ggx;
+use crate::math::{INV_PI, Vec2, sqr};
+use crate::spectrum::Spectrum;
+
+/// What lies behind a transparent surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wall {
+    /// The same as before it: light goes on without being bent.
+    Thin,
+    /// The inside of a solid.
+    Solid,
+}
+
+/// A clear coat of index 1.5.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coat {
+    /// How much of the surface it covers. Range: `[0, 1]`.
+    pub cover: f32,
+    /// Its slope.
+    pub alpha: f32,
+}
+
+/// A principled surface at one point, as glTF 2.0 describes it; all shares are in `[0, 1]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PrincipledParameters {
+    /// The base colour.
+    pub color: Spectrum,
+    /// The share of metal.
+    pub metallic: f32,
+    /// The facets of the base, along its grain and across.
+    pub ggx: Ggx,
+    /// The angle from the tangent to the grain, as cosine and sine.
+    pub grain: Vec2,
+    /// The index of refraction of the dielectric; 0: it reflects all light.
+    pub ior: f32,
+    /// What the dielectric's reflectance is scaled by, at all angles.
+    pub specular: f32,
+    /// What its reflectance along the normal is scaled by, beside.
+    pub specular_color: Spectrum,
+    /// The share of the dielectric that is transparent.
+    pub transmission: f32,
+    /// What lies behind.
+    pub wall: Wall,
+    /// The share of the rest that lets light through diffusely.
+    pub diffuse_transmission: f32,
+    /// The colour of that.
+    pub diffuse_transmission_color: Spectrum,
+    /// The coat.
+    pub coat: Coat,
+    /// The colour of the sheen; black: there is none.
+    pub sheen: Spectrum,
+    /// The slope of the sheen.
+    pub sheen_alpha: f32,
+}
+
+impl PrincipledParameters {
+    /// A dielectric of index 1.5 over a diffuse base of `color`, with facets of `ggx`.
+    pub const fn plain(color: Spectrum, ggx: Ggx) -> Self {
+        Self {
+            color,
+            metallic: 0.0,
+            ggx,
+            grain: Vec2::X,
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: Spectrum::ONE,
+            transmission: 0.0,
+            wall: Wall::Thin,
+            diffuse_transmission: 0.0,
+            diffuse_transmission_color: Spectrum::ONE,
+            coat: Coat {
+                cover: 0.0,
+                alpha: 0.0,
+            },
+            sheen: Spectrum::ZERO,
+            sheen_alpha: 1.0,
+        }
+    }
+}
+
+/// Indices closer to 1 than this bend nothing that could be seen.
+const LEAST_BEND: f32 = 1e-3;
+
+impl Principled {
+    /// The scattering of what `parameters` describe.
+    pub fn new(parameters: &PrincipledParameters) -> Self {
+        let p = parameters;
+        let dielectric = 1.0 - p.metallic;
+        let normal = if p.ior > 0.0 {
+            sqr((p.ior - 1.0) / (p.ior + 1.0))
+        } else {
+            1.0
+        };
+        let f0 = p
+            .specular_color
+            .map(|color| (normal * color).min(1.0) * p.specular);
+        let opaque = dielectric * (1.0 - p.transmission);
+        let cover = [f0.max_lane(), p.specular];
+        let alpha = p.ggx.mean_alpha();
+        let mean_cover = cover[0] + (cover[1] - cover[0]) * under::mean_facet_weight(alpha);
+        // Under a layer that reflects everything there is nothing to see.
+        let base = if mean_cover < 0.999 {
+            opaque * INV_PI / (1.0 - mean_cover)
+        } else {
+            0.0
+        };
+        let bends = (p.ior - 1.0).abs() > LEAST_BEND && p.ior > 0.0;
+        Self {
+            tint: p.color,
+            f0: p.color * p.metallic + f0 * opaque,
+            f90: p.metallic + p.specular * opaque,
+            glass: if p.ior > 0.0 {
+                dielectric * p.transmission
+            } else {
+                0.0
+            },
+            specular: (p.specular * p.specular_color.max_lane()).min(1.0),
+            eta: p.ior.max(0.01),
+            ggx: p.ggx,
+            grain: p.grain,
+            diffuse: base * (1.0 - p.diffuse_transmission),
+            through: p.diffuse_transmission_color * (base * p.diffuse_transmission),
+            cover,
+            coat: p.coat.cover,
+            coat_alpha: p.coat.alpha,
+            sheen: p.sheen,
+            sheen_alpha: p.sheen_alpha.clamp(SHEEN_ALPHA, 1.0),
+            wall: if bends { p.wall } else { Wall::Thin },
+        }
+    }
+
+    pub(in crate::bsdf) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
+        let color = Spectrum([0.8, 0.5, 0.1, 0.9]);
+        let plain = |x, y| PrincipledParameters::plain(color, Ggx::new(x, y));
+        let glass = |alpha, wall| PrincipledParameters {
+            transmission: 1.0,
+            wall,
+            ..plain(alpha, alpha)
+        };
+        let coated = |alpha: f32, coat: f32| PrincipledParameters {
+            coat: Coat {
+                cover: 0.8,
+                alpha: coat,
+            },
+            ..plain(alpha, alpha)
+        };
+        let white = PrincipledParameters {
+            color: Spectrum::ONE,
+            ..coated(0.3, 0.2)
+        };
+        let metal = PrincipledParameters {
+            metallic: 1.0,
+            grain: Vec2::new(0.8, 0.6),
+            ..plain(0.6, 0.2)
+        };
+        let cloth = PrincipledParameters {
+            sheen: Spectrum([0.3, 0.6, 0.9, 0.0]),
+            sheen_alpha: 0.3,
+            ..coated(0.8, 0.1)
+        };
+        let leaf = PrincipledParameters {
+            diffuse_transmission: 0.4,
+            diffuse_transmission_color: Spectrum([0.2, 0.9, 0.3, 0.1]),
+            metallic: 0.2,
+            ..plain(0.0, 0.0)
+        };
+        let half = PrincipledParameters {
+            transmission: 0.5,
+            metallic: 0.2,
+            specular: 0.7,
+            ior: 1.8,
+            ..glass(0.4, Wall::Solid)
+        };
+        let lacquered = PrincipledParameters {
+            metallic: 1.0,
+            ..coated(0.0, 0.0)
+        };
+        let mixed = PrincipledParameters {
+            transmission: 0.6,
+            wall: Wall::Solid,
+            ..coated(0.0, 0.0)
+        };
+        [
+            ("principled plastic", plain(0.25, 0.25)),
+            ("principled plastic, smooth", plain(0.0, 0.0)),
+            ("principled metal, brushed", metal),
+            ("principled white, coated", white),
+            ("principled, smooth coat", coated(0.4, 0.0)),
+            ("principled metal, smooth under smooth coat", lacquered),
+            ("principled cloth", cloth),
+            ("principled leaf", leaf),
+            ("principled pane, rough", glass(0.3, Wall::Thin)),
+            ("principled pane", glass(0.0, Wall::Thin)),
+            ("principled glass, rough", glass(0.3, Wall::Solid)),
+            ("principled glass", glass(0.0, Wall::Solid)),
+            ("principled, half of glass", half),
+            (
+                "principled, smooth and part of glass under smooth coat",
+                mixed,
+            ),
+        ]
+        .into_iter()
+        .map(|(name, parameters)| (name, Self::new(&parameters)))
+    }
+}

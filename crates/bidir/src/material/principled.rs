@@ -1,0 +1,303 @@
+//! The principled material: factors and textures as glTF 2.0 has them, each value the product of both.
+
+use super::unit;
+use crate::bsdf::microfacet::Ggx;
+use crate::bsdf::{Bsdf, Principled, PrincipledCoat, PrincipledParameters, Wall};
+use crate::math::{Vec2, sqr};
+use crate::spectrum::{ColorModel, Rgb, Wavelengths};
+use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+
+/// A colour times a texture.
+#[derive(Clone, Debug)]
+pub struct ScaledColor {
+    /// The colour.
+    pub factor: Rgb,
+    /// The texture. None: 1 everywhere.
+    pub texture: Option<ColorTexture>,
+}
+
+impl ScaledColor {
+    /// The same everywhere.
+    pub const fn constant(factor: Rgb) -> Self {
+        Self {
+            factor,
+            texture: None,
+        }
+    }
+
+    /// True where the product is this value everywhere.
+    #[inline]
+    fn is_all(&self, value: f32) -> bool {
+        let is_black = self.factor == [0.0; 3] && value == 0.0;
+        is_black || (self.texture.is_none() && self.factor == [value; 3])
+    }
+
+    fn needs(&self) -> Needs {
+        self.texture
+            .as_ref()
+            .map_or(Needs::NOTHING, ColorTexture::needs)
+    }
+
+    /// The product at a point.
+    #[inline]
+    pub fn eval(&self, at: &TexturePoint) -> Rgb {
+        match &self.texture {
+            None => self.factor,
+            Some(texture) => {
+                let texel = texture.eval(at);
+                std::array::from_fn(|i| self.factor[i] * texel[i])
+            }
+        }
+    }
+}
+
+/// A number times a texture.
+#[derive(Clone, Debug)]
+pub struct ScaledFloat {
+    /// The number.
+    pub factor: f32,
+    /// The texture. None: 1 everywhere.
+    pub texture: Option<FloatTexture>,
+}
+
+impl ScaledFloat {
+    /// The same everywhere.
+    pub const fn constant(factor: f32) -> Self {
+        Self {
+            factor,
+            texture: None,
+        }
+    }
+
+    /// The product at a point.
+    #[inline]
+    pub fn eval(&self, at: &TexturePoint) -> f32 {
+        let texel = self
+            .texture
+            .as_ref()
+            .map_or(1.0, |texture| texture.eval(at));
+        self.factor * texel
+    }
+
+    fn needs(&self) -> Needs {
+        self.texture
+            .as_ref()
+            .map_or(Needs::NOTHING, FloatTexture::needs)
+    }
+
+    /// The product between 0 and 1; where the number is 0 nothing is looked up.
+    #[inline]
+    fn share(&self, at: &TexturePoint) -> f32 {
+        if self.factor == 0.0 {
+            return 0.0;
+        }
+        self.eval(at).clamp(0.0, 1.0)
+    }
+}
+
+/// How much longer facets' highlights are in one direction.
+#[derive(Clone, Debug)]
+pub struct Anisotropy {
+    /// 0: not at all. Range: `[0, 1]`.
+    pub strength: f32,
+    /// The direction that highlights stretch in: cosine and sine of its angle to the tangent.
+    pub direction: Vec2,
+    /// The direction in the first two channels, 0.5 standing for 0, and what strength is scaled by in
+    /// the third. None: (1, 0) and 1.
+    pub texture: Option<ColorTexture>,
+}
+
+impl Anisotropy {
+    /// Strength, and the direction as cosine and sine.
+    #[inline]
+    fn eval(&self, at: &TexturePoint) -> (f32, Vec2) {
+        let Some(texture) = self.texture.as_ref().filter(|_| self.strength > 0.0) else {
+            return (self.strength, self.direction);
+        };
+        let [x, y, scale] = texture.eval(at);
+        let direction = Vec2::new(2.0 * x - 1.0, 2.0 * y - 1.0).normalize_or(Vec2::X);
+        let turned = self.direction.rotate(direction);
+        (self.strength * scale.clamp(0.0, 1.0), turned)
+    }
+}
+
+/// Metal, plastic, glass and cloth by the parameters of glTF.
+#[derive(Clone, Debug)]
+pub struct PrincipledMaterial {
+    /// The base colour.
+    pub color: ScaledColor,
+    /// The share of metal.
+    pub metallic: ScaledFloat,
+    /// Perceived roughness, the square root of slopes.
+    pub roughness: ScaledFloat,
+    /// Brushed metal and the like.
+    pub anisotropy: Anisotropy,
+    /// The index of refraction of what is no metal; 0: it reflects all light.
+    pub ior: f32,
+    /// What its reflectance is scaled by.
+    pub specular: ScaledFloat,
+    /// What its reflectance along the normal is scaled by, beside.
+    pub specular_color: ScaledColor,
+    /// The share of it that is transparent.
+    pub transmission: ScaledFloat,
+    /// What lies behind the transparent part.
+    pub wall: Wall,
+    /// The share of the rest that lets light through diffusely.
+    pub diffuse_transmission: ScaledFloat,
+    /// The colour of that.
+    pub diffuse_transmission_color: ScaledColor,
+    /// How much of the surface a clear coat covers.
+    pub coat: ScaledFloat,
+    /// The perceived roughness of the coat.
+    pub coat_roughness: ScaledFloat,
+    /// The colour of the sheen.
+    pub sheen: ScaledColor,
+    /// The perceived roughness of the sheen.
+    pub sheen_roughness: ScaledFloat,
+}
+
+impl Default for PrincipledMaterial {
+    /// What a glTF material is that says nothing: white rough metal.
+    fn default() -> Self {
+        let [black, white] = [0.0, 1.0].map(|value| ScaledColor::constant([value; 3]));
+        let [zero, one] = [0.0, 1.0].map(ScaledFloat::constant);
+        Self {
+            color: white.clone(),
+            metallic: one.clone(),
+            roughness: one.clone(),
+            anisotropy: Anisotropy {
+                strength: 0.0,
+                direction: Vec2::X,
+                texture: None,
+            },
+            ior: 1.5,
+            specular: one,
+            specular_color: white.clone(),
+            transmission: zero.clone(),
+            wall: Wall::Thin,
+            diffuse_transmission: zero.clone(),
+            diffuse_transmission_color: white,
+            coat: zero.clone(),
+            coat_roughness: zero.clone(),
+            sheen: black,
+            sheen_roughness: zero,
+        }
+    }
+}
+
+impl PrincipledMaterial {
+    /// Slopes along the grain and across, and where the grain points.
+    #[inline]
+    fn facets(&self, at: &TexturePoint) -> (Ggx, Vec2) {
+        let across = sqr(self.roughness.share(at));
+        let (strength, grain) = self.anisotropy.eval(at);
+        let along = across + (1.0 - across) * sqr(strength);
+        (Ggx::new(along, across), grain)
+    }
+
+    #[inline]
+    fn coat(&self, at: &TexturePoint) -> PrincipledCoat {
+        let cover = self.coat.share(at);
+        let alpha = if cover > 0.0 {
+            sqr(self.coat_roughness.share(at))
+        } else {
+            0.0
+        };
+        PrincipledCoat { cover, alpha }
+    }
+
+    pub(super) fn needs(&self) -> Needs {
+        let colors = [
+            &self.color,
+            &self.specular_color,
+            &self.diffuse_transmission_color,
+            &self.sheen,
+        ];
+        let numbers = [
+            &self.metallic,
+            &self.roughness,
+            &self.specular,
+            &self.transmission,
+            &self.diffuse_transmission,
+            &self.coat,
+            &self.coat_roughness,
+            &self.sheen_roughness,
+        ];
+        let grain = self.anisotropy.texture.as_ref();
+        let all = colors.into_iter().map(ScaledColor::needs);
+        let all = all.chain(numbers.into_iter().map(ScaledFloat::needs));
+        all.chain(grain.map(ColorTexture::needs))
+            .fold(Needs::NOTHING, Needs::and)
+    }
+
+    /// The scattering at a point. What the material has not is not looked up.
+    pub(super) fn bsdf(
+        &self,
+        at: &TexturePoint,
+        color: ColorModel,
+        wavelengths: &Wavelengths,
+    ) -> Bsdf {
+        let albedo = |of: &ScaledColor| color.albedo(unit(of.eval(at)), wavelengths);
+        let (ggx, grain) = self.facets(at);
+        let mut parameters = PrincipledParameters {
+            metallic: self.metallic.share(at),
+            grain,
+            ior: self.ior,
+            specular: self.specular.share(at),
+            transmission: self.transmission.share(at),
+            wall: self.wall,
+            diffuse_transmission: self.diffuse_transmission.share(at),
+            coat: self.coat(at),
+            ..PrincipledParameters::plain(albedo(&self.color), ggx)
+        };
+        if !self.specular_color.is_all(1.0) {
+            let tint = self.specular_color.eval(at);
+            parameters.specular_color = color.unbounded(tint, wavelengths);
+        }
+        if parameters.diffuse_transmission > 0.0 {
+            parameters.diffuse_transmission_color = albedo(&self.diffuse_transmission_color);
+        }
+        if !self.sheen.is_all(0.0) {
+            parameters.sheen = albedo(&self.sheen);
+            parameters.sheen_alpha = sqr(self.sheen_roughness.share(at));
+        }
+        Bsdf::Principled(Principled::new(&parameters))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn highlights_stretch_along_the_direction_of_the_grain() {
+        let texture = ColorTexture::Constant([0.5, 1.0, 0.5]);
+        let anisotropy = |texture| Anisotropy {
+            strength: 0.8,
+            direction: Vec2::Y,
+            texture,
+        };
+        let check = |anisotropy: Anisotropy, strength: f32, direction: Vec2| {
+            let (found, grain) = anisotropy.eval(&TexturePoint::of_parameters(Vec2::ZERO));
+            assert!((found - strength).abs() < 1e-6 && grain.distance(direction) < 1e-6);
+        };
+        check(anisotropy(None), 0.8, Vec2::Y);
+        check(anisotropy(Some(texture)), 0.4, -Vec2::X);
+    }
+
+    #[test]
+    fn values_are_the_product_of_factor_and_texture() {
+        let color = ScaledColor {
+            factor: [0.5, 1.0, 2.0],
+            texture: Some(ColorTexture::Constant([0.5, 0.25, 0.5])),
+        };
+        let at = TexturePoint::of_parameters(Vec2::ZERO);
+        let found = color.eval(&at).map(f32::to_bits);
+        assert_eq!(found, [0.25f32, 0.25, 1.0].map(f32::to_bits));
+        let number = ScaledFloat {
+            factor: 3.0,
+            texture: Some(FloatTexture::Constant(0.5)),
+        };
+        assert_eq!(number.share(&at).to_bits(), 1.0f32.to_bits());
+    }
+}

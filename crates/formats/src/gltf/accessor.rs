@@ -1,0 +1,322 @@
+//! Accessors: arrays of numbers in buffers, of any component type, interleaved, normalised or sparse.
+
+use super::document::Document;
+use super::json::Accessor;
+use super::place::{GltfFault, Place};
+use crate::error::ErrorKind;
+use std::ops::Range;
+
+/// The most elements of an accessor that has no bytes of its own, and so no bound by them.
+const MOST_ZEROS: usize = 1 << 24;
+
+/// A type of component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    fn of(code: u32, place: &Place) -> Result<Self, GltfFault> {
+        Ok(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => {
+                return Err(place
+                    .key("componentType")
+                    .scene(format!("{code} is no type of component")));
+            }
+        })
+    }
+
+    const fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// The number in `bytes`, which are [`size`](Self::size) many; exact.
+    fn read(self, bytes: &[u8]) -> f64 {
+        match (self, bytes) {
+            (Self::I8, &[a, ..]) => f64::from(a as i8),
+            (Self::U8, &[a, ..]) => f64::from(a),
+            (Self::I16, &[a, b, ..]) => f64::from(i16::from_le_bytes([a, b])),
+            (Self::U16, &[a, b, ..]) => f64::from(u16::from_le_bytes([a, b])),
+            (Self::U32, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
+            (Self::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            _ => 0.0,
+        }
+    }
+
+    /// What a normalised number stands for.
+    fn normalise(self, value: f64) -> f64 {
+        match self {
+            Self::I8 => (value / 127.0).max(-1.0),
+            Self::U8 => value / 255.0,
+            Self::I16 => (value / 32767.0).max(-1.0),
+            Self::U16 => value / 65535.0,
+            Self::U32 | Self::F32 => value,
+        }
+    }
+}
+
+/// Elements per value of a type, by its name.
+const KINDS: [(&str, usize); 7] = [
+    ("SCALAR", 1),
+    ("VEC2", 2),
+    ("VEC3", 3),
+    ("VEC4", 4),
+    ("MAT2", 4),
+    ("MAT3", 9),
+    ("MAT4", 16),
+];
+
+/// An accessor that was checked against its buffers.
+struct Layout<'a> {
+    accessor: &'a Accessor,
+    component: Component,
+    components: usize,
+    place: Place,
+}
+
+impl<'a> Layout<'a> {
+    fn new(document: &'a Document, index: usize, user: &Place) -> Result<Self, GltfFault> {
+        let accessor = document.root.accessors.get(index).ok_or_else(|| {
+            let count = document.root.accessors.len();
+            user.scene(format!(
+                "there is no accessor {index}: the file has {count}"
+            ))
+        })?;
+        let place = Place::of("accessors", index);
+        let known = KINDS.iter().find(|(name, _)| *name == accessor.kind);
+        let Some(&(_, components)) = known else {
+            let kind = &accessor.kind;
+            let fault = place
+                .key("type")
+                .scene(format!("`{kind}` is no type of accessor"));
+            return Err(fault.with_nearest(kind, KINDS.map(|(name, _)| name)));
+        };
+        let component = Component::of(accessor.component_type, &place)?;
+        Ok(Self {
+            accessor,
+            component,
+            components,
+            place,
+        })
+    }
+
+    /// Bytes of one value. Columns of matrices begin at multiples of four bytes.
+    fn value_size(&self) -> usize {
+        self.offset_of(self.components - 1) + self.component.size()
+    }
+
+    /// Where a component begins within its value.
+    fn offset_of(&self, i: usize) -> usize {
+        let rows = match self.accessor.kind.as_str() {
+            "MAT2" => 2,
+            "MAT3" => 3,
+            _ => return i * self.component.size(),
+        };
+        let column = (rows * self.component.size()).next_multiple_of(4);
+        (i / rows) * column + (i % rows) * self.component.size()
+    }
+
+    /// All components of all values in one row.
+    fn read(&self, document: &Document) -> Result<Vec<f64>, GltfFault> {
+        let count = self.accessor.count;
+        let mut values = match self.accessor.buffer_view {
+            Some(view) => self.read_dense(document, view)?,
+            None if count > MOST_ZEROS => {
+                let message = format!("{count} zeros are more than {MOST_ZEROS}");
+                return Err(self.place.fault(ErrorKind::Limit, message));
+            }
+            None => vec![0.0; count * self.components],
+        };
+        self.read_sparse(document, &mut values)?;
+        if self.accessor.normalized {
+            for value in &mut values {
+                *value = self.component.normalise(*value);
+            }
+        }
+        Ok(values)
+    }
+
+    fn read_dense(&self, document: &Document, view: usize) -> Result<Vec<f64>, GltfFault> {
+        let place = self.place.key("bufferView");
+        let (bytes, stride) = document.view(view, &place)?;
+        let size = self.value_size();
+        let stride =
+            stride.unwrap_or(size.next_multiple_of(if self.components > 4 { 4 } else { 1 }));
+        let wanted = Elements {
+            offset: self.accessor.byte_offset,
+            stride,
+            size,
+            count: self.accessor.count,
+        };
+        let range = wanted.range(bytes.len(), &self.place)?;
+        let bytes = &bytes[range];
+        let at = |i: usize| &bytes[i * stride..i * stride + size];
+        let of_value = |value: &[u8], i: usize| {
+            let start = self.offset_of(i);
+            self.component
+                .read(&value[start..start + self.component.size()])
+        };
+        let values = (0..self.accessor.count)
+            .flat_map(|i| (0..self.components).map(move |k| of_value(at(i), k)));
+        Ok(values.collect())
+    }
+
+    fn read_sparse(&self, document: &Document, values: &mut [f64]) -> Result<(), GltfFault> {
+        let Some(sparse) = &self.accessor.sparse else {
+            return Ok(());
+        };
+        let place = self.place.key("sparse");
+        let indices_place = place.key("indices");
+        let (indices, values_view) = (&sparse.indices, &sparse.values);
+        let component = Component::of(indices.component_type, &indices_place)?;
+        let (index_bytes, _) = document.view(indices.buffer_view, &indices_place)?;
+        let (value_bytes, _) = document.view(values_view.buffer_view, &place.key("values"))?;
+        let of_indices = Elements::packed(indices.byte_offset, component.size(), sparse.count);
+        let of_values = Elements::packed(values_view.byte_offset, self.value_size(), sparse.count);
+        let index_bytes = &index_bytes[of_indices.range(index_bytes.len(), &indices_place)?];
+        let value_bytes = &value_bytes[of_values.range(value_bytes.len(), &place.key("values"))?];
+        let replaced = index_bytes
+            .chunks_exact(component.size())
+            .zip(value_bytes.chunks_exact(self.value_size()));
+        for (index, value) in replaced {
+            let index = component.read(index) as usize;
+            if index >= self.accessor.count {
+                let count = self.accessor.count;
+                let message = format!("index {index} is not below the count of {count}");
+                return Err(indices_place.scene(message));
+            }
+            for k in 0..self.components {
+                let start = self.offset_of(k);
+                let bytes = &value[start..start + self.component.size()];
+                values[index * self.components + k] = self.component.read(bytes);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Values in bytes.
+struct Elements {
+    offset: usize,
+    stride: usize,
+    size: usize,
+    count: usize,
+}
+
+impl Elements {
+    fn packed(offset: usize, size: usize, count: usize) -> Self {
+        Self {
+            offset,
+            stride: size,
+            size,
+            count,
+        }
+    }
+
+    /// The bytes that all values lie in. Errors: they end beyond `available`.
+    fn range(&self, available: usize, place: &Place) -> Result<Range<usize>, GltfFault> {
+        let end = || {
+            let last = self.count.checked_sub(1)?.checked_mul(self.stride)?;
+            self.offset.checked_add(last)?.checked_add(self.size)
+        };
+        if self.count == 0 {
+            return Ok(0..0);
+        }
+        if self.stride < self.size {
+            let message = format!(
+                "values of {} bytes are {} bytes apart",
+                self.size, self.stride
+            );
+            return Err(place.scene(message));
+        }
+        match end() {
+            Some(end) if end <= available => Ok(self.offset..end),
+            _ => {
+                let Self {
+                    offset,
+                    count,
+                    size,
+                    ..
+                } = self;
+                let message = format!(
+                    "{count} values of {size} bytes from byte {offset} on end beyond the {available} bytes that there are"
+                );
+                Err(place
+                    .fault(ErrorKind::Data, message)
+                    .with_hint("the file is cut or its counts are wrong"))
+            }
+        }
+    }
+}
+
+impl Document {
+    /// The values of an accessor of vectors with `N` components, which `user` refers to.
+    pub(super) fn vectors<const N: usize>(
+        &self,
+        index: usize,
+        user: &Place,
+    ) -> Result<Vec<[f32; N]>, GltfFault> {
+        let layout = Layout::new(self, index, user)?;
+        if layout.components != N {
+            let kind = &layout.accessor.kind;
+            let message = format!("accessor {index} is a {kind}, which has not {N} components");
+            return Err(user.scene(message));
+        }
+        let values = layout.read(self)?;
+        let vector = |value: &[f64; N]| value.map(|component| component as f32);
+        Ok(values.as_chunks::<N>().0.iter().map(vector).collect())
+    }
+
+    /// Vectors of which all components have to be finite numbers.
+    pub(super) fn finite_vectors<const N: usize>(
+        &self,
+        index: usize,
+        user: &Place,
+    ) -> Result<Vec<[f32; N]>, GltfFault> {
+        let vectors = self.vectors::<N>(index, user)?;
+        let is_finite = |vector: &[f32; N]| vector.iter().all(|component| component.is_finite());
+        match vectors.iter().position(|vector| !is_finite(vector)) {
+            None => Ok(vectors),
+            Some(i) => Err(user.scene(format!("value {i} of accessor {index} is not finite"))),
+        }
+    }
+
+    /// How many components the vectors of an accessor have.
+    pub(super) fn components(&self, index: usize, user: &Place) -> Result<usize, GltfFault> {
+        Layout::new(self, index, user).map(|layout| layout.components)
+    }
+
+    /// The values of an accessor of whole numbers.
+    pub(super) fn indices(&self, index: usize, user: &Place) -> Result<Vec<u32>, GltfFault> {
+        let layout = Layout::new(self, index, user)?;
+        let whole = matches!(
+            layout.component,
+            Component::U8 | Component::U16 | Component::U32
+        );
+        if layout.components != 1 || !whole {
+            return Err(user.scene(format!(
+                "accessor {index} has no indices: they are unsigned scalars"
+            )));
+        }
+        Ok(layout
+            .read(self)?
+            .into_iter()
+            .map(|value| value as u32)
+            .collect())
+    }
+}

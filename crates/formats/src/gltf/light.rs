@@ -1,0 +1,110 @@
+//! Lights of KHR_lights_punctual. Their units are those of light that is seen: candela and lux count
+//! as radiant intensity and irradiance, as everywhere in the file.
+
+use super::document::{Context, Document};
+use super::json::Light as Described;
+use super::node::Nodes;
+use super::place::{GltfFault, Place};
+use bidir::light::{DistantLight, Light, PointLight, SpotLight};
+use bidir::math::Vec3;
+use glam::{DAffine3, DVec3};
+
+/// The lights of the scene, in the order of its nodes.
+pub(super) fn all(
+    context: &mut Context<'_>,
+    document: &Document,
+    nodes: &Nodes,
+) -> Result<Vec<Light>, GltfFault> {
+    let mut lights = Vec::new();
+    for &index in &nodes.order {
+        let node = &document.root.nodes[index];
+        let Some(light) = node.extensions.light.as_ref().and_then(|light| light.light) else {
+            continue;
+        };
+        let place = Place::of("nodes", index)
+            .key("extensions")
+            .key("KHR_lights_punctual");
+        let world_from_node = nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        lights.push(build(context, document, (light, &place), &world_from_node)?);
+    }
+    Ok(lights)
+}
+
+fn build(
+    context: &mut Context<'_>,
+    document: &Document,
+    (index, user): (usize, &Place),
+    world_from_node: &DAffine3,
+) -> Result<Light, GltfFault> {
+    let all = document.root.extensions.lights.as_ref();
+    let described = all.and_then(|all| all.lights.get(index));
+    let described = described.ok_or_else(|| user.scene(format!("there is no light {index}")))?;
+    let place = Place::TOP
+        .key("extensions")
+        .key("KHR_lights_punctual")
+        .key("lights")
+        .index(index);
+    let intensity = described.intensity.unwrap_or(1.0);
+    let power = described
+        .color
+        .unwrap_or([1.0; 3])
+        .map(|channel| channel * intensity);
+    if power
+        .iter()
+        .any(|channel| !channel.is_finite() || *channel < 0.0)
+    {
+        return Err(place.scene(format!("the intensity {power:?} is no light")));
+    }
+    if described.range.is_some() {
+        context.warn(
+            &place,
+            "light reaches further than its `range`, by the square of the distance",
+        );
+    }
+    let position = world_from_node.translation.as_vec3();
+    let ahead = world_from_node.transform_vector3(DVec3::NEG_Z);
+    let axis = ahead.normalize_or(DVec3::NEG_Z).as_vec3();
+    if !position.is_finite() || position.abs().max_element() > 1e12 {
+        return Err(user.scene("the light is too far away"));
+    }
+    match described.kind.as_str() {
+        "directional" => Ok(Light::Distant(DistantLight {
+            to_light: -axis,
+            irradiance: power,
+        })),
+        "point" => Ok(Light::Point(PointLight {
+            position,
+            intensity: power,
+        })),
+        "spot" => spot(described, &place, (position, axis), power).map(Light::Spot),
+        other => {
+            let fault = place
+                .key("type")
+                .scene(format!("unknown type of light `{other}`"));
+            Err(fault.with_nearest(other, ["directional", "point", "spot"]))
+        }
+    }
+}
+
+fn spot(
+    described: &Described,
+    place: &Place,
+    (position, axis): (Vec3, Vec3),
+    intensity: [f32; 3],
+) -> Result<SpotLight, GltfFault> {
+    let cone = described.spot.as_ref();
+    let inner = cone.and_then(|cone| cone.inner_cone_angle).unwrap_or(0.0);
+    let outer = cone.and_then(|cone| cone.outer_cone_angle);
+    let outer = outer.unwrap_or(std::f32::consts::FRAC_PI_4);
+    if !(inner >= 0.0 && inner <= outer && outer > 1e-4 && outer < 1.58) {
+        let message =
+            format!("the cone from {inner} to {outer} is none: 0 <= inner < outer <= pi/2");
+        return Err(place.key("spot").scene(message));
+    }
+    Ok(SpotLight::squared(
+        position,
+        axis,
+        intensity,
+        [inner, outer],
+    ))
+}

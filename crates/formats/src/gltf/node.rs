@@ -1,0 +1,114 @@
+//! The nodes of the scene that is shown, each with its map to the world.
+
+use super::document::Document;
+use super::json::{Node, Root};
+use super::place::{GltfFault, Place};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+
+/// The nodes of a scene in the order of a walk from the roots, children after parents.
+pub(super) struct Nodes {
+    /// Nodes by index.
+    pub(super) order: Vec<usize>,
+    /// The map to the world of each node of the file. None: it is not in the scene.
+    pub(super) world_from_node: Vec<Option<DAffine3>>,
+}
+
+impl Nodes {
+    /// Walks the scene that the file shows. Errors: nodes that are their own ancestors, or have two
+    /// parents.
+    pub(super) fn of(document: &Document) -> Result<Self, GltfFault> {
+        let root = &document.root;
+        let mut nodes = Self {
+            order: Vec::new(),
+            world_from_node: vec![None; root.nodes.len()],
+        };
+        // Nodes to visit, the next one last, each with where it is named.
+        let mut waiting = roots(root)?;
+        waiting.reverse();
+        while let Some((index, parent, named)) = waiting.pop() {
+            let Some(node) = root.nodes.get(index) else {
+                let count = root.nodes.len();
+                return Err(named.scene(format!("there is no node {index}: the file has {count}")));
+            };
+            if nodes.world_from_node[index].is_some() {
+                let message =
+                    format!("node {index} is reached twice: nodes have one parent, and no cycles");
+                return Err(named.scene(message));
+            }
+            let place = Place::of("nodes", index);
+            let world_from_node = parent * local(node, &place)?;
+            if !world_from_node.is_finite() {
+                return Err(place.scene("its transformation is not finite"));
+            }
+            nodes.world_from_node[index] = Some(world_from_node);
+            nodes.order.push(index);
+            let children = place.key("children");
+            let below = node.children.iter().enumerate().rev();
+            waiting.extend(below.map(|(i, &child)| (child, world_from_node, children.index(i))));
+        }
+        Ok(nodes)
+    }
+}
+
+/// The roots of the scene that the file shows: its default scene, else the first, else all nodes that
+/// are nobody's children.
+fn roots(root: &Root) -> Result<Vec<(usize, DAffine3, Place)>, GltfFault> {
+    let index = root.scene.unwrap_or(0);
+    let place = Place::of("scenes", index).key("nodes");
+    let from_top = |nodes: &[usize]| {
+        let named = |(i, &node)| (node, DAffine3::IDENTITY, place.index(i));
+        nodes.iter().enumerate().map(named).collect()
+    };
+    if let Some(scene) = root.scenes.get(index) {
+        return Ok(from_top(&scene.nodes));
+    }
+    if root.scene.is_some() {
+        let count = root.scenes.len();
+        let message = format!("there is no scene {index}: the file has {count}");
+        return Err(Place::TOP.key("scene").scene(message));
+    }
+    let mut is_child = vec![false; root.nodes.len()];
+    for &child in root.nodes.iter().flat_map(|node| &node.children) {
+        if let Some(is_child) = is_child.get_mut(child) {
+            *is_child = true;
+        }
+    }
+    let tops: Vec<usize> = (0..root.nodes.len()).filter(|&i| !is_child[i]).collect();
+    Ok(from_top(&tops))
+}
+
+/// The map from a node to its parent.
+fn local(node: &Node, place: &Place) -> Result<DAffine3, GltfFault> {
+    let Some(matrix) = &node.matrix else {
+        return Ok(from_parts(node.translation, node.rotation, node.scale));
+    };
+    let matrix = DMat4::from_cols_array(matrix);
+    let bottom = matrix.row(3);
+    if (bottom - glam::DVec4::W).abs().max_element() > 1e-6 {
+        return Err(place
+            .key("matrix")
+            .scene("the last row of the matrix is not 0 0 0 1"));
+    }
+    Ok(DAffine3::from_mat4(matrix))
+}
+
+/// T · R · S.
+pub(super) fn from_parts(
+    translation: Option<[f64; 3]>,
+    rotation: Option<[f64; 4]>,
+    scale: Option<[f64; 3]>,
+) -> DAffine3 {
+    let rotation = DQuat::from_array(rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    let length = rotation.length();
+    let rotation = if length > 0.0 {
+        rotation / length
+    } else {
+        DQuat::IDENTITY
+    };
+    let [translation, scale] = [translation.unwrap_or_default(), scale.unwrap_or([1.0; 3])];
+    DAffine3::from_scale_rotation_translation(
+        DVec3::from(scale),
+        rotation,
+        DVec3::from(translation),
+    )
+}

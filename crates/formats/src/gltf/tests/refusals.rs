@@ -1,0 +1,243 @@
+//! What is wrong is told with its place and a hint.
+
+use super::{Draft, F32, U8, floats, load_bytes};
+use crate::error::ErrorKind;
+use crate::pbrt::LoadOptions;
+use serde_json::json;
+
+#[track_caller]
+fn check(draft: &Draft, kind: ErrorKind, words: &[&str]) {
+    let error = draft.error();
+    let text = error.to_string();
+    assert_eq!(error.kind(), kind, "{text}");
+    assert!(error.line().is_some_and(|line| line > 0), "{text}");
+    for word in words {
+        assert!(text.contains(word), "`{word}` is not in: {text}");
+    }
+}
+
+#[test]
+fn bad_json_has_a_line_and_a_column() {
+    let text = b"{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [{\"mesh\": \"zero\"}]\n}";
+    let error = load_bytes("a.gltf", text, &LoadOptions::default()).unwrap_err();
+    assert_eq!(
+        (error.kind(), error.line()),
+        (ErrorKind::Syntax, Some(3)),
+        "{error}"
+    );
+    assert!(
+        error.to_string().contains("invalid type: string"),
+        "{error}"
+    );
+    let error = load_bytes("a.gltf", b"{ \"asset\": ", &LoadOptions::default()).unwrap_err();
+    assert_eq!(
+        (error.kind(), error.line()),
+        (ErrorKind::Syntax, Some(1)),
+        "{error}"
+    );
+}
+
+#[test]
+fn references_to_what_is_not_there_are_refused() {
+    let mut draft = Draft::triangle();
+    draft.primitive()["attributes"]["POSITION"] = json!(7);
+    let place = "meshes[0].primitives[0].attributes.POSITION: there is no accessor 7";
+    check(&draft, ErrorKind::Scene, &[place]);
+    let mut draft = Draft::triangle();
+    draft.json["nodes"][0]["mesh"] = json!(3);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["nodes[0].mesh: there is no mesh 3"],
+    );
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(1);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["material: there is no material 1"],
+    );
+    let mut draft = Draft::triangle();
+    draft.json["accessors"][0]["bufferView"] = json!(9);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["accessors[0].bufferView: there is no buffer view 9"],
+    );
+    let mut draft = Draft::triangle();
+    draft.json["scene"] = json!(2);
+    check(&draft, ErrorKind::Scene, &["there is no scene 2"]);
+}
+
+#[test]
+fn cut_buffers_and_wrong_counts_are_refused_before_memory_is_taken() {
+    let mut draft = Draft::triangle();
+    draft.buffer.truncate(20);
+    check(
+        &draft,
+        ErrorKind::Data,
+        &["buffers[0]", "20 bytes of the 36"],
+    );
+    for count in [4, usize::MAX, usize::MAX / 12] {
+        let mut draft = Draft::triangle();
+        draft.json["accessors"][0]["count"] = json!(count);
+        check(&draft, ErrorKind::Data, &["accessors[0]", "end beyond"]);
+    }
+    let mut draft = Draft::triangle();
+    let accessor = draft.json["accessors"][0].as_object_mut().unwrap();
+    accessor.remove("bufferView");
+    accessor.insert("count".into(), json!(1u64 << 50));
+    check(&draft, ErrorKind::Limit, &["accessors[0]"]);
+    let mut draft = Draft::triangle();
+    draft.json["bufferViews"][0]["byteOffset"] = json!(usize::MAX);
+    check(&draft, ErrorKind::Data, &["bufferViews[0]"]);
+    let mut draft = Draft::triangle();
+    draft.json["bufferViews"][0]["byteStride"] = json!(4);
+    check(&draft, ErrorKind::Scene, &["4 bytes apart"]);
+}
+
+#[test]
+fn indices_beyond_the_vertices_are_refused() {
+    let mut draft = Draft::triangle();
+    let indices = draft.accessor(&[0, 1, 3], (U8, "SCALAR", 3));
+    draft.primitive()["indices"] = json!(indices);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["indices: index 3 is not that of a vertex: there are 3"],
+    );
+    draft.primitive()["indices"] = json!(0);
+    check(&draft, ErrorKind::Scene, &["has no indices"]);
+}
+
+#[test]
+fn cycles_and_second_parents_are_refused() {
+    let mut draft = Draft::triangle();
+    draft.json["nodes"] = json!([{ "children": [1] }, { "children": [0] }]);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["nodes[1].children[0]: node 0 is reached twice"],
+    );
+    draft.json["nodes"] = json!([{ "children": [0] }]);
+    check(&draft, ErrorKind::Scene, &["node 0 is reached twice"]);
+    draft.json["nodes"] = json!([{ "children": [5] }]);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["nodes[0].children[0]: there is no node 5"],
+    );
+    // Deep trees are no trees too deep.
+    let depth = 20_000;
+    let node = |i| {
+        if i + 1 < depth {
+            json!({ "children": [i + 1] })
+        } else {
+            json!({ "mesh": 0 })
+        }
+    };
+    draft.json["nodes"] = (0..depth).map(node).collect();
+    assert_eq!(draft.load().unwrap().summary.shapes, 1);
+}
+
+#[test]
+fn unknown_extensions_are_refused_where_they_are_required() {
+    let mut draft = Draft::triangle();
+    draft.json["extensionsUsed"] = json!(["ADOBE_magic"]);
+    let loaded = draft.load().unwrap();
+    assert!(
+        loaded.warnings[0].contains("`ADOBE_magic`"),
+        "{:?}",
+        loaded.warnings
+    );
+    draft.json["extensionsRequired"] = json!(["ADOBE_magic"]);
+    check(
+        &draft,
+        ErrorKind::Unsupported,
+        &["extensionsRequired[0]", "`ADOBE_magic`"],
+    );
+    draft.json["extensionsRequired"] = json!(["KHR_mesh_quantisation"]);
+    check(
+        &draft,
+        ErrorKind::Unsupported,
+        &["did you mean `KHR_mesh_quantization`?"],
+    );
+    draft.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    check(&draft, ErrorKind::Unsupported, &["without compression"]);
+}
+
+#[test]
+fn misspelt_names_get_the_nearest_known_one() {
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(0);
+    draft.json["materials"] = json!([{ "alphaMode": "BLND" }]);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["materials[0].alphaMode", "did you mean `BLEND`?"],
+    );
+    let mut draft = Draft::triangle();
+    draft.json["accessors"][0]["type"] = json!("VEC33");
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["accessors[0].type", "did you mean `VEC3`?"],
+    );
+    let mut draft = Draft::triangle();
+    draft.json["cameras"] = json!([{ "type": "perspektive" }]);
+    draft.json["nodes"][0]["camera"] = json!(0);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["cameras[0].type", "did you mean `perspective`?"],
+    );
+}
+
+#[test]
+fn versions_and_missing_files() {
+    let mut draft = Draft::triangle();
+    draft.json["asset"] = json!({ "version": "1.0" });
+    check(
+        &draft,
+        ErrorKind::Unsupported,
+        &["version 1.0", "convert it"],
+    );
+    draft.json["asset"] = json!({ "version": "2.1" });
+    assert!(draft.load().is_ok());
+    let mut draft = Draft::triangle();
+    draft.json["buffers"][0]["uri"] = json!("not there.bin");
+    let text = serde_json::to_vec(&draft.json).unwrap();
+    let error = load_bytes("a.gltf", &text, &LoadOptions::default()).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::MissingFile);
+    assert!(
+        error.to_string().contains("not there.bin") && error.line().is_some(),
+        "{error}"
+    );
+}
+
+#[test]
+fn broken_images_and_numbers_are_refused() {
+    let mut draft = Draft::triangle();
+    draft.primitive()["material"] = json!(0);
+    let view = draft.view(b"\x89PNG and no more");
+    draft.json["images"] = json!([{ "bufferView": view }]);
+    draft.json["textures"] = json!([{ "source": 0 }]);
+    draft.json["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    check(&draft, ErrorKind::Data, &["images[0]"]);
+    let view = draft.view(b"RIFF1234WEBP");
+    draft.json["images"] = json!([{ "bufferView": view }]);
+    check(&draft, ErrorKind::Unsupported, &["neither png nor jpg"]);
+    let mut draft = Draft::triangle();
+    let bad = [0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 0.0, 1.0, 0.0];
+    let bad = draft.accessor(&floats(&bad), (F32, "VEC3", 3));
+    draft.primitive()["attributes"]["POSITION"] = json!(bad);
+    check(
+        &draft,
+        ErrorKind::Scene,
+        &["value 1 of accessor 1 is not finite"],
+    );
+    let mut draft = Draft::triangle();
+    draft.json["nodes"][0]["translation"] = json!([1e30, 0, 0]);
+    check(&draft, ErrorKind::Limit, &["beyond"]);
+}

@@ -1,0 +1,291 @@
+//! Images and how materials look them up.
+
+use super::container;
+use super::document::{Context, Document};
+use super::json::{Sampler, TextureInfo};
+use super::mesh::UvMap;
+use super::place::{GltfFault, Place};
+use crate::error::ErrorKind;
+use crate::image::{self, Encoding, Format, ImageData};
+use crate::pbrt::Content;
+use bidir::math::{Vec2, sin_cos};
+use bidir::texture::{
+    self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping, Wrap,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What is taken of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Red,
+    Green,
+    Blue,
+    /// 1 where the image has none.
+    Alpha,
+}
+
+/// What a number of an image becomes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Change {
+    /// Itself.
+    Keep,
+    /// This many times as much.
+    Scale(f32),
+    /// 1 where `factor` times it is at least `cutoff`, else 0.
+    Cut { factor: f32, cutoff: f32 },
+}
+
+impl Change {
+    pub(super) fn apply(self, value: f32) -> f32 {
+        match self {
+            Self::Keep => value,
+            Self::Scale(factor) => factor * value,
+            Self::Cut { factor, cutoff } => f32::from(factor * value >= cutoff),
+        }
+    }
+}
+
+/// The images of a file that were decoded.
+#[derive(Default)]
+pub(super) struct Textures {
+    colors: BTreeMap<(usize, bool), Arc<Image<3>>>,
+    numbers: BTreeMap<(usize, String), Arc<Image<1>>>,
+    /// The image that was decoded last: its channels are often asked for one after the other.
+    last: Option<((usize, bool), ImageData)>,
+    /// Bytes that the digest has.
+    told: Vec<usize>,
+}
+
+/// The part of a texture's coordinates that is not in the mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Lookup<'a> {
+    pub(super) info: &'a TextureInfo,
+    pub(super) place: &'a Place,
+    /// What the mesh has of it.
+    pub(super) baked: UvMap,
+}
+
+/// The map of texture coordinates that a material asks for.
+pub(super) fn uv_map(info: &TextureInfo) -> UvMap {
+    let Some(transform) = &info.extensions.transform else {
+        return UvMap {
+            set: info.tex_coord,
+            ..UvMap::IDENTITY
+        };
+    };
+    let ([su, sv], [ou, ov]) = (
+        transform.scale.unwrap_or([1.0; 2]),
+        transform.offset.unwrap_or([0.0; 2]),
+    );
+    let (sin, cos) = sin_cos(transform.rotation);
+    UvMap {
+        set: transform.tex_coord.unwrap_or(info.tex_coord),
+        rows: [[cos * su, sin * sv, ou], [-sin * su, cos * sv, ov]],
+    }
+}
+
+impl Textures {
+    /// A texture of colours, stored as `encoding` says.
+    pub(super) fn color(
+        &mut self,
+        context: &mut Context<'_>,
+        document: &Document,
+        lookup: Lookup<'_>,
+        encoding: Encoding,
+    ) -> Result<ColorTexture, GltfFault> {
+        let (source, sampler) = source(document, lookup)?;
+        let key = (source, encoding == Encoding::Srgb);
+        if !self.colors.contains_key(&key) {
+            let data = self.decode(context, document, source, encoding)?;
+            let image = Image::new(data.width, data.rgb().collect());
+            let image =
+                image.ok_or_else(|| Place::of("images", source).scene("it has no pixels"))?;
+            self.colors.insert(key, Arc::new(image));
+        }
+        let image = Arc::clone(&self.colors[&key]);
+        let map = map(context, image, &sampler, lookup)?;
+        Ok(ColorTexture::Image(Arc::new(map)))
+    }
+
+    /// A texture of numbers: one channel of a linear image, changed.
+    pub(super) fn number(
+        &mut self,
+        context: &mut Context<'_>,
+        document: &Document,
+        lookup: Lookup<'_>,
+        (part, change): (Part, Change),
+    ) -> Result<FloatTexture, GltfFault> {
+        let (source, sampler) = source(document, lookup)?;
+        let key = (source, format!("{part:?} {change:?}"));
+        if !self.numbers.contains_key(&key) {
+            let data = self.decode(context, document, source, Encoding::Linear)?;
+            let numbers = channel(data, part).map(|value| [change.apply(value)]);
+            let image = Image::new(data.width, numbers.collect());
+            let image =
+                image.ok_or_else(|| Place::of("images", source).scene("it has no pixels"))?;
+            self.numbers.insert(key.clone(), Arc::new(image));
+        }
+        let image = Arc::clone(&self.numbers[&key]);
+        let map = map(context, image, &sampler, lookup)?;
+        Ok(FloatTexture::Image(Arc::new(map)))
+    }
+
+    fn decode(
+        &mut self,
+        context: &mut Context<'_>,
+        document: &Document,
+        source: usize,
+        encoding: Encoding,
+    ) -> Result<&ImageData, GltfFault> {
+        let key = (source, encoding == Encoding::Srgb);
+        let is_known = self.last.as_ref().is_some_and(|(known, _)| *known == key);
+        if !is_known {
+            let place = Place::of("images", source);
+            let (bytes, is_beside) = bytes(document, source, &place)?;
+            if is_beside && !self.told.contains(&source) {
+                self.told.push(source);
+                context.digest.add(Content::Image, &bytes);
+            }
+            let format = format_of(&bytes, &place)?;
+            let data = image::decode_stored(format, &bytes, encoding);
+            let data = data.map_err(|error| GltfFault::from_error(&place, &error))?;
+            self.last = Some((key, data));
+        }
+        let (_, data) = self.last.as_ref().expect("it was just stored");
+        Ok(data)
+    }
+}
+
+fn channel(data: &ImageData, part: Part) -> impl Iterator<Item = f32> + '_ {
+    let channels = data.channels.max(1);
+    data.data
+        .chunks_exact(channels)
+        .map(move |pixel| match part {
+            Part::Red => pixel[0],
+            Part::Green => *pixel.get(1).unwrap_or(&pixel[0]),
+            Part::Blue => *pixel.get(2).unwrap_or(&pixel[0]),
+            Part::Alpha => *pixel.get(3).unwrap_or(&1.0),
+        })
+}
+
+/// The image and the sampler of a texture.
+fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), GltfFault> {
+    let root = &document.root;
+    let index = lookup.info.index;
+    let texture = root.textures.get(index).ok_or_else(|| {
+        let count = root.textures.len();
+        lookup
+            .place
+            .scene(format!("there is no texture {index}: the file has {count}"))
+    })?;
+    let place = Place::of("textures", index);
+    let source = texture.source.ok_or_else(|| {
+        let fault = place.fault(ErrorKind::Unsupported, "it has no image in png or jpg");
+        fault.with_hint("export it with one")
+    })?;
+    if source >= root.images.len() {
+        let count = root.images.len();
+        return Err(place
+            .key("source")
+            .scene(format!("there is no image {source}: the file has {count}")));
+    }
+    let Some(sampler) = texture.sampler else {
+        return Ok((source, Sampler::default()));
+    };
+    let known = root.samplers.get(sampler).ok_or_else(|| {
+        let count = root.samplers.len();
+        place.key("sampler").scene(format!(
+            "there is no sampler {sampler}: the file has {count}"
+        ))
+    })?;
+    Ok((source, known.clone()))
+}
+
+/// The bytes of an image, and whether they are in no buffer.
+fn bytes(document: &Document, source: usize, place: &Place) -> Result<(Vec<u8>, bool), GltfFault> {
+    let image = &document.root.images[source];
+    match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => {
+            let bytes = container::resource(&document.folder, uri, &place.key("uri"))?;
+            Ok((bytes, !uri.starts_with("data:")))
+        }
+        (None, Some(view)) => {
+            let (bytes, _) = document.view(view, &place.key("bufferView"))?;
+            Ok((bytes.to_vec(), false))
+        }
+        (None, None) => Err(place.scene("it has neither `uri` nor `bufferView`")),
+    }
+}
+
+/// What its first bytes say that an image is.
+fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
+        [0xff, 0xd8, 0xff, ..] => Ok(Format::Jpeg),
+        _ => {
+            let fault = place.fault(ErrorKind::Unsupported, "it is neither png nor jpg");
+            Err(fault.with_hint("export images as png or jpg"))
+        }
+    }
+}
+
+/// The image laid over the mesh's parameters.
+fn map<const N: usize>(
+    context: &mut Context<'_>,
+    image: Arc<Image<N>>,
+    sampler: &Sampler,
+    lookup: Lookup<'_>,
+) -> Result<ImageMap<N>, GltfFault> {
+    let place = lookup.place;
+    let filter = match sampler.mag_filter {
+        Some(9728) => ImageFilter::Point,
+        _ => ImageFilter::Bilinear,
+    };
+    let wrap = Wrap::Axes([
+        beyond(sampler.wrap_s, place)?,
+        beyond(sampler.wrap_t, place)?,
+    ]);
+    let wanted = uv_map(lookup.info);
+    let (scale, offset) = if wanted == lookup.baked {
+        (Vec2::ONE, Vec2::ZERO)
+    } else {
+        remaining(context, &wanted, lookup)?
+    };
+    Ok(ImageMap {
+        image,
+        wrap,
+        filter,
+        change: texture::Change::Scale(1.0),
+        mapping: Mapping::Parameters { scale, offset },
+    })
+}
+
+/// What a sampler has beyond the borders that one coordinate crosses.
+fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
+    match wrap.unwrap_or(10497) {
+        33071 => Ok(Beyond::Clamp),
+        33648 => Ok(Beyond::Mirror),
+        10497 => Ok(Beyond::Repeat),
+        other => Err(place.scene(format!("{other} is no way to wrap a texture"))),
+    }
+}
+
+/// Scale and offset of a texture that differs from what the mesh has.
+fn remaining(
+    context: &mut Context<'_>,
+    wanted: &UvMap,
+    lookup: Lookup<'_>,
+) -> Result<(Vec2, Vec2), GltfFault> {
+    if wanted.set != lookup.baked.set {
+        let what = "a material with textures of several sets of coordinates";
+        context.unsupported(lookup.place, what, "one set stands in for all")?;
+    }
+    let [[su, across, ou], [down, sv, ov]] = wanted.rows;
+    if across.abs().max(down.abs()) > 1e-6 {
+        let what = "a material with textures that are turned by different angles";
+        context.unsupported(lookup.place, what, "they are not turned")?;
+    }
+    // Parameters of the mesh go up where those of the file go down.
+    Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))
+}

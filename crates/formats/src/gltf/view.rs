@@ -1,0 +1,240 @@
+//! The camera and the film: those of the file, or a view of all that is there.
+
+use super::document::{Context, Document};
+use super::json;
+use super::node::Nodes;
+use super::place::{GltfFault, Place};
+use crate::error::ErrorKind;
+use crate::pbrt::{Crop, LARGEST_SIDE};
+use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
+use bidir::film::{FilmSettings, Filter, FilterKind};
+use bidir::math::{Affine3A, Vec2, Vec3};
+use glam::{DAffine3, DVec3};
+use std::ops::RangeInclusive;
+
+/// Rows of the film where nothing says how many.
+const HEIGHT: u32 = 720;
+/// Columns where no camera says its proportions.
+const WIDTH: u32 = 1280;
+/// The vertical angle of the view where no camera says one. Unit: radians.
+const ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
+
+/// Width over height of what cameras see.
+const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
+
+/// How a camera sees, and half the height of what it sees.
+#[derive(Clone, Copy)]
+enum Screen {
+    /// At distance 1.
+    Perspective(f64),
+    /// Everywhere.
+    Orthographic(f64),
+}
+
+/// What is looked from.
+pub(super) struct View {
+    /// x right, y up, z forward. None: so that all is in view.
+    world_from_camera: Option<Affine3A>,
+    screen: Screen,
+    /// Width over height of what has to be in view. None: as the film is.
+    aspect: Option<f64>,
+    place: Place,
+}
+
+/// Finds the first camera of the scene.
+pub(super) fn find(
+    context: &mut Context<'_>,
+    document: &Document,
+    nodes: &Nodes,
+) -> Result<View, GltfFault> {
+    let cameras: Vec<(usize, usize)> = nodes
+        .order
+        .iter()
+        .filter_map(|&node| Some((node, document.root.nodes[node].camera?)))
+        .collect();
+    let Some(&(node, camera)) = cameras.first() else {
+        context.warn(
+            &Place::TOP,
+            "the scene has no camera: one looks at all of it from its front",
+        );
+        return Ok(View {
+            world_from_camera: None,
+            screen: Screen::Perspective(libm::tan(ANGLE / 2.0)),
+            aspect: None,
+            place: Place::TOP,
+        });
+    };
+    if cameras.len() > 1 {
+        let message = format!(
+            "the scene has {} cameras, of which the first is used",
+            cameras.len()
+        );
+        context.warn(&Place::of("nodes", node), message);
+    }
+    let world_from_node = nodes.world_from_node[node].unwrap_or(DAffine3::IDENTITY);
+    read(document, camera, &world_from_node)
+}
+
+fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result<View, GltfFault> {
+    let place = Place::of("cameras", index);
+    let count = document.root.cameras.len();
+    let missing = || place.scene(format!("there is no camera {index}: the file has {count}"));
+    let camera = document.root.cameras.get(index).ok_or_else(missing)?;
+    let (screen, aspect) = match (
+        camera.kind.as_str(),
+        &camera.perspective,
+        &camera.orthographic,
+    ) {
+        ("perspective", Some(camera), _) => perspective(camera, &place.key("perspective"))?,
+        ("orthographic", _, Some(camera)) => orthographic(camera, &place.key("orthographic"))?,
+        (kind @ ("perspective" | "orthographic"), ..) => {
+            return Err(place.scene(format!("`{kind}` is missing")));
+        }
+        (other, ..) => {
+            let fault = place
+                .key("type")
+                .scene(format!("unknown type of camera `{other}`"));
+            return Err(fault.with_nearest(other, ["perspective", "orthographic"]));
+        }
+    };
+    Ok(View {
+        world_from_camera: Some(rigid(world_from_node)),
+        screen,
+        aspect,
+        place,
+    })
+}
+
+/// What a perspective camera sees, and width over height of it.
+fn perspective(
+    camera: &json::Perspective,
+    place: &Place,
+) -> Result<(Screen, Option<f64>), GltfFault> {
+    let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
+    if !(yfov > 1e-4 && yfov < 3.1) {
+        return Err(place.scene(format!("`yfov` of {yfov} is no angle of view")));
+    }
+    if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
+        return Err(place.scene(format!("`aspectRatio` of {aspect} is no ratio")));
+    }
+    let screen = Screen::Perspective(libm::tan(yfov / 2.0));
+    Ok((screen, aspect))
+}
+
+/// The same of an orthographic one.
+fn orthographic(
+    camera: &json::Orthographic,
+    place: &Place,
+) -> Result<(Screen, Option<f64>), GltfFault> {
+    let (width, height) = (camera.xmag, camera.ymag);
+    let is_size = |side: f64| side > 0.0 && side <= 1e12;
+    if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
+        return Err(place.scene(format!(
+            "`xmag` of {width} and `ymag` of {height} are no size of a view"
+        )));
+    }
+    Ok((Screen::Orthographic(height), Some(width / height)))
+}
+
+/// The place of a camera that looks along -z of its node, whose scale does not matter.
+fn rigid(world_from_node: &DAffine3) -> Affine3A {
+    let m = world_from_node.matrix3;
+    let forward = (-m.z_axis).normalize_or(DVec3::NEG_Z);
+    let up = m.y_axis.reject_from_normalized(forward);
+    let up = up
+        .try_normalize()
+        .unwrap_or_else(|| forward.any_orthonormal_vector());
+    looking(world_from_node.translation, forward, up)
+}
+
+fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
+    let right = forward.cross(up);
+    let columns = [right, up, forward, eye].map(DVec3::as_vec3a);
+    Affine3A::from_cols(columns[0], columns[1], columns[2], columns[3])
+}
+
+impl View {
+    /// The film: as large as the caller says, else of the camera's proportions.
+    pub(super) fn film(&self, context: &Context<'_>) -> Result<FilmSettings, GltfFault> {
+        let own = match self.aspect {
+            None => [WIDTH, HEIGHT],
+            Some(aspect) => [
+                (f64::from(HEIGHT) * aspect).round().clamp(1.0, 8192.0) as u32,
+                HEIGHT,
+            ],
+        };
+        let [width, height] = context.options.resolution.unwrap_or(own);
+        let sides = 1..=LARGEST_SIDE;
+        if !sides.contains(&width) || !sides.contains(&height) {
+            let message = format!("a film of {width} × {height} pixels is empty or too large");
+            return Err(self.place.fault(ErrorKind::Limit, message));
+        }
+        let filter = Filter::new(FilterKind::Gaussian { sigma: 0.5 }, Vec2::splat(1.5));
+        let mut film = FilmSettings::new([width, height], filter);
+        if let Some(crop) = context.options.crop {
+            film.crop = Crop::pixels(crop, [width, height]);
+        }
+        if film.crop.area() > 0 {
+            return Ok(film);
+        }
+        let message =
+            format!("the crop asked for has no pixels of this film of {width} × {height}");
+        Err(Place::TOP.fault(ErrorKind::Options, message))
+    }
+
+    /// The camera in front of a film of `resolution`. What the file's camera sees is in view
+    /// whatever the film's shape; nothing is stretched.
+    pub(super) fn camera(
+        &self,
+        resolution: [u32; 2],
+        corners: [Vec3; 2],
+    ) -> Result<Camera, GltfFault> {
+        let half = self.half(resolution);
+        let [x, y] = [half.x as f32, half.y as f32];
+        let screen = [Vec2::new(-x, y), Vec2::new(x, -y)];
+        let resolution = Vec2::from(resolution.map(|side| side as f32));
+        let placed = self.world_from_camera;
+        let world_from_camera = placed.unwrap_or_else(|| in_front(corners, half));
+        let camera = match self.screen {
+            Screen::Perspective(_) => Perspective::new(&PerspectiveSettings {
+                world_from_camera,
+                resolution,
+                screen,
+                lens_radius: 0.0,
+                focal_distance: 1e6,
+            })
+            .map(Camera::Perspective),
+            Screen::Orthographic(_) => Orthographic::new(&OrthographicSettings {
+                world_from_camera,
+                resolution,
+                screen,
+            })
+            .map(Camera::Orthographic),
+        };
+        camera.ok_or_else(|| self.place.scene("the camera's place is not finite"))
+    }
+
+    /// Half the size of what a film of `resolution` shows, z being 0.
+    fn half(&self, resolution: [u32; 2]) -> DVec3 {
+        let [width, height] = resolution.map(f64::from);
+        let (Screen::Perspective(mut half) | Screen::Orthographic(mut half)) = self.screen;
+        if let Some(aspect) = self.aspect {
+            half *= (aspect * height / width).max(1.0);
+        }
+        DVec3::new(half * width / height, half, 0.0)
+    }
+}
+
+/// A place on the side of +z from which a box between two corners fills a view of half size `half`
+/// at distance 1.
+fn in_front(corners: [Vec3; 2], half: DVec3) -> Affine3A {
+    let [low, high] = corners.map(Vec3::as_dvec3);
+    let (centre, size) = if low.cmple(high).all() {
+        ((low + high) / 2.0, (high - low) / 2.0)
+    } else {
+        (DVec3::ZERO, DVec3::ONE)
+    };
+    let distance = (size.x / half.x).max(size.y / half.y) * 1.05 + size.z;
+    let eye = centre + DVec3::Z * distance.max(1e-6);
+    looking(eye, DVec3::NEG_Z, DVec3::Y)
+}
