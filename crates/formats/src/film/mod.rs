@@ -109,7 +109,8 @@ fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
     bytes
 }
 
-fn decode(bytes: &[u8]) -> Result<FilmFile> {
+/// Decodes a film file in memory; see [`read`].
+pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
     let mut rest = bytes;
     if take(&mut rest, MAGIC.len())? != MAGIC {
         return Err(broken("not a film file")
