@@ -4,3 +4,4 @@
 
 pub mod experiments;
 pub mod inputs;
+pub mod mutation;

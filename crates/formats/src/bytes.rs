@@ -23,7 +23,10 @@ pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<Vec<u8>> {
 /// Errors: among others, a device, whose bytes may have no end.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let file = File::open(path).map_err(|error| Error::io(path, "open", &error))?;
-    if file.metadata().is_ok_and(|file| is_device(file.file_type())) {
+    if file
+        .metadata()
+        .is_ok_and(|file| is_device(file.file_type()))
+    {
         return Err(Error::new(ErrorKind::Io, "cannot read: a device").in_file(path));
     }
     if path.extension().is_some_and(|extension| extension == "gz") {

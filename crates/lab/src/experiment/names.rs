@@ -6,7 +6,9 @@ pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
     let letters = name.chars().count();
     let allowed = letters.div_ceil(3).min(4);
     // Comparing takes the product of the lengths.
-    let known = known.into_iter().filter(|known| known.len() <= 100 && letters <= 100);
+    let known = known
+        .into_iter()
+        .filter(|known| known.len() <= 100 && letters <= 100);
     let distances = known.map(|known| {
         let distance = strsim::osa_distance(&name.to_ascii_lowercase(), known);
         (distance, known)

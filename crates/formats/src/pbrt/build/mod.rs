@@ -70,7 +70,8 @@ impl LoadOptions {
     /// The most primitives of a scene where the caller says nothing of it.
     const MOST_PRIMITIVES: u64 = 1 << 28;
 
-    fn most_primitives(&self) -> u64 {
+    /// The most primitives, and the most vertices.
+    pub(crate) fn most_primitives(&self) -> u64 {
         self.most_primitives.unwrap_or(Self::MOST_PRIMITIVES)
     }
 }
