@@ -38,13 +38,16 @@ fn build(text: &str, lenient: &[bool]) {
         Err(error) => return tell::<()>(Err(error)),
     };
     for &lenient in lenient {
-        let options = LoadOptions {
-            lenient,
-            resolution: Some([4, 3]),
-            most_primitives: Some(1 << 14),
-            ..LoadOptions::default()
-        };
-        tell(pbrt::build(&description, &options));
+        tell(pbrt::build(&description, &options(lenient)));
+    }
+}
+
+fn options(lenient: bool) -> LoadOptions {
+    LoadOptions {
+        lenient,
+        resolution: Some([4, 3]),
+        most_primitives: Some(1 << 14),
+        ..LoadOptions::default()
     }
 }
 
