@@ -133,8 +133,9 @@ pub fn spectrum(bytes: &[u8]) {
         ("Material \"conductor\"", "eta"),
         ("Material \"dielectric\"", "eta"),
     ] {
-        let text =
-            format!("WorldBegin {kind} \"spectrum {parameter}\" \"{name}\" Shape \"sphere\"");
+        let text = format!(
+            "PixelFilter \"box\" WorldBegin {kind} \"spectrum {parameter}\" \"{name}\" Shape \"sphere\""
+        );
         build(&text, &[false]);
     }
 }

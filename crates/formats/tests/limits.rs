@@ -14,7 +14,7 @@ fn check(error: &Error, kind: ErrorKind, words: &str) {
 /// The limit that reading of this world runs into.
 #[track_caller]
 fn check_text(world: &str, words: &str) {
-    let error = parse_text("s", &format!("WorldBegin\n{world}")).unwrap_err();
+    let error = parse_text("s", &format!("WorldBegin\n{world}")).expect_err("too much");
     check(&error, ErrorKind::Limit, words);
 }
 
@@ -25,14 +25,14 @@ fn check_size(world: &str) {
         most_primitives: Some(100),
         ..LoadOptions::default()
     };
-    let description = parse_text("s", &format!("WorldBegin\n{world}")).unwrap();
-    let error = build(&description, &options).unwrap_err();
+    let description = parse_text("s", &format!("WorldBegin\n{world}")).expect("it parses");
+    let error = build(&description, &options).expect_err("too much");
     check(&error, ErrorKind::Limit, "more than 100 primitives");
 }
 
 #[track_caller]
 fn check_image(format: Format, bytes: &[u8]) {
-    let error = image::decode(format, bytes, None).unwrap_err();
+    let error = image::decode(format, bytes, None).expect_err("too short");
     check(&error, ErrorKind::Data, "too short for");
 }
 
@@ -56,10 +56,10 @@ fn large_exr() -> Vec<u8> {
         env!("CARGO_MANIFEST_DIR"),
         "/../../fuzz/seeds/image/zip.exr"
     );
-    let mut exr = fs::read(seed).unwrap().split_off(1);
+    let mut exr = fs::read(seed).expect("the seed is there").split_off(1);
     for window in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
         let at = exr.windows(window.len()).position(|bytes| bytes == window);
-        let corner = at.unwrap() + window.len() + 4 + 8;
+        let corner = at.expect("it has windows") + window.len() + 4 + 8;
         exr[corner..corner + 8].copy_from_slice(&[9999_u32.to_le_bytes(); 2].concat());
     }
     exr

@@ -232,7 +232,7 @@ const MOST_WARNINGS: usize = 200;
 pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
     let mut message = message.into();
     if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
-        message = "further warnings, of other kinds".to_owned();
+        "further warnings, of other kinds".clone_into(&mut message);
     }
     match warnings
         .iter_mut()
