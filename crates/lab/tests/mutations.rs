@@ -17,5 +17,5 @@ use std::path::Path;
 #[test]
 fn experiments() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/experiment");
-    mutation::check(&seeds, 1000, experiments::experiment);
+    mutation::check(&seeds, 20_000, experiments::experiment);
 }
