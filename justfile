@@ -54,6 +54,10 @@ bench-film:
 mutants *FLAGS:
     python3 tools/mutants {{FLAGS}}
 
+# Feeds each parser, or those named, with made-up files for so many seconds; see fuzz/README.md.
+fuzz SECONDS *TARGETS:
+    tools/fuzz {{SECONDS}} {{TARGETS}}
+
 # Fresh random numbers, long property tests and mutants, with a summary; or some stages of it.
 nightly SEED="" *STAGES:
     tools/nightly "{{SEED}}" {{STAGES}}

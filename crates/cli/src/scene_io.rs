@@ -44,6 +44,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         resolution: film.and_then(|film| film.size).map(|size| size.0),
         crop: film.and_then(crop),
         isa: args.isa,
+        ..LoadOptions::default()
     };
     let loaded = formats::scene::load(&args.scene, &options)
         .map_err(|error| Failure::diagnostic(exit_of_scene(&error), error))?;

@@ -2,24 +2,49 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use flate2::bufread::MultiGzDecoder;
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::{BufReader, Read};
 use std::path::Path;
 
 /// The name that stands for standard input.
 pub(crate) const STDIN: &str = "-";
 
-/// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
-pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
+/// The same as [`read`], where [`STDIN`] is standard input: for what the user names, as files that
+/// are named in files must not wait for what is typed.
+pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<Vec<u8>> {
     if path.as_os_str() == STDIN {
         return read_to_limit(std::io::stdin().lock(), path, limit);
     }
+    read(path, limit)
+}
+
+/// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
+///
+/// Errors: among others, a device, whose bytes may have no end.
+pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let file = File::open(path).map_err(|error| Error::io(path, "open", &error))?;
+    if file
+        .metadata()
+        .is_ok_and(|file| is_device(file.file_type()))
+    {
+        return Err(Error::new(ErrorKind::Io, "cannot read: a device").in_file(path));
+    }
     if path.extension().is_some_and(|extension| extension == "gz") {
         read_to_limit(MultiGzDecoder::new(BufReader::new(file)), path, limit)
     } else {
         read_to_limit(file, path, limit)
     }
+}
+
+#[cfg(unix)]
+fn is_device(kind: FileType) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    kind.is_char_device() || kind.is_block_device()
+}
+
+#[cfg(not(unix))]
+fn is_device(_kind: FileType) -> bool {
+    false
 }
 
 fn read_to_limit(reader: impl Read, path: &Path, limit: u64) -> Result<Vec<u8>> {
@@ -48,6 +73,14 @@ mod tests {
         std::fs::write(&path, encoder.finish().unwrap()).unwrap();
         assert_eq!(read(&path, 100_000).unwrap(), vec![0; 100_000]);
         assert_eq!(read(&path, 99_999).unwrap_err().kind(), ErrorKind::Limit);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_are_refused_and_the_name_of_standard_input_is_a_file_s() {
+        let kind = |name: &str| read(Path::new(name), 10).unwrap_err().kind();
+        assert_eq!(kind("/dev/zero"), ErrorKind::Io);
+        assert_eq!(kind(STDIN), ErrorKind::MissingFile);
     }
 
     #[test]

@@ -93,12 +93,21 @@ impl Fault {
     }
 }
 
+/// A name with more letters has nothing near.
+const LONGEST_NAME: usize = 100;
+
 /// The name that `name` was probably meant to be. None: where nothing is near.
 pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A third of the letters may be wrong; two words of three letters are not each other.
-    let allowed = name.chars().count().div_ceil(3).min(4);
+    let letters = name.chars().count();
+    let allowed = letters.div_ceil(3).min(4);
+    // Comparing takes the product of the lengths.
+    let is_comparable = |known: &&str| {
+        letters <= LONGEST_NAME && known.chars().count().abs_diff(letters) <= allowed
+    };
     known
         .into_iter()
+        .filter(is_comparable)
         .map(|known| (distance(name, known), known))
         .filter(|&(distance, _)| distance <= allowed)
         .min_by_key(|&(distance, _)| distance)

@@ -88,7 +88,7 @@ pub fn is_film(path: &Path) -> bool {
 ///
 /// Errors: it cannot be read, or is no whole film file of this version.
 pub fn read(path: &Path) -> Result<FilmFile> {
-    let bytes = bytes::read(path, LARGEST_FILE)?;
+    let bytes = bytes::read_or_stdin(path, LARGEST_FILE)?;
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 
@@ -109,7 +109,8 @@ fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
     bytes
 }
 
-fn decode(bytes: &[u8]) -> Result<FilmFile> {
+/// Decodes a film file in memory; see [`read`].
+pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
     let mut rest = bytes;
     if take(&mut rest, MAGIC.len())? != MAGIC {
         return Err(broken("not a film file")

@@ -1,6 +1,6 @@
 //! OpenEXR: every kind of flat image in, 32-bit scan lines out.
 
-use super::{ImageData, broken, check_size};
+use super::{ImageData, broken, check_room, check_size};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
@@ -176,6 +176,8 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
             height as u64,
             header.channels.list.len() as u64,
         )?;
+        let bits = 8 * header.channels.bytes_per_pixel as u64;
+        check_room([width as u64, height as u64], bits, bytes)?;
     }
     Ok(meta)
 }

@@ -106,9 +106,13 @@ pub fn read_layers(path: &Path) -> Result<Layers> {
             .in_file(path));
     }
     let bytes = bytes::read(path, LARGEST_FILE)?;
-    let decoded = catch_silently(|| decode(&bytes));
-    let decoded = decoded.unwrap_or_else(|_| Err(broken("the decoder gave up")));
-    decoded.map_err(|error| error.in_file(path))
+    decode_layers(&bytes).map_err(|error| error.in_file(path))
+}
+
+/// Decodes all channels of an EXR in memory; see [`read_layers`].
+pub fn decode_layers(bytes: &[u8]) -> Result<Layers> {
+    let decoded = catch_silently(|| decode(bytes));
+    decoded.unwrap_or_else(|_| Err(broken("the decoder gave up")))
 }
 
 fn decode(bytes: &[u8]) -> Result<Layers> {

@@ -16,7 +16,7 @@ mod raster;
 mod transfer;
 
 pub use exr::{ExrImage, ExrLayer, MetadataValue, write_exr};
-pub use layers::{Layers, read_layers, write_layers};
+pub use layers::{Layers, decode_layers, read_layers, write_layers};
 pub use png::{encode_png, write_png};
 pub use transfer::Encoding;
 
@@ -149,6 +149,20 @@ fn check_size(width: u64, height: u64, channels: u64) -> Result<()> {
             Err(Error::new(ErrorKind::Limit, message))
         }
     }
+}
+
+/// Refuses sizes that the bytes of the file cannot be packed from, before memory is taken for them.
+///
+/// No format packs better: DEFLATE reaches 1032 to 1, and a block of 16 × 16 pixels of a JPEG has six
+/// bits at least.
+fn check_room([width, height]: [u64; 2], bits_per_pixel: u64, bytes: &[u8]) -> Result<()> {
+    const BEST_RATIO: u64 = 2048;
+    let stored = width.saturating_mul(height).saturating_mul(bits_per_pixel) / 8;
+    if stored <= BEST_RATIO * bytes.len() as u64 {
+        return Ok(());
+    }
+    let message = format!("it is too short for {width} × {height} pixels");
+    Err(broken(message))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What the `image` crate decodes: PNG, JPEG, TGA, HDR.
 
-use super::{Encoding, Format, ImageData, broken, check_size};
+use super::{Encoding, Format, ImageData, broken, check_room, check_size};
 use crate::error::Result;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
@@ -23,6 +23,8 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
         height.into(),
         decoder.color_type().channel_count().into(),
     )?;
+    let bits = decoder.original_color_type().bits_per_pixel();
+    check_room([width.into(), height.into()], bits.into(), bytes)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
     let (channels, data) = linear(decoded, encoding);
     // Grey with alpha is taken as grey; of the others only PNG keeps its alpha.

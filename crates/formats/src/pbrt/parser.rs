@@ -16,14 +16,16 @@ use std::sync::Arc;
 
 /// Files within files within files.
 const DEEPEST: usize = 64;
-/// Bytes of all texts together, each counted as often as it is included: ends exponential nests.
-const MOST_BYTES: u64 = 1 << 36;
+/// Bytes of texts that are included again, each time: ends exponential nests.
+const MOST_REPEATED: u64 = 1 << 28;
+/// Blocks within blocks.
+const MOST_BLOCKS: usize = 1 << 16;
 /// Bytes of one text: places in it are 32-bit numbers.
 const LONGEST_TEXT: u64 = u32::MAX as u64;
 
 /// Parses a scene file; `-` is standard input.
 pub fn parse_file(path: &Path) -> Result<SceneDescription> {
-    let text = decode(path, bytes::read(path, LONGEST_TEXT)?)?;
+    let text = decode(path, bytes::read_or_stdin(path, LONGEST_TEXT)?)?;
     let folder = if path.as_os_str() == bytes::STDIN {
         None
     } else {
@@ -84,7 +86,8 @@ pub(super) struct Parser {
     texts: BTreeMap<PathBuf, FileId>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
-    bytes_left: u64,
+    /// Bytes that may be included again.
+    repeats_left: u64,
 }
 
 impl Parser {
@@ -110,7 +113,7 @@ impl Parser {
             texts: BTreeMap::new(),
             texture_names: BTreeSet::new(),
             medium_names: BTreeSet::new(),
-            bytes_left: MOST_BYTES,
+            repeats_left: MOST_REPEATED,
         }
     }
 
@@ -128,17 +131,6 @@ impl Parser {
     /// Parses one text to its end, which it returns.
     fn file(&mut self, file: FileId) -> Result<Span, Fault> {
         let text = self.scene.sources.text(file);
-        let start = Span::new(file, 0..0);
-        self.bytes_left = self
-            .bytes_left
-            .checked_sub(text.len() as u64)
-            .ok_or_else(|| {
-                Fault::new(
-                    ErrorKind::Limit,
-                    start,
-                    "all included texts together are too long",
-                )
-            })?;
         let mut tokens = Tokens::new(&text, file);
         while let Some(token) = tokens.next()? {
             self.directive(&mut tokens, &token)?;
@@ -237,22 +229,35 @@ impl Parser {
     }
 
     fn load(&mut self, path: &Path) -> Result<FileId> {
-        if let Some(&file) = self.texts.get(path) {
+        // One file has many names.
+        let key = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if let Some(&file) = self.texts.get(&key) {
+            let length = self.scene.sources.text(file).len() as u64;
+            let left = self.repeats_left.checked_sub(length);
+            self.repeats_left = left.ok_or_else(|| {
+                let message = format!("files are included again, {MOST_REPEATED} bytes in all");
+                Error::new(ErrorKind::Limit, message).in_file(path)
+            })?;
             return Ok(file);
         }
         let text = decode(path, bytes::read(path, LONGEST_TEXT)?)?;
         let file = self.scene.sources.add(path, text)?;
-        self.texts.insert(path.to_owned(), file);
+        self.texts.insert(key, file);
         Ok(file)
     }
 
-    pub(super) fn open_block(&mut self, opener: Opener, span: Span) {
+    pub(super) fn open_block(&mut self, opener: Opener, span: Span) -> Result<(), Fault> {
+        if self.scope.blocks.len() >= MOST_BLOCKS {
+            let message = format!("blocks within blocks, more than {MOST_BLOCKS} deep");
+            return Err(Fault::new(ErrorKind::Limit, span, message));
+        }
         let saved = self.scope.state.clone();
         self.scope.blocks.push(OpenBlock {
             opener,
             span,
             saved,
         });
+        Ok(())
     }
 
     pub(super) fn close_block(&mut self, opener: Opener, span: Span) -> Result<(), Fault> {

@@ -225,9 +225,15 @@ pub struct Warning {
     pub count: usize,
 }
 
+/// The most warnings that differ: the list is searched for each.
+const MOST_WARNINGS: usize = 200;
+
 /// Counts a warning: the same words occur once in the list.
 pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
-    let message = message.into();
+    let mut message = message.into();
+    if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
+        "further warnings, of other kinds".clone_into(&mut message);
+    }
     match warnings
         .iter_mut()
         .find(|warning| warning.message == message)

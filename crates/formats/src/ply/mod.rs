@@ -101,6 +101,11 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
     let Some(1..) = count_of("face") else {
         return Err(Broken::new("no faces"));
     };
+    if u32::try_from(vertices).is_err() {
+        return Err(Broken::new(
+            "more vertices than indices of 32 bits can tell apart",
+        ));
+    }
     let mut body = Body::new(header.format, rest, header.lines);
     let mut mesh = PlyMesh::default();
     for element in &header.elements {

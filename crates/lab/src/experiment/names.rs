@@ -3,8 +3,13 @@
 /// The name that `name` was probably meant to be. None: where nothing is near.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A third of the letters may be wrong; two words of three letters are not each other.
-    let allowed = name.chars().count().div_ceil(3).min(4);
-    let distances = known.into_iter().map(|known| {
+    let letters = name.chars().count();
+    let allowed = letters.div_ceil(3).min(4);
+    // Comparing takes the product of the lengths.
+    let known = known
+        .into_iter()
+        .filter(|known| known.len() <= 100 && letters <= 100);
+    let distances = known.map(|known| {
         let distance = strsim::osa_distance(&name.to_ascii_lowercase(), known);
         (distance, known)
     });

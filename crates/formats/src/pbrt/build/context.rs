@@ -105,6 +105,17 @@ impl<'a> Context<'a> {
         Err(fault.with_hint(format!("with --lenient: {stand_in}")))
     }
 
+    /// Refuses more primitives, or vertices of meshes, than the caller wants.
+    pub(super) fn check_size(&self, count: u64, span: Span) -> Result<(), Fault> {
+        let most = self.options.most_primitives();
+        if count <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} primitives or vertices");
+        let fault = Fault::new(ErrorKind::Limit, span, message);
+        Err(fault.with_hint("objects with many instances take the place of one"))
+    }
+
     /// Builds something that nobody uses: it must not be wrong, but what is not supported is no
     /// reason to refuse a scene, and nothing has to stand in for it. None: it is not supported.
     pub(super) fn unused<T>(

@@ -106,13 +106,14 @@ pub(super) fn patch_mesh(
         uvs: vertices.uvs,
         patches,
     };
+    context.check_size(mesh.vertices(), reader.span())?;
     Ok(mesh.triangulated())
 }
 
 /// The most steps: each makes four triangles of one.
 const MOST_LEVELS: u32 = 10;
 /// The most triangles of a mesh after all steps.
-const MOST_TRIANGLES: u64 = 1 << 26;
+const MOST_TRIANGLES: u64 = 1 << 22;
 
 pub(super) fn subdivided_mesh(
     context: &mut Context<'_>,
@@ -130,6 +131,7 @@ pub(super) fn subdivided_mesh(
         );
         return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
     }
+    context.check_size(count, reader.span())?;
     let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
     let control = ControlMesh {
         points: points.collect(),

@@ -62,6 +62,19 @@ pub struct LoadOptions {
     pub crop: Option<Crop>,
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
+    /// The most primitives of the scene, and the most vertices of its meshes, those of shared objects
+    /// counted once. None: 2²⁸.
+    pub most_primitives: Option<u64>,
+}
+
+impl LoadOptions {
+    /// The most primitives of a scene where the caller says nothing of it.
+    const MOST_PRIMITIVES: u64 = 1 << 28;
+
+    /// The most primitives, and the most vertices.
+    pub(crate) fn most_primitives(&self) -> u64 {
+        self.most_primitives.unwrap_or(Self::MOST_PRIMITIVES)
+    }
 }
 
 /// A scene that was read, with what else its file says.
@@ -99,9 +112,6 @@ pub struct Summary {
     /// Lights that are no shapes.
     pub other_lights: usize,
 }
-
-/// The most primitives of a scene, those of shared objects counted once.
-const MOST_PRIMITIVES: u64 = 1 << 28;
 
 /// Reads a scene file with all that it refers to; `-` is standard input.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
@@ -146,6 +156,8 @@ struct Assembly<'a> {
     instance_spans: Vec<Span>,
     /// Of a box around the object that is being read.
     object_corners: [Vec3; 2],
+    /// Of all meshes as they are kept.
+    vertices: u64,
     summary: Summary,
 }
 
@@ -181,6 +193,7 @@ impl<'a> Assembly<'a> {
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
             object_corners: NOWHERE,
+            vertices: 0,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
@@ -257,7 +270,9 @@ impl<'a> Assembly<'a> {
             Destination::World(places) => places.len() as u64,
             Destination::Object(_) => 1,
         };
-        self.count_primitives(geometry.primitives() * copies, span)?;
+        self.summary.primitives += geometry.primitives() * copies;
+        self.vertices += geometry.vertices() * copies;
+        context.check_size(self.summary.primitives.max(self.vertices), span)?;
         match destination {
             Destination::World(places) => {
                 for place in places {
@@ -289,16 +304,6 @@ impl<'a> Assembly<'a> {
         for number in first..self.shape_spans.len() {
             self.builder.coverage(number, alpha.clone());
         }
-    }
-
-    fn count_primitives(&mut self, count: u64, span: Span) -> Result<(), Fault> {
-        self.summary.primitives += count;
-        if self.summary.primitives <= MOST_PRIMITIVES {
-            return Ok(());
-        }
-        let message = format!("the scene has more than {MOST_PRIMITIVES} primitives");
-        let fault = Fault::new(ErrorKind::Limit, span, message);
-        Err(fault.with_hint("objects with many instances take the place of one"))
     }
 
     /// Adds a shape in the world, in parts where they emit each for itself.

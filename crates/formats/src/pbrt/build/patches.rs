@@ -22,17 +22,25 @@ pub(super) struct PatchMesh {
 }
 
 impl PatchMesh {
-    /// The triangles of all patches.
-    pub(super) fn triangulated(&self) -> PlyMesh {
-        let cells = if self
-            .patches
-            .iter()
-            .all(|patch| self.is_parallelogram(patch))
-        {
+    /// The number of vertices that [`triangulated`](Self::triangulated) makes.
+    pub(super) fn vertices(&self) -> u64 {
+        let row = self.cells() as u64 + 1;
+        self.patches.len() as u64 * row * row
+    }
+
+    /// Cells along each side of every patch.
+    fn cells(&self) -> usize {
+        let mut patches = self.patches.iter();
+        if patches.all(|patch| self.is_parallelogram(patch)) {
             1
         } else {
             CELLS
-        };
+        }
+    }
+
+    /// The triangles of all patches.
+    pub(super) fn triangulated(&self) -> PlyMesh {
+        let cells = self.cells();
         let mut mesh = PlyMesh::default();
         for patch in &self.patches {
             self.add(patch, cells, &mut mesh);

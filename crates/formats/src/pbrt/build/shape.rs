@@ -81,6 +81,14 @@ impl Geometry {
         }
     }
 
+    /// The number of vertices that are kept.
+    pub(super) fn vertices(&self) -> u64 {
+        match self {
+            Self::Mesh(mesh) => mesh.positions.len() as u64,
+            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => 0,
+        }
+    }
+
     /// The shape at a place. Mirroring does not change which side is the front: of a quadric it is
     /// the outside, of a mesh what its corners say in its own space.
     pub(super) fn place(&self, world_from_local: &DAffine3, orientation: Orientation) -> Shape {

@@ -5,12 +5,19 @@ mod world;
 
 use super::known;
 use super::lexer::{TokenKind, Tokens, shorten};
+use super::parameters::Parameter;
 use super::parser::Parser;
 use super::scene::{CameraDescription, ColorSpace, FilmDescription, OptionDescription};
 use super::state::Opener;
 use super::transform::{Active, Transforms};
+use crate::error::ErrorKind;
 use crate::source::{Fault, Span};
 use std::sync::Arc;
+
+/// The most parameters that `Attribute` directives give one kind of thing, and the most values of
+/// these: all are copied where another is added.
+const MOST_DEFAULTS: usize = 64;
+const MOST_DEFAULT_VALUES: usize = 4096;
 
 type Done = Result<(), Fault>;
 
@@ -78,12 +85,12 @@ fn world_begin(parser: &mut Parser) {
 
 fn block(parser: &mut Parser, word: &str, span: Span) -> Done {
     match word {
-        "AttributeBegin" => parser.open_block(Opener::Attribute, span),
+        "AttributeBegin" => parser.open_block(Opener::Attribute, span)?,
         "AttributeEnd" => parser.close_block(Opener::Attribute, span)?,
         "TransformBegin" => {
             let message = "`TransformBegin` saves the whole state: write `AttributeBegin`";
             parser.warn(span, message);
-            parser.open_block(Opener::Transform, span);
+            parser.open_block(Opener::Transform, span)?;
         }
         _ => parser.close_block(Opener::Transform, span)?,
     }
@@ -182,6 +189,16 @@ fn attribute(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
             return Err(Fault::scene(span, message).with_nearest(&target, targets));
         }
     };
+    let numbers = |list: &[Parameter]| list.iter().map(|p| p.values.len()).sum::<usize>();
+    if list.len() + parameters.len() > MOST_DEFAULTS
+        || numbers(list) + numbers(&parameters) > MOST_DEFAULT_VALUES
+    {
+        let message = format!(
+            "the attributes of `{target}` are more than {MOST_DEFAULTS} parameters or \
+             {MOST_DEFAULT_VALUES} values"
+        );
+        return Err(Fault::new(ErrorKind::Limit, span, message));
+    }
     Arc::make_mut(list).extend(parameters);
     Ok(())
 }

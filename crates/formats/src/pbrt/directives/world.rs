@@ -23,7 +23,7 @@ pub(super) fn object(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, s
     let (name, name_span) = tokens.expect_quoted("the name of an object")?;
     if word == "ObjectBegin" {
         parser.object_begin(&name, name_span)?;
-        parser.open_block(Opener::Object, span);
+        parser.open_block(Opener::Object, span)?;
         return Ok(());
     }
     if parser.object.is_some() {

@@ -22,6 +22,7 @@ const STRICT: LoadOptions = LoadOptions {
     resolution: None,
     crop: None,
     isa: None,
+    most_primitives: None,
 };
 const LENIENT: LoadOptions = LoadOptions {
     lenient: true,

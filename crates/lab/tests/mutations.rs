@@ -1,0 +1,21 @@
+//! Descriptions and results that are nearly right never make `lab` panic; see the test of the same
+//! name in `formats`.
+#![expect(
+    unreachable_pub,
+    reason = "the modules belong to a crate where they are reached"
+)]
+
+extern crate bidir_lab as lab;
+
+#[path = "../../../fuzz/src/experiments.rs"]
+mod experiments;
+#[path = "../../../fuzz/src/mutation.rs"]
+mod mutation;
+
+use std::path::Path;
+
+#[test]
+fn experiments() {
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/experiment");
+    mutation::check(&seeds, 20_000, experiments::experiment);
+}
