@@ -5,7 +5,7 @@
 use flate2::{Crc, read::DeflateDecoder};
 use formats::image::{self, Format};
 use formats::pbrt::{self, LoadOptions};
-use formats::{film, ply};
+use formats::{film, gltf, ply};
 use std::fs;
 use std::io::Read;
 use std::path::PathBuf;
@@ -48,6 +48,15 @@ fn options(lenient: bool) -> LoadOptions {
         resolution: Some([4, 3]),
         most_primitives: Some(1 << 14),
         ..LoadOptions::default()
+    }
+}
+
+/// A scene in glTF, as JSON or as what a `.glb` holds, as it is and with stand-ins.
+pub fn gltf(bytes: &[u8]) {
+    static FILE: LazyLock<PathBuf> = LazyLock::new(|| FOLDER.path().join("scene.gltf"));
+    fs::write(&*FILE, bytes).expect("a temporary file can be written");
+    for lenient in [false, true] {
+        tell(gltf::load(&FILE, &options(lenient)));
     }
 }
 

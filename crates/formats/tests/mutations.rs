@@ -25,6 +25,11 @@ fn scenes() {
 }
 
 #[test]
+fn gltf_scenes() {
+    check("gltf", 1500, inputs::gltf);
+}
+
+#[test]
 fn meshes() {
     check("ply", 4000, inputs::ply);
 }
