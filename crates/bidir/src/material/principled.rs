@@ -25,11 +25,17 @@ impl ScaledColor {
         }
     }
 
-    /// True where the product is this value everywhere.
+    /// True where the product is black everywhere.
     #[inline]
-    fn is_all(&self, value: f32) -> bool {
-        let is_black = self.factor == [0.0; 3] && value == 0.0;
-        is_black || (self.texture.is_none() && self.factor == [value; 3])
+    fn is_black(&self) -> bool {
+        self.factor.iter().all(|&channel| channel <= 0.0)
+    }
+
+    /// True where it is 1 everywhere.
+    #[inline]
+    fn is_white(&self) -> bool {
+        let is_one = |channel: &f32| channel.to_bits() == 1f32.to_bits();
+        self.texture.is_none() && self.factor.iter().all(is_one)
     }
 
     fn needs(&self) -> Needs {
@@ -250,14 +256,14 @@ impl PrincipledMaterial {
             coat: self.coat(at),
             ..PrincipledParameters::plain(albedo(&self.color), ggx)
         };
-        if !self.specular_color.is_all(1.0) {
+        if !self.specular_color.is_white() {
             let tint = self.specular_color.eval(at);
             parameters.specular_color = color.unbounded(tint, wavelengths);
         }
         if parameters.diffuse_transmission > 0.0 {
             parameters.diffuse_transmission_color = albedo(&self.diffuse_transmission_color);
         }
-        if !self.sheen.is_all(0.0) {
+        if !self.sheen.is_black() {
             parameters.sheen = albedo(&self.sheen);
             parameters.sheen_alpha = sqr(self.sheen_roughness.share(at));
         }
