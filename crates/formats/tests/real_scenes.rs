@@ -1,6 +1,6 @@
 //! Scenes that others made: path tracing and bidirectional path tracing agree on them too. The
-//! variable BIDIR_SCENES names the folder that holds `pbrt-v4/`; without it the tests are skipped, and with
-//! it every scene must be there.
+//! variable BIDIR_SCENES names the folder that holds `pbrt-v4/` and `gltf/`; without it the tests are skipped,
+//! and with it every scene must be there.
 
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
@@ -10,7 +10,7 @@ mod statistics;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathSettings;
-use bidir_formats::pbrt::{LoadOptions, Loaded, load};
+use bidir_formats::scene::{LoadOptions, Loaded, load};
 use statistics::{Replicates, WHOLE, check_agree, replicates};
 use std::path::PathBuf;
 
@@ -21,7 +21,7 @@ fn open(name: &str, size: u32) -> Option<Loaded> {
         eprintln!("skipped: BIDIR_SCENES is not set");
         return None;
     };
-    let file = PathBuf::from(folder).join("pbrt-v4").join(name);
+    let file = PathBuf::from(folder).join(name);
     let options = LoadOptions {
         resolution: Some([size; 2]),
         ..LoadOptions::default()
@@ -54,22 +54,42 @@ fn check(name: &str, passes: u64, factor: u64) {
 
 #[test]
 fn veach_bidir() {
-    check("veach-bidir/veach-bidir.pbrt", 512, 8);
+    check("pbrt-v4/veach-bidir/veach-bidir.pbrt", 512, 8);
 }
 
 #[test]
 fn veach_mis() {
-    check("veach-mis/veach-mis.pbrt", 1024, 4);
+    check("pbrt-v4/veach-mis/veach-mis.pbrt", 1024, 4);
 }
 
 #[test]
 fn veach_ajar() {
-    check("veach-ajar/veach-ajar.pbrt", 3072, 3);
+    check("pbrt-v4/veach-ajar/veach-ajar.pbrt", 3072, 3);
 }
 
 #[test]
 fn cornell_box() {
-    check("cornell-box-w3ntao/cornell-box.pbrt", 256, 8);
+    check("pbrt-v4/cornell-box-w3ntao/cornell-box.pbrt", 256, 8);
+}
+
+#[test]
+fn coffee() {
+    check("pbrt-v4/coffee/coffee.pbrt", 256, 8);
+}
+
+#[test]
+fn living_room() {
+    check("pbrt-v4/living-room/living-room.pbrt", 1024, 4);
+}
+
+#[test]
+fn gltf_cornell_box() {
+    check("gltf/CornellBox/CornellBox.glb", 256, 4);
+}
+
+#[test]
+fn gltf_flight_helmet() {
+    check("gltf/FlightHelmet/FlightHelmet.gltf", 128, 2);
 }
 
 /// 256 samples per pixel of one estimator against 4096 of the other: blocks of 16 × 16 pixels
@@ -90,17 +110,54 @@ fn check_large(name: &str) {
 #[test]
 #[ignore = "takes long: just nightly"]
 fn large_veach_bidir() {
-    check_large("veach-bidir/veach-bidir.pbrt");
+    check_large("pbrt-v4/veach-bidir/veach-bidir.pbrt");
 }
 
 #[test]
 #[ignore = "takes long: just nightly"]
 fn large_veach_mis() {
-    check_large("veach-mis/veach-mis.pbrt");
+    check_large("pbrt-v4/veach-mis/veach-mis.pbrt");
 }
 
 #[test]
 #[ignore = "takes long: just nightly"]
 fn large_veach_ajar() {
-    check_large("veach-ajar/veach-ajar.pbrt");
+    check_large("pbrt-v4/veach-ajar/veach-ajar.pbrt");
+}
+
+#[test]
+#[ignore = "takes long: just nightly"]
+fn large_coffee() {
+    check_large("pbrt-v4/coffee/coffee.pbrt");
+}
+
+#[test]
+#[ignore = "takes long: just nightly"]
+fn large_living_room() {
+    check_large("pbrt-v4/living-room/living-room.pbrt");
+}
+
+#[test]
+#[ignore = "takes long: just nightly"]
+fn large_boxes() {
+    for name in [
+        "cornell-box",
+        "cornell-box-silver",
+        "cornell-box-specular",
+        "smallpt",
+    ] {
+        check_large(&format!("pbrt-v4/cornell-box-w3ntao/{name}.pbrt"));
+    }
+}
+
+#[test]
+#[ignore = "takes long: just nightly"]
+fn large_gltf() {
+    for name in [
+        "CornellBox/CornellBox.glb",
+        "FlightHelmet/FlightHelmet.gltf",
+        "ajar_caustic.glb",
+    ] {
+        check_large(&format!("gltf/{name}"));
+    }
 }

@@ -6,8 +6,8 @@ use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use std::ops::Range;
 
-/// The most elements of an accessor that has no bytes of its own, and so no bound by them.
-const MOST_ZEROS: usize = 1 << 24;
+/// The most components of an accessor that has no bytes of its own, and so no bound by them.
+const MOST_ZEROS: usize = 1 << 22;
 
 /// A type of component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,8 +136,9 @@ impl<'a> Layout<'a> {
         let count = self.accessor.count;
         let mut values = match self.accessor.buffer_view {
             Some(view) => self.read_dense(document, view)?,
-            None if count > MOST_ZEROS => {
-                let message = format!("{count} zeros are more than {MOST_ZEROS}");
+            None if count.saturating_mul(self.components) > MOST_ZEROS => {
+                let message =
+                    format!("{count} elements of zeros are more than {MOST_ZEROS} components");
                 return Err(self.place.fault(ErrorKind::Limit, message));
             }
             None => vec![0.0; count * self.components],

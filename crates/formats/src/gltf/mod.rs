@@ -44,8 +44,6 @@ use place::{GltfFault, Place};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The most triangles of a scene, those of shared meshes counted once.
-const MOST_PRIMITIVES: u64 = 1 << 28;
 /// The most places of shared meshes.
 const MOST_INSTANCES: usize = 1 << 24;
 
@@ -98,6 +96,7 @@ struct Assembly<'a> {
     instance_places: Vec<Place>,
     /// Of a box around all shapes.
     corners: [Vec3; 2],
+    most_primitives: u64,
     summary: Summary,
 }
 
@@ -134,6 +133,7 @@ impl<'a> Assembly<'a> {
             shape_places: Vec::new(),
             instance_places: Vec::new(),
             corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
+            most_primitives: context.options.most_primitives(),
             summary: Summary::default(),
         };
         if !document.root.animations.is_empty() {
@@ -302,10 +302,11 @@ impl<'a> Assembly<'a> {
     fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
         self.summary.shapes += 1;
         self.summary.primitives += shape.triangles.len() as u64;
-        if self.summary.primitives <= MOST_PRIMITIVES {
+        let most = self.most_primitives;
+        if self.summary.primitives <= most {
             return Ok(());
         }
-        let message = format!("the scene has more than {MOST_PRIMITIVES} triangles");
+        let message = format!("the scene has more than {most} triangles");
         Err(place.fault(ErrorKind::Limit, message))
     }
 
