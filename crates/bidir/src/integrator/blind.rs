@@ -2,7 +2,7 @@
 //! chance finds.
 //!
 //! In Heckbert's words, with S for a Dirac scattering, D for any other, L for a light and E for the
-//! camera [Heckbert90]: a connection needs two neighbours without S. A light that no ray can hit, a
+//! camera \[Heckbert90\]: a connection needs two neighbours without S. A light that no ray can hit, a
 //! point or a direction, is therefore never seen along L S+ E nor, by a bidirectional estimator,
 //! along L S+ D S+ E; next-event estimation alone already loses L S+ D. Lights that rays can hit are
 //! found there by hits alone, the rarer the smaller the light is.
