@@ -81,8 +81,7 @@ pub struct Lobes {
 pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
     let has_specular = scene
-        .materials()
-        .iter()
+        .materials_of_surfaces()
         .any(|material| lobes(scene, material).has_dirac);
     let of_specular: &[(bool, BlindSpot)] = match integrator {
         IntegratorKind::Path => &[

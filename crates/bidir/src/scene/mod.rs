@@ -183,6 +183,13 @@ impl Scene {
         &self.materials
     }
 
+    /// The materials of surfaces that rays can meet, once for each surface.
+    pub fn materials_of_surfaces(&self) -> impl Iterator<Item = &Material> {
+        let met = |surface: &&Surface| !matches!(surface.presence, Presence::Absent);
+        let surfaces = self.surfaces.iter().filter(met);
+        surfaces.map(|surface| self.material(surface.material))
+    }
+
     /// Material number `i`.
     #[inline]
     pub fn material(&self, i: u32) -> &Material {

@@ -7,6 +7,7 @@ use crate::light::{InfiniteLight, PointLight};
 use crate::material::{ConductorIndex, Roughness};
 use crate::math::Affine3A;
 use crate::scene::SceneBuilder;
+use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::{ColorTexture, FloatTexture};
 
 fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
@@ -20,8 +21,12 @@ fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
     });
     builder.camera(Camera::Perspective(camera.unwrap()));
     for material in materials {
-        builder.material(material.clone());
+        let material = builder.material(material.clone());
+        let ball = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
+        builder.shape(Shape::Sphere(ball), material, None);
     }
+    // What no surface is made of does not count.
+    builder.material(Material::ThinDielectric { eta: 1.5 });
     for light in lights {
         builder.light(light);
     }
