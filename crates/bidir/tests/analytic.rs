@@ -79,7 +79,7 @@ fn every_limit_of_depth_cuts_the_same_paths() {
         let expected = 1.0 - halved(depth + 1);
         for (name, integrator) in IntegratorKind::NAMES {
             let settings = settings(integrator, Some(depth));
-            let result = replicates(&scene, &settings, passes(integrator, 2048));
+            let result = replicates(&scene, &settings, passes(integrator, 8192));
             check_expectation(&format!("{name}, depth {depth}"), &result, expected);
         }
     }

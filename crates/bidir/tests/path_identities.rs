@@ -10,8 +10,8 @@ use bidir::bsdf::TransportMode;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Junction, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext, PathDensities,
-    PathRoulette, PathSettings, Subpath, Vertex, camera_subpath, connect, light_subpath, weight,
+    JoinedPath, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext, PathDensities,
+    PathRoulette, PathSettings, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::scene::Scene;
@@ -33,7 +33,7 @@ fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
     let camera = sampler.stream(Domain::Camera, 0, index);
     let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
     let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
-    let ray = context.scene.camera().sample_ray(raster, lens);
+    let ray = context.scene.camera().sample_ray(raster, || lens);
     let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
     let mut stats = Stats::default();
     camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
@@ -69,12 +69,14 @@ fn rewalk(
         let mut density = f64::from(point.pdf_fwd);
         if i > 0 {
             let before = walk[i - 1];
-            vertex.wo = vertex.toward(&before);
-            vertex.pdf_fwd = before.pdf_to(context, before.wo, &vertex);
+            let segment = before.segment_to(&vertex);
+            vertex.wo = -segment.w;
+            vertex.pdf_fwd = before.pdf_direction(context, before.wo, segment.w) * segment.to_b;
+            vertex.to_previous = segment.to_a;
             let roulette = survival(context, i, &before);
             density = f64::from(vertex.pdf_fwd * roulette);
             let scatter = before.scatter(context, before.wo, -vertex.wo, mode);
-            let step = before.geometry_term(&vertex) / (vertex.pdf_fwd * roulette);
+            let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * step;
             let local = vertex.shading.to_local(vertex.wo);
@@ -86,8 +88,8 @@ fn rewalk(
     for i in 0..walk.len().saturating_sub(1) {
         let (next, vertex) = (walk[i + 1], walk[i]);
         if let Some(after) = walk.get(i + 2).copied() {
-            let wi = next.toward(&after);
-            walk[i].pdf_rev = next.pdf_to(context, wi, &vertex);
+            let (wi, back) = (next.segment_to(&after).w, next.segment_to(&vertex));
+            walk[i].pdf_rev = next.pdf_direction(context, wi, back.w) * back.to_b;
             walk[i + 1].albedo_rev = next.bsdf.albedo(next.shading.to_local(wi)).max_lane();
         }
     }
@@ -127,7 +129,7 @@ fn for_each_pair(
 /// True where the direction between two points, found again from the points, has few digits left
 /// in its cosines: it is rounded the more the nearer they are.
 fn is_fragile(before: &Vertex, vertex: &Vertex) -> bool {
-    let w = vertex.toward(before);
+    let w = vertex.segment_to(before).w;
     let cos = [before, vertex].map(|v| {
         if v.n_g == Vec3::ZERO {
             1.0
@@ -238,32 +240,21 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
         if s == 0 {
             let mut x0 = path[0];
             x0.pdf_rev = camera[n - 1].pdf_fwd;
-            let w = weight(
-                context,
-                &mut densities,
-                &[x0],
-                &camera[..n - 1],
-                Junction::Hit,
-            );
+            let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(context, &mut densities);
             let emitted = x0.scatter(context, x0.wo, camera[n - 1].wo, TransportMode::Importance);
             result.push((s, w, camera[n - 1].beta * emitted));
             continue;
         }
         let (mut light, _) = rewalk(context, &path[..s], TransportMode::Importance);
-        let w = weight(
-            context,
-            &mut densities,
-            &light,
-            &camera,
-            Junction::Connection,
-        );
+        let w = JoinedPath::connection(&light, &camera).weight(context, &mut densities);
         if s == 1 {
             let density = next_event_density(context, path);
             light[0].beta = Spectrum::splat(1.0 / density);
         }
         // The film of the room has 64 pixels, and as many light subpaths a pass.
         let count = if n - s == 1 { 64.0 } else { 1.0 };
-        result.push((s, w, connect(context, &light, &camera) / count));
+        let value = JoinedPath::connection(&light, &camera).contribution(context);
+        result.push((s, w, value / count));
     }
     result
 }
@@ -275,7 +266,8 @@ fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) 
         for s in 1..=light.vertices.len() {
             for t in 1..=camera.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
-                let contributes = !connect(context, light, camera).is_black();
+                let path = JoinedPath::connection(light, camera);
+                let contributes = !path.contribution(context).is_black();
                 // Such a step cannot be made again from points alone.
                 let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
                 if s + t > settings.max_vertices() || !contributes || is_bound {
@@ -345,12 +337,13 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
             &light.vertices[0],
             &camera.vertices[camera.vertices.len() - 1],
         );
-        assert_close(z.geometry_term(y), y.geometry_term(z), "G");
+        let [there, back] = [z.segment_to(y), y.segment_to(z)];
+        assert_close(there.geometry_term, back.geometry_term, "G");
         if let [lens, first, ..] = &camera.vertices[..] {
             let raster = context
                 .scene
                 .camera()
-                .raster(lens.point, lens.toward(first));
+                .raster(lens.point, lens.segment_to(first).w);
             let inside =
                 raster.is_some_and(|r| r.cmpge(Vec2::ZERO).all() && r.max_element() <= 8.0);
             assert!(inside && first.point != Vec3::ZERO);

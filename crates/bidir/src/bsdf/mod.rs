@@ -159,7 +159,8 @@ impl Bsdf {
         }
     }
 
-    /// Draws a direction from `u`, and from `u_lobe` where there is a choice between lobes.
+    /// Draws a direction from `u`, and from `u_lobe`, which is asked for where there is a choice
+    /// between lobes.
     ///
     /// None: where nothing is scattered, or the draw fell below the surface.
     #[inline]
@@ -167,18 +168,18 @@ impl Bsdf {
         &self,
         wo: Vec3,
         mode: TransportMode,
-        u_lobe: f32,
+        u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<BsdfSample> {
         let sample = match self {
             Self::Diffuse(bsdf) => bsdf.sample(wo, u),
             Self::Conductor(bsdf) => bsdf.sample(wo, u),
-            Self::Dielectric(bsdf) => bsdf.sample(wo, mode, u_lobe, u),
-            Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_lobe),
-            Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, u_lobe, u),
-            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, u_lobe, u),
-            Self::CoatedConductor(bsdf) => bsdf.sample(wo, u_lobe, u),
-            Self::Principled(bsdf) => bsdf.sample(wo, mode, u_lobe, u),
+            Self::Dielectric(bsdf) => bsdf.sample(wo, mode, u_lobe(), u),
+            Self::ThinDielectric(bsdf) => bsdf.sample(wo, u_lobe()),
+            Self::DiffuseTransmission(bsdf) => bsdf.sample(wo, u_lobe(), u),
+            Self::CoatedDiffuse(bsdf) => bsdf.sample(wo, u_lobe(), u),
+            Self::CoatedConductor(bsdf) => bsdf.sample(wo, u_lobe(), u),
+            Self::Principled(bsdf) => bsdf.sample(wo, mode, u_lobe(), u),
         };
         // Where the density underflows there is no sample.
         sample.filter(|sample| sample.pdf > 0.0)

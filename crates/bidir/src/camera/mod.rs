@@ -73,9 +73,9 @@ impl Camera {
         }
     }
 
-    /// A point of the lens.
+    /// A point of the lens. The numbers are asked for where the lens has an extent.
     #[inline]
-    pub fn sample_lens(&self, u: Vec2) -> LensSample {
+    pub fn sample_lens(&self, u: impl FnOnce() -> Vec2) -> LensSample {
         match self {
             Self::Perspective(camera) => camera.sample_lens(u),
             Self::Orthographic(camera) => camera.lens(),
@@ -85,7 +85,7 @@ impl Camera {
 
     /// The ray from the lens point of `u` whose image is `raster`.
     #[inline]
-    pub fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
+    pub fn sample_ray(&self, raster: Vec2, u: impl FnOnce() -> Vec2) -> CameraRay {
         match self {
             Self::Perspective(camera) => camera.sample_ray(raster, u),
             Self::Orthographic(camera) => camera.sample_ray(raster),

@@ -57,8 +57,12 @@ impl Perspective {
     }
 
     #[inline]
-    pub(super) fn sample_lens(&self, u: Vec2) -> LensSample {
-        let offset = warp::concentric_disk(u) * self.lens_radius;
+    pub(super) fn sample_lens(&self, u: impl FnOnce() -> Vec2) -> LensSample {
+        let offset = if self.lens_radius > 0.0 {
+            warp::concentric_disk(u()) * self.lens_radius
+        } else {
+            Vec2::ZERO
+        };
         LensSample {
             point: self.pose.origin + self.pose.right * offset.x + self.pose.up * offset.y,
             n_g: self.pose.forward,
@@ -78,7 +82,7 @@ impl Perspective {
     }
 
     #[inline]
-    pub(super) fn sample_ray(&self, raster: Vec2, u: Vec2) -> CameraRay {
+    pub(super) fn sample_ray(&self, raster: Vec2, u: impl FnOnce() -> Vec2) -> CameraRay {
         let lens = self.sample_lens(u);
         let screen = self.screen_origin + raster * self.screen_per_raster;
         let through_centre = self.pose.to_world(screen.extend(1.0));
@@ -170,7 +174,7 @@ mod tests {
                 Vec2::new(39.5, 3.25),
                 Vec2::new(20.0, 15.0),
             ] {
-                let ray = camera.sample_ray(raster, Vec2::new(0.3, 0.8));
+                let ray = camera.sample_ray(raster, || Vec2::new(0.3, 0.8));
                 let back = camera.raster(ray.lens.point, ray.direction).unwrap();
                 assert!(
                     (back - raster).length() < 1e-3,
@@ -185,7 +189,7 @@ mod tests {
         let camera = camera(0.0);
         let at = |x: f32, y: f32| {
             camera
-                .sample_ray(Vec2::new(x, y), Vec2::splat(0.5))
+                .sample_ray(Vec2::new(x, y), || Vec2::splat(0.5))
                 .direction
         };
         let (x, y, h) = (33.0, 7.0, 0.5);

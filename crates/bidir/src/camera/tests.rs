@@ -123,10 +123,10 @@ fn rays_follow_the_density() {
     for (name, camera, _) in examples() {
         for (place, u_lens) in [("centre", Vec2::splat(0.5)), ("rim", Vec2::new(0.02, 0.3))] {
             let name = format!("{name}, {place}");
-            let point = camera.sample_lens(u_lens).point;
+            let point = camera.sample_lens(|| u_lens).point;
             let draws = samples(&name, 1 << 20).map(|sample| {
                 let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
-                Some(camera.sample_ray(raster, u_lens).direction)
+                Some(camera.sample_ray(raster, || u_lens).direction)
             });
             let pdf = |w| match camera.raster(point, w) {
                 Some(raster) if on_film(raster) => camera.pdf_direction(w) / pixels,
@@ -153,7 +153,7 @@ fn lens_points_follow_the_density() {
             rows: 24,
         };
         let draws = samples(name, 1 << 20).map(|sample| {
-            let lens = camera.sample_lens(sample.get_2d(Dimension::at(0, Purpose::Lens)));
+            let lens = camera.sample_lens(|| sample.get_2d(Dimension::at(0, Purpose::Lens)));
             let local = frame.to_local(lens.point - EYE);
             assert!(
                 local.z.abs() < 1e-5 && (lens.n_g - frame.z).length() < 1e-5,
@@ -161,7 +161,7 @@ fn lens_points_follow_the_density() {
             );
             Some(local.with_z(0.0))
         });
-        let pdf = camera.sample_lens(Vec2::splat(0.3)).pdf;
+        let pdf = camera.sample_lens(|| Vec2::splat(0.3)).pdf;
         battery.chi2(name, &grid, |_| pdf, draws);
     }
     battery.check();
@@ -174,7 +174,7 @@ fn importance_is_the_density_of_rays_by_lens_area_and_cosine() {
         for sample in samples(name, 1000) {
             let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
             let u_lens = sample.get_2d(Dimension::at(0, Purpose::Lens));
-            let ray = camera.sample_ray(raster, u_lens);
+            let ray = camera.sample_ray(raster, || u_lens);
             let cos = ray.lens.n_g.dot(ray.direction);
             let importance = camera.importance(ray.direction);
             check_close(
@@ -199,7 +199,7 @@ fn importance_is_the_density_of_rays_by_lens_area_and_cosine() {
 fn solid_angle(camera: &Camera, raster: Vec2, u_lens: Vec2) -> f32 {
     let at = |x: f32, y: f32| {
         camera
-            .sample_ray(raster + Vec2::new(x, y), u_lens)
+            .sample_ray(raster + Vec2::new(x, y), || u_lens)
             .direction
     };
     let h = 0.05;
@@ -217,7 +217,7 @@ fn the_importance_of_a_pixel_is_one() {
                 .map(|sample| {
                     let raster = pixel + sample.get_2d(Dimension::at(0, Purpose::Film));
                     let u_lens = sample.get_2d(Dimension::at(0, Purpose::Lens));
-                    let ray = camera.sample_ray(raster, u_lens);
+                    let ray = camera.sample_ray(raster, || u_lens);
                     let value = camera.importance(ray.direction) * ray.lens.n_g.dot(ray.direction);
                     let measure = solid_angle(&camera, raster, u_lens) / ray.lens.pdf;
                     f64::from(value * measure)
@@ -237,7 +237,7 @@ fn a_lens_is_sharp_at_its_focal_distance() {
     {
         let scale = radius / if name == "lens" { 0.3 } else { 0.4 };
         let meet = |u_lens| {
-            let ray = camera.sample_ray(Vec2::new(7.0, 22.0), u_lens);
+            let ray = camera.sample_ray(Vec2::new(7.0, 22.0), || u_lens);
             let depth = forward().dot(ray.direction);
             ray.lens.point + ray.direction * (4.0 * scale / depth)
         };
@@ -254,7 +254,7 @@ fn rays_without_a_lens_lead_back_to_the_film() {
     for (name, camera) in others() {
         for sample in samples(name, 1000) {
             let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
-            let ray = camera.sample_ray(raster, Vec2::splat(0.5));
+            let ray = camera.sample_ray(raster, || Vec2::splat(0.5));
             let seen = ray.origin + ray.direction * 7.0;
             let back = camera.raster(seen, ray.direction).unwrap();
             assert!(
@@ -280,14 +280,14 @@ fn the_density_of_rays_without_a_lens_is_the_jacobian() {
         // Off the edges of the octahedron's faces, where the map has kinks.
         for raster in [(33.3, 7.2), (3.1, 22.6), (21.7, 16.4)].map(Vec2::from) {
             let at = |x: f32, y: f32| {
-                let ray = camera.sample_ray(raster + Vec2::new(x, y), Vec2::splat(0.5));
+                let ray = camera.sample_ray(raster + Vec2::new(x, y), || Vec2::splat(0.5));
                 // One of the two is the same for all.
                 ray.origin + ray.direction
             };
             let h = 0.02;
             let (dx, dy) = (at(h, 0.0) - at(-h, 0.0), at(0.0, h) - at(0.0, -h));
             let extent = dx.cross(dy).length() / sqr(2.0 * h);
-            let w = camera.sample_ray(raster, Vec2::splat(0.5)).direction;
+            let w = camera.sample_ray(raster, || Vec2::splat(0.5)).direction;
             check_close(extent * camera.pdf_direction(w), 1.0, 5e-3, name);
         }
     }
@@ -333,7 +333,7 @@ fn pixels_are_as_wide_as_their_rays_are_apart() {
     for (name, camera) in cameras.into_iter().chain(others()) {
         let distance = 7.0;
         let at = |raster: Vec2| {
-            let ray = camera.sample_ray(raster, Vec2::splat(0.5));
+            let ray = camera.sample_ray(raster, || Vec2::splat(0.5));
             ray.origin + ray.direction * distance
         };
         let h = 0.05;

@@ -213,7 +213,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Sample number `pixel` (row order of the crop) of a pass, with light path number `pixel`.
+    /// Sample number `pixel` (row order of the crop) of a pass, with the light path that goes with it.
     fn sample(&self, pixel: u64, pass: u64) -> Sample {
         let film = self.scene.film();
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
@@ -223,12 +223,7 @@ impl<'a> Session<'a> {
             pass,
             pixel: [x, y],
             camera: sampler.stream(Domain::Camera, stream, pass),
-            // Beyond 2⁶⁴ light paths the sequence begins again.
-            light: sampler.stream(
-                Domain::Light,
-                0,
-                pass.wrapping_mul(film.light_paths()).wrapping_add(pixel),
-            ),
+            light: sampler.member(Domain::Light, pixel, pass),
         }
     }
 

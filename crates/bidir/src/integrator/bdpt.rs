@@ -1,18 +1,16 @@
 //! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen \[Lafortune95\].
 
-use super::light::light_image;
+use super::light::{lens_vertex, light_image};
 use super::workspace::light_vertices;
 use super::{Contribution, Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::path::{
-    Escape, Junction, LightPointChoice, PathContext, Strategy, Vertex, connect, next_event_vertex,
-    weight,
+    Escape, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
 };
 use crate::sampler::{Dimension, Purpose};
 use crate::select::{Candidate, Draws, Selector};
 use crate::spectrum::Spectrum;
-use std::slice;
 
 /// Bidirectional path tracing: every strategy (s, t), weighted, with the connections that
 /// `selector` chooses.
@@ -83,12 +81,12 @@ fn hit(
     let Workspace {
         camera, densities, ..
     } = workspace;
-    let (x0, camera) = (slice::from_ref(x0), &camera.vertices[..i]);
+    let path = JoinedPath::hit(x0, &camera.vertices[..i]);
     let term = Term {
         strategy: Strategy::new(0, i + 1),
         light,
         contribution,
-        weight: weight(context, densities, x0, camera, Junction::Hit),
+        weight: path.weight(context, densities),
     };
     workspace.add_hit(sample, term);
 }
@@ -102,13 +100,12 @@ fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
         let Workspace {
             light, densities, ..
         } = workspace;
-        let light = &light.vertices[..s];
-        let Some(image) = light_image(context, sample, light) else {
+        let lens = lens_vertex(context, sample, s);
+        let Some(image) = light_image(context, &light.vertices[..s], &lens) else {
             continue;
         };
-        let lens = slice::from_ref(&image.lens);
-        let weight = weight(context, densities, light, lens, Junction::Connection);
-        workspace.splat(context, sample, &image, weight);
+        let image = image.weighted(image.path.weight(context, densities));
+        workspace.splat(context, sample, &image);
     }
 }
 
@@ -125,9 +122,11 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
         }
         if fresh && t < context.settings.max_vertices() && context.count(1, t) > 0.0 {
             let at = |purpose| Dimension::at(t - 1, purpose);
-            let u_light = sample.camera.get_1d(at(Purpose::NextEventLight));
+            let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
             let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-            if let Some(x0) = next_event_vertex(context, y, u_light, u) {
+            if let Some((light, drawn)) = sample_next_event(context, y.point, u_light, u) {
+                let mut x0 = Vertex::light(context, light, &drawn.at);
+                x0.beta = Spectrum::splat(drawn.coverage / drawn.pdf);
                 workspace.next_events[t - 1] = Some(x0);
                 candidate(context, sample, workspace, Strategy::new(1, t));
             }
@@ -185,12 +184,13 @@ fn connection(
     let camera = &camera.vertices[..t];
     let light = light_vertices(light, next_events, strategy);
     let start = light[0].light?;
-    let contribution = connect(context, light, camera);
+    let path = JoinedPath::connection(light, camera);
+    let contribution = path.contribution(context);
     (contribution != Spectrum::ZERO).then(|| Term {
         strategy,
         light: start,
         contribution,
-        weight: weight(context, densities, light, camera, Junction::Connection),
+        weight: path.weight(context, densities),
     })
 }
 

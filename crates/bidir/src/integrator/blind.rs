@@ -135,7 +135,7 @@ impl Lobes {
         let directions = [0.9f32, 0.3, -0.9, -0.3].map(|z| Vec3::new((1.0 - z * z).sqrt(), 0.0, z));
         for wo in directions {
             for step in 0..8 {
-                let u_lobe = (step as f32 + 0.5) / 8.0;
+                let u_lobe = || (step as f32 + 0.5) / 8.0;
                 let drawn = bsdf.sample(wo, TransportMode::Radiance, u_lobe, Vec2::splat(0.37));
                 if let Some(drawn) = drawn {
                     self.has_dirac |= drawn.is_delta;

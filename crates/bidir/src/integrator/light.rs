@@ -4,7 +4,7 @@
 
 use super::{Integrator, Link, Sample, Splat, Term, Workspace};
 use crate::math::{Vec2, Vec3};
-use crate::path::{PathContext, Strategy, Vertex, VertexKind, connect};
+use crate::path::{JoinedPath, PathContext, Strategy, Vertex, VertexKind};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
@@ -22,60 +22,68 @@ impl Integrator for LightTracer {
         workspace.stats.samples += 1;
         workspace.walk_light(context, sample);
         for s in 1..=workspace.light.vertices.len() {
-            if let Some(image) = light_image(context, sample, &workspace.light.vertices[..s]) {
-                workspace.splat(context, sample, &image, 1.0);
+            let lens = lens_vertex(context, sample, s);
+            let light = &workspace.light.vertices[..s];
+            if let Some(image) = light_image(context, light, &lens) {
+                let image = image.weighted(1.0);
+                workspace.splat(context, sample, &image);
             }
         }
     }
 }
 
-/// A light vertex as a lens point of its own sees it, before weight and visibility.
-pub(super) struct LightImage {
-    strategy: Strategy,
+/// A light vertex as a lens point of its own sees it, before visibility.
+pub(super) struct LightImage<'a> {
     light: u32,
-    pub(super) lens: Vertex,
+    /// From the light to the lens.
+    pub(super) path: JoinedPath<'a>,
     /// The camera's end of the shadow ray.
     camera_end: SegmentEnd,
     raster: Vec2,
     contribution: Spectrum,
 }
 
-/// Connects the last vertex of a light subpath to a lens point of its own. None: nothing arrives on
-/// the film.
-pub(super) fn light_image(
+/// The lens point for light vertex number `s`.
+pub(super) fn lens_vertex(context: &PathContext<'_>, sample: &Sample, s: usize) -> Vertex {
+    let camera = context.scene.camera();
+    let u = || {
+        sample
+            .light
+            .get_2d(Dimension::at(s, Purpose::LightImageLens))
+    };
+    Vertex::camera(&camera.sample_lens(u))
+}
+
+/// Connects the last vertex of a light subpath to a lens point. None: nothing arrives on the film.
+pub(super) fn light_image<'a>(
     context: &PathContext<'_>,
-    sample: &Sample,
-    light: &[Vertex],
-) -> Option<LightImage> {
+    light: &'a [Vertex],
+    lens: &'a Vertex,
+) -> Option<LightImage<'a>> {
     let scene = context.scene;
-    let (s, end) = (light.len(), light.last()?);
+    let end = light.last()?;
     // The image of a Dirac light itself would be a Dirac distribution: such lights are invisible.
     if end.kind == VertexKind::Light && end.light.is_none_or(|i| scene.light(i).is_delta()) {
         return None;
     }
-    let start = light[0].light?;
-    let u_lens = sample
-        .light
-        .get_2d(Dimension::at(s, Purpose::LightImageLens));
-    let lens = Vertex::camera(&scene.camera().sample_lens(u_lens));
     if lens.is_infinite && end.is_infinite {
         return None;
     }
+    let path = JoinedPath::connection(light, std::slice::from_ref(lens));
     let on_ray = if lens.is_infinite {
         end.point
     } else {
         lens.point
     };
-    let raster = scene.camera().raster(on_ray, lens.toward(end))?;
+    let raster = scene.camera().raster(on_ray, -path.segment.w)?;
     if !reaches_film(context, raster) {
         return None;
     }
-    let contribution = connect(context, light, &[lens]);
+    let contribution = path.contribution(context);
     (contribution != Spectrum::ZERO).then_some(LightImage {
-        strategy: Strategy::new(s, 1),
-        light: start,
-        camera_end: camera_end(context, &lens, end),
-        lens,
+        light: light[0].light?,
+        camera_end: camera_end(context, lens, end),
+        path,
         raster,
         contribution,
     })
@@ -108,35 +116,52 @@ fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
     raster.cmpge(min).all() && raster.cmple(max).all()
 }
 
+impl LightImage<'_> {
+    /// With its weight.
+    pub(super) fn weighted(&self, weight: f32) -> WeightedImage {
+        let [light, camera] = [self.path.light, self.path.camera].map(<[Vertex]>::len);
+        WeightedImage {
+            term: Term {
+                strategy: Strategy::new(light, camera),
+                light: self.light,
+                contribution: self.contribution,
+                weight,
+            },
+            raster: self.raster,
+            ends: [self.path.light[light - 1].segment_end(), self.camera_end],
+        }
+    }
+}
+
+/// A light image with its weight.
+pub(super) struct WeightedImage {
+    term: Term,
+    raster: Vec2,
+    /// The ends of its shadow ray: light vertex and camera.
+    ends: [SegmentEnd; 2],
+}
+
 impl Workspace {
     /// Traces a ray of the light image, and keeps the splat if it arrives.
     pub(super) fn splat(
         &mut self,
         context: &PathContext<'_>,
         sample: &Sample,
-        image: &LightImage,
-        weight: f32,
+        image: &WeightedImage,
     ) {
-        let strategy = image.strategy;
-        let s = usize::from(strategy.s);
-        let term = Term {
-            strategy,
-            light: image.light,
-            contribution: image.contribution,
-            weight,
-        };
+        let WeightedImage { term, raster, ends } = *image;
+        let s = usize::from(term.strategy.s);
+        let u = sample
+            .light
+            .get_2d(Dimension::at(s, Purpose::LightImagePixel));
         let mut splat = Splat {
             contribution: term.whole(),
-            raster: image.raster,
-            u: sample
-                .light
-                .get_2d(Dimension::at(s, Purpose::LightImagePixel)),
+            raster,
+            u,
         };
-        let end = self.light.vertices[s - 1].segment_end();
-        let ends = [end, image.camera_end];
         self.count(term, |_| Link::LightImage(ends, splat));
-        if self.accepts(sample, strategy, term.value())
-            && let Some(arrives) = self.trace(context.scene, strategy, &ends)
+        if self.accepts(sample, term.strategy, term.value())
+            && let Some(arrives) = self.trace(context.scene, term.strategy, &ends)
         {
             splat.contribution = splat.contribution.behind(arrives);
             self.add_splat(splat);

@@ -3,9 +3,10 @@
 //! angle. It walks no light subpaths and chooses no shadow rays: all are traced.
 
 use super::{Integrator, Link, Sample, Term, Workspace};
-use crate::light::LightPoint;
+use crate::bsdf::TransportMode;
+use crate::light::{LightPoint, LightSample};
 use crate::math::Vec3;
-use crate::path::{PathContext, Strategy, connect, next_event_pdf, next_event_vertex};
+use crate::path::{PathContext, Segment, Strategy, Vertex, next_event_pdf, sample_next_event};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 
@@ -70,7 +71,7 @@ fn hit(
         let weight = if i == 1 || from.went_by_delta {
             1.0
         } else {
-            let q = next_event_pdf(context, from, arrival.light, &arrival.at);
+            let q = next_event_pdf(context, from.point, arrival.light, &arrival.at);
             context.settings.mis.weight_of_two(arrival.pdf, q)
         };
         let term = Term {
@@ -85,32 +86,30 @@ fn hit(
 
 /// Connects vertex `i` with a light point.
 fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace, i: usize) {
-    let camera = &workspace.camera.vertices[..=i];
-    let vertex = &camera[i];
+    let vertex = &workspace.camera.vertices[i];
     let at = |purpose| Dimension::at(i, purpose);
-    let u_light = sample.camera.get_1d(at(Purpose::NextEventLight));
+    let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let Some(x0) = next_event_vertex(context, vertex, u_light, u) else {
+    let Some((light, x0)) = sample_next_event(context, vertex.point, u_light, u) else {
         return;
     };
-    let contribution = connect(context, &[x0], camera);
+    let ends = [x0.at.segment_end(), vertex.segment_end()];
+    let segment = Segment::between(&ends[0], &ends[1]);
+    let contribution = arriving(context, vertex, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return;
     }
-    let Some(light) = x0.light else { return };
-    let q = next_event_pdf(context, vertex, light, &x0.light_point());
     let p = if context.scene.light(light).is_delta() {
         0.0
     } else {
-        vertex.pdf_to(context, vertex.wo, &x0)
+        vertex.pdf_direction(context, vertex.wo, -segment.w) * segment.to_a
     };
     let term = Term {
         strategy: Strategy::new(1, i + 1),
         light,
         contribution,
-        weight: context.settings.mis.weight_of_two(q, p),
+        weight: context.settings.mis.weight_of_two(x0.pdf, p),
     };
-    let ends = [x0.segment_end(), vertex.segment_end()];
     workspace.count(term, |_| Link::Connection(ends));
     let (strategy, value) = (term.strategy, term.value());
     if workspace.accepts(sample, strategy, value)
@@ -118,6 +117,29 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     {
         workspace.add(sample, term.whole().behind(arrives));
     }
+}
+
+/// L_e · G · scatter · β / q: what of the light point x_0, drawn with density q, arrives by `vertex`,
+/// before weight and visibility.
+#[inline]
+fn arriving(
+    context: &PathContext<'_>,
+    vertex: &Vertex,
+    light: u32,
+    x0: &LightSample,
+    segment: &Segment,
+) -> Spectrum {
+    let factor = segment.geometry_term * x0.coverage / x0.pdf;
+    if factor == 0.0 {
+        return Spectrum::ZERO;
+    }
+    let emitted = context.emitted(light, &x0.at, segment.w);
+    if emitted.is_black() {
+        return Spectrum::ZERO;
+    }
+    let wi = -segment.w;
+    let scatter = vertex.scatter(context, vertex.wo, wi, TransportMode::Radiance);
+    emitted * scatter * vertex.beta * factor
 }
 
 /// Adds the lights at infinity that the walk escaped to.

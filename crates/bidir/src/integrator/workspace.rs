@@ -231,10 +231,13 @@ impl Workspace {
 
 /// The ray of a camera sample, and the weight of its film position.
 pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
-    let at = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
-    let (offset, weight) = context.scene.film().filter.sample(at(Purpose::Film));
+    let get = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
+    let (offset, weight) = context.scene.film().filter.sample(get(Purpose::Film));
     let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
-    let ray = context.scene.camera().sample_ray(raster, at(Purpose::Lens));
+    let ray = context
+        .scene
+        .camera()
+        .sample_ray(raster, || get(Purpose::Lens));
     (ray, weight)
 }
 

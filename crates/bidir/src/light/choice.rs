@@ -21,14 +21,18 @@ impl LightChoice {
         }
     }
 
-    /// Draws a light: its index and its probability. None: there are none.
+    /// Draws a light: its index and its probability. None: there are none. The number `u` is asked for
+    /// where there is a choice.
     #[inline]
-    pub fn sample(&self, u: f32) -> Option<(usize, f32)> {
-        if self.count == 0 {
-            return None;
+    pub fn sample(&self, u: impl FnOnce() -> f32) -> Option<(usize, f32)> {
+        match self.count {
+            0 => None,
+            1 => Some((0, 1.0)),
+            _ => {
+                let (light, prob, _) = self.by_power.sample(u());
+                Some((light, prob))
+            }
         }
-        let (light, prob, _) = self.by_power.sample(u);
-        Some((light, prob))
     }
 
     /// The probability of light `i`. Unitless.

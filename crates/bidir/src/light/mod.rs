@@ -29,6 +29,7 @@ pub use infinite::{DistantLight, InfiniteLight, Radiance};
 pub use point::{PointLight, SpotLight};
 
 use crate::math::{Vec2, Vec3};
+use crate::scene::SegmentEnd;
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::Rgb;
 
@@ -56,6 +57,17 @@ impl LightPoint {
             error: surface.error,
             primitive,
             is_infinite: false,
+        }
+    }
+
+    /// The point as an end of a shadow ray.
+    #[inline]
+    pub fn segment_end(&self) -> SegmentEnd {
+        SegmentEnd {
+            point: self.point,
+            n_g: self.n_g,
+            error: self.error,
+            is_infinite: self.is_infinite,
         }
     }
 

@@ -3,95 +3,144 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{Junction, PathContext, PathDensities, Vertex, mis_weight};
+use super::{PathContext, PathDensities, Segment, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
-use crate::light::LightPoint;
-use crate::math::Vec2;
+use crate::light::{LightPoint, LightSample};
+use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// The contribution of joining the ends of two subpaths, before weight and visibility:
-/// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering.
-#[inline]
-pub fn connect(context: &PathContext<'_>, light: &[Vertex], camera: &[Vertex]) -> Spectrum {
-    let (Some(z), Some(y)) = (light.last(), camera.last()) else {
-        return Spectrum::ZERO;
-    };
-    if z.is_delta() || y.is_delta() {
-        return Spectrum::ZERO;
-    }
-    let geometry = z.geometry_term(y);
-    if geometry == 0.0 {
-        return Spectrum::ZERO;
-    }
-    let w = z.toward(y);
-    let at_light = z.scatter(context, z.wo, w, TransportMode::Importance);
-    if at_light.is_black() {
-        return Spectrum::ZERO;
-    }
-    let at_camera = y.scatter(context, y.wo, -w, TransportMode::Radiance);
-    z.beta * at_light * at_camera * y.beta * geometry
+/// How the two subpaths of a path came together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Junction {
+    /// Their ends were connected.
+    Connection,
+    /// The camera walk hit x_0: the light subpath is that one vertex, and its `pdf_rev` is the
+    /// density with which the walk drew it.
+    Hit,
 }
 
-/// A light point of its own for the camera vertex `receiver`: the light subpath of strategy s = 1.
+/// A whole path: a light subpath and a camera subpath, of at least one vertex each, and how their
+/// ends see each other.
+#[derive(Clone, Copy, Debug)]
+pub struct JoinedPath<'a> {
+    /// The light's part. For [`Junction::Hit`] it is the vertex that was hit, as a light vertex.
+    pub light: &'a [Vertex],
+    /// The camera's part.
+    pub camera: &'a [Vertex],
+    /// How they came together.
+    pub junction: Junction,
+    /// From the last light vertex, z, to the last camera vertex, y.
+    pub segment: Segment,
+}
+
+impl<'a> JoinedPath<'a> {
+    /// The path that connects the ends of two subpaths.
+    #[inline]
+    pub fn connection(light: &'a [Vertex], camera: &'a [Vertex]) -> Self {
+        Self::new(light, camera, Junction::Connection)
+    }
+
+    /// The path of a camera walk that went from the last vertex of `camera` to the light at `x0`.
+    #[inline]
+    pub fn hit(x0: &'a Vertex, camera: &'a [Vertex]) -> Self {
+        Self::new(std::slice::from_ref(x0), camera, Junction::Hit)
+    }
+
+    #[inline]
+    fn new(light: &'a [Vertex], camera: &'a [Vertex], junction: Junction) -> Self {
+        let segment = light[light.len() - 1].segment_to(&camera[camera.len() - 1]);
+        Self {
+            light,
+            camera,
+            junction,
+            segment,
+        }
+    }
+
+    /// The light vertex at the junction.
+    #[inline]
+    pub(super) fn z(&self) -> &'a Vertex {
+        &self.light[self.light.len() - 1]
+    }
+
+    /// The camera vertex at the junction.
+    #[inline]
+    pub(super) fn y(&self) -> &'a Vertex {
+        &self.camera[self.camera.len() - 1]
+    }
+
+    /// The number of vertices.
+    #[inline]
+    pub(super) fn len(&self) -> usize {
+        self.light.len() + self.camera.len()
+    }
+
+    /// The contribution of a connection, before weight and visibility:
+    /// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering.
+    #[inline]
+    pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
+        let (z, y) = (self.z(), self.y());
+        let Segment {
+            w, geometry_term, ..
+        } = self.segment;
+        if geometry_term == 0.0 || z.is_delta() || y.is_delta() {
+            return Spectrum::ZERO;
+        }
+        let at_light = z.scatter(context, z.wo, w, TransportMode::Importance);
+        if at_light.is_black() {
+            return Spectrum::ZERO;
+        }
+        let at_camera = y.scatter(context, y.wo, -w, TransportMode::Radiance);
+        z.beta * at_light * at_camera * y.beta * geometry_term
+    }
+
+    /// The weight of making the path in this way.
+    #[inline]
+    pub fn weight(&self, context: &PathContext<'_>, densities: &mut PathDensities) -> f32 {
+        densities.gather(context, self);
+        let n = self.len();
+        let s = match self.junction {
+            Junction::Hit => 0,
+            Junction::Connection => self.light.len(),
+        };
+        let count = |j| context.count(j, n - j);
+        mis_weight(densities, count, context.settings.mis, s) as f32
+    }
+}
+
+/// A light point drawn for the point `receiver`: the light's index, and the point with its density
+/// e(x_0 | x_1), the light's probability included.
 ///
-/// None: there is no light, the draw has no density, or nothing of the light is there.
+/// The number `u_light` is asked for where there is a choice of lights. None: there is no light, the
+/// draw has no density, or nothing of the light is there.
 #[inline]
-pub fn next_event_vertex(
+pub fn sample_next_event(
     context: &PathContext<'_>,
-    receiver: &Vertex,
-    u_light: f32,
+    receiver: Vec3,
+    u_light: impl FnOnce() -> f32,
     u: Vec2,
-) -> Option<Vertex> {
+) -> Option<(u32, LightSample)> {
     let scene = context.scene;
     let (light, prob) = scene.light_choice().sample(u_light)?;
     let lights = scene.light_context();
-    let sample = scene.lights()[light].sample_next_event(&lights, receiver.point, u)?;
-    let mut vertex = Vertex::light(context, light as u32, &sample.at);
-    vertex.beta = Spectrum::splat(sample.coverage / (prob * sample.pdf));
-    (sample.coverage > 0.0).then_some(vertex)
+    let mut sample = scene.lights()[light].sample_next_event(&lights, receiver, u)?;
+    sample.pdf *= prob;
+    (sample.coverage > 0.0).then_some((light as u32, sample))
 }
 
-/// The density e(x_0 | x_1) with which [`next_event_vertex`] draws the point `at` of light number
-/// `light` for the camera vertex `receiver`. Measure: area, 1/m²; solid angle, 1/sr, for a light at
-/// infinity.
+/// The density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
+/// `light` for the point `receiver`. Measure: area, 1/m²; solid angle, 1/sr, for a light at infinity.
 #[inline]
 pub fn next_event_pdf(
     context: &PathContext<'_>,
-    receiver: &Vertex,
+    receiver: Vec3,
     light: u32,
     at: &LightPoint,
 ) -> f32 {
     let scene = context.scene;
     let prob = scene.light_choice().prob(light as usize);
-    prob * scene
-        .light(light)
-        .pdf_next_event(&scene.light_context(), receiver.point, at)
-}
-
-/// The weight of making the path that joins `light` and `camera` by strategy `s`.
-///
-/// For s = 0 the light subpath is the vertex that was hit, as a light vertex
-/// ([`Junction::Hit`]); else `s` is its length.
-#[inline]
-pub fn weight(
-    context: &PathContext<'_>,
-    densities: &mut PathDensities,
-    light: &[Vertex],
-    camera: &[Vertex],
-    junction: Junction,
-) -> f32 {
-    densities.gather(context, light, camera, junction);
-    let n = light.len() + camera.len();
-    let s = match junction {
-        Junction::Hit => 0,
-        Junction::Connection => light.len(),
-    };
-    mis_weight(
-        densities,
-        |j| context.count(j, n - j),
-        context.settings.mis,
-        s,
-    ) as f32
+    let lights = scene.light_context();
+    prob * scene.light(light).pdf_next_event(&lights, receiver, at)
 }
 
 impl PathContext<'_> {

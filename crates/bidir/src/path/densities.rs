@@ -4,7 +4,7 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{LightPointChoice, PathContext, Vertex, next_event_pdf};
+use super::{JoinedPath, Junction, LightPointChoice, PathContext, Vertex, next_event_pdf};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,29 +28,19 @@ pub struct PathDensities {
     pub light_is_delta: bool,
 }
 
-/// How the two subpaths of a path came together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Junction {
-    /// Their ends were connected.
-    Connection,
-    /// The camera walk hit x_0: the light subpath is that one vertex, and its `pdf_rev` is the
-    /// density with which the walk drew it.
-    Hit,
-}
-
 impl PathDensities {
-    /// Collects the densities of the path that joins `light` and `camera`.
+    /// Collects the densities of `path`.
     ///
     /// Stored densities hold but next to the junction, where each end has a new neighbour: the two
     /// ends and the vertices before them are evaluated again.
-    pub fn gather(
-        &mut self,
-        context: &PathContext<'_>,
-        light: &[Vertex],
-        camera: &[Vertex],
-        junction: Junction,
-    ) {
-        let (s, n) = (light.len(), light.len() + camera.len());
+    pub fn gather(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+        let JoinedPath {
+            light,
+            camera,
+            junction,
+            ..
+        } = *path;
+        let (s, n) = (light.len(), path.len());
         self.vertices.clear();
         // A vertex between two of its walk does on this path what the walk did; an end that is
         // connected scatters by its other lobes.
@@ -80,65 +70,51 @@ impl PathDensities {
                 x.from_light = pdf[1];
             }
         }
-        self.join(context, light, camera, junction);
+        self.join(context, path);
         // Of a camera and a light both at infinity no connection makes a path: the camera has to see
         // the light by itself.
         if n == 2 && light[0].is_infinite && camera[0].is_infinite {
             self.vertices[0].from_light = 0.0;
         }
-        self.describe_light(context, light, camera, n);
+        self.describe_light(context, path);
     }
 
     /// Evaluates the densities next to the junction.
-    fn join(
-        &mut self,
-        context: &PathContext<'_>,
-        light: &[Vertex],
-        camera: &[Vertex],
-        junction: Junction,
-    ) {
-        let (s, t) = (light.len(), camera.len());
-        let (z, y) = (&light[s - 1], &camera[t - 1]);
+    fn join(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+        let (s, t) = (path.light.len(), path.camera.len());
+        let (z, y, segment) = (path.z(), path.y(), &path.segment);
+        let w = segment.w;
         let x = &mut self.vertices;
-        x[s].from_light = z.pdf_to(context, z.wo, y) * factor(context, s, z.albedo_fwd);
-        if junction == Junction::Hit {
+        x[s].from_light =
+            z.pdf_direction(context, z.wo, w) * segment.to_b * factor(context, s, z.albedo_fwd);
+        if path.junction == Junction::Hit {
             x[0].from_camera = z.pdf_rev * factor(context, t, y.albedo_fwd);
             return;
         }
-        x[s - 1].from_camera = y.pdf_to(context, y.wo, z) * factor(context, t, y.albedo_fwd);
-        if let [.., before, _] = light {
-            let wo = z.toward(y);
-            let survival = factor(context, t + 1, z.albedo_from(wo));
-            x[s - 2].from_camera = z.pdf_to(context, wo, before) * survival;
+        x[s - 1].from_camera =
+            y.pdf_direction(context, y.wo, -w) * segment.to_a * factor(context, t, y.albedo_fwd);
+        if s > 1 {
+            let survival = factor(context, t + 1, z.albedo_from(w));
+            x[s - 2].from_camera = z.pdf_direction(context, w, z.wo) * z.to_previous * survival;
         }
-        if let [.., before, _] = camera {
-            let wo = y.toward(z);
-            let survival = factor(context, s + 1, y.albedo_from(wo));
-            x[s + 1].from_light = y.pdf_to(context, wo, before) * survival;
+        if t > 1 {
+            let survival = factor(context, s + 1, y.albedo_from(-w));
+            x[s + 1].from_light = y.pdf_direction(context, -w, y.wo) * y.to_previous * survival;
         }
     }
 
     /// Notes how next-event estimation would draw x_0 for x_1.
-    fn describe_light(
-        &mut self,
-        context: &PathContext<'_>,
-        light: &[Vertex],
-        camera: &[Vertex],
-        n: usize,
-    ) {
-        let Some(index) = light[0].light else { return };
+    fn describe_light(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+        let x0 = &path.light[0];
+        let Some(index) = x0.light else { return };
         self.light_is_delta = context.scene.light(index).is_delta();
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
-        let shared = context.settings.light_point == LightPointChoice::Shared || n == 2;
+        let shared = context.settings.light_point == LightPointChoice::Shared || path.len() == 2;
         self.next_event = if shared {
             self.vertices[0].from_light
         } else {
-            let receiver = if light.len() > 1 {
-                &light[1]
-            } else {
-                &camera[camera.len() - 1]
-            };
-            next_event_pdf(context, receiver, index, &light[0].light_point())
+            let x1 = path.light.get(1).unwrap_or(path.y());
+            next_event_pdf(context, x1.point, index, &x0.light_point())
         };
     }
 }

@@ -23,14 +23,16 @@ mod densities;
 mod mis;
 mod roulette;
 mod scatter;
+mod segment;
 mod strategy;
 mod vertex;
 mod walk;
 
-pub use connect::{connect, next_event_pdf, next_event_vertex, weight};
-pub use densities::{Junction, PathDensities, VertexDensities};
+pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
+pub use densities::{PathDensities, VertexDensities};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;
+pub use segment::Segment;
 pub use strategy::{LightPointChoice, Strategies, Strategy};
 pub use vertex::{Vertex, VertexKind};
 pub use walk::{Escape, Subpath, camera_subpath, light_subpath};

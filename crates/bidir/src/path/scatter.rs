@@ -1,8 +1,5 @@
 //! What a vertex does to light: its value scatter(wo, wi) in the integrand, the directions that walks
-//! draw there, and their densities, turned into those of the vertices that they lead to.
-//!
-//! p(x') = p_ω |cosθ'| / d²; towards a light at infinity p_ω itself. Visibility and roulette are no
-//! part of it.
+//! draw there, and their densities. Visibility and roulette are no part of it.
 
 use super::{PathContext, Vertex, VertexKind};
 use crate::bsdf::TransportMode;
@@ -67,7 +64,7 @@ impl Vertex {
     pub(super) fn sample_scatter(
         &self,
         mode: TransportMode,
-        u_lobe: f32,
+        u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<Scattered> {
         let wo = self.shading.to_local(self.wo);
@@ -105,33 +102,13 @@ impl Vertex {
         self.shading.z.dot(w) * self.n_g.dot(w) > 0.0
     }
 
-    /// Turns a density of directions at this vertex into that of the vertex `next` which the
-    /// direction leads to.
-    #[inline]
-    pub(super) fn density_at(&self, pdf_w: f32, next: &Self) -> f32 {
-        if next.is_infinite {
-            return pdf_w;
-        }
-        let cos = next.abs_cos(self.toward(next));
-        if self.is_infinite {
-            return pdf_w * cos;
-        }
-        let distance2 = self.point.distance_squared(next.point);
-        if distance2 > 0.0 {
-            pdf_w * cos / distance2
-        } else {
-            0.0
-        }
-    }
-
-    /// Density of drawing `next` from this vertex by a walk that came along `-wo`, without
-    /// roulette. Measure: area at `next`, 1/m²; solid angle for a light at infinity. Dirac lobes
+    /// Density of drawing the direction `wi` here by a walk that came along `-wo`. Measure: solid
+    /// angle, 1/sr; from a light at infinity area of the disk that its rays cross, 1/m². Dirac lobes
     /// are no part of it but for the probability that they take.
     #[inline]
-    pub fn pdf_to(&self, context: &PathContext<'_>, wo: Vec3, next: &Self) -> f32 {
+    pub fn pdf_direction(&self, context: &PathContext<'_>, wo: Vec3, wi: Vec3) -> f32 {
         let scene = context.scene;
-        let wi = self.toward(next);
-        let pdf_w = match (self.kind, self.light) {
+        match (self.kind, self.light) {
             (VertexKind::Camera, _) => scene.camera().pdf_direction(wi),
             (VertexKind::Light, Some(light)) => {
                 let at = self.light_point();
@@ -143,8 +120,7 @@ impl Vertex {
             (VertexKind::Surface, _) => self
                 .bsdf
                 .pdf(self.shading.to_local(wo), self.shading.to_local(wi)),
-        };
-        self.density_at(pdf_w, next)
+        }
     }
 
     /// The largest lane of the albedo that a walk along `-wo` meets here.

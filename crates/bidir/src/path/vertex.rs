@@ -1,10 +1,10 @@
 //! Vertices: f = Π scatter · Π G over geometric cosines, one function of the path, whichever end a
-//! walk began at [Veach97, §5.3]. Here are a vertex's data and G; `scatter` stands beside it.
+//! walk began at [Veach97, §5.3]. Here are a vertex's data; `scatter` and G (`segment`) stand beside it.
 //!
 //! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
 //! at infinity). Visibility and roulette are no part of a vertex.
 
-use super::PathContext;
+use super::{PathContext, Segment};
 use crate::bsdf::{Bsdf, Diffuse};
 use crate::camera::LensSample;
 use crate::light::LightPoint;
@@ -49,6 +49,8 @@ pub struct Vertex {
     /// The density of this vertex drawn from its successor by a walk in the other direction,
     /// without roulette; set when the successor scatters.
     pub pdf_rev: f32,
+    /// What turns a density of the direction `wo` here into one of the previous vertex.
+    pub to_previous: f32,
     /// The largest lane of the albedo seen from the previous vertex.
     pub albedo_fwd: f32,
     /// The largest lane of the albedo seen from the next vertex; set when this vertex scatters.
@@ -84,6 +86,7 @@ impl Vertex {
             beta: Spectrum::ONE,
             pdf_fwd: 0.0,
             pdf_rev: 0.0,
+            to_previous: 0.0,
             albedo_fwd: 1.0,
             albedo_rev: 1.0,
             went_by_delta: false,
@@ -186,42 +189,9 @@ impl Vertex {
         self.kind == VertexKind::Surface && self.bsdf.is_delta()
     }
 
-    /// The unit direction from here to `other`; at most one of the two is at infinity.
+    /// This vertex and `other` as they see each other; at most one of the two is at infinity.
     #[inline]
-    pub fn toward(&self, other: &Self) -> Vec3 {
-        if other.is_infinite {
-            other.point
-        } else if self.is_infinite {
-            -self.point
-        } else {
-            (other.point - self.point).normalize_or_zero()
-        }
-    }
-
-    /// |cosθ| between the geometric normal and `w`; 1 where there is no surface.
-    #[inline]
-    pub(super) fn abs_cos(&self, w: Vec3) -> f32 {
-        if self.n_g == Vec3::ZERO {
-            1.0
-        } else {
-            self.n_g.dot(w).abs()
-        }
-    }
-
-    /// G = |cosθ cosθ'| / d²; towards an end at infinity only the cosine of the other end.
-    /// Visibility is no part of it. Unit: 1/m².
-    #[inline]
-    pub fn geometry_term(&self, other: &Self) -> f32 {
-        let w = self.toward(other);
-        let cosines = self.abs_cos(w) * other.abs_cos(w);
-        if self.is_infinite || other.is_infinite {
-            return cosines;
-        }
-        let distance2 = self.point.distance_squared(other.point);
-        if distance2 > 0.0 {
-            cosines / distance2
-        } else {
-            0.0
-        }
+    pub fn segment_to(&self, other: &Self) -> Segment {
+        Segment::between(&self.segment_end(), &other.segment_end())
     }
 }

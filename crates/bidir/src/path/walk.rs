@@ -5,7 +5,7 @@
 //! A walk ends by escape, by roulette, where nothing scatters, or at the limit of path length. It
 //! adds nothing to any image.
 
-use super::{PathContext, Vertex};
+use super::{PathContext, Segment, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;
 use crate::light::EmissionSample;
@@ -116,7 +116,7 @@ fn draw_emission(
 ) -> Option<(Vertex, EmissionSample)> {
     let scene = context.scene;
     let at = |purpose| Dimension::at(0, purpose);
-    let u_light = stream.get_1d(at(Purpose::Light));
+    let u_light = || stream.get_1d(at(Purpose::Light));
     let (light, prob) = scene.light_choice().sample(u_light)?;
     let u_position = stream.get_2d(at(Purpose::LightPosition));
     let u_direction = stream.get_2d(at(Purpose::LightDirection));
@@ -161,7 +161,10 @@ impl Walker<'_> {
             let wo = -step.direction;
             let mut vertex = Vertex::surface(self.context, &hit, wo, step.beta, u_mix);
             let last = subpath.vertices.len() - 1;
-            vertex.pdf_fwd = subpath.vertices[last].density_at(step.pdf_w, &vertex);
+            let from = subpath.vertices[last].segment_end();
+            let segment = Segment::along(&from, &vertex.segment_end(), step.direction);
+            vertex.pdf_fwd = step.pdf_w * segment.to_b;
+            vertex.to_previous = segment.to_a;
             // Rounding put the vertex on the one before it, in a corner: no density, no path.
             if vertex.pdf_fwd == 0.0 {
                 return;
@@ -186,10 +189,10 @@ impl Walker<'_> {
             return None;
         };
         let at = |purpose| Dimension::at(index, purpose);
-        let u_lobe = self.stream.get_1d(at(Purpose::Lobe));
-        let scattered =
-            vertex.sample_scatter(self.mode, u_lobe, self.stream.get_2d(at(Purpose::Scatter)))?;
-        previous.pdf_rev = vertex.density_at(scattered.pdf_reverse, previous);
+        let u_lobe = || self.stream.get_1d(at(Purpose::Lobe));
+        let u = self.stream.get_2d(at(Purpose::Scatter));
+        let scattered = vertex.sample_scatter(self.mode, u_lobe, u)?;
+        previous.pdf_rev = scattered.pdf_reverse * vertex.to_previous;
         vertex.went_by_delta = scattered.is_delta;
         vertex.albedo_rev = vertex.albedo_from(scattered.wi);
         let beta = vertex.beta * scattered.weight;

@@ -5,8 +5,9 @@
 //! and any split of the work gives the same bits.
 //!
 //! - Camera sample of pass `p` at pixel `q`: stream `q`, index `p`.
-//! - Light path `j` of pass `p` with `N` light paths a pass: stream 0, index `p·N + j`, so that light
-//!   paths are stratified over the image's whole budget.
+//! - The light path that goes with it: member `q` of a [family](Sampler::member), index `p`. The light
+//!   paths of a pass are stratified over the light, as the light image wants them, and those of a pixel
+//!   over its passes, as connections want them.
 //!
 //! Any range of indices is exact; ranges aligned to powers of two are also well stratified.
 
@@ -62,38 +63,87 @@ impl Sampler {
         Self { kind, seed }
     }
 
-    /// The numbers of point `index` of a stream.
+    /// The numbers of point `index` of a stream, which is unrelated to other streams.
     #[inline]
     pub fn stream(&self, domain: Domain, stream: u64, index: u64) -> SampleStream {
-        let key = mix(mix(self.seed ^ mix(domain as u64 + 1)) ^ stream);
+        let key = mix(self.key(domain) ^ stream);
         match self.kind {
-            SamplerKind::Independent => SampleStream {
-                kind: self.kind,
-                key: mix(key ^ mix(index)),
-                index,
-            },
+            SamplerKind::Independent => SampleStream::independent(key, index),
+            // A sequence has 2³² points; those beyond are of another one.
             SamplerKind::Sobol => SampleStream {
-                kind: self.kind,
-                key,
-                index,
+                source: Source::Sequence(reversed(index)),
+                key: mix(key ^ (index >> 32)),
             },
         }
     }
+
+    /// The numbers of point `index` of one of many streams that complement each other: those of a
+    /// member are stratified over the indices, and those of an index over the members.
+    ///
+    /// A point is S(index) ⊕ S'(member), digit by digit: either sequence, moved by a digital shift,
+    /// is as even as before.
+    #[inline]
+    pub fn member(&self, domain: Domain, member: u64, index: u64) -> SampleStream {
+        let key = self.key(domain);
+        match self.kind {
+            SamplerKind::Independent => SampleStream::independent(mix(key ^ member), index),
+            SamplerKind::Sobol => SampleStream {
+                source: Source::Product(reversed(index), reversed(member)),
+                key: mix(mix(key ^ (index >> 32)) ^ (member >> 32)),
+            },
+        }
+    }
+
+    #[inline]
+    fn key(&self, domain: Domain) -> u64 {
+        mix(self.seed ^ mix(domain as u64 + 1))
+    }
+}
+
+/// The low 32 bits of an index in reverse order.
+#[inline]
+fn reversed(index: u64) -> u32 {
+    (index as u32).reverse_bits()
+}
+
+/// Where the numbers of a stream come from.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// A hash of the key.
+    Independent,
+    /// The point of a sequence: its index, in reverse order.
+    Sequence(u32),
+    /// The sum of points of two sequences: their indices, in reverse order.
+    Product(u32, u32),
 }
 
 /// The random numbers of one sample, addressed by dimension.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleStream {
-    kind: SamplerKind,
+    source: Source,
     key: u64,
-    index: u64,
 }
 
 impl SampleStream {
+    #[inline]
+    fn independent(key: u64, index: u64) -> Self {
+        Self {
+            source: Source::Independent,
+            key: mix(key ^ mix(index)),
+        }
+    }
+
     /// The number of `dimension`. Range: `[0, 1)`.
     #[inline]
     pub fn get_1d(&self, dimension: Dimension) -> f32 {
-        self.get_2d(dimension).x
+        let key = mix(self.key ^ dimension.key());
+        unit(match self.source {
+            Source::Independent => key as u32,
+            Source::Sequence(index) => sobol::scrambled_x(index, key),
+            Source::Product(index, member) => {
+                sobol::scrambled_x(index, key) ^ sobol::scrambled_x(member, mix(key))
+            }
+        })
     }
 
     /// The number of `dimension` for one of many things that have no order, each with a key of its own.
@@ -101,7 +151,14 @@ impl SampleStream {
     #[inline]
     pub fn get_for(&self, dimension: Dimension, key: u64) -> f32 {
         // One inside the other: a sum of hashes would cancel where key and index are the same.
-        let of_sample = mix(mix(self.key ^ dimension.key()) ^ self.index);
+        let of_dimension = mix(self.key ^ dimension.key());
+        let of_sample = match self.source {
+            Source::Independent => of_dimension,
+            Source::Sequence(index) => mix(of_dimension ^ u64::from(index)),
+            Source::Product(index, member) => {
+                mix(of_dimension ^ (u64::from(index) << 32 | u64::from(member)))
+            }
+        };
         unit(mix(of_sample ^ key) as u32)
     }
 
@@ -109,13 +166,16 @@ impl SampleStream {
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
         let key = mix(self.key ^ dimension.key());
-        match self.kind {
-            SamplerKind::Independent => Vec2::new(unit(key as u32), unit((key >> 32) as u32)),
-            SamplerKind::Sobol => {
-                let (x, y) = sobol::scrambled_point(self.index, key);
-                Vec2::new(unit(x), unit(y))
+        let (x, y) = match self.source {
+            Source::Independent => (key as u32, (key >> 32) as u32),
+            Source::Sequence(index) => sobol::scrambled_point(index, key),
+            Source::Product(index, member) => {
+                let (x, y) = sobol::scrambled_point(index, key);
+                let (dx, dy) = sobol::scrambled_point(member, mix(key));
+                (x ^ dx, y ^ dy)
             }
-        }
+        };
+        Vec2::new(unit(x), unit(y))
     }
 }
 
@@ -134,14 +194,13 @@ mod tests {
     /// Checks that the points `begin .. begin + 2^log2_n` of a stream have exactly one point in
     /// every elementary interval of area 2^-log2_n.
     #[track_caller]
-    fn check_elementary_intervals(domain: Domain, begin: u64, log2_n: u32) {
-        let sampler = Sampler::new(SamplerKind::Sobol, 7);
+    fn check_elementary_intervals(begin: u64, log2_n: u32, stream: impl Fn(u64) -> SampleStream) {
         let n = 1u64 << log2_n;
         for log2_columns in 0..=log2_n {
             let (columns, rows) = (1u64 << log2_columns, 1u64 << (log2_n - log2_columns));
             let mut seen = vec![false; n as usize];
             for index in begin..begin + n {
-                let p = sampler.stream(domain, 5, index).get_2d(DIMENSION);
+                let p = stream(index).get_2d(DIMENSION);
                 let cell = (p.y * rows as f32) as u64 * columns + (p.x * columns as f32) as u64;
                 assert!(
                     !std::mem::replace(&mut seen[cell as usize], true),
@@ -153,10 +212,18 @@ mod tests {
 
     #[test]
     fn aligned_ranges_are_nets() {
-        check_elementary_intervals(Domain::Camera, 0, 8);
-        check_elementary_intervals(Domain::Camera, 3 << 8, 8);
-        check_elementary_intervals(Domain::Light, 1 << 20, 10);
-        check_elementary_intervals(Domain::Light, (1 << 40) + (5 << 10), 10);
+        let sampler = Sampler::new(SamplerKind::Sobol, 7);
+        let stream = |index| sampler.stream(Domain::Camera, 5, index);
+        for (begin, log2_n) in [
+            (0, 8),
+            (3 << 8, 8),
+            (1 << 20, 10),
+            ((1 << 40) + (5 << 10), 10),
+        ] {
+            check_elementary_intervals(begin, log2_n, stream);
+            check_elementary_intervals(begin, log2_n, |i| sampler.member(Domain::Light, 9, i));
+            check_elementary_intervals(begin, log2_n, |i| sampler.member(Domain::Light, i, 9));
+        }
     }
 
     #[test]
@@ -218,6 +285,12 @@ mod tests {
             check_moments(|i| (base(i), get(Domain::Light, 9, i, DIMENSION)));
             check_moments(|i| (get(Domain::Camera, i, 4, DIMENSION), base(i)));
             let seeded = Sampler::new(kind, 4);
+            let member = |member, index, dimension| {
+                let stream = sampler.member(Domain::Light, member, index);
+                stream.get_1d(dimension)
+            };
+            check_moments(|i| (member(i, 3, DIMENSION), member(i, 3, other)));
+            check_moments(|i| (member(3, i, DIMENSION), member(3, i, other)));
             check_moments(|i| {
                 (
                     base(i),

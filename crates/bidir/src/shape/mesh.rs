@@ -49,16 +49,17 @@ impl Mesh {
 
     /// The area of triangle `i`. Unit: m².
     pub fn triangle_area(&self, i: usize) -> f32 {
-        let [a, b, c] = self.triangle(i);
-        (b - a).cross(c - a).length() / 2.0
+        self.corners(i).area()
     }
 
     #[inline]
     pub(super) fn sample(&self, i: usize, u: Vec2) -> ShapeSample {
-        let surface = self.surface_point(i, warp::triangle(u));
+        let corners = self.corners(i);
+        let error = position_error(corners.magnitude());
         ShapeSample {
-            surface,
-            pdf: 1.0 / self.triangle_area(i),
+            // Nobody asks where the tangent of a light point is.
+            surface: corners.surface_point_in(warp::triangle(u), error, Frame::from_z),
+            pdf: 1.0 / corners.area(),
         }
     }
 
@@ -146,8 +147,27 @@ impl Corners {
         }
     }
 
+    /// Unit: m².
+    #[inline]
+    fn area(&self) -> f32 {
+        let [a, b, c] = self.positions;
+        (b - a).cross(c - a).length() / 2.0
+    }
+
     #[inline]
     fn surface_point(&self, b: Vec2, error: f32) -> SurfacePoint {
+        let tangent = self.tangent(1.0 - b.x - b.y, b);
+        self.surface_point_in(b, error, |n_s| Frame::from_z_and_tangent(n_s, tangent))
+    }
+
+    /// The geometry with the shading frame that `frame` makes of the shading normal.
+    #[inline]
+    fn surface_point_in(
+        &self,
+        b: Vec2,
+        error: f32,
+        frame: impl FnOnce(Vec3) -> Frame,
+    ) -> SurfacePoint {
         let [p0, p1, p2] = self.positions;
         let b0 = 1.0 - b.x - b.y;
         let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
@@ -158,7 +178,7 @@ impl Corners {
             point: p0 * b0 + p1 * b.x + p2 * b.y,
             error,
             n_g,
-            shading: Frame::from_z_and_tangent(n_s, self.tangent(b0, b)),
+            shading: frame(n_s),
             uv: interpolate(self.uvs, b),
         }
     }

@@ -48,7 +48,7 @@ pub struct SurfacePoint {
 /// A point drawn on a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapeSample {
-    /// The point.
+    /// The point. Of a triangle the shading frame's x is anywhere.
     pub surface: SurfacePoint,
     /// Its density. Measure: area, 1/m².
     pub pdf: f32,

@@ -48,7 +48,7 @@ fn parallel_rays() {
     case.check_bdpt(&case.path());
     // Nothing but the camera's own rays can see the sky: below it is the ground.
     let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
-    let case = Case::new(&ground, 4608);
+    let case = Case::new(&ground, 9216);
     case.check_light(&case.path());
 }
 

@@ -103,7 +103,7 @@ fn means(scene: &Scene, part: u64, walks: u64) -> [f64; 2] {
         let stream = sampler.stream(Domain::Camera, 0, walk);
         let at = |purpose| stream.get_2d(Dimension::at(0, purpose));
         let raster = at(Purpose::Film) * SIZE as f32;
-        let ray = scene.camera().sample_ray(raster, at(Purpose::Lens));
+        let ray = scene.camera().sample_ray(raster, || at(Purpose::Lens));
         camera_subpath(&context, &stream, &ray, 1.0, &mut camera, &mut stats);
         let stream = sampler.stream(Domain::Light, 0, walk);
         light_subpath(&context, &stream, &mut light, &mut stats);

@@ -93,7 +93,7 @@ fn scattered(bsdf: &Principled, wo: Vec3) -> f64 {
     let bsdf = Bsdf::Principled(*bsdf);
     let drawn = samples("furnace", n).filter_map(|sample| {
         let (u_lobe, u) = crate::bsdf::tests::numbers(&sample);
-        bsdf.sample(wo, TransportMode::Importance, u_lobe, u)
+        bsdf.sample(wo, TransportMode::Importance, || u_lobe, u)
     });
     drawn.map(|drawn| f64::from(drawn.weight[0])).sum::<f64>() / n as f64
 }

@@ -104,7 +104,7 @@ fn values_are_numbers_in_every_corner() {
                 f.is_finite() && f.0.iter().all(|&lane| lane >= 0.0),
                 "f = {f:?}"
             );
-            if let Some(drawn) = bsdf.sample(wo, mode, u_lobe, Vec2::new(u_x, u_y)) {
+            if let Some(drawn) = bsdf.sample(wo, mode, || u_lobe, Vec2::new(u_x, u_y)) {
                 prop_assert!((drawn.wi.length() - 1.0).abs() < 1e-3, "{drawn:?}");
                 prop_assert!(drawn.weight.is_finite() && drawn.weight.max_lane() >= 0.0);
                 prop_assert!(drawn.pdf >= 0.0 && drawn.pdf.is_finite(), "{drawn:?}");

@@ -17,7 +17,7 @@ fn samples_follow_the_density() {
         }
         let draws = samples(&name, 1 << 20).map(|sample| {
             let (u_lobe, u) = numbers(&sample);
-            let drawn = bsdf.sample(wo, TransportMode::Radiance, u_lobe, u)?;
+            let drawn = bsdf.sample(wo, TransportMode::Radiance, || u_lobe, u)?;
             // What a Dirac lobe takes is not in the density.
             (!drawn.is_delta).then_some(drawn.wi)
         });

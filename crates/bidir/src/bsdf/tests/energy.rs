@@ -11,7 +11,7 @@ fn scattered(bsdf: &Bsdf, wo: Vec3, case: &str) -> ([f64; 4], f32) {
     let (mut sum, mut largest) = ([0.0; 4], 0.0f32);
     for sample in samples(case, n) {
         let (u_lobe, u) = numbers(&sample);
-        if let Some(drawn) = bsdf.sample(wo, TransportMode::Importance, u_lobe, u) {
+        if let Some(drawn) = bsdf.sample(wo, TransportMode::Importance, || u_lobe, u) {
             largest = largest.max(drawn.weight.max_lane());
             for (sum, weight) in sum.iter_mut().zip(drawn.weight.0) {
                 *sum += f64::from(weight) / n as f64;

@@ -56,7 +56,7 @@ fn check_dirac_lobe(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, drawn: &BsdfSamp
     let n = 64;
     let mut ways = (0..n).filter_map(|i| {
         let u_lobe = (i as f32 + 0.5) / n as f32;
-        bsdf.sample(drawn.wi, mode.reversed(), u_lobe, Vec2::splat(0.5))
+        bsdf.sample(drawn.wi, mode.reversed(), || u_lobe, Vec2::splat(0.5))
     });
     let back = ways.find(|back| back.is_delta && (back.wi - wo).length() < 1e-4);
     let back = back.unwrap_or_else(|| panic!("{case}: no way back of {drawn:?}"));
@@ -71,7 +71,7 @@ fn check_dirac_lobe(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, drawn: &BsdfSamp
 fn dirac_lobes_among_others_are_as_frequent_as_they_say() {
     let mut lobes = 0;
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
-        let draw = |u_lobe| bsdf.sample(wo, TransportMode::Radiance, u_lobe, Vec2::splat(0.4));
+        let draw = |u_lobe| bsdf.sample(wo, TransportMode::Radiance, || u_lobe, Vec2::splat(0.4));
         let Some(dirac) = draw(0.0).filter(|drawn| drawn.is_delta) else {
             continue;
         };
@@ -94,7 +94,7 @@ fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
         for sample in samples(&name, 2000) {
             let (u_lobe, u) = numbers(&sample);
             for mode in MODES {
-                let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
+                let Some(drawn) = bsdf.sample(wo, mode, || u_lobe, u) else {
                     continue;
                 };
                 if drawn.is_delta {
@@ -113,7 +113,7 @@ fn draws_agree_with_value_and_density_and_light_flows_both_ways() {
 #[track_caller]
 fn check_dirac(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, u_lobe: f32, case: &str) {
     let u = Vec2::splat(0.5);
-    let Some(drawn) = bsdf.sample(wo, mode, u_lobe, u) else {
+    let Some(drawn) = bsdf.sample(wo, mode, || u_lobe, u) else {
         panic!("{case}: a Dirac distribution loses nothing");
     };
     assert!(
@@ -125,7 +125,7 @@ fn check_dirac(bsdf: &Bsdf, wo: Vec3, mode: TransportMode, u_lobe: f32, case: &s
         "{case}"
     );
     let back = bsdf
-        .sample(drawn.wi, mode.reversed(), u_lobe, u)
+        .sample(drawn.wi, mode.reversed(), || u_lobe, u)
         .expect("the way back");
     assert!(
         (back.wi - wo).length() < 1e-4,
@@ -155,7 +155,7 @@ fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| bsdf.is_delta()) {
         let index = |w: Vec3| if w.z > 0.0 { 1.0 } else { index_inside(&bsdf) };
         let prob = |u_lobe| {
-            let drawn = bsdf.sample(wo, TransportMode::Importance, u_lobe, wo.truncate());
+            let drawn = bsdf.sample(wo, TransportMode::Importance, || u_lobe, wo.truncate());
             let drawn = drawn.expect("a Dirac distribution loses nothing");
             let reflected = same_hemisphere(wo, drawn.wi);
             (

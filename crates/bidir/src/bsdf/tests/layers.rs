@@ -79,7 +79,7 @@ impl Stack {
             } else {
                 height = 0.0;
                 let u = stream.get_2d(Dimension::at(step, Purpose::Scatter));
-                let drawn = self.base.sample(-w, TransportMode::Importance, 0.5, u)?;
+                let drawn = self.base.sample(-w, TransportMode::Importance, || 0.5, u)?;
                 weight *= drawn.weight[0];
                 w = drawn.wi;
             }
@@ -117,7 +117,7 @@ fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
     let sampler = Sampler::new(SamplerKind::Sobol, 3);
     let draw = |i| {
         let (u_lobe, u) = numbers(&sampler.stream(Domain::Camera, 1, i));
-        bsdf.sample(wo, TransportMode::Importance, u_lobe, u)
+        bsdf.sample(wo, TransportMode::Importance, || u_lobe, u)
     };
     let weights = (0..n)
         .filter_map(draw)

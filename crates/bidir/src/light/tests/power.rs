@@ -43,7 +43,7 @@ fn lights_are_chosen_with_their_share_of_the_power() {
     let mut counts = vec![0; lights.len()];
     for sample in samples("choice", 1 << 20) {
         let u = sample.get_1d(Dimension::at(0, Purpose::Light));
-        let (light, prob) = choice.sample(u).unwrap();
+        let (light, prob) = choice.sample(|| u).unwrap();
         assert!((prob - choice.prob(light)).abs() <= 0.0);
         counts[light] += 1;
     }
@@ -65,5 +65,5 @@ fn nothing_is_chosen_among_no_lights() {
         centre: crate::math::Vec3::ZERO,
         radius: 1.0,
     };
-    assert!(LightChoice::new(&[], &context).sample(0.5).is_none());
+    assert!(LightChoice::new(&[], &context).sample(|| 0.5).is_none());
 }

@@ -11,11 +11,12 @@ fn frames(shape: &Shape, relief: &Relief, width: f32) -> Vec<(SurfacePoint, Fram
         let u = Vec2::new(0.1 + 0.025 * i as f32, (0.05 + 0.618 * i as f32).fract());
         shape.sample(0, u).surface
     });
-    let with_frame = |surface: SurfacePoint| {
+    let with_frame = |drawn: SurfacePoint| {
         let hit = match shape {
-            Shape::Mesh(mesh) => barycentric(mesh, surface.point),
-            Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => surface.uv,
+            Shape::Mesh(mesh) => barycentric(mesh, drawn.point),
+            Shape::Sphere(_) | Shape::Disk(_) | Shape::Cylinder(_) => drawn.uv,
         };
+        let surface = shape.surface_point(0, hit, drawn.point);
         let differentials = shape.differentials(None, (0, hit), &surface);
         let at = TexturePoint::new(&surface).seen(width, &differentials);
         (surface, relief.frame(&surface, &differentials, &at))

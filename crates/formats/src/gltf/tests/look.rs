@@ -323,7 +323,7 @@ fn with_camera(camera: &Value) -> Draft {
 /// The raster position of the direction towards `point`, as part of the film.
 fn seen(loaded: &Loaded, point: Vec3) -> Vec2 {
     let camera = loaded.scene.camera();
-    let eye = camera.sample_lens(Vec2::ZERO).point;
+    let eye = camera.sample_lens(|| Vec2::ZERO).point;
     let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
     camera.raster(eye, (point - eye).normalize()).unwrap() / Vec2::new(width, height)
 }

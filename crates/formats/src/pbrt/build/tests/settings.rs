@@ -49,7 +49,7 @@ fn the_camera_looks_along_z_and_fov_spans_the_shorter_side() {
     let toward = |x: f32, y: f32| {
         scene
             .camera()
-            .sample_ray(Vec2::new(x, y), Vec2::splat(0.5))
+            .sample_ray(Vec2::new(x, y), || Vec2::splat(0.5))
             .direction
     };
     let near = |direction: Vec3, expected: Vec3| direction.distance(expected.normalize()) < 1e-5;

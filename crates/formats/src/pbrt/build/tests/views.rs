@@ -16,7 +16,7 @@ fn rays(text: &str) -> [(Vec3, Vec3); 2] {
     let film = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20";
     let camera = camera(&format!("{text} {film}"));
     [[20.0, 10.0], [0.0, 0.0]].map(|raster| {
-        let ray = camera.sample_ray(raster.into(), [0.5, 0.5].into());
+        let ray = camera.sample_ray(raster.into(), || [0.5, 0.5].into());
         (ray.origin, ray.direction)
     })
 }
@@ -37,7 +37,7 @@ fn a_lens_of_parallel_rays_is_sharp_at_its_focal_distance() {
          Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20",
     );
     for u in [[0.1, 0.2], [0.7, 0.4], [0.5, 0.9]] {
-        let ray = camera.sample_ray([0.0, 0.0].into(), u.into());
+        let ray = camera.sample_ray([0.0, 0.0].into(), || u.into());
         let t = 5.0 / ray.direction.z;
         let met = ray.origin + ray.direction * t;
         assert!((met - Vec3::new(-2.0, 1.0, 5.0)).length() < 1e-5, "{met}");

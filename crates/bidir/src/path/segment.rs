@@ -1,0 +1,139 @@
+//! Two vertices as they see each other: G = |cosθ cosθ'| / d², and what turns a density of directions
+//! at one of them into that of the other, p(x') = p_ω |cosθ'| / d² [Veach97, §8.2.2.2].
+//!
+//! Cosines are geometric. Towards an end at infinity there is no distance, and no cosine there.
+
+use crate::math::Vec3;
+use crate::scene::SegmentEnd;
+
+/// The line between two ends, the first of which is called a and the second b; at most one is at
+/// infinity. All numbers are zero where both are the same point.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    /// The unit direction from a to b.
+    pub w: Vec3,
+    /// G. Visibility is no part of it. Unit: 1/m²; a cosine where an end is at infinity.
+    pub geometry_term: f32,
+    /// What a density at a of the direction `w` is multiplied by to be one of b.
+    pub to_b: f32,
+    /// What a density at b of the direction -`w` is multiplied by to be one of a.
+    pub to_a: f32,
+}
+
+impl Segment {
+    /// The segment between two ends.
+    #[inline]
+    pub fn between(a: &SegmentEnd, b: &SegmentEnd) -> Self {
+        if b.is_infinite {
+            return Self::along(a, b, b.point);
+        }
+        if a.is_infinite {
+            return Self::along(a, b, -a.point);
+        }
+        let across = b.point - a.point;
+        let inverse2 = inverse(across.length_squared());
+        Self::with(a, b, across * inverse2.sqrt(), inverse2)
+    }
+
+    /// The same where the unit direction `w` from a to b is known.
+    #[inline]
+    pub fn along(a: &SegmentEnd, b: &SegmentEnd, w: Vec3) -> Self {
+        let inverse2 = if a.is_infinite || b.is_infinite {
+            1.0
+        } else {
+            inverse(a.point.distance_squared(b.point))
+        };
+        Self::with(a, b, w, inverse2)
+    }
+
+    /// With one over the square of the distance, or 1 where there is none.
+    #[inline]
+    fn with(a: &SegmentEnd, b: &SegmentEnd, w: Vec3, inverse2: f32) -> Self {
+        let [cos_a, cos_b] = [a, b].map(|end| end.abs_cos(w));
+        Self {
+            w,
+            geometry_term: cos_a * cos_b * inverse2,
+            to_b: if b.is_infinite { 1.0 } else { cos_b * inverse2 },
+            to_a: if a.is_infinite { 1.0 } else { cos_a * inverse2 },
+        }
+    }
+}
+
+/// 1 / `x`; 0 where that is no number.
+#[inline]
+fn inverse(x: f32) -> f32 {
+    let inverse = 1.0 / x;
+    if inverse < f32::INFINITY {
+        inverse
+    } else {
+        0.0
+    }
+}
+
+impl SegmentEnd {
+    /// |cosθ| between the normal and `w`; 1 where there is no surface.
+    #[inline]
+    fn abs_cos(&self, w: Vec3) -> f32 {
+        if self.n_g == Vec3::ZERO {
+            1.0
+        } else {
+            self.n_g.dot(w).abs()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn end(point: Vec3, n_g: Vec3, is_infinite: bool) -> SegmentEnd {
+        SegmentEnd {
+            point,
+            n_g,
+            error: 0.0,
+            is_infinite,
+        }
+    }
+
+    #[track_caller]
+    fn check(a: &SegmentEnd, b: &SegmentEnd, w: Vec3, expected: [f32; 3]) {
+        for segment in [Segment::between(a, b), Segment::along(a, b, w)] {
+            assert!((segment.w - w).length() < 1e-6, "{segment:?}");
+            let found = [segment.geometry_term, segment.to_b, segment.to_a];
+            for (a, b) in found.into_iter().zip(expected) {
+                assert!(
+                    (a - b).abs() <= 1e-6 * b,
+                    "{found:?} instead of {expected:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn cosines_and_distance_are_where_the_ends_are() {
+        // 2 m apart; the normals are at 60° and 0° to the segment.
+        let slanted = end(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0), false);
+        let facing = end(Vec3::X * 2.0, -Vec3::X, false);
+        check(&slanted, &facing, Vec3::X, [0.125, 0.25, 0.125]);
+        check(&facing, &slanted, -Vec3::X, [0.125, 0.125, 0.25]);
+        let lens = end(Vec3::X * 2.0, Vec3::ZERO, false);
+        check(&slanted, &lens, Vec3::X, [0.125, 0.25, 0.125]);
+    }
+
+    #[test]
+    fn at_infinity_there_is_one_cosine() {
+        let slanted = end(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0), false);
+        let sky = end(Vec3::X, Vec3::ZERO, true);
+        check(&slanted, &sky, Vec3::X, [0.5, 1.0, 0.5]);
+        check(&sky, &slanted, -Vec3::X, [0.5, 0.5, 1.0]);
+    }
+
+    #[test]
+    fn a_point_does_not_see_itself() {
+        let here = end(Vec3::ONE, Vec3::X, false);
+        let segment = Segment::between(&here, &here);
+        assert_eq!(segment.w, Vec3::ZERO);
+        let numbers = [segment.geometry_term, segment.to_b, segment.to_a];
+        assert!(numbers.iter().all(|&x| x == 0.0));
+    }
+}
