@@ -16,9 +16,8 @@ def verify(bench, seconds, replicates):
     """Renders replicates with every renderer, and compares their mean with the reference.
 
     Its own mean has to be within 0.3 %, give or take its noise. Blocks of 16 pixels have to differ
-    by noise alone, or else by less than 1 % of the relMSE of one replicate: pixel filters that
-    are tables move the edge of a lamp by a hundredth of a pixel, which is found, but changes no
-    comparison. Prints a line for each. Returns the number of failures."""
+    by noise alone, or else by less than 1 % of the relMSE of one replicate: in Cycles the edge of
+    a lamp lies a hundredth of a pixel elsewhere, which is found, but changes no comparison. Prints a line for each. Returns the number of failures."""
     failures = 0
     print("| scene | renderer | mean / reference | p of blocks | systematic part of its error | |")
     print("|---|---|---:|---:|---:|---|")
