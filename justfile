@@ -50,6 +50,16 @@ scenes:
 bench-film:
     cargo bench -p bidir-formats --bench film
 
+# The same work in Mitsuba and LuxCore: installs them beside the build (1.2 GB) where they are absent.
+bench-peers *FLAGS:
+    cargo build --release
+    python3 tools/peers bench {{FLAGS}}
+
+# Whether our image and those of the other renderers are the same.
+verify-peers *FLAGS:
+    cargo build --release
+    python3 tools/peers verify {{FLAGS}}
+
 # Puts faults into a copy of the sources: each must turn some test red.
 mutants *FLAGS:
     python3 tools/mutants {{FLAGS}}

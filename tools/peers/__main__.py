@@ -1,0 +1,116 @@
+"""The same work in other renderers: is bidir faster or slower to the same error?
+
+    python3 tools/peers setup [--with-cycles]   installs the peers into an environment of their own
+    python3 tools/peers bench                   error in equal CPU time, as tables in Markdown
+    python3 tools/peers verify                  do all renderers converge to the same image?
+    python3 tools/peers scenes                  writes both scenes, as PLY and pbrt-v4
+    python3 tools/peers reference               renders the references of both scenes anew
+    python3 tools/peers check                   that this tool works: needs bidir alone
+
+`bench` and `verify` set up what is missing; a peer that cannot be had is left out, and the reason
+printed. The exit code is 0 where everything ran, 1 where a renderer failed, its image is not the
+reference's or no peer could run, and 2 where the command line is wrong.
+"""
+
+import argparse
+import os
+import sys
+
+sys.dont_write_bytecode = True
+
+import bench as benchmark
+import check
+import environment
+import neutral
+import reference
+import renderers
+import verify
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+TARGET = os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target"))
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="tools/peers", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=["setup", "bench", "verify", "scenes", "reference",
+                                            "check"])
+    add = parser.add_argument
+    add("--folder", default=os.path.join(TARGET, "peers"),
+        help="where environment, scenes and images are [%(default)s]")
+    add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
+        help="the program that is measured [%(default)s]")
+    add("--with-cycles", action="store_true", help="set up Cycles, too: 0.4 GB more")
+    add("--scenes", default="AB", choices=["A", "B", "AB"], help="[AB]")
+    add("--only", default="", metavar="TEXT", help="renderers whose names contain this")
+    add("--ours", default=[], action="append", metavar="FLAGS",
+        help="a row more: 'path --path-roulette albedo:5'")
+    add("--threads", type=int, default=os.cpu_count(), help="of each renderer [%(default)s]")
+    add("--seconds", type=float, metavar="CPU",
+        help="CPU seconds of a render [bench 8, verify 8, reference 600]")
+    add("--repetitions", type=int, help="renders of each [bench 3, verify 8]")
+    return parser.parse_args()
+
+
+def prepare(options):
+    """Environment, scenes and the renderers that can run here."""
+    place = environment.Environment(os.path.abspath(options.folder))
+    packages = environment.PEERS | (environment.CYCLES if options.with_cycles else {})
+    if any(not place.has(name) for name in environment.TOOLS | packages):
+        environment.set_up(place, packages)
+    neutral.write(place.path("scenes"))
+    able = []
+    for renderer in renderers.all_renderers(options.bidir, place, options.ours):
+        if options.only not in renderer.name:
+            continue
+        problem = renderer.problem(place)
+        if problem:
+            print("skipped: %s: %s" % (renderer.name, problem), file=sys.stderr)
+        else:
+            able.append(renderer)
+    return benchmark.Bench(place, options.bidir, able, options.scenes, options.threads)
+
+
+def run_bench(options):
+    bench = prepare(options)
+    records, failed = benchmark.measure(bench, options.seconds or 8.0, options.repetitions or 3)
+    benchmark.save(bench.environment.path("bench.json"), records)
+    print(benchmark.machine(bench.environment))
+    for scene in bench.scenes:
+        print("\n%s\n\n%s" % (benchmark.table(records, scene),
+                              benchmark.verdict(records, scene)))
+    for name in benchmark.differing(records):
+        failed.add(name)
+        print("peers: the image is not that of the reference:", name, file=sys.stderr)
+    alone = all(renderer.ours for renderer in bench.renderers)
+    return 1 if failed or alone else 0
+
+
+def run_verify(options):
+    bench = prepare(options)
+    return min(1, verify.verify(bench, options.seconds or 8.0, options.repetitions or 8))
+
+
+def main():
+    options = arguments()
+    if options.command not in ("setup", "scenes") and not os.path.exists(options.bidir):
+        print("peers: there is no %s: run `cargo build --release`" % options.bidir,
+              file=sys.stderr)
+        return 2
+    if options.command == "bench":
+        return run_bench(options)
+    if options.command == "verify":
+        return run_verify(options)
+    if options.command == "check":
+        return check.check(options.bidir)
+    if options.command == "reference":
+        return reference.render(prepare(options), options.seconds or 600.0)
+    if options.command == "scenes":
+        neutral.write(os.path.join(options.folder, "scenes"))
+        return 0
+    prepare(options)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

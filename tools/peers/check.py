@@ -1,0 +1,42 @@
+"""Keeps this tool alive without any peer: both scenes, a render of each, and its error."""
+
+import os
+import sys
+import tempfile
+
+import neutral
+import score
+from bench import Record
+from renderers import Job, Ours
+
+PASSES = 8
+RATIO = 0.005  # more than four standard errors of so many passes
+
+
+def check(program):
+    """Returns an exit code."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    for name in sorted(os.listdir(here)):
+        if name.endswith(".py"):
+            with open(os.path.join(here, name), encoding="utf-8") as file:
+                compile(file.read(), name, "exec")
+    good = True
+    with tempfile.TemporaryDirectory() as folder:
+        neutral.write(folder)
+        for scene in "AB":
+            good &= _check(program, folder, scene)
+    return 0 if good else 1
+
+
+def _check(program, folder, scene):
+    reference = score.Reference.load(scene)
+    image = os.path.join(folder, scene + ".exr")
+    run = Ours(program, "bdpt").passes(Job(folder, scene, 0.0, os.cpu_count(), 0, image), PASSES)
+    found = score.compare(program, [image], reference)
+    record = Record("bdpt", True, scene, run.samples, run.cpu, run.wall,
+                    score.relmse(found, reference), found["mean_ratio"])
+    good = abs(record.ratio - 1) <= RATIO and 0 < record.variance < 2
+    print("scene %s: %d samples per pixel, mean / reference %.4f, relMSE × CPU seconds %.3g%s" % (
+        scene, record.samples, record.ratio, record.merit, "" if good else ": WRONG"),
+        file=sys.stdout if good else sys.stderr)
+    return good

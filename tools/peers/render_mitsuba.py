@@ -1,0 +1,81 @@
+"""Renders a neutral scene with Mitsuba 3: render_mitsuba.py JOB, a `Job` as JSON with the keys
+`variant` and `integrator` besides. Runs in the peers' environment."""
+
+import json
+import sys
+import time
+
+import drjit
+import mitsuba
+import numpy as np
+
+import images
+import neutral
+
+# Samples per pixel of a pass: enough to keep vectors busy, few enough to stay in memory.
+MOST = 64
+
+
+def scene(job):
+    side, transform = neutral.SIDE, mitsuba.ScalarTransform4f()
+    film = {"type": "hdrfilm", "width": side, "height": side, "rfilter": {"type": "box"},
+            "pixel_format": "rgb", "component_format": "float32"}
+    sensor = {"type": "perspective", "fov": neutral.FIELD_OF_VIEW, "fov_axis": "x",
+              "near_clip": 0.01, "far_clip": 100.0, "film": film,
+              "sampler": {"type": "independent", "sample_count": 4},
+              "to_world": transform.look_at(neutral.EYE, neutral.TARGET, neutral.UP)}
+    integrator = {"type": job["integrator"], "max_depth": neutral.MAX_DEPTH}
+    shapes = {quad.name: shape(job, quad) for quad in neutral.quads(job["scene"])}
+    return mitsuba.load_dict(
+        {"type": "scene", "sensor": sensor, "integrator": integrator, **shapes})
+
+
+def shape(job, quad):
+    def rgb(value):
+        return {"type": "rgb", "value": [float(v) for v in value]}
+
+    path = neutral.mesh_path(job["scenes"], job["scene"], quad)
+    matte = {"type": "diffuse", "reflectance": rgb(quad.albedo)}
+    found = {"type": "ply", "filename": path, "face_normals": True,
+             "bsdf": {"type": "twosided", "matte": matte}}
+    if quad.radiance:
+        found["emitter"] = {"type": "area", "radiance": rgb(quad.radiance)}
+    return found
+
+
+def render(world, seconds, seed):
+    """Passes until the CPU seconds are spent, the last ones as large as what is left allows:
+    (mean image, samples per pixel, CPU seconds, seconds)."""
+    def image(samples, number):
+        picture = mitsuba.render(world, spp=samples, seed=seed * 100003 + number)
+        return np.array(picture, np.float64)
+
+    # Kernels are compiled outside of the clock, and what a pass costs is learnt there.
+    image(4, 99998)
+    start = time.process_time()
+    image(4, 99999)
+    cost = (time.process_time() - start) / 4
+    total, done, number = 0.0, 0, 0
+    wall, start = time.monotonic(), time.process_time()
+    while True:
+        spent = time.process_time() - start
+        cost = spent / done if done else cost
+        samples = min(int((seconds - spent) / cost), MOST)
+        if done and samples < 1:
+            return total / done, done, spent, time.monotonic() - wall
+        samples = max(samples, 1)
+        total = total + samples * image(samples, number)
+        done, number = done + samples, number + 1
+
+
+def main():
+    job = json.loads(sys.argv[1])
+    mitsuba.set_variant(job["variant"])
+    drjit.set_thread_count(job["threads"])
+    picture, samples, cpu, wall = render(scene(job), job["seconds"], job["seed"])
+    images.write(job["image"], picture.astype(np.float32))
+    images.report(samples, cpu, wall)
+
+
+if __name__ == "__main__":
+    main()

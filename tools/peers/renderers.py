@@ -1,0 +1,143 @@
+"""The renderers that take part, each with the settings under which its image is the reference.
+
+A job is the same work for all: a scene, CPU seconds, threads, a seed and the image to write.
+"""
+
+import json
+import os
+import re
+import subprocess
+import time
+from typing import NamedTuple
+
+import neutral
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+class Job(NamedTuple):
+    scenes: str      # the folder that `neutral.write` made
+    scene: str       # "A" or "B"
+    seconds: float   # CPU seconds, of all threads together
+    threads: int
+    seed: int
+    image: str       # the EXR file to write
+
+
+class Run(NamedTuple):
+    image: str
+    samples: float   # per pixel
+    cpu: float       # seconds, of all threads together
+    wall: float      # seconds
+
+
+class Failed(Exception):
+    """A renderer that ended with an error; the text is the end of what it said."""
+
+
+class Ours:
+    """`bidir render` with some flags. All of the process counts: loading, tracing, writing."""
+
+    ours = True
+
+    def __init__(self, program, flags):
+        self.name = "bidir " + flags
+        self.program = program
+        self.flags = flags.split()
+        self.cost = {}  # scene -> CPU seconds of a pass, as far as is known
+
+    def problem(self, _environment):
+        """It can run everywhere."""
+        return None
+
+    def render(self, job):
+        """As many passes as the CPU seconds allow: by the cost of the run before, at first a
+        short one that does not count."""
+        if job.scene not in self.cost:
+            self._learn(job)
+        passes = max(1, round(job.seconds / self.cost[job.scene]))
+        run = self.passes(job, passes)
+        self.cost[job.scene] = run.cpu / passes
+        return run
+
+    def _learn(self, job):
+        passes, cpu = 1, 0.0
+        while cpu < 0.1 * job.seconds:
+            cpu = self.passes(job, passes).cpu
+            self.cost[job.scene] = cpu / passes
+            passes *= 4
+
+    def passes(self, job, passes):
+        """A render of so many samples per pixel, whatever they cost."""
+        scene = os.path.join(job.scenes, job.scene + ".pbrt")
+        command = [self.program, "render", scene, "-q", "-o", job.image, "--spp", str(passes),
+                   "--seed", str(job.seed), "--threads", str(job.threads), "--integrator"]
+        start = time.monotonic()
+        child = subprocess.Popen(command + self.flags, stdout=subprocess.PIPE,
+                                 stderr=subprocess.STDOUT, text=True)
+        said = child.stdout.read()
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+        if child.returncode != 0:
+            raise Failed(said[-400:])
+        return Run(job.image, passes, usage.ru_utime + usage.ru_stime, time.monotonic() - start)
+
+
+class Peer:
+    """Another renderer, driven by a script in its environment. Importing it, compiling kernels
+    and reading the scene do not count."""
+
+    ours = False
+
+    def __init__(self, name, package, environment, **settings):
+        self.name = name
+        self.package = package
+        self.environment = environment
+        self.settings = settings
+
+    def problem(self, environment):
+        """Why it cannot run. None: it can."""
+        if not environment.has(self.package):
+            return "%s is not installed" % self.package
+        if self.settings.get("variant", "").startswith("llvm") and environment.llvm() is None:
+            return "there is no LLVM that Mitsuba can use"
+        return None
+
+    def render(self, job):
+        script = os.path.join(HERE, "render_%s.py" % self.package)
+        work = dict(job._asdict(), **self.settings)
+        variables = self.environment.variables()
+        if self.package == "pyluxcore":
+            variables = self.environment.luxcore_variables()
+        done = subprocess.run([self.environment.python, script, json.dumps(work)], env=variables,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              errors="replace", check=False)
+        # Some write lines of their own beside it, and some do not end cleanly when all is done.
+        found = re.findall(r'\{"samples".*?\}', done.stdout)
+        if not found:
+            raise Failed(done.stdout[-400:])
+        return Run(image=job.image, **json.loads(found[-1]))
+
+
+def all_renderers(program, environment, variants):
+    """Our integrators as they are, then with other flags, then the peers."""
+    def mitsuba(name, variant, integrator):
+        return Peer(name, "mitsuba", environment, variant=variant, integrator=integrator)
+
+    def luxcore(name, engine):
+        return Peer(name, "pyluxcore", environment, engine=engine)
+
+    return [
+        *(Ours(program, flags) for flags in ["path", "light", "bdpt"] + variants),
+        mitsuba("Mitsuba path, LLVM", "llvm_ad_rgb", "path"),
+        mitsuba("Mitsuba path, scalar", "scalar_rgb", "path"),
+        mitsuba("Mitsuba ptracer, LLVM", "llvm_ad_rgb", "ptracer"),
+        mitsuba("Mitsuba ptracer, scalar", "scalar_rgb", "ptracer"),
+        luxcore("LuxCore PATHCPU", "PATHCPU"),
+        luxcore("LuxCore BIDIRCPU", "BIDIRCPU"),
+        Peer("Cycles path", "bpy", environment),
+    ]
+
+
+def pixels():
+    return neutral.SIDE * neutral.SIDE
