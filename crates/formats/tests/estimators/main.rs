@@ -71,7 +71,7 @@ fn mirrored_transforms_and_two_sided_lights() {
 
 #[test]
 fn point_spot_distant_and_infinite_lights() {
-    Case::new(&open("lights.pbrt"), 6912).check_all();
+    Case::new(&open("lights.pbrt"), 9216).check_all();
 }
 
 #[test]
