@@ -12,11 +12,9 @@ use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::node::Node;
 use crate::primitive::Primitive;
+use crate::query::{AnyHit, ClosestHit, EachHit, Query};
 use crate::ray::{Hit, Ray};
-use crate::simd::Scalar4;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Sse4;
-use crate::traverse::{AnyHit, ClosestHit, EachHit, Query, traverse};
+use crate::traverse::Ask;
 use crate::triangle::TriangleBlock;
 
 /// How to build a [`Bvh`].
@@ -160,9 +158,7 @@ impl Bvh {
         instances: &[Instance],
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        if !options.isa.is_supported() {
-            return Err(BuildError::UnsupportedIsa { isa: options.isa });
-        }
+        let isa = supported(options.isa)?;
         let count = primitives.len() + instances.len();
         if count > MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives {
@@ -184,8 +180,14 @@ impl Bvh {
             primitive_count: primitives.len(),
             objects,
             placements,
-            isa: options.isa,
+            isa,
         })
+    }
+
+    /// The same tree for other instructions, those of its objects left alone: they do not matter.
+    pub fn with_isa(self, isa: Isa) -> Result<Self, BuildError> {
+        let isa = supported(isa)?;
+        Ok(Self { isa, ..self })
     }
 
     /// The hit of smallest `t` among those for which `accept` holds.
@@ -223,11 +225,11 @@ impl Bvh {
 
     #[inline]
     fn ask(&self, ray: &Ray, query: &mut impl Query) {
-        match self.isa {
-            #[cfg(target_arch = "x86_64")]
-            Isa::Sse2 => traverse::<Sse4, _>(self, ray, query),
-            _ => traverse::<Scalar4, _>(self, ray, query),
-        }
+        self.isa.call(Ask {
+            bvh: self,
+            ray,
+            query,
+        });
     }
 
     /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
@@ -277,6 +279,11 @@ impl Bvh {
             + size_of_val(self.tree.blocks.as_slice())
             + size_of_val(self.tree.quadrics.as_slice())
     }
+}
+
+fn supported(isa: Isa) -> Result<Isa, BuildError> {
+    let supported = isa.is_supported().then_some(isa);
+    supported.ok_or(BuildError::UnsupportedIsa { isa })
 }
 
 /// Places every instance; the bounds of those of empty objects are [`Aabb::EMPTY`].

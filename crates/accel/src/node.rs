@@ -6,7 +6,7 @@
 //! by `1 + 8ε`, which rounds once more, makes up for both [Ize13].
 //! Where the direction's component is zero, its reciprocal is infinite: the slab is then either
 //! missed, or entered at `-∞` and left at `∞`, or the ray lies in one of its planes, and the NaN of
-//! `0·∞` stands for "no limit" because of how [`F32x4::min`] and [`F32x4::max`] treat it.
+//! `0·∞` stands for "no limit" because of how [`F32x8::min`] and [`F32x8::max`] treat it.
 //!
 //! [Ize13]: https://jcgt.org/published/0002/02/02/
 
@@ -16,7 +16,7 @@ use glam::Vec3;
 
 use crate::aabb::Aabb;
 use crate::ray::Ray;
-use crate::simd::F32x4;
+use crate::simd::F32x8;
 
 /// Children of a [`Node`].
 pub(crate) const WIDTH: usize = 8;
@@ -75,38 +75,20 @@ impl Node {
 
     /// Which boxes the ray meets at distances up to `t_max` (already [widened](widen)).
     ///
-    /// A mask with the bit of each box, and the distances at which they are entered.
+    /// A mask with the bit of each box, and per box a word: the bits of the distance at which it is
+    /// entered, above those of the child.
     #[inline(always)]
-    pub(crate) fn intersect<V: F32x4>(&self, ray: &BoxRay<V>, t_max: f32) -> (u32, [f32; WIDTH]) {
-        let (low, low_entries) = self.intersect_half::<V, 0>(ray, t_max);
-        let (high, high_entries) = self.intersect_half::<V, 4>(ray, t_max);
-        let mut entries = [0.0; WIDTH];
-        entries[..4].copy_from_slice(&low_entries);
-        entries[4..].copy_from_slice(&high_entries);
-        (low | high << 4, entries)
-    }
-
-    #[inline(always)]
-    fn intersect_half<V: F32x4, const FIRST: usize>(
-        &self,
-        ray: &BoxRay<V>,
-        t_max: f32,
-    ) -> (u32, [f32; 4]) {
+    pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxRay<V>, t_max: f32) -> (u32, [u64; WIDTH]) {
         let mut entry = ray.t_min;
         let mut exit = V::splat(t_max);
         for axis in 0..3 {
             let (near, far) = (ray.near[axis], ray.near[axis] ^ 1);
-            let distance = |plane: usize| {
-                let (lanes, _) = self.planes[plane][FIRST..]
-                    .split_first_chunk()
-                    .expect("4 lanes");
-                V::load(lanes) - ray.origin[axis]
-            };
+            let distance = |plane: usize| V::load(&self.planes[plane]) - ray.origin[axis];
             // The distance comes first: if it is NaN, the limit so far stays.
             entry = (distance(near) * ray.inverse[axis]).max(entry);
             exit = (distance(far) * ray.inverse_widened[axis]).min(exit);
         }
-        (entry.le(exit), entry.to_array())
+        (entry.le(exit), entry.over(Child::all_bits(&self.children)))
     }
 }
 
@@ -120,7 +102,7 @@ pub(crate) struct BoxRay<V> {
     near: [usize; 3],
 }
 
-impl<V: F32x4> BoxRay<V> {
+impl<V: F32x8> BoxRay<V> {
     pub(crate) fn new(ray: &Ray) -> Self {
         let inverse = ray.direction.recip().to_array();
         Self {
@@ -191,6 +173,18 @@ impl Child {
         Self(kind << Self::KIND_SHIFT | length << Self::LENGTH_SHIFT | elements.start as u32)
     }
 
+    /// A child from the word that holds it.
+    #[inline(always)]
+    pub(crate) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    #[inline(always)]
+    fn all_bits(children: &[Self; WIDTH]) -> &[u32; WIDTH] {
+        // SAFETY: a child is a `u32` without any addition (`repr(transparent)`).
+        unsafe { &*std::ptr::from_ref(children).cast() }
+    }
+
     #[inline(always)]
     pub(crate) fn target(self) -> Target {
         let kind = self.0 >> Self::KIND_SHIFT;
@@ -211,7 +205,7 @@ impl Child {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::Scalar4;
+    use crate::simd::{Pair, Scalar4};
 
     #[test]
     fn child_round_trips() {
@@ -234,7 +228,7 @@ mod tests {
         let mut node = Node::EMPTY;
         node.set(5, &bounds, Child::node(0));
         let ray = Ray::new(Vec3::from_array(origin), Vec3::from_array(direction));
-        let (mask, _) = node.intersect(&BoxRay::<Scalar4>::new(&ray), f32::INFINITY);
+        let (mask, _) = node.intersect(&BoxRay::<Pair<Scalar4>>::new(&ray), f32::INFINITY);
         assert_eq!(mask, expected << 5);
     }
 

@@ -4,7 +4,8 @@ use bidir_accel::{Aabb, Primitive, Ray, accept_all};
 use glam::Vec3;
 
 use crate::oracle::{Single, hit_bits, plane_passage};
-use crate::scenes::{Mesh, Random, build, displace, mixed, triangle_soup};
+use crate::scenes::{Mesh, Random, displace, mixed, triangle_soup};
+use crate::trees::build;
 
 #[track_caller]
 fn check_equals_brute_force(primitives: &[Primitive], random: &mut Random, rays: usize) {
