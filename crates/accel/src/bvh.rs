@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
 use crate::builder::{MAX_PRIMITIVES, Tree};
@@ -12,7 +13,7 @@ use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::node::Node;
 use crate::primitive::Primitive;
-use crate::query::{AnyHit, ClosestHit, EachHit, Query};
+use crate::query::{AnyHit, Anything, ClosestHit, EachHit, Query};
 use crate::ray::{Hit, Ray};
 use crate::traverse::Ask;
 use crate::triangle::TriangleBlock;
@@ -166,7 +167,7 @@ impl Bvh {
                 limit: MAX_PRIMITIVES,
             });
         }
-        let all_bounds: Vec<Aabb> = primitives.iter().map(Primitive::bounds).collect();
+        let all_bounds: Vec<Aabb> = primitives.par_iter().map(Primitive::bounds).collect();
         if let Some(primitive) = all_bounds.iter().position(|bounds| !bounds.is_valid()) {
             return Err(BuildError::NotFinite { primitive });
         }
@@ -206,6 +207,14 @@ impl Bvh {
     #[inline]
     pub fn occluded<F: Fn(&Hit) -> bool>(&self, ray: &Ray, accept: F) -> bool {
         let mut query = AnyHit::new(accept);
+        self.ask(ray, &mut query);
+        query.found
+    }
+
+    /// Whether there is any hit: the same as `occluded(ray, accept_all)`, but faster.
+    #[inline]
+    pub fn is_blocked(&self, ray: &Ray) -> bool {
+        let mut query = Anything { found: false };
         self.ask(ray, &mut query);
         query.found
     }

@@ -106,6 +106,7 @@ impl Placement {
     }
 
     /// Where the ray, already cleaned, enters the ball: `t₀`.
+    #[inline(always)]
     fn entry(&self, ray: &Ray) -> f64 {
         let direction = ray.direction.as_dvec3();
         let to_center = self.center - ray.origin.as_dvec3();
@@ -117,6 +118,7 @@ impl Placement {
 
     /// The ray in the object's space, with how it is seen from the world. `instance` is the number
     /// that hits get.
+    #[inline(always)]
     pub(crate) fn view(&self, ray: &Ray, instance: u32) -> (Ray, Object) {
         let start = self.entry(ray);
         let origin = ray.origin.as_dvec3() + start * ray.direction.as_dvec3();
@@ -159,6 +161,9 @@ fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -
 
 /// What hits in the space of a tree are in the world.
 pub(crate) trait Space {
+    /// Whether hits are within the world's limits if they are within those of the local ray.
+    const SAME_LIMITS: bool;
+
     /// The world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
 
@@ -170,6 +175,8 @@ pub(crate) trait Space {
 pub(crate) struct World;
 
 impl Space for World {
+    const SAME_LIMITS: bool = true;
+
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {
         Some(local)
@@ -199,6 +206,8 @@ impl Object {
 }
 
 impl Space for Object {
+    const SAME_LIMITS: bool = false;
+
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {
         let t = (self.start + f64::from(local.t)) as f32;

@@ -58,6 +58,7 @@ mod disk;
 mod exact;
 mod instance;
 mod isa;
+mod memory;
 mod node;
 mod primitive;
 mod quadric;

@@ -9,6 +9,9 @@ pub(crate) trait Query {
     /// Whether children are visited from near to far.
     const NEAR_FIRST: bool;
 
+    /// Whether it asks nothing of a hit but that there is one.
+    const ANYTHING: bool = false;
+
     /// Takes a hit at most as far as the ray's `t_max`, which it may shorten.
     fn offer(&mut self, hit: Hit, t_max: &mut f32) -> ControlFlow<()>;
 }
@@ -64,6 +67,22 @@ impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
         } else {
             ControlFlow::Continue(())
         }
+    }
+}
+
+/// Finds whether there is any hit.
+pub(crate) struct Anything {
+    pub(crate) found: bool,
+}
+
+impl Query for Anything {
+    const NEAR_FIRST: bool = false;
+    const ANYTHING: bool = true;
+
+    #[inline(always)]
+    fn offer(&mut self, _: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.found = true;
+        ControlFlow::Break(())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-use crate::builder::MAX_DEPTH;
+use crate::builder::{MAX_DEPTH, Tree};
 use crate::node::{BoxRay, Child, Node, WIDTH};
 use crate::query::Query;
 use crate::simd::Simd;
@@ -32,7 +32,9 @@ impl Stack {
 
     #[inline(always)]
     fn push(&mut self, entry: u64) {
-        self.entries[self.len].write(entry);
+        debug_assert!(self.len < STACK_SIZE, "the tree is too deep");
+        // SAFETY: the builder makes no tree deeper than `MAX_DEPTH`, which `STACK_SIZE` suffices for.
+        unsafe { self.entries.get_unchecked_mut(self.len) }.write(entry);
         self.len += 1;
     }
 
@@ -40,25 +42,28 @@ impl Stack {
     fn get(&self, index: usize) -> u64 {
         debug_assert!(index < self.len, "{index} of {}", self.len);
         // SAFETY: all callers pass an index below `len`, and `push` wrote all entries below `len`.
-        unsafe { self.entries[index].assume_init() }
+        unsafe { self.entries.get_unchecked(index).assume_init() }
     }
 
-    /// Finds the children of `node` that the ray meets up to `t_max`; returns the one to visit next
-    /// and pushes the others.
+    /// Finds the children of `node` that the ray meets up to `limit`; returns the one to visit next and
+    /// pushes the others.
     #[inline(always)]
     pub(crate) fn open<S: Simd, Q: Query>(
         &mut self,
+        tree: &Tree,
         node: &Node,
         ray: &BoxRay<S::Eight>,
-        t_max: f32,
+        limit: f32,
     ) -> Option<Child> {
-        let (mask, entries) = node.intersect(ray, t_max);
+        let (mask, distances) = node.intersect(ray, limit);
         let mut slots = bits(mask);
-        let first = entries[slots.next()? % WIDTH];
+        let first = slots.next()?;
+        // Most nodes have one child that is met, or none.
         let Some(second) = slots.next() else {
-            return Some(child(first));
+            return Some(node.child(first));
         };
-        let second = entries[second % WIDTH];
+        let entries = node.entries(distances);
+        let (first, second) = (entries[first % WIDTH], entries[second % WIDTH]);
         if !Q::NEAR_FIRST {
             self.push(first);
             let mut last = second;
@@ -66,6 +71,7 @@ impl Stack {
                 self.push(last);
                 last = entries[slot % WIDTH];
             }
+            tree.prefetch(child(self.get(self.len - 1)));
             return Some(child(last));
         }
         let bottom = self.len;
@@ -77,6 +83,7 @@ impl Stack {
             last = last.min(entry);
             self.sink(bottom);
         }
+        tree.prefetch(child(self.get(self.len - 1)));
         Some(child(last))
     }
 
@@ -86,19 +93,27 @@ impl Stack {
         let last = self.get(self.len - 1);
         let mut place = self.len - 1;
         while place > bottom && self.get(place - 1) < last {
-            self.entries[place] = self.entries[place - 1];
+            self.put(place, self.get(place - 1));
             place -= 1;
         }
-        self.entries[place].write(last);
+        self.put(place, last);
     }
 
-    /// The last child that is entered at `t_max` or before; drops those after it.
     #[inline(always)]
-    pub(crate) fn pop<Q: Query>(&mut self, t_max: f32) -> Option<Child> {
-        let limit = u64::from(t_max.to_bits()) << 32 | u64::from(u32::MAX);
+    fn put(&mut self, index: usize, entry: u64) {
+        debug_assert!(index < self.len, "{index} of {}", self.len);
+        // SAFETY: as in `get`.
+        unsafe { self.entries.get_unchecked_mut(index) }.write(entry);
+    }
+
+    /// The last child that is entered at `limit` or before; drops those after it.
+    #[inline(always)]
+    pub(crate) fn pop<Q: Query>(&mut self, limit: f32) -> Option<Child> {
+        let limit = u64::from(limit.to_bits()) << 32 | u64::from(u32::MAX);
         while self.len > 0 {
             let entry = self.get(self.len - 1);
             self.len -= 1;
+            // Without an order no hit shortens the ray.
             if !Q::NEAR_FIRST || entry <= limit {
                 return Some(child(entry));
             }

@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use glam::Vec3;
+
 use crate::builder::Tree;
 use crate::bvh::Bvh;
 use crate::instance::{Space, World};
@@ -34,7 +36,7 @@ impl<Q: Query> Kernel for Ask<'_, Q> {
                 ray,
             };
             // What breaks off has nothing more to ask.
-            let _ = walk.run::<S, Q>(query, |index, ray, query| {
+            let _ = walk.run::<S, Q>(query, |_, index, ray, query| {
                 let visit = VisitInstance {
                     bvh,
                     index,
@@ -73,7 +75,7 @@ impl<Q: Query> Kernel for VisitInstance<'_, Q> {
             ray: local,
         };
         // Objects have no instances.
-        walk.run::<S, Q>(self.query, |_, ray, _| ControlFlow::Continue(ray.t_max))?;
+        walk.run::<S, Q>(self.query, |_, _, ray, _| ControlFlow::Continue(ray.t_max))?;
         ControlFlow::Continue(walk.space.t_max)
     }
 }
@@ -89,56 +91,62 @@ impl<P: Space> Walk<'_, P> {
     /// Visits the tree, which has a root; `instance` is called for the instances on the way, and tells
     /// the `t_max` after them.
     ///
-    /// Instances get a copy of the ray and a stack of their own: what no other function has the
-    /// address of stays in registers.
+    /// Rare leaves get a copy of the ray: what no other function has the address of stays in registers.
     #[inline(always)]
     fn run<S: Simd, Q: Query>(
         &mut self,
         query: &mut Q,
-        mut instance: impl FnMut(usize, Ray, &mut Q) -> ControlFlow<(), f32>,
+        mut instance: impl FnMut(&mut P, usize, Ray, &mut Q) -> ControlFlow<(), f32>,
     ) -> ControlFlow<()> {
         let Self { tree, space, ray } = self;
-        let box_ray = BoxRay::<S::Eight>::new(ray);
-        let triangle_ray = TriangleRay::<S::Four>::new(ray);
+        let (tree, mut ray) = (*tree, *ray);
+        let box_ray = BoxRay::<S::Eight>::new(&ray, tree.reach);
+        let triangle_ray = TriangleRay::<S::Four>::new(&ray);
+        let mut limit = widen(ray.t_max);
         let mut stack = Stack::new();
-        let mut next = Some(Child::node(0));
-        while let Some(child) = next {
-            match child.target() {
-                Target::Node(index) => {
-                    let limit = widen(ray.t_max);
-                    next = stack.open::<S, Q>(&tree.nodes[index], &box_ray, limit);
-                    if next.is_some() {
-                        continue;
-                    }
+        let mut child = Child::node(0);
+        loop {
+            if let Some(index) = child.as_node() {
+                if let Some(next) = stack.open::<S, Q>(tree, tree.node(index), &box_ray, limit) {
+                    child = next;
+                    continue;
                 }
-                Target::Triangles(blocks) => {
-                    for block in &tree.blocks[blocks] {
-                        space.visit_block(block, &triangle_ray, ray, query)?;
+            } else {
+                if let Some((first, count)) = child.as_triangles() {
+                    for block in tree.blocks(first, count) {
+                        space.visit_block(block, &triangle_ray, &mut ray, query)?;
                     }
+                } else {
+                    ray.t_max = match child.target() {
+                        Target::Quadrics(leaf) => {
+                            space.visit_quadrics(&tree.quadrics[leaf], ray, query)?
+                        }
+                        Target::Instance(index) => instance(space, index, ray, query)?,
+                        _ => ray.t_max,
+                    };
                 }
-                Target::Quadrics(quadrics) => {
-                    for quadric in &tree.quadrics[quadrics] {
-                        space.visit_quadric(quadric, ray, query)?;
-                    }
-                }
-                Target::Instance(index) => ray.t_max = instance(index, *ray, query)?,
-                Target::Nothing => {}
+                limit = widen(ray.t_max);
             }
-            next = stack.pop::<Q>(widen(ray.t_max));
+            match stack.pop::<Q>(limit) {
+                Some(next) => child = next,
+                None => return ControlFlow::Continue(()),
+            }
         }
-        ControlFlow::Continue(())
     }
 }
 
 /// The ray in the form that the kernels assume: finite, not empty, without negative or infinite
 /// `t`, and with zero for components whose reciprocal would overflow. None: it hits nothing.
+#[inline(always)]
 fn clean(ray: &Ray) -> Option<Ray> {
-    let normal = |x: f32| if x.is_normal() { x } else { 0.0 };
-    let direction = ray.direction.map(normal);
+    let normal = |x: f32| if x.abs() < f32::MIN_POSITIVE { 0.0 } else { x };
+    let [x, y, z] = ray.direction.to_array();
+    let direction = Vec3::new(normal(x), normal(y), normal(z));
     // Nor is there a negative zero: the stack compares distances as integers.
     let t_min = ray.t_min.max(0.0) + 0.0;
     let t_max = ray.t_max.min(f32::MAX);
-    let finite = ray.origin.is_finite() && ray.direction.is_finite();
+    // Infinities and NaN become NaN.
+    let finite = ray.origin * 0.0 + ray.direction * 0.0 == Vec3::ZERO;
     // Also false if a limit is NaN.
     let some = finite && t_min <= t_max && ray.t_min <= ray.t_max;
     some.then_some(Ray {
@@ -148,6 +156,15 @@ fn clean(ray: &Ray) -> Option<Ray> {
         t_max,
     })
 }
+
+/// Stands for a hit of which nothing is asked.
+const ANY_HIT: Hit = Hit {
+    t: 0.0,
+    instance: 0,
+    primitive: 0,
+    u: 0.0,
+    v: 0.0,
+};
 
 /// Leaves, in the space of a tree.
 trait Leaves: Space {
@@ -160,8 +177,15 @@ trait Leaves: Space {
         ray: &mut Ray,
         query: &mut Q,
     ) -> ControlFlow<()> {
-        for lane in bits(block.candidates(triangle_ray)) {
-            if let Some(passage) = block.pass(lane, triangle_ray)
+        let found = block.candidates(triangle_ray, ray);
+        if found.candidates == 0 {
+            return ControlFlow::Continue(());
+        }
+        if Q::ANYTHING && Self::SAME_LIMITS && found.certain & found.within != 0 {
+            return self.offer(ANY_HIT, ray, query);
+        }
+        for lane in bits(found.candidates) {
+            if let Some(passage) = block.pass(lane, triangle_ray, found.certain)
                 && passage.t >= ray.t_min
                 && passage.t <= ray.t_max
             {
@@ -178,29 +202,32 @@ trait Leaves: Space {
         ControlFlow::Continue(())
     }
 
-    /// Offers the hits of a quadric.
-    fn visit_quadric<Q: Query>(
+    /// Offers the hits of quadrics, and tells the `t_max` after them.
+    #[inline(never)]
+    fn visit_quadrics<Q: Query>(
         &mut self,
-        quadric: &Quadric,
-        ray: &mut Ray,
+        quadrics: &[Quadric],
+        mut ray: Ray,
         query: &mut Q,
-    ) -> ControlFlow<()> {
-        let mut flow = ControlFlow::Continue(());
-        let primitive = quadric.primitive;
-        let whole = *ray;
-        quadric.intersect(&whole, |t, [u, v]| {
-            if flow.is_continue() && t <= ray.t_max {
-                let hit = Hit {
-                    t,
-                    instance: 0,
-                    primitive,
-                    u: u as f32,
-                    v: v as f32,
-                };
-                flow = self.offer(hit, ray, query);
-            }
-        });
-        flow
+    ) -> ControlFlow<(), f32> {
+        for quadric in quadrics {
+            let mut flow = ControlFlow::Continue(());
+            let (primitive, whole) = (quadric.primitive, ray);
+            quadric.intersect(&whole, |t, [u, v]| {
+                if flow.is_continue() && t <= ray.t_max {
+                    let hit = Hit {
+                        t,
+                        instance: 0,
+                        primitive,
+                        u: u as f32,
+                        v: v as f32,
+                    };
+                    flow = self.offer(hit, &mut ray, query);
+                }
+            });
+            flow?;
+        }
+        ControlFlow::Continue(ray.t_max)
     }
 
     /// Offers a local hit as what it is in the world.

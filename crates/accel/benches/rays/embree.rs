@@ -1,6 +1,7 @@
 //! Embree 3 or 4, loaded when the bench runs: single rays, scenes with the flag `ROBUST`.
 
 use std::ffi::{CString, c_char, c_void};
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicIsize, Ordering};
 use std::time::Instant;
 
@@ -62,7 +63,8 @@ const VERSION_MAJOR: u32 = 1;
 
 /// A loaded library.
 pub(crate) struct Embree {
-    library: Library,
+    /// Never unloaded: threads of it may still run.
+    library: ManuallyDrop<Library>,
     version: [isize; 3],
 }
 
@@ -97,7 +99,7 @@ impl Embree {
 
     fn with_version(library: Library) -> Result<Self, String> {
         let mut embree = Self {
-            library,
+            library: ManuallyDrop::new(library),
             version: [0; 3],
         };
         let device = embree.device(Isa::Sse2, 1)?;

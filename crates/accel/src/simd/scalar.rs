@@ -109,22 +109,6 @@ impl F32x4 for Scalar4 {
 #[derive(Clone, Copy)]
 pub(crate) struct Pair<V>(V, V);
 
-impl<V: F32x4> Sub for Pair<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0, self.1 - other.1)
-    }
-}
-
-impl<V: F32x4> Mul for Pair<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self(self.0 * other.0, self.1 * other.1)
-    }
-}
-
 impl<V: F32x4> F32x8 for Pair<V> {
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -144,6 +128,12 @@ impl<V: F32x4> F32x8 for Pair<V> {
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self(self.0.max(other.0), self.1.max(other.1))
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, term: Self) -> Self {
+        let first = self.0.mul_sub(factor.0, term.0);
+        Self(first, self.1.mul_sub(factor.1, term.1))
     }
 
     #[inline(always)]

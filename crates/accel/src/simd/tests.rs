@@ -65,20 +65,28 @@ impl Kernel for Eight<'_> {
         let low: [u32; 8] = std::array::from_fn(|k| 100 + k as u32);
         let (p, q) = (Plain::load(lanes), Plain::splat(b));
         let (r, s) = (S::Eight::load(lanes), S::Eight::splat(b));
-        assert_eq!(p.le(q), r.le(s));
-        let pairs = [
-            (p - q, r - s),
-            (p * q, r * s),
-            (p.min(q), r.min(s)),
-            (p.max(q), r.max(s)),
-        ];
-        for (scalar, simd) in pairs {
-            for (a, b) in scalar.over(&low).into_iter().zip(simd.over(&low)) {
-                assert_eq!(a as u32, b as u32);
-                let upper = |word: u64| f32::from_bits((word >> 32) as u32);
-                assert!(is_same(upper(a), upper(b)), "{lanes:?} {b}");
-            }
+        let zero = (Plain::splat(0.0), S::Eight::splat(0.0));
+        check_words(p.over(&low), r.over(&low));
+        check_words(
+            p.mul_sub(q, zero.0).over(&low),
+            r.mul_sub(s, zero.1).over(&low),
+        );
+        // What comparisons are for.
+        let ordered = |x: f32| !x.is_nan() && x.to_bits() != (-0.0_f32).to_bits();
+        if lanes.iter().all(|&x| ordered(x)) && ordered(b) && b >= 0.0 {
+            check_words(p.min(q).over(&low), r.min(s).over(&low));
+            check_words(p.max(q).over(&low), r.max(s).over(&low));
+            assert_eq!((p.le(q), q.le(p)), (r.le(s), s.le(r)));
         }
+    }
+}
+
+#[track_caller]
+fn check_words(scalar: [u64; 8], simd: [u64; 8]) {
+    for (a, b) in scalar.into_iter().zip(simd) {
+        assert_eq!(a as u32, b as u32);
+        let upper = |word: u64| f32::from_bits((word >> 32) as u32);
+        assert!(is_same(upper(a), upper(b)), "{scalar:?} {simd:?}");
     }
 }
 

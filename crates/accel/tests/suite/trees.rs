@@ -39,11 +39,22 @@ impl Trees {
         expected
     }
 
-    /// Whether anything is in the way, as both questions must say.
+    /// Whether there is any hit, without a filter.
+    #[track_caller]
+    pub(crate) fn is_blocked(&self, ray: &Ray) -> bool {
+        let expected = self.0[0].is_blocked(ray);
+        for bvh in &self.0[1..] {
+            assert_eq!(bvh.is_blocked(ray), expected, "{}: {ray:?}", bvh.isa());
+        }
+        expected
+    }
+
+    /// Whether anything is in the way, as all questions must say.
     #[track_caller]
     pub(crate) fn is_hit(&self, ray: &Ray) -> bool {
         let expected = self.closest(ray, accept_all).is_some();
         assert_eq!(self.occluded(ray, accept_all), expected, "{ray:?}");
+        assert_eq!(self.is_blocked(ray), expected, "{ray:?}");
         expected
     }
 }
