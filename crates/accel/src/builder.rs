@@ -11,8 +11,9 @@
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
+use crate::child::{Child, Target};
 use crate::memory::{self, settled};
-use crate::node::{Child, Node, Target, WIDTH};
+use crate::node::{Node, WIDTH};
 use crate::primitive::Primitive;
 use crate::quadric::Quadric;
 use crate::triangle::{LANES, TriangleBlock};

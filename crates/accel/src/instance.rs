@@ -161,8 +161,8 @@ fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -
 
 /// What hits in the space of a tree are in the world.
 pub(crate) trait Space {
-    /// Whether hits are within the world's limits if they are within those of the local ray.
-    const SAME_LIMITS: bool;
+    /// Limits of local hits that are certainly within the world's.
+    fn sure_limits(&self, ray: &Ray) -> [f32; 2];
 
     /// The world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
@@ -175,7 +175,10 @@ pub(crate) trait Space {
 pub(crate) struct World;
 
 impl Space for World {
-    const SAME_LIMITS: bool = true;
+    #[inline(always)]
+    fn sure_limits(&self, ray: &Ray) -> [f32; 2] {
+        [ray.t_min, ray.t_max]
+    }
 
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {
@@ -206,7 +209,13 @@ impl Object {
 }
 
 impl Space for Object {
-    const SAME_LIMITS: bool = false;
+    #[inline(always)]
+    fn sure_limits(&self, _: &Ray) -> [f32; 2] {
+        let local = |world: f32| (f64::from(world) - self.start) as f32;
+        let inward = |t: f32| 8.0 * f32::EPSILON * t.abs() + f32::MIN_POSITIVE;
+        let (first, last) = (local(self.t_min), local(self.t_max));
+        [first + inward(first), last - inward(last)]
+    }
 
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {

@@ -19,7 +19,7 @@ pub(crate) fn prefetch<const BYTES: usize>(place: *const u8) {
 /// The same elements, in memory that fits and, where there is much of it and the system can, in large
 /// pages: rays jump about in it, and each jump to a small page costs a search for that page.
 pub(crate) fn settled<T: Copy>(mut elements: Vec<T>) -> Vec<T> {
-    if true || size_of_val(elements.as_slice()) < LARGE {
+    if size_of_val(elements.as_slice()) < LARGE {
         elements.shrink_to_fit();
         return elements;
     }

@@ -3,7 +3,8 @@
 use std::mem::MaybeUninit;
 
 use crate::builder::{MAX_DEPTH, Tree};
-use crate::node::{BoxRay, Child, Node, WIDTH};
+use crate::child::Child;
+use crate::node::{BoxRay, Node, WIDTH};
 use crate::query::Query;
 use crate::simd::Simd;
 
@@ -38,6 +39,13 @@ impl Stack {
         self.len += 1;
     }
 
+    /// Pushes what will be visited before long, and begins to load it.
+    #[inline(always)]
+    fn push_ahead(&mut self, tree: &Tree, entry: u64) {
+        tree.prefetch(child(entry));
+        self.push(entry);
+    }
+
     #[inline(always)]
     fn get(&self, index: usize) -> u64 {
         debug_assert!(index < self.len, "{index} of {}", self.len);
@@ -65,25 +73,23 @@ impl Stack {
         let entries = node.entries(distances);
         let (first, second) = (entries[first % WIDTH], entries[second % WIDTH]);
         if !Q::NEAR_FIRST {
-            self.push(first);
+            self.push_ahead(tree, first);
             let mut last = second;
             for slot in slots {
-                self.push(last);
+                self.push_ahead(tree, last);
                 last = entries[slot % WIDTH];
             }
-            tree.prefetch(child(self.get(self.len - 1)));
             return Some(child(last));
         }
         let bottom = self.len;
-        self.push(first.max(second));
+        self.push_ahead(tree, first.max(second));
         let mut last = first.min(second);
         for slot in slots {
             let entry = entries[slot % WIDTH];
-            self.push(last.max(entry));
+            self.push_ahead(tree, last.max(entry));
             last = last.min(entry);
             self.sink(bottom);
         }
-        tree.prefetch(child(self.get(self.len - 1)));
         Some(child(last))
     }
 

@@ -6,8 +6,9 @@ use glam::Vec3;
 
 use crate::builder::Tree;
 use crate::bvh::Bvh;
+use crate::child::{Child, Target};
 use crate::instance::{Space, World};
-use crate::node::{BoxRay, Child, Target, widen};
+use crate::node::{BoxRay, widen};
 use crate::quadric::Quadric;
 use crate::query::Query;
 use crate::ray::{Hit, Ray};
@@ -177,14 +178,15 @@ trait Leaves: Space {
         ray: &mut Ray,
         query: &mut Q,
     ) -> ControlFlow<()> {
-        let found = block.candidates(triangle_ray, ray);
-        if found.candidates == 0 {
+        let sure = self.sure_limits(ray);
+        let found = block.candidates(triangle_ray, ray, sure);
+        if found.possible == 0 {
             return ControlFlow::Continue(());
         }
-        if Q::ANYTHING && Self::SAME_LIMITS && found.certain & found.within != 0 {
-            return self.offer(ANY_HIT, ray, query);
+        if Q::ANYTHING && found.certain & found.within != 0 {
+            return query.offer(ANY_HIT, &mut ray.t_max);
         }
-        for lane in bits(found.candidates) {
+        for lane in bits(found.possible) {
             if let Some(passage) = block.pass(lane, triangle_ray, found.certain)
                 && passage.t >= ray.t_min
                 && passage.t <= ray.t_max

@@ -31,7 +31,7 @@ pub(crate) const LANES: usize = 4;
 #[derive(Clone, Copy)]
 pub(crate) struct Candidates {
     /// What the ray may hit.
-    pub(crate) candidates: u32,
+    pub(crate) possible: u32,
     /// What the ray's line certainly passes: by so much that `f64` needs no help to see it.
     pub(crate) certain: u32,
     /// Where `t`, if the line passes, is certainly within the limits.
@@ -40,7 +40,7 @@ pub(crate) struct Candidates {
 
 impl Candidates {
     const NONE: Self = Self {
-        candidates: 0,
+        possible: 0,
         certain: 0,
         within: 0,
     };
@@ -100,9 +100,14 @@ impl TriangleBlock {
         [vertex(0), vertex(1), vertex(2)]
     }
 
-    /// Which of its triangles the ray may hit.
+    /// Which of its triangles the ray may hit; `sure`: limits of `t` for those that are surely within.
     #[inline(always)]
-    pub(crate) fn candidates<V: F32x4>(&self, ray: &TriangleRay<V>, limits: &Ray) -> Candidates {
+    pub(crate) fn candidates<V: F32x4>(
+        &self,
+        ray: &TriangleRay<V>,
+        limits: &Ray,
+        sure: [f32; 2],
+    ) -> Candidates {
         let relative = |vertex: usize, axis: usize| {
             let row = ray.axes[axis];
             debug_assert!(row < 3, "axis {row}");
@@ -138,9 +143,9 @@ impl TriangleBlock {
         if passed == 0 {
             return Candidates::NONE;
         }
-        let (beyond, within) = ray.compare(limits, [a[2], b[2], c[2]]);
+        let (beyond, within) = ray.compare(limits, sure, [a[2], b[2], c[2]]);
         Candidates {
-            candidates: passed & !beyond,
+            possible: passed & !beyond,
             certain: bound.lt(low) | high.lt(minus_bound),
             within,
         }
@@ -217,9 +222,9 @@ impl<V: F32x4> TriangleRay<V> {
     }
 
     /// Masks of the lanes whose triangles, with vertices at these depths, the line passes at a `t`
-    /// certainly outside the limits, and certainly within.
+    /// certainly outside the limits, and certainly within those that are sure.
     #[inline(always)]
-    fn compare(&self, limits: &Ray, depths: [V; 3]) -> (u32, u32) {
+    fn compare(&self, limits: &Ray, sure: [f32; 2], depths: [V; 3]) -> (u32, u32) {
         let [a, b, c] = depths;
         let [a, b, c] = [a * self.per_depth, b * self.per_depth, c * self.per_depth];
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -227,7 +232,8 @@ impl<V: F32x4> TriangleRay<V> {
             .mul_add(V::splat(4.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
         let (t_min, t_max) = (V::splat(limits.t_min), V::splat(limits.t_max));
         let beyond = (high + slack).lt(t_min) | t_max.lt(low - slack);
-        let within = t_min.le(low - slack) & (high + slack).le(t_max);
+        let [first, last] = sure.map(V::splat);
+        let within = first.le(low - slack) & (high + slack).le(last);
         (beyond, within)
     }
 }

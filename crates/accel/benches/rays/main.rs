@@ -4,6 +4,10 @@
 //! slows all of them. Ratios are medians over rounds; see `docs/performance.md`.
 
 #![allow(clippy::print_stdout, reason = "a benchmark tells what it found")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "scenes need not be the same on every machine"
+)]
 
 mod embree;
 mod ours;

@@ -1,11 +1,10 @@
 //! Measures, and prints as Markdown.
 
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::Duration;
 
 use bidir_accel::Ray;
 use rayon::ThreadPool;
-use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use crate::ours::Engine;
 use crate::rays::{Batch, Question};
@@ -29,72 +28,103 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Seconds for all rays on every thread of the pool: each traces all of them, from its own beginning.
+/// Seconds that a thread of the pool works on all rays; each begins elsewhere.
 fn seconds(engine: &dyn Engine, batch: &Batch, pool: &ThreadPool) -> f64 {
     let threads = pool.current_num_threads();
-    let part = |thread: usize| {
+    let work = |thread: usize| {
         let (last, first) = batch.rays.split_at(thread * batch.rays.len() / threads);
-        engine.count_hits(batch.question, first) + engine.count_hits(batch.question, last)
+        let begin = working_time();
+        for part in [first, last] {
+            black_box(engine.count_hits(batch.question, part));
+        }
+        working_time().saturating_sub(begin).as_secs_f64()
     };
-    let begin = Instant::now();
-    let hits: usize = pool.install(|| (0..threads).into_par_iter().map(part).sum());
-    black_box(hits);
-    begin.elapsed().as_secs_f64()
+    let total: f64 = pool.broadcast(|context| work(context.index())).iter().sum();
+    total / threads as f64
 }
 
-pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
+/// For how long this thread has had a processor: what others do meanwhile does not count.
+#[cfg(target_os = "linux")]
+fn working_time() -> Duration {
+    let mut time = libc::timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
+    // SAFETY: the clock exists on every Linux, and the call writes to `time` only.
+    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &raw mut time) };
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+/// The time that passes.
+#[cfg(not(target_os = "linux"))]
+fn working_time() -> Duration {
+    static BEGIN: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+    BEGIN.get_or_init(std::time::Instant::now).elapsed()
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
 }
 
-/// Millions of rays a second and thread, and the ratio to Embree for the same instructions.
-pub(crate) fn scene_table(columns: &[Column], batches: &[Batch], rounds: usize, pool: &ThreadPool) {
-    // `times[batch][column][round]`, all columns of a batch next to each other in time.
+/// `[batch][column][round]`, in seconds.
+type Times = Vec<Vec<Vec<f64>>>;
+
+/// All columns of a batch next to each other in time, and not always in the same order.
+fn measure(columns: &[Column], batches: &[Batch], rounds: usize, pool: &ThreadPool) -> Times {
     let mut times = vec![vec![Vec::new(); columns.len()]; batches.len()];
     for round in 0..rounds {
         for (batch, times) in batches.iter().zip(&mut times) {
             for k in 0..columns.len() {
-                // Not always in the same order.
                 let k = (k + round) % columns.len();
                 times[k].push(seconds(columns[k].engine.as_ref(), batch, pool));
             }
         }
     }
-    let threads = pool.current_num_threads();
+    times
+}
+
+/// Millions of rays that a thread traces in a second, and the ratio to Embree for the same instructions.
+pub(crate) fn scene_table(columns: &[Column], batches: &[Batch], rounds: usize, pool: &ThreadPool) {
+    let times = measure(columns, batches, rounds, pool);
     let names: Vec<_> = batches.iter().map(|batch| batch.name).collect();
-    println!(
-        "\n| {threads} thread(s), million rays/s (ratio to Embree) | {} | mean ratio |",
-        names.join(" | ")
-    );
+    let threads = pool.current_num_threads();
+    let names = names.join(" | ");
+    println!("\n| Million rays/s per thread, {threads} running | {names} | Mean ratio |");
     println!("|---{}|---:|", "|---:".repeat(batches.len()));
     for (k, column) in columns.iter().enumerate() {
         let reference = column.reference(columns);
-        let (mut cells, mut logarithms) = (String::new(), 0.0);
-        for (batch, times) in batches.iter().zip(&times) {
-            let rays = (threads * batch.rays.len()) as f64;
-            let speed = rays / median(times[k].iter().copied()) / 1e6;
-            cells += &format!(" {speed:.2}");
-            if let Some(reference) = reference {
+        let ratio = |times: &[Vec<f64>]| {
+            reference.map(|reference| {
                 let pairs = times[reference].iter().zip(&times[k]);
-                let ratio = median(pairs.map(|(theirs, ours)| theirs / ours));
-                logarithms += ratio.log2();
-                cells += &format!(" ({ratio:.2})");
-            }
-            cells += " |";
-        }
-        let mean = (logarithms / batches.len() as f64).exp2();
-        let mean = reference.map_or(String::new(), |_| format!("{mean:.2}"));
-        println!("| {} |{cells} {mean} |", column.name);
-    }
-    let hits = |column: &Column| -> Vec<String> {
-        let share = |batch: &Batch| {
-            let hits = column.engine.count_hits(batch.question, &batch.rays);
-            format!("{:.2} %", 100.0 * hits as f64 / batch.rays.len() as f64)
+                median(pairs.map(|(theirs, ours)| theirs / ours))
+            })
         };
-        batches.iter().map(share).collect()
+        let cell = |(batch, times): (&Batch, &Vec<Vec<f64>>)| {
+            let speed = batch.rays.len() as f64 / median(times[k].iter().copied()) / 1e6;
+            let ratio = ratio(times).map_or(String::new(), |ratio| format!(" ({ratio:.2})"));
+            format!("{speed:.2}{ratio}")
+        };
+        let cells: Vec<_> = batches.iter().zip(&times).map(cell).collect();
+        let logarithms: Option<f64> = times.iter().map(|times| Some(ratio(times)?.log2())).sum();
+        let mean = logarithms.map_or(String::new(), |sum| {
+            format!("{:.2}", (sum / batches.len() as f64).exp2())
+        });
+        println!("| {} | {} | {mean} |", column.name, cells.join(" | "));
+    }
+    println!(
+        "| Rays that hit | {} | |",
+        hits(&columns[0], batches).join(" | ")
+    );
+}
+
+fn hits(column: &Column, batches: &[Batch]) -> Vec<String> {
+    let share = |batch: &Batch| {
+        let hits = column.engine.count_hits(batch.question, &batch.rays);
+        format!("{:.1} %", 100.0 * hits as f64 / batch.rays.len() as f64)
     };
-    println!("| rays that hit | {} | |", hits(&columns[0]).join(" | "));
+    batches.iter().map(share).collect()
 }
 
 /// Memory and time to build.

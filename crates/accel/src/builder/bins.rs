@@ -82,7 +82,7 @@ pub(super) fn best_split(references: &[Reference], centers: &Aabb, unit: f32) ->
     // Small groups do not deserve many bins, nor a table with room for them.
     match references.len() {
         ..=8 => best_of::<12>(references, centers, unit),
-        ..=16 => best_of::<16>(references, centers, unit),
+        9..=16 => best_of::<16>(references, centers, unit),
         _ => best_of::<MAX_BINS>(references, centers, unit),
     }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 use super::bins::{self, Split};
 use crate::aabb::{Aabb, half_area};
-use crate::node::Child;
+use crate::child::Child;
 use crate::primitive::Primitive;
 use crate::triangle::LANES;
 

@@ -36,21 +36,24 @@ impl Kernel for Four<'_> {
             (p.abs(), r.abs()),
         ];
         for (scalar, simd) in pairs {
-            let same = scalar.to_array().into_iter().zip(simd.to_array());
-            assert!(
-                same.into_iter().all(|(a, b)| is_same(a, b)),
-                "{lanes:?} {b}"
-            );
+            check_lanes(scalar, simd);
         }
         assert_eq!((p.lt(q), p.le(q)), (r.lt(s), r.le(s)));
         // Products of these are exact, fused or not.
         let exact = |x: f32| [0.0, 1.0, 2.5].contains(&x.abs());
         if lanes.iter().all(|&x| exact(x)) && exact(b) {
-            assert_eq!(p.mul_add(q, q).to_array(), r.mul_add(s, s).to_array());
-            assert_eq!(p.mul_sub(q, q).to_array(), r.mul_sub(s, s).to_array());
-            assert_eq!(p.sub_from(q, q).to_array(), r.sub_from(s, s).to_array());
+            check_lanes(p.mul_add(q, q), r.mul_add(s, s));
+            check_lanes(p.mul_sub(q, q), r.mul_sub(s, s));
+            check_lanes(p.sub_from(q, q), r.sub_from(s, s));
         }
     }
+}
+
+#[track_caller]
+fn check_lanes(scalar: Scalar4, simd: impl F32x4) {
+    let (a, b) = (scalar.to_array(), simd.to_array());
+    let mut pairs = a.into_iter().zip(b);
+    assert!(pairs.all(|(a, b)| is_same(a, b)), "{a:?} {b:?}");
 }
 
 /// The same for eight lanes.
