@@ -11,7 +11,9 @@
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
-use crate::node::{Child, Node, Target, WIDTH};
+use crate::child::{Child, Target};
+use crate::memory::{self, settled};
+use crate::node::{Node, WIDTH};
 use crate::primitive::Primitive;
 use crate::quadric::Quadric;
 use crate::triangle::{LANES, TriangleBlock};
@@ -38,21 +40,24 @@ pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) blocks: Vec<TriangleBlock>,
     pub(crate) quadrics: Vec<Quadric>,
+    /// The largest magnitude of a coordinate of a box.
+    pub(crate) reach: f32,
 }
 
 impl Tree {
     /// The tree over primitives with these bounds, which are all valid, and over the instances of
     /// which the bounds are valid.
     pub(crate) fn build(primitives: &[Primitive], bounds: &[Aabb], instances: &[Aabb]) -> Self {
-        let mut tree = Self::default();
-        let of_primitives = (0..)
-            .zip(primitives.iter().zip(bounds))
-            .map(|(index, (primitive, bounds))| Reference::new(index, primitive, *bounds));
+        let mut tree = Self::with_room(primitives.len());
+        let of_primitive =
+            |index: usize| Reference::new(index as u32, &primitives[index], bounds[index]);
         let of_instances = (0..)
             .zip(instances)
             .filter(|(_, bounds)| bounds.is_valid())
             .map(|(index, bounds)| Reference::instance(index, *bounds));
-        let mut references: Vec<Reference> = of_primitives.chain(of_instances).collect();
+        let indices = (0..primitives.len()).into_par_iter();
+        let mut references: Vec<Reference> = indices.map(of_primitive).collect();
+        references.extend(of_instances);
         if references.is_empty() {
             return tree;
         }
@@ -72,10 +77,51 @@ impl Tree {
         } else {
             builder.node(root, 0, &mut tree);
         }
-        tree.nodes.shrink_to_fit();
-        tree.blocks.shrink_to_fit();
-        tree.quadrics.shrink_to_fit();
-        tree
+        Self {
+            nodes: settled(tree.nodes),
+            blocks: settled(tree.blocks),
+            quadrics: settled(tree.quadrics),
+            reach: total.min.abs().max(total.max.abs()).max_element(),
+        }
+    }
+
+    /// The node of a child that is one.
+    #[inline(always)]
+    pub(crate) fn node(&self, index: usize) -> &Node {
+        debug_assert!(index < self.nodes.len(), "node {index}");
+        // SAFETY: all children are made by the builder, where they and what they point to are appended
+        // together; `validate` checks it.
+        unsafe { self.nodes.get_unchecked(index) }
+    }
+
+    /// Begins to load what `child` leads to: it will be visited soon.
+    #[inline(always)]
+    pub(crate) fn prefetch(&self, child: Child) {
+        let blocks: *const u8 = self.blocks.as_ptr().cast();
+        let nodes: *const u8 = self.nodes.as_ptr().cast();
+        let place = match (child.as_node(), child.as_triangles()) {
+            (Some(index), _) => nodes.wrapping_add(index * size_of::<Node>()),
+            (None, Some((first, _))) => blocks.wrapping_add(first * size_of::<TriangleBlock>()),
+            (None, None) => return,
+        };
+        memory::prefetch::<{ size_of::<Node>() }>(place);
+    }
+
+    /// The triangle blocks of a child that is a leaf of them.
+    #[inline(always)]
+    pub(crate) fn blocks(&self, first: usize, count: usize) -> &[TriangleBlock] {
+        debug_assert!(first + count <= self.blocks.len(), "{count} from {first}");
+        // SAFETY: as for nodes.
+        unsafe { self.blocks.get_unchecked(first..first + count) }
+    }
+
+    /// An empty tree with room for what so many triangles usually need.
+    fn with_room(triangles: usize) -> Self {
+        Self {
+            nodes: Vec::with_capacity(triangles / 12),
+            blocks: Vec::with_capacity(triangles / 3),
+            ..Self::default()
+        }
     }
 
     /// Appends `other` and returns where its child `child` is now.
@@ -141,7 +187,7 @@ impl Builder<'_> {
             }
         } else {
             let build = |group: Group| {
-                let (bounds, mut subtree) = (group.bounds, Tree::default());
+                let (bounds, mut subtree) = (group.bounds, Tree::with_room(group.len()));
                 let child = self.child(group, depth + 1, &mut subtree);
                 (bounds, child, subtree)
             };
@@ -154,7 +200,7 @@ impl Builder<'_> {
         Child::node(index)
     }
 
-    /// Splits until there are eight groups, or only leaves. Larger boxes come last: an any-hit ray
+    /// Splits until there are eight groups, or none that it would help. Larger boxes come last: an any-hit ray
     /// starts there, since they stop it most often.
     fn collapse<'r>(&self, group: Group<'r>, depth: usize) -> Vec<Group<'r>> {
         let by_count = depth + balanced_height(group.len()) >= MAX_DEPTH;
@@ -168,7 +214,7 @@ impl Builder<'_> {
                     group.area()
                 }
             };
-            let open = (0..groups.len()).filter(|&i| !groups[i].is_leaf());
+            let open = (0..groups.len()).filter(|&i| groups[i].deserves_split());
             let Some(next) = open.max_by(|&i, &j| size(&groups[i]).total_cmp(&size(&groups[j])))
             else {
                 break;

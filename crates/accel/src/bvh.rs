@@ -1,22 +1,21 @@
 //! [`Bvh`]: building and asking.
 
-use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DAffine3, Vec3};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 
 use crate::aabb::Aabb;
 use crate::builder::{MAX_PRIMITIVES, Tree};
+use crate::error::{BuildError, InstanceError};
 use crate::instance::{Instance, Placement};
 use crate::isa::Isa;
 use crate::node::Node;
 use crate::primitive::Primitive;
+use crate::query::{AnyHit, Anything, ClosestHit, EachHit, Query};
 use crate::ray::{Hit, Ray};
-use crate::simd::Scalar4;
-#[cfg(target_arch = "x86_64")]
-use crate::simd::Sse4;
-use crate::traverse::{AnyHit, ClosestHit, EachHit, Query, traverse};
+use crate::traverse::Ask;
 use crate::triangle::TriangleBlock;
 
 /// How to build a [`Bvh`].
@@ -31,76 +30,6 @@ impl Default for BuildOptions {
         Self { isa: Isa::detect() }
     }
 }
-
-/// Why a [`Bvh`] could not be built.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum BuildError {
-    /// A coordinate or parameter of a primitive is NaN or infinite, or so large that its bounds are,
-    /// or its map has no inverse.
-    NotFinite {
-        /// The first such primitive.
-        primitive: usize,
-    },
-    /// There are more primitives and instances than the tree can count.
-    TooManyPrimitives {
-        /// How many there are.
-        count: usize,
-        /// How many there may be.
-        limit: usize,
-    },
-    /// An instance has no place: its object does not exist, or has instances itself, or its map has
-    /// no inverse (or nearly none), or its bounds are not finite.
-    BadInstance {
-        /// The first such instance.
-        instance: usize,
-        /// What is wrong with it.
-        reason: InstanceError,
-    },
-    /// This machine lacks the instructions.
-    UnsupportedIsa {
-        /// The instructions asked for.
-        isa: Isa,
-    },
-}
-
-/// What is wrong with an [`Instance`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InstanceError {
-    /// There is no object of this number.
-    NoObject,
-    /// The object has instances itself.
-    Nested,
-    /// The map has no inverse, or is so close to having none that rounding exceeds the instance.
-    NotInvertible,
-}
-
-impl fmt::Display for InstanceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NoObject => "refers to an object that does not exist",
-            Self::Nested => "is of an object that has instances itself",
-            Self::NotInvertible => "has a transformation without inverse, or nearly so",
-        })
-    }
-}
-
-impl fmt::Display for BuildError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite { primitive } => {
-                write!(f, "primitive {primitive} has no finite bounds")
-            }
-            Self::TooManyPrimitives { count, limit } => {
-                write!(f, "{count} primitives are more than the limit of {limit}")
-            }
-            Self::BadInstance { instance, reason } => write!(f, "instance {instance} {reason}"),
-            Self::UnsupportedIsa { isa } => write!(f, "this machine does not support {isa}"),
-        }
-    }
-}
-
-impl std::error::Error for BuildError {}
 
 /// A bounding volume hierarchy: finds which of many primitives a ray hits.
 ///
@@ -160,9 +89,7 @@ impl Bvh {
         instances: &[Instance],
         options: &BuildOptions,
     ) -> Result<Self, BuildError> {
-        if !options.isa.is_supported() {
-            return Err(BuildError::UnsupportedIsa { isa: options.isa });
-        }
+        let isa = supported(options.isa)?;
         let count = primitives.len() + instances.len();
         if count > MAX_PRIMITIVES {
             return Err(BuildError::TooManyPrimitives {
@@ -170,7 +97,7 @@ impl Bvh {
                 limit: MAX_PRIMITIVES,
             });
         }
-        let all_bounds: Vec<Aabb> = primitives.iter().map(Primitive::bounds).collect();
+        let all_bounds: Vec<Aabb> = primitives.par_iter().map(Primitive::bounds).collect();
         if let Some(primitive) = all_bounds.iter().position(|bounds| !bounds.is_valid()) {
             return Err(BuildError::NotFinite { primitive });
         }
@@ -184,8 +111,14 @@ impl Bvh {
             primitive_count: primitives.len(),
             objects,
             placements,
-            isa: options.isa,
+            isa,
         })
+    }
+
+    /// The same tree for other instructions, those of its objects left alone: they do not matter.
+    pub fn with_isa(self, isa: Isa) -> Result<Self, BuildError> {
+        let isa = supported(isa)?;
+        Ok(Self { isa, ..self })
     }
 
     /// The hit of smallest `t` among those for which `accept` holds.
@@ -208,6 +141,14 @@ impl Bvh {
         query.found
     }
 
+    /// Whether there is any hit: the same as `occluded(ray, accept_all)`, but faster.
+    #[inline]
+    pub fn is_blocked(&self, ray: &Ray) -> bool {
+        let mut query = Anything { found: false };
+        self.ask(ray, &mut query);
+        query.found
+    }
+
     /// Calls `found` with every hit of the ray, each once and in any order, until it breaks off.
     /// Tells whether it did.
     #[inline]
@@ -223,11 +164,11 @@ impl Bvh {
 
     #[inline]
     fn ask(&self, ray: &Ray, query: &mut impl Query) {
-        match self.isa {
-            #[cfg(target_arch = "x86_64")]
-            Isa::Sse2 => traverse::<Sse4, _>(self, ray, query),
-            _ => traverse::<Scalar4, _>(self, ray, query),
-        }
+        self.isa.call(Ask {
+            bvh: self,
+            ray,
+            query,
+        });
     }
 
     /// A box around all primitives and instances; [`Aabb::EMPTY`] if there are none.
@@ -277,6 +218,11 @@ impl Bvh {
             + size_of_val(self.tree.blocks.as_slice())
             + size_of_val(self.tree.quadrics.as_slice())
     }
+}
+
+fn supported(isa: Isa) -> Result<Isa, BuildError> {
+    let supported = isa.is_supported().then_some(isa);
+    supported.ok_or(BuildError::UnsupportedIsa { isa })
 }
 
 /// Places every instance; the bounds of those of empty objects are [`Aabb::EMPTY`].

@@ -31,32 +31,59 @@ pub(crate) struct Passage {
 /// With edge functions `w_i` (edge `i` is opposite vertex `i`), the weights `w_i / Σw` give the
 /// point. All three have one sign, so that nothing cancels: `t` lies between those of the vertices.
 /// None: the line misses or is in the triangle's plane.
-pub(crate) fn pass_triangle([a, b, c]: [Vec3; 3], direction: Vec3, axis: usize) -> Option<Passage> {
-    let depths = [a[axis], b[axis], c[axis]].map(f64::from);
-    let (a, b, c, d) = (
-        a.as_dvec3(),
-        b.as_dvec3(),
-        c.as_dvec3(),
-        direction.as_dvec3(),
-    );
-    let weights = [edge(b, c, d), edge(c, a, d), edge(a, b, d)];
+#[inline(always)]
+pub(crate) fn pass_triangle(triangle: [Vec3; 3], direction: Vec3, axis: usize) -> Option<Passage> {
+    let weights = weights(triangle, direction, edge);
     let one_sign = weights.iter().all(|&w| w >= 0.0) || weights.iter().all(|&w| w <= 0.0);
     let sum = weights[0] + weights[1] + weights[2];
     if !one_sign || sum.abs() <= 0.0 {
         return None;
     }
-    let depth = weights[0] * depths[0] + weights[1] * depths[1] + weights[2] * depths[2];
-    Some(Passage {
-        t: (depth / (sum * d[axis])) as f32,
+    Some(passage(weights, triangle, direction, axis))
+}
+
+/// The same where the line is known to pass so far from the edges that plain edge functions have the
+/// right sign by their error bound: the same bits, for less.
+#[inline(always)]
+pub(crate) fn pass_certain(triangle: [Vec3; 3], direction: Vec3, axis: usize) -> Passage {
+    let plain = |a: DVec3, b: DVec3, d: DVec3| a.cross(b).dot(d);
+    passage(
+        weights(triangle, direction, plain),
+        triangle,
+        direction,
+        axis,
+    )
+}
+
+/// The three edge functions.
+#[inline(always)]
+fn weights(
+    [a, b, c]: [Vec3; 3],
+    direction: Vec3,
+    edge: impl Fn(DVec3, DVec3, DVec3) -> f64,
+) -> [f64; 3] {
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    let d = direction.as_dvec3();
+    [edge(b, c, d), edge(c, a, d), edge(a, b, d)]
+}
+
+#[inline(always)]
+fn passage(weights: [f64; 3], [a, b, c]: [Vec3; 3], direction: Vec3, axis: usize) -> Passage {
+    let [a, b, c, d] = [a, b, c, direction].map(|v| f64::from(v[axis]));
+    let sum = weights[0] + weights[1] + weights[2];
+    let depth = weights[0] * a + weights[1] * b + weights[2] * c;
+    Passage {
+        t: (depth / (sum * d)) as f32,
         u: (weights[1] / sum) as f32,
         v: (weights[2] / sum) as f32,
-    })
+    }
 }
 
 /// `(a × b)·d` with the sign it has in exact arithmetic, 0 included.
 ///
 /// Assumes coordinates that are `f32` numbers: their products are exact, and products of three
 /// neither overflow nor underflow.
+#[inline(always)]
 fn edge(a: DVec3, b: DVec3, d: DVec3) -> f64 {
     // Each term is rounded at most four times: in the cross product's difference, in the product
     // and in two sums. A rounding is half an epsilon.
@@ -72,6 +99,7 @@ fn edge(a: DVec3, b: DVec3, d: DVec3) -> f64 {
 
 /// [`edge`] as the sum of its six triple products without any rounding but the last.
 #[cold]
+#[inline(never)]
 fn edge_exact(a: DVec3, b: DVec3, d: DVec3) -> f64 {
     let mut expansion = Expansion::default();
     for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {

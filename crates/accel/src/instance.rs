@@ -106,6 +106,7 @@ impl Placement {
     }
 
     /// Where the ray, already cleaned, enters the ball: `t₀`.
+    #[inline(always)]
     fn entry(&self, ray: &Ray) -> f64 {
         let direction = ray.direction.as_dvec3();
         let to_center = self.center - ray.origin.as_dvec3();
@@ -117,6 +118,7 @@ impl Placement {
 
     /// The ray in the object's space, with how it is seen from the world. `instance` is the number
     /// that hits get.
+    #[inline(always)]
     pub(crate) fn view(&self, ray: &Ray, instance: u32) -> (Ray, Object) {
         let start = self.entry(ray);
         let origin = ray.origin.as_dvec3() + start * ray.direction.as_dvec3();
@@ -159,6 +161,9 @@ fn local_error(object_from_world: &DAffine3, local_center: DVec3, radius: f64) -
 
 /// What hits in the space of a tree are in the world.
 pub(crate) trait Space {
+    /// Limits of local hits that are certainly within the world's.
+    fn sure_limits(&self, ray: &Ray) -> [f32; 2];
+
     /// The world's hit for a local one. None: it is beyond the limits.
     fn world_hit(&self, local: Hit) -> Option<Hit>;
 
@@ -170,6 +175,11 @@ pub(crate) trait Space {
 pub(crate) struct World;
 
 impl Space for World {
+    #[inline(always)]
+    fn sure_limits(&self, ray: &Ray) -> [f32; 2] {
+        [ray.t_min, ray.t_max]
+    }
+
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {
         Some(local)
@@ -199,6 +209,14 @@ impl Object {
 }
 
 impl Space for Object {
+    #[inline(always)]
+    fn sure_limits(&self, _: &Ray) -> [f32; 2] {
+        let local = |world: f32| (f64::from(world) - self.start) as f32;
+        let inward = |t: f32| 8.0 * f32::EPSILON * t.abs() + f32::MIN_POSITIVE;
+        let (first, last) = (local(self.t_min), local(self.t_max));
+        [first + inward(first), last - inward(last)]
+    }
+
     #[inline(always)]
     fn world_hit(&self, local: Hit) -> Option<Hit> {
         let t = (self.start + f64::from(local.t)) as f32;

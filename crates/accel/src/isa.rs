@@ -3,10 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::simd::{self, Kernel, Simd};
+
 /// A set of vector instructions.
 ///
 /// The choice changes speed, never an answer.
-/// Wider sets (AVX2, AVX-512) are to join; the data is laid out for them already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
@@ -14,26 +15,69 @@ pub enum Isa {
     Scalar,
     /// 128-bit vectors, which every x86-64 machine has.
     Sse2,
+    /// 256-bit vectors, with FMA and bit manipulation: most machines since 2013.
+    Avx2,
+    /// The same width, with masks and compression: F, VL, DQ and BW.
+    Avx512,
 }
 
 impl Isa {
     /// All sets that have a name, slowest first.
-    pub const ALL: [Self; 2] = [Self::Scalar, Self::Sse2];
+    pub const ALL: [Self; 4] = [Self::Scalar, Self::Sse2, Self::Avx2, Self::Avx512];
+
+    /// The sets of this machine, slowest first.
+    pub fn supported() -> impl DoubleEndedIterator<Item = Self> {
+        Self::ALL.into_iter().filter(|isa| isa.is_supported())
+    }
 
     /// The fastest set of this machine.
+    ///
+    /// Never AVX-512: what takes time is the way from one node to the next, which is longer through mask
+    /// registers.
     pub fn detect() -> Self {
-        if Self::Sse2.is_supported() {
-            Self::Sse2
-        } else {
-            Self::Scalar
+        let mut by_speed = [Self::Avx2, Self::Sse2].into_iter();
+        by_speed
+            .find(|isa| isa.is_supported())
+            .unwrap_or(Self::Scalar)
+    }
+
+    /// Whether this machine has the instructions.
+    #[cfg(target_arch = "x86_64")]
+    pub fn is_supported(self) -> bool {
+        macro_rules! has {
+            ($($feature:tt),*) => { $(is_x86_feature_detected!($feature))&&* };
+        }
+        match self {
+            Self::Scalar | Self::Sse2 => true,
+            Self::Avx2 => has!("avx2", "fma", "bmi1", "bmi2", "lzcnt", "popcnt"),
+            Self::Avx512 => {
+                Self::Avx2.is_supported() && has!("avx512f", "avx512vl", "avx512dq", "avx512bw")
+            }
         }
     }
 
     /// Whether this machine has the instructions.
-    pub const fn is_supported(self) -> bool {
-        match self {
-            Self::Scalar => true,
-            Self::Sse2 => cfg!(target_arch = "x86_64"),
+    #[cfg(not(target_arch = "x86_64"))]
+    pub fn is_supported(self) -> bool {
+        self == Self::Scalar
+    }
+
+    /// Runs a kernel compiled for this set, which must be [supported](Self::is_supported).
+    #[inline(always)]
+    pub(crate) fn call<K: Kernel>(self, kernel: K) -> K::Output {
+        debug_assert!(self.is_supported(), "{self}");
+        // SAFETY: whoever makes use of a set has asked whether it is supported: `Bvh` when it is
+        // built or changes its set, tests by going through the supported ones.
+        unsafe {
+            match self {
+                #[cfg(target_arch = "x86_64")]
+                Self::Sse2 => simd::Sse2::call(kernel),
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx2 => simd::Avx2::call(kernel),
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx512 => simd::Avx512::call(kernel),
+                _ => simd::Portable::call(kernel),
+            }
         }
     }
 
@@ -42,6 +86,8 @@ impl Isa {
         match self {
             Self::Scalar => "scalar",
             Self::Sse2 => "sse2",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
         }
     }
 }
@@ -99,7 +145,7 @@ mod tests {
         let error = "neon".parse::<Isa>().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown instruction set `neon`; known are: scalar, sse2"
+            "unknown instruction set `neon`; known are: scalar, sse2, avx2, avx512"
         );
     }
 

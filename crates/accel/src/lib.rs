@@ -32,8 +32,8 @@
 //!   passes a triangle is decided *exactly* for the vertices as seen from the ray's origin
 //!   (the `exact` module), and boxes are tested conservatively (the `node` module).
 //! - **The same bits everywhere.** `t`, `u` and `v` are computed by one scalar function in `f64`.
-//!   SIMD code only discards, conservatively, what that function would refuse, so the instruction
-//!   set has no influence on an answer.
+//!   SIMD code only discards what that function would certainly refuse, and tells that something is in
+//!   the way where it would certainly say so; the instruction set has no influence on an answer.
 //! - **One answer.** Of hits at equal `t` the lowest `(instance, primitive)` wins, whatever the order
 //!   of traversal. The tree does not depend on the number of threads that build it.
 //! - **No allocation per ray**, and a stack whose bound is proved by the builder, for both levels.
@@ -53,25 +53,31 @@
 mod aabb;
 mod builder;
 mod bvh;
+mod child;
 mod cylinder;
 mod disk;
+mod error;
 mod exact;
 mod instance;
 mod isa;
+mod memory;
 mod node;
 mod primitive;
 mod quadric;
+mod query;
 mod ray;
 mod simd;
 mod sphere;
+mod stack;
 mod traverse;
 mod triangle;
 mod validate;
 
 pub use aabb::Aabb;
-pub use bvh::{BuildError, BuildOptions, Bvh, InstanceError};
+pub use bvh::{BuildOptions, Bvh};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use error::{BuildError, InstanceError};
 pub use instance::Instance;
 pub use isa::{Isa, UnknownIsa};
 pub use primitive::Primitive;

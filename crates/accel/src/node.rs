@@ -1,32 +1,48 @@
 //! Inner nodes: eight boxes side by side, tested conservatively.
 //!
-//! A ray is inside a slab between `(near - o)·(1/d)` and `(far - o)·(1/d)`, and inside a box where it
-//! is inside all three. In units of `ε` (half of `f32::EPSILON`), the relative error of an entry is
-//! at most 3 (difference, reciprocal, product) and so is that of an exit; multiplying the exit
-//! by `1 + 8ε`, which rounds once more, makes up for both [Ize13].
-//! Where the direction's component is zero, its reciprocal is infinite: the slab is then either
-//! missed, or entered at `-∞` and left at `∞`, or the ray lies in one of its planes, and the NaN of
-//! `0·∞` stands for "no limit" because of how [`F32x4::min`] and [`F32x4::max`] treat it.
+//! A ray is inside a slab between `(near - o)/d` and `(far - o)/d`, and inside a box where it is inside
+//! all three. With `r = 1/d` that is computed as `near·r - o·r`: one fused operation on many machines.
+//!
+//! **Rounding.** Let `ε` be half of `f32::EPSILON`. `o·r`, its sum with `e` below and the product `near·r`
+//! lose at most `3ε|o·r|` together, which `e = 4ε|o·r|` makes up for: entries are computed with `o·r + e`,
+//! exits with `o·r - e`. In space that widens a box by `4ε|o|`. What is left is relative to the distance: an
+//! entry is too late by at most `3ε` of it (reciprocal, product, difference), an exit too early by `4ε`;
+//! multiplying the exit by `1 + 16ε` makes up for both [Ize13].
+//!
+//! **Rays parallel to a plane, or nearly.** All that can be hit lies within `s` of the world's center, along
+//! each axis, hence at `t ≤ T = (s + |o|)/max|d|`. Where `|d| < δ/T`, the ray stays within `δ` of its
+//! origin's plane all the while: such a component counts as `±δ/T`, entries are `T` earlier and exits `T`
+//! later. Then a slab that the ray is in stays open until `T`, and one that is `2δ` away is missed. The
+//! code takes `2⁻²³·(s + |o|)` for `δ`.
+//!
+//! An axis along which anything overflows has no limits. Then no number is NaN but where a box is
+//! empty, and exits are not zero but where the ray leaves before its origin.
 //!
 //! [Ize13]: https://jcgt.org/published/0002/02/02/
-
-use std::ops::Range;
 
 use glam::Vec3;
 
 use crate::aabb::Aabb;
+use crate::child::Child;
 use crate::ray::Ray;
-use crate::simd::F32x4;
+use crate::simd::F32x8;
 
 /// Children of a [`Node`].
 pub(crate) const WIDTH: usize = 8;
 
-/// `1 + 8ε`: what an exit is multiplied by.
-const WIDENING: f32 = 1.0 + 4.0 * f32::EPSILON;
+/// `1 + 16ε`: what an exit is multiplied by.
+const WIDENING: f32 = 1.0 + 8.0 * f32::EPSILON;
 
-/// The largest distance at which a box must still be entered to find all hits up to `t_max`.
+/// The largest distance at which a box must still be entered to find all hits up to `t_max`. Beyond a
+/// tenth of what a number can be, products on the way to a distance can overflow: no limit.
+#[inline(always)]
 pub(crate) fn widen(t_max: f32) -> f32 {
-    t_max * WIDENING
+    if t_max < 0.1 * f32::MAX {
+        // The zero takes the sign of another one away, which comparisons of bits would mind.
+        t_max * WIDENING + 0.0
+    } else {
+        f32::INFINITY
+    }
 }
 
 /// An inner node.
@@ -58,7 +74,7 @@ impl Node {
 
     #[inline(always)]
     pub(crate) fn child(&self, slot: usize) -> Child {
-        self.children[slot]
+        self.children[slot % WIDTH]
     }
 
     pub(crate) fn children_mut(&mut self) -> &mut [Child; WIDTH] {
@@ -73,137 +89,110 @@ impl Node {
         }
     }
 
-    /// Which boxes the ray meets at distances up to `t_max` (already [widened](widen)).
-    ///
-    /// A mask with the bit of each box, and the distances at which they are entered.
+    /// Which boxes the ray meets at distances up to `limit` (of [`widen`]): a mask with the bit of each
+    /// box, and the distances at which they are entered.
     #[inline(always)]
-    pub(crate) fn intersect<V: F32x4>(&self, ray: &BoxRay<V>, t_max: f32) -> (u32, [f32; WIDTH]) {
-        let (low, low_entries) = self.intersect_half::<V, 0>(ray, t_max);
-        let (high, high_entries) = self.intersect_half::<V, 4>(ray, t_max);
-        let mut entries = [0.0; WIDTH];
-        entries[..4].copy_from_slice(&low_entries);
-        entries[4..].copy_from_slice(&high_entries);
-        (low | high << 4, entries)
+    pub(crate) fn intersect<V: F32x8>(&self, ray: &BoxRay<V>, limit: f32) -> (u32, V) {
+        let plane = |axis: usize, side: usize| {
+            debug_assert!(side < 2, "side {side}");
+            // SAFETY: there are two rows for each of three axes.
+            V::load(unsafe { self.planes.get_unchecked(2 * axis + side) })
+        };
+        let entry = |axis: usize| {
+            let ray = &ray.axes[axis];
+            plane(axis, ray.near).mul_sub(ray.inverse, ray.entry_offset)
+        };
+        let exit = |axis: usize| {
+            let ray = &ray.axes[axis];
+            plane(axis, ray.near ^ 1).mul_sub(ray.inverse_widened, ray.exit_offset)
+        };
+        // An entry that is negative is none, whichever it is: so is an exit, which is missed.
+        let entry = entry(0).max(entry(1)).max(entry(2).max(ray.t_min));
+        let exit = exit(0).min(exit(1)).min(exit(2).min(V::splat(limit)));
+        (entry.le(exit), entry)
     }
 
+    /// Per box a word: the bits of a distance above those of the child.
     #[inline(always)]
-    fn intersect_half<V: F32x4, const FIRST: usize>(
-        &self,
-        ray: &BoxRay<V>,
-        t_max: f32,
-    ) -> (u32, [f32; 4]) {
-        let mut entry = ray.t_min;
-        let mut exit = V::splat(t_max);
-        for axis in 0..3 {
-            let (near, far) = (ray.near[axis], ray.near[axis] ^ 1);
-            let distance = |plane: usize| {
-                let (lanes, _) = self.planes[plane][FIRST..]
-                    .split_first_chunk()
-                    .expect("4 lanes");
-                V::load(lanes) - ray.origin[axis]
-            };
-            // The distance comes first: if it is NaN, the limit so far stays.
-            entry = (distance(near) * ray.inverse[axis]).max(entry);
-            exit = (distance(far) * ray.inverse_widened[axis]).min(exit);
-        }
-        (entry.le(exit), entry.to_array())
+    pub(crate) fn entries<V: F32x8>(&self, distances: V) -> [u64; WIDTH] {
+        distances.over(Child::all_bits(&self.children))
     }
 }
 
 /// A ray made ready for boxes.
 pub(crate) struct BoxRay<V> {
-    origin: [V; 3],
-    inverse: [V; 3],
-    inverse_widened: [V; 3],
+    axes: [AxisRay<V>; 3],
     t_min: V,
-    /// The row of [`Node::planes`] that the ray meets first, per axis.
-    near: [usize; 3],
 }
 
-impl<V: F32x4> BoxRay<V> {
-    pub(crate) fn new(ray: &Ray) -> Self {
-        let inverse = ray.direction.recip().to_array();
-        Self {
-            origin: ray.origin.to_array().map(V::splat),
-            inverse: inverse.map(V::splat),
-            inverse_widened: inverse.map(|x| V::splat(x * WIDENING)),
-            t_min: V::splat(ray.t_min),
-            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(inverse[axis].is_sign_negative())),
-        }
-    }
-}
-
-/// What a node's slot leads to, in 32 bits.
-///
-/// From the top: two bits of kind, then either 30 bits of a node's index, or three bits of a leaf's
-/// length less one and 27 bits of its first element. An instance is a leaf of length one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(transparent)]
-pub(crate) struct Child(u32);
-
-/// A [`Child`], unpacked.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Target {
-    /// The node of this index.
-    Node(usize),
-    /// A leaf: these triangle blocks.
-    Triangles(Range<usize>),
-    /// A leaf: these quadrics.
-    Quadrics(Range<usize>),
-    /// A leaf: the instance of this number.
-    Instance(usize),
-    /// An unused slot.
-    Nothing,
-}
-
-impl Child {
-    pub(crate) const NOTHING: Self = Self(u32::MAX);
-    /// Elements (triangle blocks or quadrics) of the largest leaf.
-    pub(crate) const MAX_LEAF: usize = 8;
-    /// One more than the largest first element of a leaf.
-    pub(crate) const MAX_ELEMENTS: usize = 1 << Self::LENGTH_SHIFT;
-
-    const KIND_SHIFT: u32 = 30;
-    const LENGTH_SHIFT: u32 = 27;
-
-    pub(crate) const fn node(index: usize) -> Self {
-        Self(index as u32)
-    }
-
-    pub(crate) fn triangles(blocks: &Range<usize>) -> Self {
-        Self::leaf(1, blocks)
-    }
-
-    pub(crate) fn quadrics(quadrics: &Range<usize>) -> Self {
-        Self::leaf(2, quadrics)
-    }
-
-    pub(crate) const fn instance(index: usize) -> Self {
-        Self(3 << Self::KIND_SHIFT | index as u32)
-    }
-
-    fn leaf(kind: u32, elements: &Range<usize>) -> Self {
-        debug_assert!(
-            (1..=Self::MAX_LEAF).contains(&elements.len()),
-            "leaf of {elements:?}"
-        );
-        let length = (elements.len() - 1) as u32;
-        Self(kind << Self::KIND_SHIFT | length << Self::LENGTH_SHIFT | elements.start as u32)
-    }
-
+impl<V: F32x8> BoxRay<V> {
+    /// `reach`: the largest magnitude of a coordinate of what can be hit.
     #[inline(always)]
-    pub(crate) fn target(self) -> Target {
-        let kind = self.0 >> Self::KIND_SHIFT;
-        if kind == 0 {
-            return Target::Node(self.0 as usize);
+    pub(crate) fn new(ray: &Ray, reach: f32) -> Self {
+        // Room for what rounds below.
+        let largest = ray.direction.abs().max_element();
+        let last = 1.001 * (reach + ray.origin.abs().max_element()) / largest;
+        let axis = |axis: usize| {
+            AxisRay::<V>::new(
+                ray.origin[axis],
+                ray.direction[axis],
+                STEEPEST / largest,
+                last,
+            )
+        };
+        Self {
+            // Written out, as `array::map` is not always inlined.
+            axes: [axis(0), axis(1), axis(2)],
+            t_min: V::splat(ray.t_min),
         }
-        let first = self.0 as usize % Self::MAX_ELEMENTS;
-        let length = (self.0 >> Self::LENGTH_SHIFT) as usize % Self::MAX_LEAF + 1;
-        match kind {
-            1 => Target::Triangles(first..first + length),
-            2 => Target::Quadrics(first..first + length),
-            _ if self == Self::NOTHING => Target::Nothing,
-            _ => Target::Instance(first),
+    }
+}
+
+/// `T/δ`, times the direction's largest component.
+const STEEPEST: f32 = 1.001 * (1 << 23) as f32;
+
+/// What a [`BoxRay`] knows about slabs along one axis.
+#[derive(Clone, Copy)]
+struct AxisRay<V> {
+    inverse: V,
+    entry_offset: V,
+    inverse_widened: V,
+    exit_offset: V,
+    /// Which of the two planes the ray meets first: 0 or 1.
+    near: usize,
+}
+
+impl<V: F32x8> AxisRay<V> {
+    /// For one component of origin and direction; `steepest` is `T/δ`, and `last` is `T`.
+    #[inline(always)]
+    fn new(origin: f32, direction: f32, steepest: f32, last: f32) -> Self {
+        let inverse = 1.0 / direction;
+        let is_parallel = inverse.abs() > steepest;
+        let early = if is_parallel { last } else { 0.0 };
+        let inverse = inverse.abs().min(steepest).copysign(inverse);
+        let widened = inverse * WIDENING;
+        let slack = |offset: f32| 2.0 * f32::EPSILON * offset.abs() + (f32::MIN_POSITIVE + early);
+        let (entry_offset, exit_offset) = (origin * inverse, origin * widened);
+        let numbers = [
+            inverse,
+            entry_offset + slack(entry_offset),
+            widened,
+            exit_offset - slack(exit_offset),
+        ];
+        // Not so for infinities and NaN.
+        let is_finite =
+            numbers[0] * 0.0 + numbers[1] * 0.0 + numbers[2] * 0.0 + numbers[3] * 0.0 == 0.0;
+        let [inverse, entry_offset, inverse_widened, exit_offset] = if is_finite {
+            numbers
+        } else {
+            [0.0, f32::MAX, 0.0, f32::MIN]
+        };
+        Self {
+            inverse: V::splat(inverse),
+            entry_offset: V::splat(entry_offset),
+            inverse_widened: V::splat(inverse_widened),
+            exit_offset: V::splat(exit_offset),
+            near: (direction.to_bits() >> 31) as usize,
         }
     }
 }
@@ -211,30 +200,14 @@ impl Child {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simd::Scalar4;
-
-    #[test]
-    fn child_round_trips() {
-        let last = Child::MAX_ELEMENTS - 1;
-        assert_eq!(Child::node(last).target(), Target::Node(last));
-        assert_eq!(
-            Child::triangles(&(5..13)).target(),
-            Target::Triangles(5..13)
-        );
-        assert_eq!(
-            Child::quadrics(&(last..last + 1)).target(),
-            Target::Quadrics(last..last + 1)
-        );
-        assert_eq!(Child::instance(last).target(), Target::Instance(last));
-        assert_eq!(Child::NOTHING.target(), Target::Nothing);
-    }
+    use crate::simd::{Pair, Scalar4};
 
     #[track_caller]
     fn check_met(bounds: Aabb, origin: [f32; 3], direction: [f32; 3], expected: u32) {
         let mut node = Node::EMPTY;
         node.set(5, &bounds, Child::node(0));
         let ray = Ray::new(Vec3::from_array(origin), Vec3::from_array(direction));
-        let (mask, _) = node.intersect(&BoxRay::<Scalar4>::new(&ray), f32::INFINITY);
+        let (mask, _) = node.intersect(&BoxRay::<Pair<Scalar4>>::new(&ray, 2.0), f32::INFINITY);
         assert_eq!(mask, expected << 5);
     }
 
@@ -259,6 +232,8 @@ mod tests {
             max: Vec3::new(1.0, 0.0, 1.0),
         };
         check_met(flat, [0.5, 0.0, -1.0], [0.0, 0.0, 1.0], 1);
-        check_met(flat, [0.5, 1e-30, -1.0], [0.0, 0.0, 1.0], 0);
+        check_met(flat, [0.5, 1e-5, -1.0], [0.0, 0.0, 1.0], 0);
+        check_met(flat, [0.5, 1e-5, -1.0], [0.0, 1e-30, 1.0], 0);
+        check_met(flat, [0.5, -1e-5, -1.0], [0.0, 1e-5, 1.0], 1);
     }
 }

@@ -1,18 +1,21 @@
-//! Four lanes of `f32`: the one abstraction over instruction sets.
+//! Lanes of `f32`: the one abstraction over instruction sets.
 //!
-//! Kernels are written once, generic over [`F32x4`].
-//! All implementations round alike and treat NaN alike, but kernels do not rely on the first:
-//! what they compute only ever discards work conservatively.
+//! Kernels are written once, generic over [`Simd`]: triangles come four at a time ([`F32x4`]), boxes
+//! eight ([`F32x8`]). Implementations may round differently (some fuse a product and a sum), so
+//! kernels do not rely on it: what they compute only ever discards work conservatively, or accepts what
+//! is certain with the same error bound.
 
 use std::ops::{Add, Mul, Sub};
 
+#[cfg(target_arch = "x86_64")]
+mod avx;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
-mod sse2;
+mod sse;
 
-pub(crate) use scalar::Scalar4;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use sse2::Sse4;
+pub(crate) use scalar::{Pair, Scalar4};
+
+use crate::node::WIDTH;
 
 /// Four `f32` with lane-wise arithmetic.
 pub(crate) trait F32x4:
@@ -30,61 +33,119 @@ pub(crate) trait F32x4:
     fn max(self, other: Self) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
+    /// `self·factor + term`, the product rounded or not.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `self·factor - term`, the product rounded or not.
+    fn mul_sub(self, factor: Self, term: Self) -> Self;
+    /// `term - self·factor`, the product rounded or not.
+    fn sub_from(self, factor: Self, term: Self) -> Self;
     /// Bit `k` is set where lane `k` has `self < other`; clear at NaN.
     fn lt(self, other: Self) -> u32;
     /// Bit `k` is set where lane `k` has `self <= other`; clear at NaN.
     fn le(self, other: Self) -> u32;
 }
 
-#[cfg(all(test, target_arch = "x86_64"))]
-mod tests {
-    use super::*;
+/// Eight `f32` with lane-wise arithmetic. Comparisons may be those of the bits as integers, which take a
+/// quarter of the time and are right but for negative numbers.
+pub(crate) trait F32x8: Copy {
+    /// All lanes equal to `value`.
+    fn splat(value: f32) -> Self;
+    /// Lanes from memory.
+    fn load(values: &[f32; WIDTH]) -> Self;
+    /// The smaller number; where both are negative, either. Not for NaN.
+    fn min(self, other: Self) -> Self;
+    /// The larger number; where both are negative, either. Not for NaN.
+    fn max(self, other: Self) -> Self;
+    /// As [`F32x4::mul_sub`].
+    fn mul_sub(self, factor: Self, term: Self) -> Self;
+    /// Bit `k` is set where lane `k` has `self <= other`; where both are negative it is set or not. A
+    /// zero in `other` is positive. Not for NaN.
+    fn le(self, other: Self) -> u32;
+    /// Lane `k`, in the upper half of a word, above `low[k]`.
+    fn over(self, low: &[u32; WIDTH]) -> [u64; WIDTH];
+}
 
-    const SAMPLES: [f32; 9] = [
-        0.0,
-        -0.0,
-        1.0,
-        -2.5,
-        1e-45,
-        f32::MAX,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::NAN,
-    ];
+/// A set of vector instructions.
+pub(crate) trait Simd: Sized {
+    type Four: F32x4;
+    type Eight: F32x8;
 
-    #[track_caller]
-    fn check_same(scalar: Scalar4, sse: Sse4) {
-        for (a, b) in scalar.to_array().into_iter().zip(sse.to_array()) {
-            assert!(
-                a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()),
-                "{a} and {b}"
-            );
-        }
-    }
+    /// Runs a kernel that is compiled for the set, out of line.
+    ///
+    /// # Safety
+    ///
+    /// The machine has the instructions.
+    unsafe fn call<K: Kernel>(kernel: K) -> K::Output;
+}
 
-    #[test]
-    fn implementations_agree_on_special_values() {
-        for a in SAMPLES {
-            for b in SAMPLES {
-                let lanes = [a, b, 1.0, a];
-                let (p, q) = (Scalar4::load(&lanes), Scalar4::splat(b));
-                let (r, s) = (Sse4::load(&lanes), Sse4::splat(b));
-                check_same(p + q, r + s);
-                check_same(p - q, r - s);
-                check_same(p * q, r * s);
-                check_same(p.min(q), r.min(s));
-                check_same(p.max(q), r.max(s));
-                check_same(p.abs(), r.abs());
-                assert_eq!((p.lt(q), p.le(q)), (r.lt(s), r.le(s)));
-            }
-        }
-    }
+/// Code that is compiled for each set. All it calls must be inlined, so that it is compiled for the
+/// set too.
+pub(crate) trait Kernel {
+    type Output;
 
-    #[test]
-    fn nan_selects_the_second_operand() {
-        let (nan, one) = (Sse4::splat(f32::NAN), Sse4::splat(1.0));
-        assert_eq!((nan.min(one).lt(one), nan.min(one).le(one)), (0, 0b1111));
-        assert_eq!((nan.max(one).lt(one), nan.max(one).le(one)), (0, 0b1111));
-        assert!(one.max(nan).to_array()[0].is_nan());
+    fn run<S: Simd>(self) -> Self::Output;
+}
+
+/// Without intrinsics.
+pub(crate) struct Portable;
+
+impl Simd for Portable {
+    type Four = Scalar4;
+    type Eight = Pair<Scalar4>;
+
+    #[inline(never)]
+    unsafe fn call<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
     }
 }
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::avx::Avx8;
+    use super::sse::Sse4;
+    use super::{Kernel, Pair, Simd};
+
+    /// Declares a set: its name, its lanes and the features it is compiled with.
+    macro_rules! declare {
+        ($(#[$doc:meta])* $name:ident, $four:ty, $eight:ty, $features:literal) => {
+            $(#[$doc])*
+            pub(crate) struct $name;
+
+            impl Simd for $name {
+                type Four = $four;
+                type Eight = $eight;
+
+                #[inline(always)]
+                unsafe fn call<K: Kernel>(kernel: K) -> K::Output {
+                    #[target_feature(enable = $features)]
+                    #[inline(never)]
+                    fn compiled<K: Kernel>(kernel: K) -> K::Output {
+                        kernel.run::<$name>()
+                    }
+                    // SAFETY: the caller promises that the machine has these instructions.
+                    unsafe { compiled(kernel) }
+                }
+            }
+        };
+    }
+
+    declare!(
+        /// What every x86-64 machine has.
+        Sse2, Sse4<false>, Pair<Sse4<false>>, "sse2"
+    );
+    declare!(
+        /// 256-bit vectors and fused products, as in machines since 2013.
+        Avx2, Sse4<true>, Avx8<false>, "avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+    );
+    declare!(
+        /// The same width with masks and compression.
+        Avx512, Sse4<true>, Avx8<true>,
+        "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+    );
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use x86::{Avx2, Avx512, Sse2};
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;

@@ -9,18 +9,42 @@
 //! `|x|`, `|y|`. Shearing rounds three times: `|δx| ≤ 2.1εM + 1.1εX`, so true coordinates stay below
 //! `R = X + 4εM`. The edge function inherits at most `4R|δx| + 2|δx|²` and adds `4εX²` of its own,
 //! together less than `13ε·R·(X + M)`. The code uses `16ε`, and a constant that exceeds what underflow
-//! adds. If anything overflows then so does the bound, and the triangle is kept.
+//! adds. If anything overflows then so does the bound, and the triangle is kept. Fused products round less
+//! often, which the bound covers.
+//!
+//! A triangle is also discarded if `t` is certainly outside the limits: it lies between the vertices'
+//! `p_z/d_z`. These are computed with two roundings, and what `f64` loses in the exact test when they
+//! differ in sign is less; both are small against `8ε` of the largest.
 //!
 //! [Woop13]: https://jcgt.org/published/0002/01/05/
 
 use glam::Vec3;
 
-use crate::exact::{Passage, pass_triangle};
+use crate::exact::{Passage, pass_certain, pass_triangle};
 use crate::ray::Ray;
 use crate::simd::F32x4;
 
 /// Lanes of a [`TriangleBlock`].
 pub(crate) const LANES: usize = 4;
+
+/// What the filter knows of the triangles of a block, as masks of lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Candidates {
+    /// What the ray may hit.
+    pub(crate) possible: u32,
+    /// What the ray's line certainly passes: by so much that `f64` needs no help to see it.
+    pub(crate) certain: u32,
+    /// Where `t`, if the line passes, is certainly within the limits.
+    pub(crate) within: u32,
+}
+
+impl Candidates {
+    const NONE: Self = Self {
+        possible: 0,
+        certain: 0,
+        within: 0,
+    };
+}
 
 /// Up to four triangles, transposed.
 #[derive(Debug, Clone, Copy)]
@@ -76,44 +100,86 @@ impl TriangleBlock {
         [vertex(0), vertex(1), vertex(2)]
     }
 
-    /// A mask that has the bit of every lane whose triangle the ray's line may pass.
+    /// Which of its triangles the ray may hit; `sure`: limits of `t` for those that are surely within.
     #[inline(always)]
-    pub(crate) fn candidates<V: F32x4>(&self, ray: &TriangleRay<V>) -> u32 {
-        let [x, y, z] = ray.axes;
+    pub(crate) fn candidates<V: F32x4>(
+        &self,
+        ray: &TriangleRay<V>,
+        limits: &Ray,
+        sure: [f32; 2],
+    ) -> Candidates {
+        let relative = |vertex: usize, axis: usize| {
+            let row = ray.axes[axis];
+            debug_assert!(row < 3, "axis {row}");
+            // SAFETY: `axes` is a permutation of 0, 1 and 2.
+            let row = unsafe { self.vertices[vertex].get_unchecked(row) };
+            V::load(row) - ray.origin_lanes[axis]
+        };
         let sheared = |vertex: usize| {
-            let rows = &self.vertices[vertex];
-            let z = V::load(&rows[z]) - ray.origin_lanes[2];
+            let z = relative(vertex, 2);
             [
-                V::load(&rows[x]) - ray.origin_lanes[0] - ray.shear[0] * z,
-                V::load(&rows[y]) - ray.origin_lanes[1] - ray.shear[1] * z,
+                z.sub_from(ray.shear[0], relative(vertex, 0)),
+                z.sub_from(ray.shear[1], relative(vertex, 1)),
                 z,
             ]
         };
         let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
-        let edge = |a: [V; 3], b: [V; 3]| a[0] * b[1] - a[1] * b[0];
+        let edge = |a: [V; 3], b: [V; 3]| a[0].mul_sub(b[1], a[1] * b[0]);
         let [ab, bc, ca] = [edge(a, b), edge(b, c), edge(c, a)];
 
         let largest = |p: V, q: V, r: V| p.abs().max(q.abs()).max(r.abs());
         let depth = largest(a[2], b[2], c[2]);
         let across = largest(a[0], b[0], c[0]).max(largest(a[1], b[1], c[1]));
-        let reach = across + depth * V::splat(2.0 * f32::EPSILON);
+        let reach = depth.mul_add(V::splat(2.0 * f32::EPSILON), across);
         // The small factor comes last, so that an overflow of an edge function is one of the bound.
-        let bound =
-            reach * (across + depth) * V::splat(8.0 * f32::EPSILON) + V::splat(f32::MIN_POSITIVE);
+        let bound = (reach * (across + depth))
+            .mul_add(V::splat(8.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
 
-        let below = ab.min(bc).min(ca).lt(V::splat(0.0) - bound);
-        let above = bound.lt(ab.max(bc).max(ca));
+        let (low, high) = (ab.min(bc).min(ca), ab.max(bc).max(ca));
+        let minus_bound = V::splat(0.0) - bound;
         // Unused lanes are NaN, which is not even equal to itself.
         let used = a[2].le(a[2]);
-        used & !(below & above)
+        let passed = used & !(low.lt(minus_bound) & bound.lt(high));
+        if passed == 0 {
+            return Candidates::NONE;
+        }
+        let (beyond, within) = ray.compare(limits, sure, [a[2], b[2], c[2]]);
+        Candidates {
+            possible: passed & !beyond,
+            certain: bound.lt(low) | high.lt(minus_bound),
+            within,
+        }
     }
 
     /// Where the ray's line passes the triangle in `lane`.
+    /// `certain`: of which lanes that is known.
     #[inline(always)]
-    pub(crate) fn pass<V: F32x4>(&self, lane: usize, ray: &TriangleRay<V>) -> Option<Passage> {
-        let [a, b, c] = self.triangle(lane);
+    pub(crate) fn pass<V: F32x4>(
+        &self,
+        lane: usize,
+        ray: &TriangleRay<V>,
+        certain: u32,
+    ) -> Option<Passage> {
+        let [a, b, c] = self.triangle(lane % LANES);
         let seen = [a - ray.origin, b - ray.origin, c - ray.origin];
-        pass_triangle(seen, ray.direction, ray.axes[2])
+        if certain >> lane & 1 == 1 {
+            Some(pass_certain(seen, ray.direction, ray.axes[2] % 3))
+        } else {
+            pass_triangle(seen, ray.direction, ray.axes[2] % 3)
+        }
+    }
+}
+
+/// The axes in cyclic order, that of the direction's largest component last.
+#[inline(always)]
+fn axes_of(direction: Vec3) -> [usize; 3] {
+    let [x, y, z] = direction.abs().to_array();
+    if z > x.max(y) {
+        [0, 1, 2]
+    } else if y > x {
+        [2, 0, 1]
+    } else {
+        [1, 2, 0]
     }
 }
 
@@ -127,19 +193,47 @@ pub(crate) struct TriangleRay<V> {
     origin_lanes: [V; 3],
     /// The direction's two smaller components over the largest.
     shear: [V; 2],
+    /// One over the direction's largest component; NaN where it would be subnormal.
+    per_depth: V,
 }
 
 impl<V: F32x4> TriangleRay<V> {
+    #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Self {
-        let d = ray.direction;
-        let z = d.abs().max_position();
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let (d, o) = (ray.direction.to_array(), ray.origin.to_array());
+        let [x, y, z] = axes_of(ray.direction);
+        let (d, o) = (
+            |axis: usize| d[axis % 3],
+            |axis: usize| V::splat(o[axis % 3]),
+        );
+        let per_depth = 1.0 / d(z);
         Self {
             origin: ray.origin,
-            direction: d,
-            axes,
-            origin_lanes: axes.map(|axis| V::splat(ray.origin[axis])),
-            shear: [V::splat(d[axes[0]] / d[z]), V::splat(d[axes[1]] / d[z])],
+            direction: ray.direction,
+            axes: [x, y, z],
+            origin_lanes: [o(x), o(y), o(z)],
+            shear: [V::splat(d(x) / d(z)), V::splat(d(y) / d(z))],
+            per_depth: V::splat(if per_depth.is_normal() {
+                per_depth
+            } else {
+                f32::NAN
+            }),
         }
+    }
+
+    /// Masks of the lanes whose triangles, with vertices at these depths, the line passes at a `t`
+    /// certainly outside the limits, and certainly within those that are sure.
+    #[inline(always)]
+    fn compare(&self, limits: &Ray, sure: [f32; 2], depths: [V; 3]) -> (u32, u32) {
+        let [a, b, c] = depths;
+        let [a, b, c] = [a * self.per_depth, b * self.per_depth, c * self.per_depth];
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let slack = (low.abs() + high.abs())
+            .mul_add(V::splat(4.0 * f32::EPSILON), V::splat(f32::MIN_POSITIVE));
+        let (t_min, t_max) = (V::splat(limits.t_min), V::splat(limits.t_max));
+        let beyond = (high + slack).lt(t_min) | t_max.lt(low - slack);
+        let [first, last] = sure.map(V::splat);
+        let within = first.le(low - slack) & (high + slack).le(last);
+        (beyond, within)
     }
 }

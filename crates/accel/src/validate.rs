@@ -5,7 +5,8 @@ use glam::Vec3;
 use crate::aabb::Aabb;
 use crate::builder::MAX_DEPTH;
 use crate::bvh::Bvh;
-use crate::node::{Child, Target, WIDTH};
+use crate::child::{Child, Target};
+use crate::node::WIDTH;
 
 impl Bvh {
     /// Walks the whole tree and checks every invariant that queries rely on; `Err` describes the

@@ -5,7 +5,9 @@
 //!
 //! [Wald07]: https://doi.org/10.1109/RT.2007.4342588
 
-use super::group::{Reference, area_in};
+use glam::Vec3A;
+
+use super::group::{Reference, area_in, summed};
 use crate::aabb::Aabb;
 use crate::triangle::LANES;
 
@@ -33,47 +35,74 @@ pub(super) fn blocks(lanes: u32) -> f32 {
     lanes.div_ceil(LANES as u32) as f32
 }
 
+/// Bounds of a bin, in vector registers, and the lanes of what is in it.
 #[derive(Clone, Copy)]
 struct Bin {
-    bounds: Aabb,
+    min: Vec3A,
+    max: Vec3A,
     lanes: u32,
 }
 
 impl Bin {
     const EMPTY: Self = Self {
-        bounds: Aabb::EMPTY,
+        min: Vec3A::INFINITY,
+        max: Vec3A::NEG_INFINITY,
         lanes: 0,
     };
 
+    fn of(reference: &Reference) -> Self {
+        Self {
+            min: reference.bounds.min.into(),
+            max: reference.bounds.max.into(),
+            lanes: reference.lanes(),
+        }
+    }
+
+    #[inline]
     fn add(&mut self, other: &Self) {
-        self.bounds = self.bounds.union(other.bounds);
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
         self.lanes += other.lanes;
     }
 
     fn cost(&self, unit: f32) -> f32 {
-        area_in(unit, &self.bounds) * blocks(self.lanes)
+        let bounds = Aabb {
+            min: self.min.into(),
+            max: self.max.into(),
+        };
+        area_in(unit, &bounds) * blocks(self.lanes)
     }
 }
 
+/// `[axis][bin]`.
+type Table<const BINS: usize> = [[Bin; BINS]; 3];
+
 /// The split of least cost. None: all centers are in one place, or nearly.
 pub(super) fn best_split(references: &[Reference], centers: &Aabb, unit: f32) -> Option<Split> {
-    // Small groups do not deserve many bins.
-    let bins = (8 + references.len() / 2).min(MAX_BINS);
-    let mut best: Option<Split> = None;
-    let mut table = [[Bin::EMPTY; MAX_BINS]; 3];
-    let scales = [0, 1, 2].map(|axis| bin_scale(centers, axis, bins));
-    for reference in references {
-        let item = Bin {
-            bounds: reference.bounds,
-            lanes: reference.lanes(),
-        };
-        for axis in 0..3 {
-            let bin = bin_of(reference, centers, axis, scales[axis]).min(bins - 1);
-            table[axis][bin].add(&item);
-        }
+    // Small groups do not deserve many bins, nor a table with room for them.
+    match references.len() {
+        ..=8 => best_of::<12>(references, centers, unit),
+        9..=16 => best_of::<16>(references, centers, unit),
+        _ => best_of::<MAX_BINS>(references, centers, unit),
     }
+}
+
+fn best_of<const BINS: usize>(
+    references: &[Reference],
+    centers: &Aabb,
+    unit: f32,
+) -> Option<Split> {
+    let bins = (8 + references.len() / 2).min(BINS);
+    let fill = |part: &[Reference]| filled::<BINS>(part, centers, bins);
+    let table = summed(references, fill, |mut sum, part| {
+        for (sum, part) in sum.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
+            sum.add(part);
+        }
+        sum
+    });
+    let mut best: Option<Split> = None;
     for (axis, table) in table.iter().enumerate() {
-        let mut right_costs = [f32::INFINITY; MAX_BINS];
+        let mut right_costs = [f32::INFINITY; BINS];
         let mut right = Bin::EMPTY;
         for bin in (1..bins).rev() {
             right.add(&table[bin]);
@@ -97,6 +126,20 @@ pub(super) fn best_split(references: &[Reference], centers: &Aabb, unit: f32) ->
         }
     }
     best
+}
+
+/// Sorts references into bins along each axis.
+fn filled<const BINS: usize>(references: &[Reference], centers: &Aabb, bins: usize) -> Table<BINS> {
+    let mut table = [[Bin::EMPTY; BINS]; 3];
+    let scales = [0, 1, 2].map(|axis| bin_scale(centers, axis, bins));
+    for reference in references {
+        let item = Bin::of(reference);
+        for axis in 0..3 {
+            let bin = bin_of(reference, centers, axis, scales[axis]).min(bins - 1);
+            table[axis][bin].add(&item);
+        }
+    }
+    table
 }
 
 /// Bins per unit of length. Infinite for tiny extents, which [`bin_of`] copes with.

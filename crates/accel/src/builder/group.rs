@@ -1,10 +1,11 @@
 //! Sets of primitives that become a leaf or are split.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
+use rayon::prelude::{ParallelIterator, ParallelSlice};
 
 use super::bins::{self, Split};
 use crate::aabb::{Aabb, half_area};
-use crate::node::Child;
+use crate::child::Child;
 use crate::primitive::Primitive;
 use crate::triangle::LANES;
 
@@ -82,15 +83,9 @@ const MAX_LEAF_LANES: u32 = ((Child::MAX_LEAF - 1) * LANES) as u32;
 impl<'a> Group<'a> {
     /// Groups at least one reference.
     pub(super) fn new(references: &'a mut [Reference], unit: f32) -> Self {
-        let (mut bounds, mut centers) = (Aabb::EMPTY, Aabb::EMPTY);
-        for reference in references.iter() {
-            bounds = bounds.union(reference.bounds);
-            let center = reference.bounds.center();
-            centers = centers.union(Aabb {
-                min: center,
-                max: center,
-            });
-        }
+        let [bounds, centers] = summed(references, bounds_of, |[a, b], [c, d]| {
+            [a.union(c), b.union(d)]
+        });
         let first = references[0].kind;
         let kind = references.iter().all(|r| r.kind == first).then_some(first);
         let split = bins::best_split(references, &centers, unit);
@@ -117,19 +112,32 @@ impl<'a> Group<'a> {
     /// otherwise if testing all is expected to cost no more than a node and its children.
     /// A node's test counts as much as a block's.
     pub(super) fn is_leaf(&self) -> bool {
-        let lanes: u32 = match self.kind {
-            Some(_) if self.len() <= MAX_LEAF_LANES as usize => {
-                self.references.iter().map(Reference::lanes).sum()
-            }
-            _ => return false,
-        };
-        let split_cost = self
-            .split
+        self.leaf_lanes().is_some_and(|lanes| {
+            lanes <= LANES as u32
+                || self.area * bins::blocks(lanes) <= self.area + self.split_cost()
+        })
+    }
+
+    /// Whether to split it where the node that will test the parts is paid for already.
+    pub(super) fn deserves_split(&self) -> bool {
+        self.leaf_lanes().is_none_or(|lanes| {
+            lanes > LANES as u32 && self.area * bins::blocks(lanes) > self.split_cost()
+        })
+    }
+
+    /// The lanes of a leaf of all. None: there is no room for it.
+    fn leaf_lanes(&self) -> Option<u32> {
+        if self.kind.is_none() || self.len() > MAX_LEAF_LANES as usize {
+            return None;
+        }
+        let lanes = self.references.iter().map(Reference::lanes).sum();
+        (lanes <= MAX_LEAF_LANES || self.len() == 1).then_some(lanes)
+    }
+
+    fn split_cost(&self) -> f32 {
+        self.split
             .as_ref()
-            .map_or(f32::INFINITY, |split| split.cost);
-        lanes <= LANES as u32
-            || (lanes <= MAX_LEAF_LANES
-                && self.area * bins::blocks(lanes) <= self.area + split_cost)
+            .map_or(f32::INFINITY, |split| split.cost)
     }
 
     /// Divides by the heuristic, or in two halves if it knows no way.
@@ -151,6 +159,47 @@ impl<'a> Group<'a> {
         let (left, right) = self.references.split_at_mut(middle);
         [Self::new(left, unit), Self::new(right, unit)]
     }
+}
+
+/// References of a part that one thread looks at. Not a matter of threads: a sum of parts may
+/// depend on how they are cut, in the sign of a zero.
+const PART: usize = 1 << 15;
+
+/// What `look` tells of the references: of all at once, or of parts that are merged in order.
+pub(super) fn summed<T: Send>(
+    references: &[Reference],
+    look: impl Fn(&[Reference]) -> T + Sync + Send,
+    merge: impl Fn(T, T) -> T,
+) -> T {
+    let (first, others) = references.split_at(references.len().min(PART));
+    let (first, others): (T, Vec<T>) = if others.is_empty() {
+        (look(first), Vec::new())
+    } else {
+        rayon::join(
+            || look(first),
+            || others.par_chunks(PART).map(&look).collect(),
+        )
+    };
+    others.into_iter().fold(first, merge)
+}
+
+/// Bounds of references, and of their centers.
+fn bounds_of(references: &[Reference]) -> [Aabb; 2] {
+    let (inf, minus) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+    let (mut min, mut max, mut first, mut last) = (inf, minus, inf, minus);
+    for reference in references {
+        let bounds: [Vec3A; 2] = [reference.bounds.min.into(), reference.bounds.max.into()];
+        min = min.min(bounds[0]);
+        max = max.max(bounds[1]);
+        let center = 0.5 * bounds[0] + 0.5 * bounds[1];
+        first = first.min(center);
+        last = last.max(center);
+    }
+    let aabb = |min: Vec3A, max: Vec3A| Aabb {
+        min: min.into(),
+        max: max.into(),
+    };
+    [aabb(min, max), aabb(first, last)]
 }
 
 /// Half of the surface area in squares of `unit`.

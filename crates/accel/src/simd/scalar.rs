@@ -1,9 +1,10 @@
-//! [`F32x4`] without intrinsics.
+//! Lanes without intrinsics, and eight lanes from twice four.
 
 use std::array::from_fn;
 use std::ops::{Add, Mul, Sub};
 
-use super::F32x4;
+use super::{F32x4, F32x8};
+use crate::node::WIDTH;
 
 /// Four lanes as an array.
 #[derive(Clone, Copy)]
@@ -79,6 +80,21 @@ impl F32x4 for Scalar4 {
     }
 
     #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, term: Self) -> Self {
+        self * factor - term
+    }
+
+    #[inline(always)]
+    fn sub_from(self, factor: Self, term: Self) -> Self {
+        term - self * factor
+    }
+
+    #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.compare(other, |a, b| a < b)
     }
@@ -86,5 +102,49 @@ impl F32x4 for Scalar4 {
     #[inline(always)]
     fn le(self, other: Self) -> u32 {
         self.compare(other, |a, b| a <= b)
+    }
+}
+
+/// Eight lanes: the first four, and the others.
+#[derive(Clone, Copy)]
+pub(crate) struct Pair<V>(V, V);
+
+impl<V: F32x4> F32x8 for Pair<V> {
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(V::splat(value), V::splat(value))
+    }
+
+    #[inline(always)]
+    fn load([a, b, c, d, e, f, g, h]: &[f32; WIDTH]) -> Self {
+        Self(V::load(&[*a, *b, *c, *d]), V::load(&[*e, *f, *g, *h]))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, term: Self) -> Self {
+        let first = self.0.mul_sub(factor.0, term.0);
+        Self(first, self.1.mul_sub(factor.1, term.1))
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> u32 {
+        self.0.le(other.0) | self.1.le(other.1) << 4
+    }
+
+    #[inline(always)]
+    fn over(self, low: &[u32; WIDTH]) -> [u64; WIDTH] {
+        let (first, second) = (self.0.to_array(), self.1.to_array());
+        let lane = |k: usize| if k < 4 { first[k] } else { second[k - 4] };
+        from_fn(|k| u64::from(lane(k).to_bits()) << 32 | u64::from(low[k]))
     }
 }

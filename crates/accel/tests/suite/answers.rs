@@ -4,7 +4,8 @@ use bidir_accel::{Aabb, Primitive, Ray, accept_all};
 use glam::Vec3;
 
 use crate::oracle::{Single, hit_bits, plane_passage};
-use crate::scenes::{Mesh, Random, build, displace, mixed, triangle_soup};
+use crate::scenes::{Mesh, Random, displace, mixed, triangle_soup};
+use crate::trees::build;
 
 #[track_caller]
 fn check_equals_brute_force(primitives: &[Primitive], random: &mut Random, rays: usize) {
@@ -22,11 +23,7 @@ fn check_equals_brute_force(primitives: &[Primitive], random: &mut Random, rays:
                 hit_bits(expected),
                 "{ray:?}"
             );
-            assert_eq!(
-                bvh.occluded(&ray, accept_all),
-                expected.is_some(),
-                "{ray:?}"
-            );
+            assert_eq!(bvh.is_hit(&ray), expected.is_some(), "{ray:?}");
         }
     }
 }
@@ -98,7 +95,7 @@ fn limits_include_their_ends() {
     };
     let found = |t_min, t_max| {
         let hit = bvh.closest(&ray(t_min, t_max), accept_all);
-        assert_eq!(bvh.occluded(&ray(t_min, t_max), accept_all), hit.is_some());
+        assert_eq!(bvh.is_hit(&ray(t_min, t_max)), hit.is_some());
         hit.map(|hit| hit.primitive)
     };
     assert_eq!(found(0.0, f32::INFINITY), Some(0));

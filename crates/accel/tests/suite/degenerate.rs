@@ -5,7 +5,8 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use crate::oracle::{Single, hit_bits};
-use crate::scenes::{Random, build, triangle_soup};
+use crate::scenes::{Random, triangle_soup};
+use crate::trees::build;
 
 #[track_caller]
 fn check_rays(primitives: &[Primitive], random: &mut Random) {

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use bidir_accel::{
-    Aabb, BuildError, BuildOptions, Bvh, Hit, Instance, InstanceError, Isa, Primitive, Ray,
-    accept_all,
+    Aabb, BuildError, BuildOptions, Bvh, Hit, Instance, InstanceError, Primitive, Ray, accept_all,
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use crate::oracle::hit_bits;
-use crate::scenes::{Mesh, Random, build, displace, mixed, triangle_soup};
+use crate::scenes::{Mesh, Random, displace, mixed, triangle_soup};
+use crate::trees::{Trees, build, build_one};
 
 fn vector(random: &mut Random) -> DVec3 {
     random.ball().as_dvec3()
@@ -25,12 +25,14 @@ fn map(random: &mut Random) -> DAffine3 {
     }
 }
 
-fn placed(isa: Isa, own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance]) -> Bvh {
-    let options = BuildOptions { isa };
-    let objects = objects.iter().map(|object| Arc::new(build(object)));
-    let bvh = Bvh::with_instances(own, objects.collect(), instances, &options).expect("valid");
-    assert_eq!(bvh.validate(), Ok(()));
-    bvh
+fn placed_one(own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance]) -> Bvh {
+    let objects = objects.iter().map(|object| Arc::new(build_one(object)));
+    let options = BuildOptions::default();
+    Bvh::with_instances(own, objects.collect(), instances, &options).expect("valid")
+}
+
+fn placed(own: &[Primitive], objects: &[&[Primitive]], instances: &[Instance]) -> Trees {
+    Trees::new(&placed_one(own, objects, instances))
 }
 
 fn instances(random: &mut Random, count: usize, objects: usize) -> Vec<Instance> {
@@ -58,7 +60,7 @@ fn equal_copies_but_for_rounding() {
     let objects = [20, 70].map(|count| triangle_soup(&mut random, count, 0.4));
     let own = triangle_soup(&mut random, 10, 0.5);
     let instances = instances(&mut random, 30, 2);
-    let bvh = placed(Isa::detect(), &own, &[&objects[0], &objects[1]], &instances);
+    let bvh = placed(&own, &[&objects[0], &objects[1]], &instances);
     let mut copies = own.clone();
     let mut numbers: Vec<_> = (0..own.len() as u32).map(|i| (0, i)).collect();
     for (number, instance) in (1..).zip(&instances) {
@@ -109,13 +111,10 @@ fn equal_brute_force_over_instances() {
     let mut instances = instances(&mut random, 40, 3);
     // Some stand in the same place: their hits tie.
     instances.extend_from_within(..10);
-    let isas = Isa::ALL.into_iter().filter(|isa| isa.is_supported());
-    let trees: Vec<_> = isas
-        .map(|isa| placed(isa, &[], &objects, &instances))
-        .collect();
+    let trees = placed(&[], &objects, &instances);
     let each: Vec<_> = instances
         .iter()
-        .map(|instance| placed(Isa::detect(), &[], &objects, &[*instance]))
+        .map(|instance| placed_one(&[], &objects, &[*instance]))
         .collect();
     let mut hits = 0;
     for i in 0..20_000 {
@@ -132,14 +131,9 @@ fn equal_brute_force_over_instances() {
         let accept = |hit: &Hit| (hit.instance + hit.primitive) % 3 != refused;
         let expected = closest_of_each(&each, &ray, accept);
         hits += usize::from(expected.is_some());
-        for bvh in &trees {
-            assert_eq!(
-                hit_bits(bvh.closest(&ray, accept)),
-                hit_bits(expected),
-                "{ray:?}"
-            );
-            assert_eq!(bvh.occluded(&ray, accept), expected.is_some(), "{ray:?}");
-        }
+        let hit = trees.closest(&ray, accept);
+        assert_eq!(hit_bits(hit), hit_bits(expected), "{ray:?}");
+        assert_eq!(trees.occluded(&ray, accept), expected.is_some(), "{ray:?}");
     }
     assert!(hits > 2500, "{hits} hits do not say much");
 }
@@ -163,7 +157,7 @@ fn closed_objects_do_not_leak() {
                 object: 0,
                 world_from_object: map,
             };
-            let bvh = placed(Isa::detect(), &[], &[&object], &[instance]);
+            let trees = placed(&[], &[&object], &[instance]);
             for i in 0..20_000 {
                 // From the middle half of the inside at edges and vertices, as subtracted.
                 let origin = map.transform_point3(0.5 * vector(&mut random)).as_vec3();
@@ -173,8 +167,7 @@ fn closed_objects_do_not_leak() {
                 let target = map.transform_point3(local.as_dvec3()).as_vec3();
                 let ray = Ray::new(origin, target - origin);
                 // At 10⁵ the world's numbers no longer tell the inside from the outside of small ones.
-                assert!(bvh.occluded(&ray, accept_all), "{ray:?} {map:?}");
-                assert!(bvh.closest(&ray, accept_all).is_some(), "{ray:?} {map:?}");
+                assert!(trees.is_hit(&ray), "{ray:?} {map:?}");
             }
         }
     }
@@ -188,13 +181,13 @@ fn own_primitives_come_first_in_ties() {
         world_from_object: DAffine3::IDENTITY,
     };
     let ray = Ray::new(Vec3::new(0.2, 0.2, 2.0), -Vec3::Z);
-    let both = placed(Isa::detect(), &[triangle], &[&[triangle]], &[instance; 3]);
-    let id = |bvh: &Bvh| {
+    let both = placed(&[triangle], &[&[triangle]], &[instance; 3]);
+    let id = |bvh: &Trees| {
         let hit = bvh.closest(&ray, accept_all);
         hit.map(|hit| (hit.t.to_bits(), hit.instance))
     };
     assert_eq!(id(&both), Some((2.0_f32.to_bits(), 0)));
-    let only = placed(Isa::detect(), &[], &[&[triangle]], &[instance; 3]);
+    let only = placed(&[], &[&[triangle]], &[instance; 3]);
     assert_eq!(id(&only), Some((2.0_f32.to_bits(), 1)));
     let behind = |hit: &Hit| hit.instance > 2;
     assert_eq!(only.closest(&ray, behind).map(|hit| hit.instance), Some(3));
@@ -211,7 +204,7 @@ fn threads_do_not_matter() {
             .num_threads(threads)
             .build()
             .expect("threads");
-        pool.install(|| placed(Isa::detect(), &own, &[&object], &instances))
+        pool.install(|| placed_one(&own, &[&object], &instances))
     });
     assert_eq!(trees[0].memory_bytes(), trees[1].memory_bytes());
     for _ in 0..5000 {
@@ -227,7 +220,7 @@ fn nothing_in_many_places_is_nothing() {
         object: 0,
         world_from_object: DAffine3::IDENTITY,
     };
-    let bvh = placed(Isa::detect(), &[], &[&[]], &[instance; 5]);
+    let bvh = placed(&[], &[&[]], &[instance; 5]);
     assert!(!bvh.occluded(&Ray::new(Vec3::ZERO, Vec3::X), accept_all));
     assert_eq!((bvh.bounds(), bvh.instance_count()), (Aabb::EMPTY, 5));
 }
@@ -236,7 +229,7 @@ fn nothing_in_many_places_is_nothing() {
 fn bad_instances_are_refused() {
     let options = BuildOptions::default();
     let triangle = Primitive::Triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
-    let object = Arc::new(build(&[triangle]));
+    let object = Arc::new(build_one(&[triangle]));
     let at = |object, scale| Instance {
         object,
         world_from_object: DAffine3::from_scale(scale),

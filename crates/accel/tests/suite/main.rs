@@ -12,4 +12,5 @@ mod instances;
 mod oracle;
 mod quadrics;
 mod scenes;
+mod trees;
 mod watertight;

@@ -3,7 +3,7 @@
 use bidir_accel::{Bvh, Hit, Primitive, Ray};
 use glam::{DVec3, Vec3};
 
-use crate::scenes::build;
+use crate::trees::build_one;
 
 /// Every primitive in a tree of its own: no traversal, the same leaf test.
 pub(crate) struct Single(Vec<Bvh>);
@@ -13,7 +13,7 @@ impl Single {
         Self(
             primitives
                 .iter()
-                .map(|primitive| build(&[*primitive]))
+                .map(|primitive| build_one(&[*primitive]))
                 .collect(),
         )
     }

@@ -7,7 +7,8 @@ use bidir_accel::{
 };
 use glam::{Affine3A, DVec3, Mat3, Vec3};
 
-use crate::scenes::{Random, build, cylinder, disk, sphere};
+use crate::scenes::{Random, cylinder, disk, sphere};
+use crate::trees::build;
 
 /// A point of the surface in local space, from its parameters by the definition.
 fn local_point(primitive: &Primitive, hit: &Hit) -> DVec3 {

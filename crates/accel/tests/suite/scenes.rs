@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
-use bidir_accel::{BuildOptions, Bvh, Cylinder, Disk, Isa, Primitive, Ray, Sphere};
+use bidir_accel::{Cylinder, Disk, Primitive, Ray, Sphere};
 use glam::{Affine3A, Quat, Vec3};
 
 /// The generator `SplitMix64`.
@@ -222,17 +222,4 @@ pub(crate) fn mixed(random: &mut Random, count: usize) -> Vec<Primitive> {
         primitives.swap(i, random.below(i + 1));
     }
     primitives
-}
-
-/// A validated tree.
-#[track_caller]
-pub(crate) fn build(primitives: &[Primitive]) -> Bvh {
-    build_for(Isa::detect(), primitives)
-}
-
-#[track_caller]
-pub(crate) fn build_for(isa: Isa, primitives: &[Primitive]) -> Bvh {
-    let bvh = Bvh::build(primitives, &BuildOptions { isa }).expect("a valid scene");
-    assert_eq!(bvh.validate(), Ok(()));
-    bvh
 }

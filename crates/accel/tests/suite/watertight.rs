@@ -1,9 +1,10 @@
 //! No ray leaves a closed mesh, wherever it is aimed.
 
-use bidir_accel::{Bvh, Ray, accept_all};
+use bidir_accel::Ray;
 use glam::{DVec3, Vec3};
 
-use crate::scenes::{Mesh, Random, build, displace};
+use crate::scenes::{Mesh, Random, displace};
+use crate::trees::{Trees, build};
 
 const RAYS: usize = 1_000_000;
 
@@ -22,12 +23,8 @@ fn target(mesh: &Mesh, random: &mut Random) -> Vec3 {
 }
 
 #[track_caller]
-fn check_no_leaks(bvh: &Bvh, rays: impl Iterator<Item = Ray>) {
-    let leak = |ray: &Ray| {
-        let hit = bvh.closest(ray, accept_all);
-        hit.is_none() || !bvh.occluded(ray, accept_all)
-    };
-    let mut leaks = rays.filter(leak);
+fn check_no_leaks(trees: &Trees, rays: impl Iterator<Item = Ray>) {
+    let mut leaks = rays.filter(|ray| !trees.is_hit(ray));
     let first = leaks.next();
     assert!(
         first.is_none(),

@@ -85,7 +85,7 @@ impl Scene {
     #[inline]
     pub(super) fn transmittance_along(&self, ray: &accel::Ray) -> f32 {
         if self.coverages.is_empty() {
-            return f32::from(!self.bvh.occluded(ray, accel::accept_all));
+            return f32::from(!self.bvh.is_blocked(ray));
         }
         let mut factors = Factors::default();
         let flow = self.bvh.each_hit(ray, |hit| match self.coverage(ray, hit) {

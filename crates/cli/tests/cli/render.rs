@@ -49,7 +49,9 @@ fn check_same(place: &Workplace, a: &str, b: &str) {
 fn threads_instructions_and_spellings_do_not_change_a_bit() {
     let place = Workplace::new();
     check_same(&place, "--threads 1", "--nthreads 2");
-    check_same(&place, "--isa scalar", "");
+    for isa in accel::Isa::supported() {
+        check_same(&place, &format!("--isa {isa}"), "");
+    }
     check_same(&place, "--crop 4,2,20,10", "--pixelbounds 4,20,2,10");
     check_same(
         &place,

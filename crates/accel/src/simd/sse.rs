@@ -1,8 +1,9 @@
-//! [`F32x4`] with SSE2, which is part of every x86-64 machine.
+//! Four lanes in one register.
 
 use std::arch::x86_64::{
-    __m128, _mm_add_ps, _mm_andnot_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_loadu_ps, _mm_max_ps,
-    _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_set1_ps, _mm_storeu_ps, _mm_sub_ps,
+    __m128, _mm_add_ps, _mm_andnot_ps, _mm_cmple_ps, _mm_cmplt_ps, _mm_fmadd_ps, _mm_fmsub_ps,
+    _mm_fnmadd_ps, _mm_loadu_ps, _mm_max_ps, _mm_min_ps, _mm_movemask_ps, _mm_mul_ps, _mm_set1_ps,
+    _mm_storeu_ps, _mm_sub_ps,
 };
 use std::ops::{Add, Mul, Sub};
 
@@ -16,11 +17,11 @@ macro_rules! sse2 {
     };
 }
 
-/// Four lanes in one register.
+/// Four lanes. `FUSED`: with FMA; such values exist only in [kernels](super::Kernel) of sets with it.
 #[derive(Clone, Copy)]
-pub(crate) struct Sse4(__m128);
+pub(crate) struct Sse4<const FUSED: bool>(__m128);
 
-impl Add for Sse4 {
+impl<const FUSED: bool> Add for Sse4<FUSED> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -28,7 +29,7 @@ impl Add for Sse4 {
     }
 }
 
-impl Sub for Sse4 {
+impl<const FUSED: bool> Sub for Sse4<FUSED> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -36,7 +37,7 @@ impl Sub for Sse4 {
     }
 }
 
-impl Mul for Sse4 {
+impl<const FUSED: bool> Mul for Sse4<FUSED> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -44,7 +45,19 @@ impl Mul for Sse4 {
     }
 }
 
-impl F32x4 for Sse4 {
+/// `$fused` of three operands where there is FMA, `$plain` elsewhere.
+macro_rules! fused_or {
+    ($fused:ident, $a:expr, $b:expr, $c:expr, $plain:expr) => {
+        if FUSED {
+            // SAFETY: a fused value exists only where the machine has FMA.
+            Self(unsafe { $fused($a.0, $b.0, $c.0) })
+        } else {
+            $plain
+        }
+    };
+}
+
+impl<const FUSED: bool> F32x4 for Sse4<FUSED> {
     #[inline(always)]
     fn splat(value: f32) -> Self {
         Self(sse2!(_mm_set1_ps(value)))
@@ -77,6 +90,21 @@ impl F32x4 for Sse4 {
     #[inline(always)]
     fn abs(self) -> Self {
         Self(sse2!(_mm_andnot_ps(_mm_set1_ps(-0.0), self.0)))
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        fused_or!(_mm_fmadd_ps, self, factor, term, self * factor + term)
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, factor: Self, term: Self) -> Self {
+        fused_or!(_mm_fmsub_ps, self, factor, term, self * factor - term)
+    }
+
+    #[inline(always)]
+    fn sub_from(self, factor: Self, term: Self) -> Self {
+        fused_or!(_mm_fnmadd_ps, self, factor, term, term - self * factor)
     }
 
     #[inline(always)]

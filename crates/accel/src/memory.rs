@@ -1,0 +1,68 @@
+//! Where the arrays of a tree lie.
+
+/// Arrays below this size do not ask for large pages: they would not fill many.
+const LARGE: usize = 1 << 20;
+
+/// Begins to load the lines of `BYTES` bytes from `place` on, which need not be valid.
+#[inline(always)]
+pub(crate) fn prefetch<const BYTES: usize>(place: *const u8) {
+    #[cfg(target_arch = "x86_64")]
+    for line in 0..BYTES.div_ceil(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch reads nothing that could be seen, wherever it points; it is part of SSE.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(place.wrapping_add(64 * line).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = place;
+}
+
+/// The same elements, in memory that fits and, where there is much of it and the system can, in large
+/// pages: rays jump about in it, and each jump to a small page costs a search for that page.
+pub(crate) fn settled<T: Copy>(mut elements: Vec<T>) -> Vec<T> {
+    if size_of_val(elements.as_slice()) < LARGE {
+        elements.shrink_to_fit();
+        return elements;
+    }
+    let mut settled = Vec::with_capacity(elements.len());
+    ask_for_large_pages(&mut settled);
+    settled.extend_from_slice(&elements);
+    settled
+}
+
+/// Asks before the memory is touched. A refusal changes nothing.
+#[cfg(target_os = "linux")]
+fn ask_for_large_pages<T>(empty: &mut Vec<T>) {
+    /// Of the smallest pages; what it asks for must begin at a multiple.
+    const PAGE: usize = 4096;
+    let begin: *mut u8 = empty.as_mut_ptr().cast();
+    let skipped = begin.align_offset(PAGE);
+    let bytes = (empty.capacity() * size_of::<T>()).saturating_sub(skipped);
+    // SAFETY: the range lies within the allocation, and the advice changes neither what is in it nor
+    // who may use it.
+    unsafe {
+        libc::madvise(
+            begin.add(skipped).cast(),
+            bytes / PAGE * PAGE,
+            libc::MADV_HUGEPAGE,
+        );
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn ask_for_large_pages<T>(_: &mut Vec<T>) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_changed_or_wasted() {
+        for count in [0, 1, 1000, LARGE / 4, LARGE + 77] {
+            let mut elements: Vec<u32> = (0..count as u32).collect();
+            elements.reserve(count);
+            let settled = settled(elements.clone());
+            assert_eq!(settled, elements);
+            assert_eq!(settled.capacity(), count);
+        }
+    }
+}

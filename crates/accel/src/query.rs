@@ -1,0 +1,112 @@
+//! The questions that can be asked about the hits of a ray.
+
+use std::ops::ControlFlow;
+
+use crate::ray::Hit;
+
+/// What is asked about the hits of a ray.
+pub(crate) trait Query {
+    /// Whether children are visited from near to far.
+    const NEAR_FIRST: bool;
+
+    /// Whether it asks nothing of a hit but that there is one.
+    const ANYTHING: bool = false;
+
+    /// Takes a hit at most as far as the ray's `t_max`, which it may shorten.
+    fn offer(&mut self, hit: Hit, t_max: &mut f32) -> ControlFlow<()>;
+}
+
+/// Finds the first of the accepted hits in the order of [`Hit::is_before`].
+pub(crate) struct ClosestHit<F> {
+    accept: F,
+    pub(crate) best: Option<Hit>,
+}
+
+impl<F> ClosestHit<F> {
+    pub(crate) fn new(accept: F) -> Self {
+        Self { accept, best: None }
+    }
+}
+
+impl<F: Fn(&Hit) -> bool> Query for ClosestHit<F> {
+    const NEAR_FIRST: bool = true;
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, t_max: &mut f32) -> ControlFlow<()> {
+        if self.best.is_none_or(|best| hit.is_before(&best)) && (self.accept)(&hit) {
+            *t_max = hit.t;
+            self.best = Some(hit);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Finds whether there is an accepted hit.
+pub(crate) struct AnyHit<F> {
+    accept: F,
+    pub(crate) found: bool,
+}
+
+impl<F> AnyHit<F> {
+    pub(crate) fn new(accept: F) -> Self {
+        Self {
+            accept,
+            found: false,
+        }
+    }
+}
+
+impl<F: Fn(&Hit) -> bool> Query for AnyHit<F> {
+    const NEAR_FIRST: bool = false;
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.found = (self.accept)(&hit);
+        if self.found {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+/// Finds whether there is any hit.
+pub(crate) struct Anything {
+    pub(crate) found: bool,
+}
+
+impl Query for Anything {
+    const NEAR_FIRST: bool = false;
+    const ANYTHING: bool = true;
+
+    #[inline(always)]
+    fn offer(&mut self, _: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.found = true;
+        ControlFlow::Break(())
+    }
+}
+
+/// Finds all hits, as long as it is wanted.
+pub(crate) struct EachHit<F> {
+    found: F,
+    pub(crate) flow: ControlFlow<()>,
+}
+
+impl<F> EachHit<F> {
+    pub(crate) fn new(found: F) -> Self {
+        Self {
+            found,
+            flow: ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl<F: FnMut(&Hit) -> ControlFlow<()>> Query for EachHit<F> {
+    const NEAR_FIRST: bool = false;
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, _: &mut f32) -> ControlFlow<()> {
+        self.flow = (self.found)(&hit);
+        self.flow
+    }
+}

@@ -1,0 +1,80 @@
+//! Trees that are asked for every instruction set of the machine.
+
+use std::ops::Deref;
+
+use bidir_accel::{BuildOptions, Bvh, Hit, Isa, Primitive, Ray, accept_all};
+
+use crate::oracle::hit_bits;
+
+/// One tree for each instruction set; all must give the same answers. Else it is the portable one.
+pub(crate) struct Trees(Vec<Bvh>);
+
+impl Trees {
+    /// Validates the tree.
+    #[track_caller]
+    pub(crate) fn new(bvh: &Bvh) -> Self {
+        assert_eq!(bvh.validate(), Ok(()));
+        let for_isa = |isa| bvh.clone().with_isa(isa).expect("supported");
+        Self(Isa::supported().map(for_isa).collect())
+    }
+
+    #[track_caller]
+    pub(crate) fn closest(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        let expected = self.0[0].closest(ray, &accept);
+        for bvh in &self.0[1..] {
+            let hit = bvh.closest(ray, &accept);
+            let isa = bvh.isa();
+            assert_eq!(hit_bits(hit), hit_bits(expected), "{isa}: {ray:?}");
+        }
+        expected
+    }
+
+    #[track_caller]
+    pub(crate) fn occluded(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
+        let expected = self.0[0].occluded(ray, &accept);
+        for bvh in &self.0[1..] {
+            let (occluded, isa) = (bvh.occluded(ray, &accept), bvh.isa());
+            assert_eq!(occluded, expected, "{isa}: {ray:?}");
+        }
+        expected
+    }
+
+    /// Whether there is any hit, without a filter.
+    #[track_caller]
+    pub(crate) fn is_blocked(&self, ray: &Ray) -> bool {
+        let expected = self.0[0].is_blocked(ray);
+        for bvh in &self.0[1..] {
+            assert_eq!(bvh.is_blocked(ray), expected, "{}: {ray:?}", bvh.isa());
+        }
+        expected
+    }
+
+    /// Whether anything is in the way, as all questions must say.
+    #[track_caller]
+    pub(crate) fn is_hit(&self, ray: &Ray) -> bool {
+        let expected = self.closest(ray, accept_all).is_some();
+        assert_eq!(self.occluded(ray, accept_all), expected, "{ray:?}");
+        assert_eq!(self.is_blocked(ray), expected, "{ray:?}");
+        expected
+    }
+}
+
+impl Deref for Trees {
+    type Target = Bvh;
+
+    fn deref(&self) -> &Bvh {
+        &self.0[0]
+    }
+}
+
+/// A validated tree, for each instruction set.
+#[track_caller]
+pub(crate) fn build(primitives: &[Primitive]) -> Trees {
+    Trees::new(&build_one(primitives))
+}
+
+/// The tree that most renders use.
+#[track_caller]
+pub(crate) fn build_one(primitives: &[Primitive]) -> Bvh {
+    Bvh::build(primitives, &BuildOptions::default()).expect("a valid scene")
+}
