@@ -14,17 +14,17 @@ pub(crate) use formats::film::{SettingsText, name_of};
 /// The settings of a render; `scene` holds what the scene file says, over the defaults.
 pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     let mut settings = scene;
+    settings.integrator = args.integrator.unwrap_or(settings.integrator);
     let path = &mut settings.path;
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
-    path.roulette = args.path_roulette.unwrap_or(path.roulette);
+    path.roulette = args.path_roulette.unwrap_or(settings.integrator.roulette());
     if let Some(depth) = args.max_depth {
         path.max_depth = (depth > 0).then_some(depth);
     }
     if let Some(strategies) = &args.strategies {
         path.strategies = strategies.clone();
     }
-    settings.integrator = args.integrator.unwrap_or(settings.integrator);
     settings.shadow_rays = args.shadow_rays.unwrap_or(settings.shadow_rays);
     settings.sampler = args.sampler.unwrap_or(settings.sampler);
     settings.seed = args.seed.unwrap_or(settings.seed);

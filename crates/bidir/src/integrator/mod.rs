@@ -21,7 +21,7 @@ pub use path::PathTracer;
 pub(crate) use workspace::camera_ray;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
 
-use crate::path::PathContext;
+use crate::path::{PathContext, PathRoulette};
 use crate::select::Selector;
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length
@@ -57,6 +57,17 @@ impl IntegratorKind {
             Self::Bdpt => true,
             Self::Path | Self::Light => false,
         }
+    }
+
+    /// The path roulette that suits the estimator: of several scenes the least product of error and
+    /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
+    pub fn roulette(self) -> PathRoulette {
+        let start = match self {
+            Self::Bdpt => 0,
+            Self::Path => 1,
+            Self::Light => 2,
+        };
+        PathRoulette::Albedo { start }
     }
 
     /// The estimator; `selector` chooses the shadow rays of those that have candidates.

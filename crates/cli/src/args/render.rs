@@ -128,9 +128,9 @@ pub(crate) struct EstimatorArgs {
     /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
     #[arg(long, value_parser = named(LightPointChoice::NAMES))]
     pub(crate) light_point: Option<LightPointChoice>,
-    /// How subpaths end by chance [default: albedo:0].
+    /// How subpaths end by chance [default: the integrator's].
     ///
-    /// albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
+    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
     /// from bounce START on. off: only by --max-depth or escape.
     #[arg(long, value_name = "RULE")]
     pub(crate) path_roulette: Option<PathRoulette>,
@@ -200,7 +200,7 @@ pub(crate) struct FilmArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::{LightPointChoice, MisHeuristic};
+    use super::{IntegratorKind, LightPointChoice, MisHeuristic};
     use crate::args::Cli;
     use crate::settings::name_of;
     use bidir::driver::Settings;
@@ -213,7 +213,9 @@ mod tests {
         let argument = render
             .get_arguments()
             .find(|argument| argument.get_long() == Some(flag));
-        argument.unwrap().get_help().unwrap().to_string()
+        let argument = argument.unwrap();
+        let help = argument.get_long_help().or(argument.get_help());
+        help.unwrap().to_string()
     }
 
     #[track_caller]
@@ -231,7 +233,11 @@ mod tests {
         let path = &settings.path;
         check_default("shadow-rays", settings.shadow_rays);
         check_default("strategies", &path.strategies);
-        check_default("path-roulette", path.roulette);
+        let help = help_of("path-roulette");
+        for (name, integrator) in IntegratorKind::NAMES {
+            let roulette = integrator.roulette();
+            assert!(help.contains(&format!("{roulette} for {name}")), "{help}");
+        }
         check_default("mis", name_of(&MisHeuristic::NAMES, path.mis));
         check_default(
             "light-point",

@@ -85,17 +85,17 @@ impl Changes {
     /// The settings of a scene with these changes.
     pub fn apply(&self, scene: &Settings) -> Settings {
         let mut settings = scene.clone();
+        settings.integrator = self.integrator.unwrap_or(settings.integrator);
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
-        path.roulette = self.path_roulette.unwrap_or(path.roulette);
+        path.roulette = self.path_roulette.unwrap_or(settings.integrator.roulette());
         if let Some(depth) = self.max_depth {
             path.max_depth = (depth > 0).then_some(depth);
         }
         if let Some(strategies) = &self.strategies {
             path.strategies = strategies.clone();
         }
-        settings.integrator = self.integrator.unwrap_or(settings.integrator);
         settings.shadow_rays = self.shadow_rays.unwrap_or(settings.shadow_rays);
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         settings
