@@ -6,23 +6,23 @@ PATHS = [
     # --- path: geometry and scattering ----------------------------------------------------
     (
         "cosine dropped from G",
-        "crates/bidir/src/path/vertex.rs",
-        "let cosines = self.abs_cos(w) * other.abs_cos(w);",
-        "let cosines = self.abs_cos(w);",
+        "crates/bidir/src/path/segment.rs",
+        "geometry_term: cos_a * cos_b * inverse2,",
+        "geometry_term: cos_a * inverse2,",
         PATH,
     ),
     (
         "G without 1/d2",
-        "crates/bidir/src/path/vertex.rs",
-        "cosines / distance2",
-        "cosines",
+        "crates/bidir/src/path/segment.rs",
+        "geometry_term: cos_a * cos_b * inverse2,",
+        "geometry_term: cos_a * cos_b,",
         PATH,
     ),
     (
         "area density without the cosine",
-        "crates/bidir/src/path/scatter.rs",
-        "pdf_w * cos / distance2",
-        "pdf_w / distance2",
+        "crates/bidir/src/path/segment.rs",
+        "{ 1.0 } else { cos_b * inverse2 }",
+        "{ 1.0 } else { inverse2 }",
         PATH,
     ),
     (
@@ -59,15 +59,15 @@ PATHS = [
     (
         "old direction at the junction",
         "crates/bidir/src/path/densities.rs",
-        "x[s - 2].from_camera = z.pdf_to(context, wo, before) * survival;",
-        "x[s - 2].from_camera = z.pdf_to(context, z.wo, before) * survival;",
+        "x[s - 2].from_camera = z.pdf_direction(context, w, z.wo)",
+        "x[s - 2].from_camera = z.pdf_direction(context, z.wo, z.wo)",
         PATH,
     ),
     (
         "next-event density taken for the emission density",
         "crates/bidir/src/path/densities.rs",
-        "LightPointChoice::Shared || n == 2;",
-        "LightPointChoice::Shared || n >= 2;",
+        "LightPointChoice::Shared || path.len() == 2;",
+        "LightPointChoice::Shared || path.len() >= 2;",
         PATH,
     ),
     (
@@ -101,8 +101,8 @@ PATHS = [
     (
         "light choice left out of next-event estimation",
         "crates/bidir/src/path/connect.rs",
-        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
-        "Spectrum::splat(sample.coverage / sample.pdf)",
+        "    sample.pdf *= prob;\n",
+        "    let _ = prob;\n",
         estimators("point_spot_distant"),
     ),
     (
@@ -145,8 +145,8 @@ PATHS = [
     (
         "path tracer's two densities swapped",
         "crates/bidir/src/integrator/path.rs",
-        "context.settings.mis.weight_of_two(q, p)",
-        "context.settings.mis.weight_of_two(p, q)",
+        "context.settings.mis.weight_of_two(x0.pdf, p)",
+        "context.settings.mis.weight_of_two(p, x0.pdf)",
         analytic("a_ring_light"),
     ),
     (
@@ -187,9 +187,16 @@ PATHS = [
     ),
     (
         "a cut-out lamp that next-event estimation takes for whole",
-        "crates/bidir/src/path/connect.rs",
-        "Spectrum::splat(sample.coverage / (prob * sample.pdf))",
-        "Spectrum::splat(1.0 / (prob * sample.pdf))",
+        "crates/bidir/src/integrator/bdpt.rs",
+        "Spectrum::splat(drawn.coverage / drawn.pdf)",
+        "Spectrum::splat(1.0 / drawn.pdf)",
+        coverage("lamps_cut_out"),
+    ),
+    (
+        "a cut-out lamp that the path tracer takes for whole",
+        "crates/bidir/src/integrator/path.rs",
+        "segment.geometry_term * x0.coverage / x0.pdf",
+        "segment.geometry_term / x0.pdf",
         coverage("lamps_cut_out"),
     ),
     (

@@ -79,7 +79,7 @@ SCENES = [
     (
         "second dimension with a step of Pascal's triangle missing",
         "crates/bidir/src/sampler/sobol.rs",
-        "    x ^= (x >> 4) & 0x0f0f_0f0f_0f0f_0f0f;\n",
+        "    x ^= (x >> 4) & 0x0f0f_0f0f;\n",
         "",
         unit("sampler::sobol"),
     ),
