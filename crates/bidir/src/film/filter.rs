@@ -86,7 +86,7 @@ impl Filter {
 /// A filter along one axis.
 #[derive(Clone, Debug)]
 struct Axis {
-    kind: FilterKind,
+    shape: Shape,
     radius: f32,
     /// 1 / ∫ of the shape.
     normalisation: f32,
@@ -101,16 +101,17 @@ const MAX_PIXELS: usize = 66;
 impl Axis {
     fn new(kind: FilterKind, radius: f32) -> Self {
         let radius = radius.clamp(1e-3, 32.0);
+        let shape = Shape::new(kind, radius);
         let position = |i: usize, n: usize| radius * (2.0 * i as f32 / n as f32 - 1.0);
         // Every cell gets the largest of five values, so that no part of h has density zero.
         let cell = |i: usize| {
             (0..=4)
-                .map(|k| shape(kind, radius, position(4 * i + k, 4 * TABLE_CELLS)).abs())
+                .map(|k| shape.eval(position(4 * i + k, 4 * TABLE_CELLS)).abs())
                 .fold(0.0, f32::max)
         };
         let n = 16_384;
         let sum: f64 = (0..n)
-            .map(|i| f64::from(shape(kind, radius, position(2 * i + 1, 2 * n))))
+            .map(|i| f64::from(shape.eval(position(2 * i + 1, 2 * n))))
             .sum();
         let integral = match kind {
             FilterKind::Box => 2.0 * radius,
@@ -119,7 +120,7 @@ impl Axis {
         };
         let table = Distribution1d::new((0..TABLE_CELLS).map(cell));
         Self {
-            kind,
+            shape,
             radius,
             normalisation: 1.0 / integral,
             table,
@@ -128,12 +129,12 @@ impl Axis {
 
     #[inline]
     fn eval(&self, x: f32) -> f32 {
-        shape(self.kind, self.radius, x) * self.normalisation
+        self.shape.eval(x) * self.normalisation
     }
 
     #[inline]
     fn sample(&self, u: f32) -> (f32, f32) {
-        match self.kind {
+        match self.shape.kind {
             FilterKind::Box => ((2.0 * u - 1.0) * self.radius, 1.0),
             FilterKind::Triangle => (tent(u) * self.radius, 1.0),
             _ => {
@@ -184,23 +185,43 @@ fn tent(u: f32) -> f32 {
     }
 }
 
-/// The shape of a filter at `x`, not normalised.
-fn shape(kind: FilterKind, radius: f32, x: f32) -> f32 {
-    let x = x.abs();
-    // The box includes its rim: which pixel a rim belongs to is decided by the caller.
-    if x > radius {
-        return 0.0;
+/// A filter along one axis, not normalised.
+#[derive(Clone, Copy, Debug)]
+struct Shape {
+    kind: FilterKind,
+    radius: f32,
+    /// What a Gaussian is lowered by: its value at the radius.
+    rim: f32,
+}
+
+impl Shape {
+    fn new(kind: FilterKind, radius: f32) -> Self {
+        let rim = match kind {
+            FilterKind::Gaussian { sigma } => gaussian(radius, sigma),
+            _ => 0.0,
+        };
+        Self { kind, radius, rim }
     }
-    match kind {
-        FilterKind::Box => 1.0,
-        FilterKind::Triangle => radius - x,
-        FilterKind::Gaussian { sigma } => {
-            let gaussian = |x: f32| libm::expf(-sqr(x) / (2.0 * sqr(sigma)));
-            (gaussian(x) - gaussian(radius)).max(0.0)
+
+    #[inline]
+    fn eval(&self, x: f32) -> f32 {
+        let x = x.abs();
+        // The box includes its rim: which pixel a rim belongs to is decided by the caller.
+        if x > self.radius {
+            return 0.0;
         }
-        FilterKind::Mitchell { b, c } => mitchell(2.0 * x / radius, b, c),
-        FilterKind::Sinc { tau } => sinc(x) * sinc(x / tau),
+        match self.kind {
+            FilterKind::Box => 1.0,
+            FilterKind::Triangle => self.radius - x,
+            FilterKind::Gaussian { sigma } => (gaussian(x, sigma) - self.rim).max(0.0),
+            FilterKind::Mitchell { b, c } => mitchell(2.0 * x / self.radius, b, c),
+            FilterKind::Sinc { tau } => sinc(x) * sinc(x / tau),
+        }
     }
+}
+
+fn gaussian(x: f32, sigma: f32) -> f32 {
+    libm::expf(-sqr(x) / (2.0 * sqr(sigma)))
 }
 
 /// [Mitchell88, eq. 8] times 6, for x in [0, 2].

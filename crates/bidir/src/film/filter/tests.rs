@@ -61,7 +61,7 @@ fn drawn_offsets_reproduce_the_filter() {
         assert!(
             (mean - expected).abs() < 5e-3,
             "{:?}: {mean} {expected}",
-            filter.x.kind
+            filter.x.shape.kind
         );
     }
 }
@@ -86,7 +86,7 @@ fn picked_pixels_reproduce_the_filter() {
         assert!(
             (mean - expected).abs() < 1e-3,
             "{:?}: {mean} {expected}",
-            axis.kind
+            axis.shape.kind
         );
     }
 }
