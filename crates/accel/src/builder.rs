@@ -31,7 +31,7 @@ pub(crate) const MAX_DEPTH: usize = 32;
 pub(crate) const MAX_PRIMITIVES: usize = Child::MAX_ELEMENTS;
 
 /// Groups smaller than this are built by one thread.
-const PARALLEL_MIN: usize = 4096;
+const PARALLEL_MIN: usize = 16384;
 
 /// The arrays that [`Child`] points into.
 #[derive(Debug, Clone, Default)]

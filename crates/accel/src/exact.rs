@@ -42,8 +42,8 @@ pub(crate) fn pass_triangle(triangle: [Vec3; 3], direction: Vec3, axis: usize) -
     Some(passage(weights, triangle, direction, axis))
 }
 
-/// The same where the line is known to pass so far from the edges that plain edge functions have the
-/// right sign by their error bound: the same bits, for less.
+/// The same where the line is known to pass so far from the edges that plain edge functions exceed their
+/// error bound (see [`crate::triangle`]): the same bits, for less.
 #[inline(always)]
 pub(crate) fn pass_certain(triangle: [Vec3; 3], direction: Vec3, axis: usize) -> Passage {
     let plain = |a: DVec3, b: DVec3, d: DVec3| a.cross(b).dot(d);

@@ -20,7 +20,7 @@
 //!
 //! [Ize13]: https://jcgt.org/published/0002/02/02/
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::aabb::Aabb;
 use crate::child::Child;
@@ -129,16 +129,35 @@ impl<V: F32x8> BoxRay<V> {
     /// `reach`: the largest magnitude of a coordinate of what can be hit.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, reach: f32) -> Self {
+        let (origin, direction) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
         // Room for what rounds below.
-        let largest = ray.direction.abs().max_element();
-        let last = 1.001 * (reach + ray.origin.abs().max_element()) / largest;
-        let axis = |axis: usize| {
-            AxisRay::<V>::new(
-                ray.origin[axis],
-                ray.direction[axis],
-                STEEPEST / largest,
-                last,
-            )
+        let largest = direction.abs().max_element();
+        let last = 1.001 * (reach + origin.abs().max_element()) / largest;
+        let steepest = Vec3A::splat(STEEPEST / largest);
+        let inverse = direction.recip();
+        let is_parallel = inverse.abs().cmpgt(steepest);
+        let early = Vec3A::select(is_parallel, Vec3A::splat(last), Vec3A::ZERO);
+        let inverse = Vec3A::select(is_parallel, steepest.copysign(inverse), inverse);
+        let widened = inverse * WIDENING;
+        let least = Vec3A::splat(f32::MIN_POSITIVE) + early;
+        let slack = |offset: Vec3A| 2.0 * f32::EPSILON * offset.abs() + least;
+        let (entry, exit) = (origin * inverse, origin * widened);
+        let (entry, exit) = (entry + slack(entry), exit - slack(exit));
+        // Not zero where a number is infinite or none.
+        let zero = inverse * 0.0 + widened * 0.0 + entry * 0.0 + exit * 0.0;
+        let is_finite = zero.cmpeq(Vec3A::ZERO);
+        let or = |value: Vec3A, limitless: f32| {
+            Vec3A::select(is_finite, value, Vec3A::splat(limitless)).to_array()
+        };
+        let (inverse, widened) = (or(inverse, 0.0), or(widened, 0.0));
+        let (entry, exit) = (or(entry, f32::MAX), or(exit, f32::MIN));
+        let negative = direction.is_negative_bitmask();
+        let axis = |axis: usize| AxisRay {
+            inverse: V::splat(inverse[axis]),
+            entry_offset: V::splat(entry[axis]),
+            inverse_widened: V::splat(widened[axis]),
+            exit_offset: V::splat(exit[axis]),
+            near: (negative >> axis & 1) as usize,
         };
         Self {
             // Written out, as `array::map` is not always inlined.
@@ -152,7 +171,6 @@ impl<V: F32x8> BoxRay<V> {
 const STEEPEST: f32 = 1.001 * (1 << 23) as f32;
 
 /// What a [`BoxRay`] knows about slabs along one axis.
-#[derive(Clone, Copy)]
 struct AxisRay<V> {
     inverse: V,
     entry_offset: V,
@@ -160,41 +178,6 @@ struct AxisRay<V> {
     exit_offset: V,
     /// Which of the two planes the ray meets first: 0 or 1.
     near: usize,
-}
-
-impl<V: F32x8> AxisRay<V> {
-    /// For one component of origin and direction; `steepest` is `T/δ`, and `last` is `T`.
-    #[inline(always)]
-    fn new(origin: f32, direction: f32, steepest: f32, last: f32) -> Self {
-        let inverse = 1.0 / direction;
-        let is_parallel = inverse.abs() > steepest;
-        let early = if is_parallel { last } else { 0.0 };
-        let inverse = inverse.abs().min(steepest).copysign(inverse);
-        let widened = inverse * WIDENING;
-        let slack = |offset: f32| 2.0 * f32::EPSILON * offset.abs() + (f32::MIN_POSITIVE + early);
-        let (entry_offset, exit_offset) = (origin * inverse, origin * widened);
-        let numbers = [
-            inverse,
-            entry_offset + slack(entry_offset),
-            widened,
-            exit_offset - slack(exit_offset),
-        ];
-        // Not so for infinities and NaN.
-        let is_finite =
-            numbers[0] * 0.0 + numbers[1] * 0.0 + numbers[2] * 0.0 + numbers[3] * 0.0 == 0.0;
-        let [inverse, entry_offset, inverse_widened, exit_offset] = if is_finite {
-            numbers
-        } else {
-            [0.0, f32::MAX, 0.0, f32::MIN]
-        };
-        Self {
-            inverse: V::splat(inverse),
-            entry_offset: V::splat(entry_offset),
-            inverse_widened: V::splat(inverse_widened),
-            exit_offset: V::splat(exit_offset),
-            near: (direction.to_bits() >> 31) as usize,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,11 @@
 //! adds. If anything overflows then so does the bound, and the triangle is kept. Fused products round less
 //! often, which the bound covers.
 //!
+//! *Certainly passed*: all three edge functions exceed that bound with one sign. Then a true one exceeds
+//! `3εR·(X + M)`, at least `12ε²(X + M)²`, as `R ≥ 4ε(X + M)`. Unsheared, over `d_z`, plain `f64` edge functions
+//! err by less than `2.5·2⁻⁵²·6(X + M)² < ε²(X + M)²`: their signs need no second look, and the exact test
+//! computes what it would have computed.
+//!
 //! A triangle is also discarded if `t` is certainly outside the limits: it lies between the vertices'
 //! `p_z/d_z`. These are computed with two roundings, and what `f64` loses in the exact test when they
 //! differ in sign is less; both are small against `8ε` of the largest.

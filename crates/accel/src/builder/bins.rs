@@ -24,9 +24,12 @@ pub(super) struct Split {
 }
 
 impl Split {
-    pub(super) fn is_left(&self, reference: &Reference, centers: &Aabb) -> bool {
+    /// Which references are on the left, of those with these centers.
+    pub(super) fn is_left<'a>(&'a self, centers: &'a Aabb) -> impl Fn(&Reference) -> bool + 'a {
         let scale = bin_scale(centers, self.axis, self.bins);
-        bin_of(reference, centers, self.axis, scale).min(self.bins - 1) < self.first_right
+        move |reference| {
+            bin_of(reference, centers, self.axis, scale).min(self.bins - 1) < self.first_right
+        }
     }
 }
 

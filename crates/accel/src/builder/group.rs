@@ -145,7 +145,7 @@ impl<'a> Group<'a> {
         let Some(split) = &self.split else {
             return self.halve(unit);
         };
-        let middle = partition(self.references, |r| split.is_left(r, &self.centers));
+        let middle = partition(self.references, split.is_left(&self.centers));
         self.cut(middle, unit)
     }
 
