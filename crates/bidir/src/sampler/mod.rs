@@ -19,6 +19,7 @@ pub use dimension::{Dimension, Purpose};
 
 use crate::math::Vec2;
 use hash::mix;
+use sobol::Digits;
 
 /// How the numbers of a stream relate to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -139,10 +140,8 @@ impl SampleStream {
         let key = mix(self.key ^ dimension.key());
         unit(match self.source {
             Source::Independent => key as u32,
-            Source::Sequence(index) => sobol::scrambled_x(index, key),
-            Source::Product(index, member) => {
-                sobol::scrambled_x(index, key) ^ sobol::scrambled_x(member, mix(key))
-            }
+            Source::Sequence(index) => Digits::new(index, key).x(),
+            Source::Product(index, member) => Digits::new(index, key).moved_by(member).x(),
         })
     }
 
@@ -166,16 +165,14 @@ impl SampleStream {
     #[inline]
     pub fn get_2d(&self, dimension: Dimension) -> Vec2 {
         let key = mix(self.key ^ dimension.key());
-        let (x, y) = match self.source {
-            Source::Independent => (key as u32, (key >> 32) as u32),
-            Source::Sequence(index) => sobol::scrambled_point(index, key),
-            Source::Product(index, member) => {
-                let (x, y) = sobol::scrambled_point(index, key);
-                let (dx, dy) = sobol::scrambled_point(member, mix(key));
-                (x ^ dx, y ^ dy)
+        let digits = match self.source {
+            Source::Independent => {
+                return Vec2::new(unit(key as u32), unit((key >> 32) as u32));
             }
+            Source::Sequence(index) => Digits::new(index, key),
+            Source::Product(index, member) => Digits::new(index, key).moved_by(member),
         };
-        Vec2::new(unit(x), unit(y))
+        Vec2::new(unit(digits.x()), unit(digits.y()))
     }
 }
 

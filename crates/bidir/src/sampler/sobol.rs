@@ -5,28 +5,51 @@
 //! A digit is bit 31 of a fraction and bit 0 of an index, so that all but the index that comes in and
 //! the fractions that go out is free of reversals.
 
-/// Coordinate x of the point that [`scrambled_point`] gives.
-#[inline]
-pub(super) fn scrambled_x(reversed_index: u32, key: u64) -> u32 {
-    let index = shuffled(reversed_index, key);
-    scramble(index, seed_x(key)).reverse_bits()
+/// The digits of a point, before they become fractions.
+#[derive(Clone, Copy)]
+pub(super) struct Digits {
+    /// The index in the sequence, which is x.
+    index: u32,
+    key: u64,
+    /// What digits are moved by: the index of an unscrambled point.
+    shift: u32,
 }
 
-/// A point of the sequence that `key` shuffles and scrambles, as 32-bit fractions. `reversed_index`
-/// is its number with the bits in reverse order.
-#[inline]
-pub(super) fn scrambled_point(reversed_index: u32, key: u64) -> (u32, u32) {
-    let index = shuffled(reversed_index, key);
-    let seed_y = (key >> 32) as u32 ^ 0x27d4_eb2f;
-    (
-        scramble(index, seed_x(key)).reverse_bits(),
-        scramble(pascal(index), seed_y).reverse_bits(),
-    )
-}
+impl Digits {
+    /// The point of the sequence that `key` shuffles and scrambles. `reversed_index` is its number with
+    /// the bits in reverse order.
+    #[inline]
+    pub(super) fn new(reversed_index: u32, key: u64) -> Self {
+        Self {
+            index: shuffled(reversed_index, key),
+            key,
+            shift: 0,
+        }
+    }
 
-#[inline]
-fn seed_x(key: u64) -> u32 {
-    key as u32 ^ 0x5bd1_e995
+    /// The point moved, digit by digit, by one of another sequence.
+    #[inline]
+    pub(super) fn moved_by(self, reversed_index: u32) -> Self {
+        Self {
+            // The sum is as uniform as one of the two.
+            shift: shuffled(reversed_index, self.key.rotate_left(32)),
+            ..self
+        }
+    }
+
+    /// The first coordinate as a fraction of 2³².
+    #[inline]
+    pub(super) fn x(self) -> u32 {
+        let seed = self.key as u32 ^ 0x5bd1_e995;
+        (scramble(self.index, seed) ^ self.shift).reverse_bits()
+    }
+
+    /// The second coordinate as a fraction of 2³².
+    #[inline]
+    pub(super) fn y(self) -> u32 {
+        let seed = (self.key >> 32) as u32 ^ 0x27d4_eb2f;
+        (scramble(pascal(self.index), seed) ^ pascal(self.shift)).reverse_bits()
+    }
 }
 
 /// The index after a nested uniform scramble: aligned ranges of the sequence change places.
@@ -82,13 +105,6 @@ mod tests {
         for index in [0, 1, 2, 3, 77, 0xdead_beef, u32::MAX, 1 << 31, 0x1234_5678] {
             let y = pascal(index).reverse_bits();
             assert_eq!(y, second_by_definition(index), "{index:#x}");
-        }
-    }
-
-    #[test]
-    fn one_coordinate_is_that_of_the_pair() {
-        for (index, key) in [(0, 0), (5, 17), (u32::MAX, u64::MAX), (1 << 31, 1 << 63)] {
-            assert_eq!(scrambled_x(index, key), scrambled_point(index, key).0);
         }
     }
 }
