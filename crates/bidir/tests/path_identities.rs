@@ -11,12 +11,11 @@ use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
     JoinedPath, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext, PathDensities,
-    PathRoulette, PathSettings, Subpath, Vertex, camera_subpath, light_subpath,
+    PathRoulette, PathSettings, Vertex,
 };
-use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::scene::Scene;
-use bidir::spectrum::{Spectrum, Wavelengths};
-use bidir::stats::Stats;
+use bidir::spectrum::Spectrum;
+use common::walks::for_each_pair;
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {
@@ -28,20 +27,6 @@ fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     }
 }
 
-fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
-    let sampler = Sampler::new(SamplerKind::Independent, 5);
-    let camera = sampler.stream(Domain::Camera, 0, index);
-    let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
-    let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
-    let ray = context.scene.camera().sample_ray(raster, || lens);
-    let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
-    let mut stats = Stats::default();
-    camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
-    let light = sampler.stream(Domain::Light, 0, index);
-    light_subpath(context, &light, &mut light_walk, &mut stats);
-    (light_walk, camera_walk)
-}
-
 /// The part of roulette in the density of vertex `index` of a walk.
 fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
     if index < 2 {
@@ -51,7 +36,10 @@ fn survival(context: &PathContext<'_>, index: usize, before: &Vertex) -> f32 {
         .bsdf
         .albedo(before.shading.to_local(before.wo))
         .max_lane();
-    context.settings.roulette.density_factor(index - 2, albedo)
+    context
+        .settings
+        .roulette
+        .density_factor(index - 2, || albedo)
 }
 
 /// Walks again over `points`, the first of which is an end with its own `pdf_fwd` and `beta`:
@@ -107,23 +95,6 @@ fn assert_close(a: f32, b: f32, what: &str) {
 #[track_caller]
 fn assert_spectra_close(a: Spectrum, b: Spectrum, what: &str) {
     (0..3).for_each(|lane| assert_close(a[lane], b[lane], what));
-}
-
-/// Calls `f` with the context of a scene and a number of subpath pairs.
-fn for_each_pair(
-    settings: &PathSettings,
-    scene: &Scene,
-    mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
-) {
-    let context = PathContext {
-        scene,
-        settings,
-        wavelengths: Wavelengths::default(),
-    };
-    for index in 0..400 {
-        let (light, camera) = subpaths(&context, index);
-        f(&context, &light, &camera);
-    }
 }
 
 /// True where the direction between two points, found again from the points, has few digits left

@@ -1,6 +1,6 @@
 """Faults in paths: geometry, densities, weights, and which connections are made."""
 
-from .tests import PATH, analytic, coverage, estimators, unit
+from .tests import PATH, RUNNING, analytic, coverage, estimators, unit
 
 PATHS = [
     # --- path: geometry and scattering ----------------------------------------------------
@@ -43,31 +43,31 @@ PATHS = [
     (
         "forward and reverse density swapped",
         "crates/bidir/src/path/densities.rs",
-        "            vertex.pdf_fwd * factor(context, i, before),\n"
+        "            drawn_density(context, &subpath[..=i]),\n"
         "            vertex.pdf_rev * factor(context, n - 1 - i, after),",
-        "            vertex.pdf_rev * factor(context, i, before),\n"
-        "            vertex.pdf_fwd * factor(context, n - 1 - i, after),",
+        "            vertex.pdf_rev * factor(context, n - 1 - i, after),\n"
+        "            drawn_density(context, &subpath[..=i]),",
         PATH,
     ),
     (
         "roulette forgotten in densities",
         "crates/bidir/src/path/densities.rs",
         "context.settings.roulette.density_factor(index - 2, albedo)",
-        "context.settings.roulette.density_factor(index - 2, 1.0)",
+        "context.settings.roulette.density_factor(index - 2, || 1.0)",
         PATH,
     ),
     (
         "old direction at the junction",
         "crates/bidir/src/path/densities.rs",
-        "x[s - 2].from_camera = z.pdf_direction(context, w, z.wo)",
-        "x[s - 2].from_camera = z.pdf_direction(context, z.wo, z.wo)",
+        "before[0] = z.pdf_direction(context, w, z.wo)",
+        "before[0] = z.pdf_direction(context, z.wo, z.wo)",
         PATH,
     ),
     (
         "next-event density taken for the emission density",
         "crates/bidir/src/path/densities.rs",
-        "LightPointChoice::Shared || path.len() == 2;",
-        "LightPointChoice::Shared || path.len() >= 2;",
+        "(LightPointChoice::Shared, _) | (_, VertexKind::Camera) => x0.pdf_fwd,",
+        "(LightPointChoice::Shared, _) | (_, _) => x0.pdf_fwd,",
         PATH,
     ),
     (
@@ -90,6 +90,27 @@ PATHS = [
         "0 => !path.light_is_delta,",
         "0 => true,",
         estimators("point_spot_distant"),
+    ),
+    (
+        "running sums without the next-event density",
+        "crates/bidir/src/path/running.rs",
+        "1 => self.next_event / self.emission * ratio(b, a),",
+        "1 => ratio(b, a),",
+        RUNNING,
+    ),
+    (
+        "running sums over links at Dirac vertices",
+        "crates/bidir/src/path/running.rs",
+        "possible(!self.went_by_delta && !next.went_by_delta)",
+        "possible(!self.went_by_delta)",
+        RUNNING,
+    ),
+    (
+        "running sums where roulette begins late",
+        "crates/bidir/src/path/running.rs",
+        "self.shortest <= s.min(t)",
+        "self.shortest <= s.max(t)",
+        RUNNING,
     ),
     (
         "n_j of the light image is one",

@@ -4,6 +4,7 @@ They are chosen to be the fastest that can notice.
 """
 
 PATH = ("bidir", "--test path_identities", "")
+RUNNING = ("bidir", "--test running_weights", "")
 ANALYTIC = "--test analytic"
 ESTIMATORS = "--test estimators"
 

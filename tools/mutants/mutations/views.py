@@ -6,8 +6,8 @@ VIEWS = [
     (
         "a sky along parallel rays weighed against a connection that cannot be",
         "crates/bidir/src/path/densities.rs",
-        "            self.vertices[0].from_light = 0.0;",
-        "            self.vertices[0].from_light *= 1.0;",
+        "if x0.is_infinite && x1.is_infinite => 0.0,",
+        "if x0.is_infinite && x1.is_infinite => x0.pdf_fwd,",
         estimators("parallel_rays"),
     ),
     (

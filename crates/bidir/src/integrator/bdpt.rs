@@ -24,6 +24,7 @@ impl Integrator for Bdpt {
         workspace.begin();
         workspace.walk_camera(context, sample);
         workspace.walk_light(context, sample);
+        workspace.sum_weights(context);
         hits(context, sample, workspace);
         light_images(context, sample, workspace);
         gather_candidates(context, sample, workspace);
@@ -79,14 +80,14 @@ fn hit(
     }
     let Some(light) = x0.light else { return };
     let Workspace {
-        camera, densities, ..
+        camera, weights, ..
     } = workspace;
     let path = JoinedPath::hit(x0, &camera.vertices[..i]);
     let term = Term {
         strategy: Strategy::new(0, i + 1),
         light,
         contribution,
-        weight: path.weight(context, densities),
+        weight: weights.weight(context, &path),
     };
     workspace.add_hit(sample, term);
 }
@@ -97,14 +98,12 @@ fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
         if context.count(s, 1) == 0.0 {
             continue;
         }
-        let Workspace {
-            light, densities, ..
-        } = workspace;
+        let Workspace { light, weights, .. } = workspace;
         let lens = lens_vertex(context, sample, s);
         let Some(image) = light_image(context, &light.vertices[..s], &lens) else {
             continue;
         };
-        let image = image.weighted(image.path.weight(context, densities));
+        let image = image.weighted(weights.weight(context, &image.path));
         workspace.splat(context, sample, &image);
     }
 }
@@ -178,7 +177,7 @@ fn connection(
         light,
         camera,
         next_events,
-        densities,
+        weights,
         ..
     } = workspace;
     let camera = &camera.vertices[..t];
@@ -190,7 +189,7 @@ fn connection(
         strategy,
         light: start,
         contribution,
-        weight: path.weight(context, densities),
+        weight: weights.weight(context, &path),
     })
 }
 

@@ -6,7 +6,7 @@ use crate::camera::CameraRay;
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
-    PathContext, PathDensities, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
+    PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Scene, SegmentEnd};
@@ -102,8 +102,8 @@ pub struct Workspace {
     pub stats: Stats,
     /// What became of every term; kept where somebody asks for it.
     pub journal: Option<Journal>,
-    /// The densities of the path whose weight is computed.
-    pub(super) densities: PathDensities,
+    /// Weights of the paths that the two subpaths make.
+    pub(super) weights: RunningSums,
 }
 
 impl Workspace {
@@ -141,6 +141,11 @@ impl Workspace {
     /// Walks the light subpath of `sample`.
     pub(super) fn walk_light(&mut self, context: &PathContext<'_>, sample: &Sample) {
         light_subpath(context, &sample.light, &mut self.light, &mut self.stats);
+    }
+
+    /// Prepares the weights of the paths that the two subpaths make.
+    pub(super) fn sum_weights(&mut self, context: &PathContext<'_>) {
+        self.weights.sum(context, &self.light, &self.camera);
     }
 
     /// The ends of the segment that a candidate connects: light vertex and camera vertex.

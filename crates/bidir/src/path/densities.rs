@@ -4,7 +4,9 @@
 //! They describe the path, not the strategy that made it, so that every strategy finds the same
 //! weight (docs/derivations/mis-weights.md).
 
-use super::{JoinedPath, Junction, LightPointChoice, PathContext, Vertex, next_event_pdf};
+use super::{
+    JoinedPath, Junction, LightPointChoice, PathContext, Vertex, VertexKind, next_event_pdf,
+};
 
 /// How likely one vertex of a path is to be drawn from either side, roulette included.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,58 +73,99 @@ impl PathDensities {
             }
         }
         self.join(context, path);
-        // Of a camera and a light both at infinity no connection makes a path: the camera has to see
-        // the light by itself.
-        if n == 2 && light[0].is_infinite && camera[0].is_infinite {
-            self.vertices[0].from_light = 0.0;
-        }
         self.describe_light(context, path);
     }
 
-    /// Evaluates the densities next to the junction.
+    /// Puts in the densities next to the junction.
     fn join(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
         let (s, t) = (path.light.len(), path.camera.len());
-        let (z, y, segment) = (path.z(), path.y(), &path.segment);
-        let w = segment.w;
+        let Reversed { z, y, before } = path.reversed(context);
         let x = &mut self.vertices;
-        x[s].from_light =
-            z.pdf_direction(context, z.wo, w) * segment.to_b * factor(context, s, z.albedo_fwd);
+        x[s].from_light = y;
+        x[s - 1].from_camera = z;
         if path.junction == Junction::Hit {
-            x[0].from_camera = z.pdf_rev * factor(context, t, y.albedo_fwd);
             return;
         }
-        x[s - 1].from_camera =
-            y.pdf_direction(context, y.wo, -w) * segment.to_a * factor(context, t, y.albedo_fwd);
         if s > 1 {
-            let survival = factor(context, t + 1, z.albedo_from(w));
-            x[s - 2].from_camera = z.pdf_direction(context, w, z.wo) * z.to_previous * survival;
+            x[s - 2].from_camera = before[0];
         }
         if t > 1 {
-            let survival = factor(context, s + 1, y.albedo_from(-w));
-            x[s + 1].from_light = y.pdf_direction(context, -w, y.wo) * y.to_previous * survival;
+            x[s + 1].from_light = before[1];
         }
     }
 
     /// Notes how next-event estimation would draw x_0 for x_1.
     fn describe_light(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
         let x0 = &path.light[0];
-        let Some(index) = x0.light else { return };
-        self.light_is_delta = context.scene.light(index).is_delta();
+        self.light_is_delta = x0.is_on_delta_light(context);
+        self.next_event = next_event_density(context, x0, path.light.get(1).unwrap_or(path.y()));
+    }
+}
+
+/// The densities next to the junction, where each end has a new neighbour: of the two ends and the
+/// vertices before them, each drawn by a walk from the other end of the path.
+pub(super) struct Reversed {
+    /// b_{s-1}, of the light vertex.
+    pub(super) z: f32,
+    /// a_s, of the camera vertex.
+    pub(super) y: f32,
+    /// b_{s-2} and a_{s+1}, of the vertices before them; 0 where there is none. Not evaluated for
+    /// [`Junction::Hit`], where the camera's walk has stored the one there is.
+    pub(super) before: [f32; 2],
+}
+
+impl JoinedPath<'_> {
+    /// Evaluates the densities next to the junction.
+    #[inline]
+    pub(super) fn reversed(&self, context: &PathContext<'_>) -> Reversed {
+        let (s, t) = (self.light.len(), self.camera.len());
+        let (z, y, segment) = (self.z(), self.y(), &self.segment);
+        let w = segment.w;
+        let a_s =
+            z.pdf_direction(context, z.wo, w) * segment.to_b * factor(context, s, || z.albedo_fwd);
+        if self.junction == Junction::Hit {
+            return Reversed {
+                z: z.pdf_rev * factor(context, t, || y.albedo_fwd),
+                y: a_s,
+                before: [0.0; 2],
+            };
+        }
+        let mut before = [0.0; 2];
+        if s > 1 {
+            let survival = factor(context, t + 1, || z.albedo_from(w));
+            before[0] = z.pdf_direction(context, w, z.wo) * z.to_previous * survival;
+        }
+        if t > 1 {
+            let survival = factor(context, s + 1, || y.albedo_from(-w));
+            before[1] = y.pdf_direction(context, -w, y.wo) * y.to_previous * survival;
+        }
+        let survival = factor(context, t, || y.albedo_fwd);
+        Reversed {
+            z: y.pdf_direction(context, y.wo, -w) * segment.to_a * survival,
+            y: a_s,
+            before,
+        }
+    }
+}
+
+/// e, the density with which strategy s = 1 draws x_0 where `x1` is the next vertex.
+#[inline]
+pub(super) fn next_event_density(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> f32 {
+    let Some(index) = x0.light else { return 0.0 };
+    match (context.settings.light_point, x1.kind) {
+        // Of a camera and a light both at infinity no connection makes a path: the camera has to
+        // see the light by itself.
+        (_, VertexKind::Camera) if x0.is_infinite && x1.is_infinite => 0.0,
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
-        let shared = context.settings.light_point == LightPointChoice::Shared || path.len() == 2;
-        self.next_event = if shared {
-            self.vertices[0].from_light
-        } else {
-            let x1 = path.light.get(1).unwrap_or(path.y());
-            next_event_pdf(context, x1.point, index, &x0.light_point())
-        };
+        (LightPointChoice::Shared, _) | (_, VertexKind::Camera) => x0.pdf_fwd,
+        _ => next_event_pdf(context, x1.point, index, &x0.light_point()),
     }
 }
 
 /// The roulette's part of the density of vertex number `index` of a walk (0 is its end of the
 /// path), with the albedo that the walk meets at the vertex before it.
 #[inline]
-fn factor(context: &PathContext<'_>, index: usize, albedo: f32) -> f32 {
+fn factor(context: &PathContext<'_>, index: usize, albedo: impl FnOnce() -> f32) -> f32 {
     // Vertex 1 is drawn by the end of the path itself, which no roulette guards.
     if index < 2 {
         1.0
@@ -131,22 +174,24 @@ fn factor(context: &PathContext<'_>, index: usize, albedo: f32) -> f32 {
     }
 }
 
+/// The density with which its walk drew the last vertex of a subpath.
+#[inline]
+pub(super) fn drawn_density(context: &PathContext<'_>, subpath: &[Vertex]) -> f32 {
+    let (last, index) = (&subpath[subpath.len() - 1], subpath.len() - 1);
+    last.pdf_fwd * factor(context, index, || subpath[index - 1].albedo_fwd)
+}
+
 /// The densities of a subpath's vertices as stored: by its own walk, and by one from the other end
 /// of a path of `n` vertices. The latter is not valid for the last two.
-fn walked_densities(
+pub(super) fn walked_densities(
     context: &PathContext<'_>,
     subpath: &[Vertex],
     n: usize,
 ) -> impl Iterator<Item = [f32; 2]> {
     subpath.iter().enumerate().map(move |(i, vertex)| {
-        let before = if i > 0 {
-            subpath[i - 1].albedo_fwd
-        } else {
-            1.0
-        };
-        let after = subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
+        let after = || subpath.get(i + 1).map_or(1.0, |next| next.albedo_rev);
         [
-            vertex.pdf_fwd * factor(context, i, before),
+            drawn_density(context, &subpath[..=i]),
             vertex.pdf_rev * factor(context, n - 1 - i, after),
         ]
     })

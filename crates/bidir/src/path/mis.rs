@@ -25,7 +25,7 @@ impl MisHeuristic {
 
     /// What a strategy with n_j p_j = `density`, relative to another, counts.
     #[inline]
-    fn share(self, density: f64) -> f64 {
+    pub(super) fn share(self, density: f64) -> f64 {
         match self {
             Self::Balance => density,
             Self::Power => density * density,

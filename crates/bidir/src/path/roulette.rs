@@ -38,18 +38,28 @@ impl PathRoulette {
     #[inline]
     pub fn survival_prob(self, bounce: usize, albedo: f32, throughput: f32) -> f32 {
         match self {
-            Self::Albedo { .. } => self.density_factor(bounce, albedo),
+            Self::Albedo { .. } => self.density_factor(bounce, || albedo),
             Self::Throughput { start } if bounce >= start as usize => throughput.clamp(0.0, 1.0),
             Self::Throughput { .. } | Self::Off => 1.0,
         }
     }
 
-    /// The part of the survival probability that belongs to the density of the next vertex.
+    /// The part of the survival probability that belongs to the density of the next vertex. The
+    /// albedo is asked for where it matters.
     #[inline]
-    pub fn density_factor(self, bounce: usize, albedo: f32) -> f32 {
+    pub fn density_factor(self, bounce: usize, albedo: impl FnOnce() -> f32) -> f32 {
         match self {
-            Self::Albedo { start } if bounce >= start as usize => albedo.clamp(0.0, 1.0),
+            Self::Albedo { start } if bounce >= start as usize => albedo().clamp(0.0, 1.0),
             _ => 1.0,
+        }
+    }
+
+    /// The first bounce that changes a density; None: none does.
+    #[inline]
+    pub(super) fn density_start(self) -> Option<usize> {
+        match self {
+            Self::Albedo { start } => Some(start as usize),
+            Self::Throughput { .. } | Self::Off => None,
         }
     }
 }
@@ -110,10 +120,10 @@ mod tests {
     fn only_local_probabilities_are_in_densities() {
         let albedo = PathRoulette::Albedo { start: 1 };
         assert!((albedo.survival_prob(1, 0.3, 0.9) - 0.3).abs() < 1e-6);
-        assert!((albedo.density_factor(1, 0.3) - 0.3).abs() < 1e-6);
-        assert!((albedo.density_factor(0, 0.3) - 1.0).abs() < 1e-6);
+        assert!((albedo.density_factor(1, || 0.3) - 0.3).abs() < 1e-6);
+        assert!((albedo.density_factor(0, || 0.3) - 1.0).abs() < 1e-6);
         let throughput = PathRoulette::Throughput { start: 0 };
         assert!((throughput.survival_prob(0, 0.3, 0.9) - 0.9).abs() < 1e-6);
-        assert!((throughput.density_factor(0, 0.3) - 1.0).abs() < 1e-6);
+        assert!((throughput.density_factor(0, || 0.3) - 1.0).abs() < 1e-6);
     }
 }

@@ -89,6 +89,12 @@ impl Strategies {
         }
     }
 
+    /// True where the list says so of every strategy, by its last word.
+    #[inline]
+    pub(super) fn is_all(&self) -> bool {
+        self.rules.last() == Some(&Rule::ALL)
+    }
+
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn contains(&self, s: usize, t: usize) -> bool {

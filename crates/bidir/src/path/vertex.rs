@@ -189,6 +189,13 @@ impl Vertex {
         self.kind == VertexKind::Surface && self.bsdf.is_delta()
     }
 
+    /// True on a light that no ray can hit by chance.
+    #[inline]
+    pub(super) fn is_on_delta_light(&self, context: &PathContext<'_>) -> bool {
+        self.light
+            .is_some_and(|light| context.scene.light(light).is_delta())
+    }
+
     /// This vertex and `other` as they see each other; at most one of the two is at infinity.
     #[inline]
     pub fn segment_to(&self, other: &Self) -> Segment {

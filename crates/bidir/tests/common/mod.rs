@@ -2,6 +2,7 @@
 //! Small scenes in memory, for the tests of whole paths.
 
 pub(crate) mod statistics;
+pub(crate) mod walks;
 
 use bidir::bsdf::Wall;
 use bidir::camera::{Camera, Perspective, PerspectiveSettings};

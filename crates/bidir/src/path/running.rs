@@ -1,0 +1,225 @@
+//! The weight of a strategy from sums that are carried along both subpaths: what it costs does not
+//! depend on how long the path is. In the spirit of \[Antwerpen11\] and \[Georgiev12\].
+//!
+//! h = `share` is multiplicative, h(x y) = h(x) h(y). So, with strategies counted by light vertices,
+//!
+//! L_m = Σ_{j ≤ m} h(n_j p_j / p_m) = h(n_m) + h(p_{m-1} / p_m) · L_{m-1},
+//!
+//! and likewise C_m by camera vertices. Both depend on vertices well inside of a subpath alone; a
+//! weight adds what changes at the junction (docs/derivations/mis-weights.md). It is the number that
+//! [`mis_weight`](super::mis_weight) finds, but for rounding.
+
+use super::densities::{drawn_density, next_event_density, walked_densities};
+use super::{JoinedPath, Junction, PathContext, PathDensities, Subpath, Vertex};
+
+/// Sums of shares along a light and a camera subpath, each relative to the strategy it ends with.
+#[derive(Debug, Default)]
+pub struct RunningSums {
+    /// L_m, without the last two vertices of the walk.
+    light: Vec<f64>,
+    /// C_m, without the last vertex of the walk; C_0 = 0.
+    camera: Vec<f64>,
+    /// The light's end of all paths with two vertices of the light subpath or more.
+    start: LightEnd,
+    /// The sums hold where both subpaths are as long.
+    shortest: usize,
+    /// For the pure form.
+    densities: PathDensities,
+}
+
+/// How x_0 is drawn.
+#[derive(Clone, Copy, Debug, Default)]
+struct LightEnd {
+    /// a_0.
+    emission: f64,
+    /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
+    next_event: f64,
+    /// 1 where s = 1 can draw x_0, else 0.
+    is_drawn: f64,
+    /// 1 where s = 0 can hit it, else 0.
+    is_hit: f64,
+}
+
+/// As the number of vertices of a path: its other end is so far that its roulette has begun.
+const FAR: usize = usize::MAX;
+
+impl RunningSums {
+    /// Sums along the two walks of a sample.
+    pub fn sum(&mut self, context: &PathContext<'_>, light: &Subpath, camera: &Subpath) {
+        let settings = context.settings;
+        self.light.clear();
+        self.camera.clear();
+        self.shortest = usize::MAX;
+        if settings.strategies.is_all() {
+            self.shortest = settings.roulette.density_start().unwrap_or(0);
+            self.sum_light(context, &light.vertices);
+            self.sum_camera(context, &camera.vertices);
+        }
+    }
+
+    /// The number that [`JoinedPath::weight`] finds, but for rounding.
+    ///
+    /// Each of the path's subpaths is one vertex, or the beginning of the walk that was summed.
+    ///
+    /// It is the pure form itself where not all strategies take part, and where the roulette of
+    /// densities begins at a later bounce than the shorter subpath has vertices: it is then another
+    /// for every path length.
+    #[inline]
+    pub fn weight(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f32 {
+        let (s, t) = (path.light.len(), path.camera.len());
+        let weight = match path.junction {
+            Junction::Hit if self.shortest == 0 => self.hit(context, path),
+            Junction::Connection if self.shortest <= s.min(t) => self.connection(context, path),
+            _ => return path.weight(context, &mut self.densities),
+        };
+        weight as f32
+    }
+
+    fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
+        let [x0, x1, ..] = walk else { return };
+        let share = |ratio| context.settings.mis.share(ratio);
+        self.start = LightEnd::new(context, x0, x1);
+        let mut sum = self.start.is_hit;
+        self.light.push(sum);
+        let densities = walked_densities(context, walk, FAR);
+        for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
+            let links = self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
+            sum = chain(links, share(self.start.down(i, a, b)), sum);
+            self.light.push(sum);
+        }
+    }
+
+    fn sum_camera(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
+        let share = |ratio| context.settings.mis.share(ratio);
+        let mut sum = 0.0;
+        self.camera.push(sum);
+        let densities = walked_densities(context, walk, FAR);
+        for (c, [b, a]) in densities.take(walk.len().saturating_sub(1)).enumerate() {
+            let links = share(context.count(1, c + 1)) * walk[c].links(&walk[c + 1]);
+            sum = chain(links, share(ratio(a, b)), sum);
+            self.camera.push(sum);
+        }
+    }
+
+    /// s = 0: all others have more light vertices.
+    fn hit(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
+        let (y, t) = (path.y(), path.camera.len());
+        let share = |ratio| context.settings.mis.share(ratio);
+        let end = LightEnd::new(context, path.z(), y);
+        let reversed = path.reversed(context);
+        let links = share(context.count(1, t)) * end.is_drawn * possible(!y.went_by_delta);
+        let up = end.up(1, reversed.y, drawn_density(context, path.camera));
+        let from_drawn = chain(links, share(up), self.camera[t - 1]);
+        let others = chain(
+            0.0,
+            share(end.next_event / f64::from(reversed.z)),
+            from_drawn,
+        );
+        1.0 / (1.0 + others)
+    }
+
+    /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
+    fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
+        let JoinedPath { light, camera, .. } = *path;
+        let (s, t) = (light.len(), camera.len());
+        let share = |ratio| context.settings.mis.share(ratio);
+        let end = match s {
+            1 => LightEnd::new(context, path.z(), path.y()),
+            _ => self.start,
+        };
+        let reversed = path.reversed(context);
+        let fewer_light = {
+            let from_before = if let [.., before, _] = light {
+                let links = end.links(s - 1) * possible(!before.went_by_delta);
+                let drawn = drawn_density(context, &light[..s - 1]);
+                let down = end.down(s - 2, drawn, reversed.before[0]);
+                chain(links, share(down), self.light[s - 2])
+            } else {
+                end.is_hit
+            };
+            let down = end.down(s - 1, drawn_density(context, light), reversed.z);
+            chain(0.0, share(down), from_before)
+        };
+        let fewer_camera = if let [.., before, _] = camera {
+            let links = share(context.count(s + 1, t - 1)) * possible(!before.went_by_delta);
+            let drawn = drawn_density(context, &camera[..t - 1]);
+            let up = end.up(s + 1, reversed.before[1], drawn);
+            let from_before = chain(links, share(up), self.camera[t - 2]);
+            let up = end.up(s, reversed.y, drawn_density(context, camera));
+            chain(0.0, share(up), from_before)
+        } else {
+            0.0
+        };
+        let own = share(context.count(s, t));
+        own / (own + fewer_light + fewer_camera)
+    }
+}
+
+impl LightEnd {
+    #[inline]
+    fn new(context: &PathContext<'_>, x0: &Vertex, x1: &Vertex) -> Self {
+        let next_event = next_event_density(context, x0, x1);
+        Self {
+            emission: f64::from(x0.pdf_fwd),
+            next_event: f64::from(next_event.max(f32::MIN_POSITIVE)),
+            is_drawn: possible(next_event > 0.0),
+            is_hit: possible(!x0.is_on_delta_light(context)),
+        }
+    }
+
+    /// 1 where the light lets strategy `s` ≥ 1 link x_{s-1} with x_s, else 0.
+    #[inline]
+    fn links(&self, s: usize) -> f64 {
+        if s == 1 { self.is_drawn } else { 1.0 }
+    }
+
+    /// p_{i+1} / p_i for i ≥ 1, where walks from the light and from the camera draw x_i with
+    /// densities `a` and `b`.
+    #[inline]
+    fn up(&self, i: usize, a: f32, b: f32) -> f64 {
+        if i == 1 {
+            self.emission / self.next_event * ratio(a, b)
+        } else {
+            ratio(a, b)
+        }
+    }
+
+    /// p_i / p_{i+1}.
+    #[inline]
+    fn down(&self, i: usize, a: f32, b: f32) -> f64 {
+        match i {
+            0 => f64::from(b) / self.next_event,
+            1 => self.next_event / self.emission * ratio(b, a),
+            _ => ratio(b, a),
+        }
+    }
+}
+
+impl Vertex {
+    /// 1 where this vertex of a walk could be linked with the next instead, else 0.
+    #[inline]
+    fn links(&self, next: &Self) -> f64 {
+        possible(!self.went_by_delta && !next.went_by_delta)
+    }
+}
+
+/// `share` + `ratio` · `sum`, where a sum of nothing is nothing whatever the ratio. Never infinite:
+/// a ratio of zero further on must still leave nothing of it.
+#[inline]
+fn chain(share: f64, ratio: f64, sum: f64) -> f64 {
+    if sum > 0.0 {
+        (share + ratio * sum).min(f64::MAX)
+    } else {
+        share
+    }
+}
+
+#[inline]
+fn ratio(x: f32, y: f32) -> f64 {
+    f64::from(x) / f64::from(y)
+}
+
+#[inline]
+fn possible(is_possible: bool) -> f64 {
+    f64::from(is_possible)
+}

@@ -1,0 +1,51 @@
+//! Pairs of subpaths, walked in a scene.
+
+use bidir::path::{PathContext, PathSettings, Subpath, camera_subpath, light_subpath};
+use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
+use bidir::scene::Scene;
+use bidir::spectrum::Wavelengths;
+use bidir::stats::Stats;
+
+/// How many pairs a scene gets.
+const PAIRS: u64 = 400;
+
+fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
+    let sampler = Sampler::new(SamplerKind::Independent, 5);
+    let camera = sampler.stream(Domain::Camera, 0, index);
+    let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
+    let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
+    let ray = context.scene.camera().sample_ray(raster, || lens);
+    let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
+    let mut stats = Stats::default();
+    camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
+    let light = sampler.stream(Domain::Light, 0, index);
+    light_subpath(context, &light, &mut light_walk, &mut stats);
+    (light_walk, camera_walk)
+}
+
+/// Calls `f` with the context of a scene and a number of subpath pairs.
+pub(crate) fn for_each_pair(
+    settings: &PathSettings,
+    scene: &Scene,
+    f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
+) {
+    for_some_pairs(PAIRS, settings, scene, f);
+}
+
+/// The same with the first `pairs` of them.
+pub(crate) fn for_some_pairs(
+    pairs: u64,
+    settings: &PathSettings,
+    scene: &Scene,
+    mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
+) {
+    let context = PathContext {
+        scene,
+        settings,
+        wavelengths: Wavelengths::default(),
+    };
+    for index in 0..pairs {
+        let (light, camera) = subpaths(&context, index);
+        f(&context, &light, &camera);
+    }
+}

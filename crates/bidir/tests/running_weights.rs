@@ -1,0 +1,264 @@
+//! Weights from running sums are those of the pure form, for every path that pairs of subpaths
+//! make, and for every way to weigh them.
+
+mod common;
+
+use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
+use bidir::film::{FilmSettings, Filter};
+use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
+use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::path::{
+    JoinedPath, Junction, LightPointChoice, MisHeuristic, PathContext, PathDensities, PathRoulette,
+    PathSettings, RunningSums, Subpath, Vertex, sample_next_event,
+};
+use bidir::scene::{Scene, SceneBuilder};
+use bidir::shape::Shape;
+use common::walks::for_some_pairs;
+
+/// Both forms take the same densities, and sum in f64; weights are f32.
+const TOLERANCE: f32 = 1e-6;
+/// Weights below this are compared absolutely.
+const SMALL: f32 = 1e-30;
+
+/// What is compared, and how much of it says something.
+#[derive(Default)]
+struct Comparison {
+    sums: RunningSums,
+    densities: PathDensities,
+    paths: usize,
+    /// Of paths with five vertices or more, whose strategies share.
+    shared: usize,
+}
+
+impl Comparison {
+    #[track_caller]
+    fn compare(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) {
+        let [light, camera] = [path.light, path.camera].map(<[Vertex]>::len);
+        let (s, t) = match path.junction {
+            Junction::Hit => (0, light + camera),
+            Junction::Connection => (light, camera),
+        };
+        if context.count(s, t) == 0.0 {
+            return;
+        }
+        let pure = path.weight(context, &mut self.densities);
+        let running = self.sums.weight(context, path);
+        assert!(
+            (running - pure).abs() <= TOLERANCE * pure + SMALL,
+            "s = {s}, t = {t}: {running} instead of {pure}; {}",
+            describe(context.settings)
+        );
+        self.paths += 1;
+        self.shared += usize::from(s + t > 4 && (0.01..0.99).contains(&pure));
+    }
+
+    /// All paths that the two subpaths make.
+    fn compare_pair(&mut self, context: &PathContext<'_>, light: &Subpath, camera: &Subpath) {
+        self.sums.sum(context, light, camera);
+        self.compare_hits(context, camera);
+        self.compare_light_images(context, &light.vertices);
+        self.compare_next_events(context, &camera.vertices);
+        let fresh = context.settings.light_point == LightPointChoice::Fresh;
+        for t in 2..=camera.vertices.len() {
+            for s in 1 + usize::from(fresh)..=light.vertices.len() {
+                let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
+                self.compare_connection(context, light, camera);
+            }
+        }
+    }
+
+    fn compare_connection(
+        &mut self,
+        context: &PathContext<'_>,
+        light: &[Vertex],
+        camera: &[Vertex],
+    ) {
+        let path = JoinedPath::connection(light, camera);
+        if !path.contribution(context).is_black() {
+            self.compare(context, &path);
+        }
+    }
+
+    fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath) {
+        for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
+            let Some(light) = vertex.light else { continue };
+            let mut x0 = Vertex::light(context, light, &vertex.light_point());
+            (x0.wo, x0.pdf_rev) = (vertex.wo, vertex.pdf_fwd);
+            self.compare(context, &JoinedPath::hit(&x0, &camera.vertices[..i]));
+        }
+        let Some(escape) = camera.escape else { return };
+        for &light in context.scene.environment() {
+            let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(escape.direction));
+            (x0.wo, x0.pdf_rev) = (-escape.direction, escape.pdf_fwd);
+            self.compare(context, &JoinedPath::hit(&x0, &camera.vertices));
+        }
+    }
+
+    fn compare_light_images(&mut self, context: &PathContext<'_>, light: &[Vertex]) {
+        let lens = context.scene.camera().sample_lens(|| Vec2::new(0.3, 0.8));
+        let lens = Vertex::camera(&lens);
+        for s in 1..=light.len() {
+            if !(light[s - 1].is_infinite && lens.is_infinite) {
+                self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));
+            }
+        }
+    }
+
+    fn compare_next_events(&mut self, context: &PathContext<'_>, camera: &[Vertex]) {
+        for t in 2..=camera.len() {
+            let (u_light, u) = (0.17 * t as f32 % 1.0, Vec2::new(0.4, 0.11 * t as f32 % 1.0));
+            let Some((light, drawn)) =
+                sample_next_event(context, camera[t - 1].point, || u_light, u)
+            else {
+                continue;
+            };
+            let x0 = Vertex::light(context, light, &drawn.at);
+            self.compare_connection(context, std::slice::from_ref(&x0), &camera[..t]);
+        }
+    }
+}
+
+/// Every heuristic, light point and kind of roulette, with some sets of strategies.
+fn all_settings() -> Vec<PathSettings> {
+    let mut all = Vec::new();
+    for (_, mis) in MisHeuristic::NAMES {
+        for (_, light_point) in LightPointChoice::NAMES {
+            for roulette in ["albedo:0", "albedo:3", "throughput:0", "off"] {
+                for strategies in ["all", "-s1,all", "-s0", "-t1", "-s1", "all,-s2t3,-t4"] {
+                    all.push(PathSettings {
+                        max_depth: Some(10),
+                        roulette: roulette.parse::<PathRoulette>().unwrap(),
+                        strategies: strategies.parse().unwrap(),
+                        light_point,
+                        mis,
+                    });
+                }
+            }
+        }
+    }
+    all
+}
+
+/// Settings in words.
+fn describe(settings: &PathSettings) -> String {
+    let PathSettings {
+        roulette,
+        strategies,
+        light_point,
+        mis,
+        ..
+    } = settings;
+    format!("{mis:?}, {light_point:?}, {roulette}, {strategies}")
+}
+
+#[track_caller]
+fn check(scene: &Scene, pairs: u64) {
+    let (mut comparison, mut least) = (Comparison::default(), 0);
+    for settings in all_settings() {
+        for_some_pairs(pairs, &settings, scene, |context, light, camera| {
+            comparison.compare_pair(context, light, camera);
+        });
+        least += pairs as usize;
+    }
+    let Comparison { paths, shared, .. } = comparison;
+    assert!(paths >= least, "{paths} paths of {least} pairs");
+    assert!(shared * 20 >= least, "{shared} of {least} are shared");
+}
+
+/// A floor, a wall, balls of smooth glass, smooth metal and smooth varnish, under lights of all
+/// kinds, `unit` times the size it has at 1.
+fn yard(unit: f32, camera: Camera) -> Scene {
+    let mut builder = SceneBuilder::new(FilmSettings::new([8; 2], Filter::default()));
+    builder.camera(camera);
+    let [grey, glass, metal, varnish] = [
+        common::diffuse([0.7, 0.6, 0.5]),
+        common::glass(0.0),
+        common::metal(0.0),
+        common::varnish(0.0),
+    ]
+    .map(|material| builder.material(material));
+    let quad = |corner: Vec3, a: Vec3, b: Vec3| {
+        Shape::Mesh(common::quad(corner * unit, a * unit, b * unit))
+    };
+    let ball = |centre: Vec3, radius: f32| common::sphere(centre * unit, radius * unit);
+    let floor = quad(Vec3::new(-3.0, -1.0, -3.0), Vec3::Z * 6.0, Vec3::X * 6.0);
+    let wall = quad(Vec3::new(-3.0, -1.0, 2.0), Vec3::Y * 4.0, Vec3::X * 6.0);
+    builder.shape(floor, grey, None);
+    builder.shape(wall, varnish, None);
+    builder.shape(ball(Vec3::new(-0.7, -0.5, 0.5), 0.5), glass, None);
+    builder.shape(ball(Vec3::new(0.5, -0.4, 0.9), 0.6), metal, None);
+    builder.shape(ball(Vec3::new(0.2, -0.7, -0.2), 0.3), varnish, None);
+    let lamp = ball(Vec3::new(1.2, 0.9, 0.2), 0.3);
+    builder.shape(lamp, grey, common::emission([4.0, 3.0, 2.0]));
+    let intensity = [unit * unit; 3];
+    builder.light(Light::Point(PointLight {
+        position: Vec3::new(-1.0, 1.0, 0.0) * unit,
+        intensity,
+    }));
+    builder.light(Light::Distant(DistantLight {
+        to_light: Vec3::new(0.3, 0.9, -0.3).normalize(),
+        irradiance: [0.5; 3],
+    }));
+    builder.light(Light::Infinite(InfiniteLight::constant([0.3, 0.4, 0.5])));
+    builder.build().expect("the yard is valid")
+}
+
+/// Looks along +z, with a lens.
+fn perspective(unit: f32) -> Camera {
+    let settings = PerspectiveSettings {
+        world_from_camera: Affine3A::from_translation(Vec3::Z * -3.0 * unit),
+        resolution: Vec2::splat(8.0),
+        screen: [Vec2::new(-0.5, 0.5), Vec2::new(0.5, -0.5)],
+        lens_radius: 0.1 * unit,
+        focal_distance: 3.0 * unit,
+    };
+    Camera::Perspective(Perspective::new(&settings).expect("the camera is rigid"))
+}
+
+#[test]
+fn rooms_and_layers() {
+    check(&common::room(0.1), 20);
+    check(&common::gallery(0.1), 20);
+}
+
+#[test]
+fn glass_mirrors_and_lights_of_all_kinds() {
+    check(&yard(1.0, perspective(1.0)), 100);
+}
+
+#[test]
+fn scenes_of_any_size() {
+    for unit in [1e-4, 1e4] {
+        check(&yard(unit, perspective(unit)), 100);
+    }
+}
+
+#[test]
+fn a_camera_at_infinity() {
+    let settings = OrthographicSettings {
+        world_from_camera: Affine3A::from_translation(Vec3::Z * -3.0),
+        resolution: Vec2::splat(8.0),
+        screen: [Vec2::new(-1.5, 1.5), Vec2::new(1.5, -1.5)],
+    };
+    let camera = Orthographic::new(&settings).expect("the camera is rigid");
+    check(&yard(1.0, Camera::Orthographic(camera)), 100);
+}
+
+/// Long walks, where ratios multiply up.
+#[test]
+fn long_paths() {
+    let scene = common::room(0.05);
+    for (_, mis) in MisHeuristic::NAMES {
+        let settings = PathSettings {
+            max_depth: Some(60),
+            roulette: PathRoulette::Off,
+            mis,
+            ..PathSettings::default()
+        };
+        let mut comparison = Comparison::default();
+        for_some_pairs(4, &settings, &scene, |context, light, camera| {
+            comparison.compare_pair(context, light, camera);
+        });
+        assert!(comparison.shared > 400, "{} are shared", comparison.shared);
+    }
+}
