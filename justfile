@@ -50,6 +50,16 @@ scenes:
 bench-film:
     cargo bench -p bidir-formats --bench film
 
+# Instructions of samples and of their stages, by valgrind; what changed since the figures kept.
+bench-instr *FLAGS:
+    cargo build --release
+    python3 tools/bench_instr {{FLAGS}}
+
+# How speed and memory grow with threads, triangles, instances, pixels, lights and bounces.
+bench-scaling *FLAGS:
+    cargo build --release
+    python3 tools/bench_scaling {{FLAGS}}
+
 # The same work in Mitsuba and LuxCore: installs them beside the build (1.2 GB) where they are absent.
 bench-peers *FLAGS:
     cargo build --release

@@ -1,8 +1,10 @@
 //! What a render counts: rays where they are traced, candidates, the fate of each strategy's
-//! contributions, and those that were dropped.
+//! contributions, and those that were dropped; and, apart from them, what a host's clock measures.
 
+mod stages;
 mod strategies;
 
+pub use stages::{Clock, Stage, StageTimes, Stopwatch};
 pub use strategies::{LayerCounts, StrategyCounts, StrategyTable};
 
 use crate::path::Strategy;

@@ -8,7 +8,9 @@ use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
 use bidir::scene::Scene;
 use bidir::select::ShadowRays;
+use bidir::stats::{Stage, StageTimes};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
 fn settings(integrator: IntegratorKind, shadow_rays: &str) -> Settings {
     let shadow_rays = shadow_rays.parse::<ShadowRays>().expect("a rule");
@@ -37,6 +39,36 @@ fn threads_do_not_change_a_bit() {
             };
             let one = film(1);
             assert!(one == film(2) && one == film(5), "{name}, {rule}");
+        }
+    }
+}
+
+#[test]
+fn measuring_stages_changes_no_bit_and_no_counter() {
+    let scene = common::room(0.1);
+    for (name, integrator) in IntegratorKind::NAMES {
+        let session = |clock| {
+            let resources = Resources {
+                clock,
+                ..with_threads(1)
+            };
+            let mut session = Session::new(&scene, settings(integrator, "per-pair"), &resources)
+                .expect("the film is small");
+            (0..4).for_each(|_| assert!(session.step(&())));
+            session
+        };
+        let (plain, timed) = (session(None), session(Some(Instant::now)));
+        assert!(plain.film() == timed.film(), "{name}");
+        assert_eq!(plain.stats(), timed.stats(), "{name}");
+        assert_eq!(*plain.stage_times(), StageTimes::default(), "{name}");
+        let times = timed.stage_times();
+        assert!((1..=10).contains(&times.samples), "{name}: {times:?}");
+        let of_bdpt = integrator == IntegratorKind::Bdpt;
+        for stage in [Stage::Walk, Stage::Film] {
+            assert!(!times.of(stage).is_zero(), "{name}: {times:?}");
+        }
+        for stage in [Stage::Candidates, Stage::Shadow] {
+            assert_eq!(!times.of(stage).is_zero(), of_bdpt, "{name}: {times:?}");
         }
     }
 }

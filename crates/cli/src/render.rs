@@ -80,6 +80,7 @@ fn new_session<'a>(
 ) -> Result<Session<'a>, Failure> {
     let resources = Resources {
         threads: args.budget.threads.count.into(),
+        clock: args.output.stats.is_some().then_some(Instant::now),
         ..Resources::default()
     };
     Session::new(&loaded.scene, settings.clone(), &resources).map_err(|error| {

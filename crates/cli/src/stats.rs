@@ -9,7 +9,7 @@ use crate::scene_io::Stopping;
 use crate::settings::{Budget, SettingsText};
 use bidir::driver::Session;
 use bidir::film::Film;
-use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StrategyReport};
+use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;
 use std::time::Duration;
 
@@ -47,6 +47,8 @@ pub(crate) struct Report {
     load_seconds: f64,
     samples: u64,
     samples_per_second: f64,
+    /// None: too few samples to measure one.
+    stages: Option<StagesReport>,
     rays: RayReport,
     connection_rays_per_sample: f64,
     connection_blocked: u64,
@@ -90,6 +92,7 @@ impl Report {
             load_seconds: course.load.as_secs_f64(),
             samples: stats.samples,
             samples_per_second: stats.samples as f64 / seconds,
+            stages: StagesReport::new(session.stage_times()),
             rays: RayReport::new(stats, training),
             connection_rays_per_sample: per_sample(stats.rays.connection, stats.samples),
             connection_blocked: stats.connections_blocked,

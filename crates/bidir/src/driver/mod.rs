@@ -25,6 +25,7 @@ use crate::path::PathSettings;
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use crate::select::ShadowRays;
+use crate::stats::Clock;
 use thiserror::Error;
 
 /// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
@@ -52,6 +53,8 @@ pub struct Resources {
     pub threads: usize,
     /// The largest film. Unit: bytes.
     pub film_memory: u64,
+    /// Measures the stages of some samples, for [`Session::stage_times`]. None: nothing is measured.
+    pub clock: Option<Clock>,
 }
 
 impl Default for Resources {
@@ -59,6 +62,7 @@ impl Default for Resources {
         Self {
             threads: 0,
             film_memory: Self::DEFAULT_FILM_MEMORY,
+            clock: None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! One pass after another: threads take runs of pixels, each sample is a pure function of its pixel
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
-//! trace. Nothing here looks at a clock.
+//! trace. No clock is looked at but the host's, where it gives one.
 
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
@@ -11,7 +11,7 @@ use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
-use crate::stats::Stats;
+use crate::stats::{Stage, StageTimes, Stats};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -66,6 +66,7 @@ pub struct Session<'a> {
     first_pass: u64,
     buffer: PassBuffer,
     stats: Stats,
+    stage_times: StageTimes,
     pool: rayon::ThreadPool,
     /// One per thread, kept so that no sample allocates.
     workspaces: Vec<Mutex<Workspace>>,
@@ -99,8 +100,10 @@ impl<'a> Session<'a> {
             first_pass: 0,
             buffer,
             stats: Stats::default(),
+            stage_times: StageTimes::default(),
             pool,
-            workspaces: std::iter::repeat_with(Mutex::default)
+            workspaces: std::iter::repeat_with(|| Workspace::timed_by(resources.clock))
+                .map(Mutex::new)
                 .take(threads)
                 .collect(),
         })
@@ -142,16 +145,18 @@ impl<'a> Session<'a> {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
-        let mut stats = Stats::default();
+        let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
         for workspace in &mut self.workspaces {
             let workspace = workspace
                 .get_mut()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
             stats += &std::mem::take(&mut workspace.stats);
+            stage_times += &workspace.stopwatch.take();
         }
         let finished = !given_up.into_inner();
         if finished {
             self.stats += &stats;
+            self.stage_times += &stage_times;
             let (film, buffer) = (&mut self.film, &self.buffer);
             self.pool.install(|| film.add_pass(pass, buffer));
         }
@@ -192,6 +197,7 @@ impl<'a> Session<'a> {
         workspace: &mut Workspace,
         progress: &dyn Progress,
     ) {
+        workspace.stopwatch.begin_sample();
         let sample = self.sample(pixel, pass);
         let context = path_context(self.scene, &self.settings, &sample);
         let layers = self.film.layers();
@@ -206,11 +212,12 @@ impl<'a> Session<'a> {
         .take(workspace);
         if layers.features() > 0 {
             let after = Meter::read(layers, workspace, progress);
-            let taken = (&sample, workspace);
+            let taken = (&sample, &mut *workspace);
             let features = Features::new(&context, layers, taken, [&before, &after]);
             let values = features.values(layers);
             self.buffer.set_features(pixel as usize, values);
         }
+        workspace.stopwatch.end(Stage::Film);
     }
 
     /// Sample number `pixel` (row order of the crop) of a pass, with the light path that goes with it.
@@ -257,6 +264,12 @@ impl<'a> Session<'a> {
     /// What was counted so far, without training.
     pub fn stats(&self) -> &Stats {
         &self.stats
+    }
+
+    /// The time of stages, measured in some samples of those; zero without
+    /// [`Resources::clock`].
+    pub fn stage_times(&self) -> &StageTimes {
+        &self.stage_times
     }
 
     /// What was learnt before the first pass, if anything had to be.

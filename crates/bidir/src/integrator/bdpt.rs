@@ -11,6 +11,7 @@ use crate::path::{
 use crate::sampler::{Dimension, Purpose};
 use crate::select::{Candidate, Draws, Selector};
 use crate::spectrum::Spectrum;
+use crate::stats::Stage;
 
 /// Bidirectional path tracing: every strategy (s, t), weighted, with the connections that
 /// `selector` chooses.
@@ -26,18 +27,24 @@ impl Integrator for Bdpt {
         workspace.walk_light(context, sample);
         workspace.sum_weights(context);
         hits(context, sample, workspace);
+        workspace.stopwatch.end(Stage::Hits);
         light_images(context, sample, workspace);
+        workspace.stopwatch.end(Stage::LightImage);
         gather_candidates(context, sample, workspace);
+        workspace.stopwatch.end(Stage::Candidates);
         let Workspace {
             candidates, chosen, ..
         } = workspace;
         self.selector
             .select(candidates, Draws(&sample.camera), chosen);
+        workspace.stopwatch.end(Stage::Select);
         trace_chosen(context, sample, workspace);
+        workspace.stopwatch.end(Stage::Shadow);
     }
 }
 
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
+#[inline(never)] // Profiles shall show the stages, each of which is called once.
 fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 1..workspace.camera.vertices.len() {
         let vertex = &workspace.camera.vertices[i];
@@ -93,6 +100,7 @@ fn hit(
 }
 
 /// t = 1: every light vertex is connected to a lens point of its own. All of these rays are traced.
+#[inline(never)]
 fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for s in 1..=workspace.light.vertices.len() {
         if context.count(s, 1) == 0.0 {
@@ -109,6 +117,7 @@ fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
 }
 
 /// s ≥ 1 and t ≥ 2: evaluates every connection, before visibility.
+#[inline(never)]
 fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     let fresh = context.settings.light_point == LightPointChoice::Fresh;
     workspace
@@ -194,6 +203,7 @@ fn connection(
 }
 
 /// Traces the chosen connections and adds what arrives, divided by its probability.
+#[inline(never)]
 fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];

@@ -8,6 +8,7 @@ use crate::path::{JoinedPath, PathContext, Strategy, Vertex, VertexKind};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
+use crate::stats::Stage;
 
 /// Light tracing: strategies t = 1 alone, each with weight 1.
 ///
@@ -29,6 +30,7 @@ impl Integrator for LightTracer {
                 workspace.splat(context, sample, &image);
             }
         }
+        workspace.stopwatch.end(Stage::LightImage);
     }
 }
 

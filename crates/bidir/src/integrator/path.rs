@@ -9,6 +9,7 @@ use crate::math::Vec3;
 use crate::path::{PathContext, Segment, Strategy, Vertex, next_event_pdf, sample_next_event};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
+use crate::stats::Stage;
 
 /// Path tracing: at every vertex of a camera subpath the light that is hit and the light that
 /// next-event estimation finds, combined by multiple importance sampling \[Veach95\].
@@ -41,6 +42,7 @@ impl Integrator for PathTracer {
             }
         }
         escape(context, sample, workspace);
+        workspace.stopwatch.end(Stage::Direct);
     }
 }
 

@@ -12,7 +12,7 @@ use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Scene, SegmentEnd};
 use crate::select::{Candidate, Chosen};
 use crate::spectrum::Spectrum;
-use crate::stats::{Dropped, Stats};
+use crate::stats::{Clock, Dropped, Stage, Stats, Stopwatch};
 
 /// One camera sample, with the light subpath that goes with it.
 #[derive(Clone, Copy, Debug)]
@@ -102,6 +102,8 @@ pub struct Workspace {
     pub stats: Stats,
     /// What became of every term; kept where somebody asks for it.
     pub journal: Option<Journal>,
+    /// Measures stages, where the host has a clock for it.
+    pub stopwatch: Stopwatch,
     /// Weights of the paths that the two subpaths make.
     pub(super) weights: RunningSums,
 }
@@ -111,6 +113,14 @@ impl Workspace {
     pub(crate) fn with_journal() -> Self {
         Self {
             journal: Some(Journal::default()),
+            ..Self::default()
+        }
+    }
+
+    /// A workspace that measures its stages where there is a clock.
+    pub(crate) fn timed_by(clock: Option<Clock>) -> Self {
+        Self {
+            stopwatch: Stopwatch::new(clock),
             ..Self::default()
         }
     }
@@ -136,16 +146,19 @@ impl Workspace {
         let (ray, weight) = camera_ray(context, sample);
         let (camera, stats) = (&mut self.camera, &mut self.stats);
         camera_subpath(context, &sample.camera, &ray, weight, camera, stats);
+        self.stopwatch.end(Stage::Walk);
     }
 
     /// Walks the light subpath of `sample`.
     pub(super) fn walk_light(&mut self, context: &PathContext<'_>, sample: &Sample) {
         light_subpath(context, &sample.light, &mut self.light, &mut self.stats);
+        self.stopwatch.end(Stage::Walk);
     }
 
     /// Prepares the weights of the paths that the two subpaths make.
     pub(super) fn sum_weights(&mut self, context: &PathContext<'_>) {
         self.weights.sum(context, &self.light, &self.camera);
+        self.stopwatch.end(Stage::Walk);
     }
 
     /// The ends of the segment that a candidate connects: light vertex and camera vertex.

@@ -75,6 +75,10 @@ pub(crate) struct OutputArgs {
     #[arg(short, long, visible_alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Write what was counted and measured, with all settings, as JSON.
+    ///
+    /// `stages` in it is where the time of a sample goes, measured in one of 61: walk, hits (s=0),
+    /// light_image (t=1 with its shadow rays), candidates (s>=1, t>=2), select, shadow, direct (all
+    /// of path tracing but the walk), film. Times are of one thread, and differ from run to run.
     #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
     pub(crate) stats: Option<PathBuf>,
     /// What is told meanwhile.

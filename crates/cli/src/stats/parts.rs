@@ -3,7 +3,7 @@
 use crate::settings::Budget;
 use bidir::driver::{Session, Training};
 use bidir::path::Strategy;
-use bidir::stats::{Dropped, RayCounts, Stats, StrategyCounts};
+use bidir::stats::{Dropped, RayCounts, Stage, StageTimes, Stats, StrategyCounts};
 use lab::pyramid::Figures;
 use serde::Serialize;
 
@@ -60,6 +60,44 @@ impl RayReport {
             of_image: KindsReport::from(stats.rays),
             training: training.map_or(0, |training| training.rays.total()),
         }
+    }
+}
+
+/// Where the time of samples goes, by those that were measured.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct StagesReport {
+    measured_samples: u64,
+    /// Of one thread, clock included; as all times here.
+    nanoseconds_per_sample: f64,
+    /// Those that the estimator has, in the order of a sample.
+    parts: Vec<StageReport>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct StageReport {
+    stage: &'static str,
+    share: f64,
+    nanoseconds_per_sample: f64,
+}
+
+impl StagesReport {
+    /// None: no sample was measured.
+    pub(super) fn new(times: &StageTimes) -> Option<Self> {
+        let total = times.total().as_secs_f64();
+        let per_sample = |seconds: f64| seconds * 1e9 / times.samples as f64;
+        let parts = Stage::NAMES.into_iter().map(|(name, stage)| {
+            let seconds = times.of(stage).as_secs_f64();
+            StageReport {
+                stage: name,
+                share: seconds / total,
+                nanoseconds_per_sample: per_sample(seconds),
+            }
+        });
+        (times.samples > 0).then(|| Self {
+            measured_samples: times.samples,
+            nanoseconds_per_sample: per_sample(total),
+            parts: parts.filter(|part| part.share > 0.0).collect(),
+        })
     }
 }
 

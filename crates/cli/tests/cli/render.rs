@@ -125,6 +125,11 @@ fn statistics_tell_settings_times_and_rays() {
         .sum();
     assert_eq!(sum as u64, number("/rays/total") as u64);
     assert!(number("/rays/training") > 0.0 && number("/candidates") > 0.0);
+    assert_eq!(number("/stages/measured_samples") as u64, 2 * 64 / 61);
+    let stages = stats["stages"]["parts"].as_array().unwrap();
+    let shares = stages.iter().map(|part| part["share"].as_f64().unwrap());
+    assert!((shares.sum::<f64>() - 1.0).abs() < 1e-9);
+    assert_eq!(stages[0]["stage"], "walk");
     assert!(number("/seconds") > 0.0 && number("/load_seconds") > 0.0);
     let per_sample = number("/rays/connection") / number("/samples");
     assert!((number("/connection_rays_per_sample") - per_sample).abs() < 1e-9);

@@ -1,0 +1,193 @@
+//! Where the time of samples goes: stages, measured in some of the samples by the host's clock.
+//!
+//! Times differ from run to run, so they are kept apart from what is counted: no film, no counter
+//! and no estimate depends on them.
+
+use std::ops::AddAssign;
+use std::time::{Duration, Instant};
+
+/// A clock that never goes back, such as [`Instant::now`]. The host gives it; the library looks at
+/// no other.
+pub type Clock = fn() -> Instant;
+
+/// A thread measures one of so many of its samples. A prime, so that no width of an image makes
+/// the same columns be measured in every row.
+const MEASURED_EVERY: u32 = 61;
+
+/// What a sample does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Walking the subpaths, with their rays.
+    Walk,
+    /// The light that a bidirectional camera walk hits by itself, and its weights: s = 0.
+    Hits,
+    /// The light image, t = 1: connections, weights and shadow rays.
+    LightImage,
+    /// Connections and weights of s ≥ 1 and t ≥ 2, with light points of their own.
+    Candidates,
+    /// Choosing candidates.
+    Select,
+    /// Shadow rays of those that were chosen.
+    Shadow,
+    /// All that path tracing does at its vertices: hits, light points, weights and shadow rays.
+    Direct,
+    /// Bringing the contributions to the film; adding a pass to the film is not in it.
+    Film,
+}
+
+impl Stage {
+    /// Every stage with its name.
+    pub const NAMES: [(&'static str, Self); 8] = [
+        ("walk", Self::Walk),
+        ("hits", Self::Hits),
+        ("light_image", Self::LightImage),
+        ("candidates", Self::Candidates),
+        ("select", Self::Select),
+        ("shadow", Self::Shadow),
+        ("direct", Self::Direct),
+        ("film", Self::Film),
+    ];
+}
+
+/// The time of each stage, summed over the samples that were measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StageTimes {
+    /// Samples that were measured.
+    pub samples: u64,
+    times: [Duration; Stage::NAMES.len()],
+}
+
+impl StageTimes {
+    /// The time of `stage`.
+    pub fn of(&self, stage: Stage) -> Duration {
+        self.times[stage as usize]
+    }
+
+    /// The time of all stages.
+    pub fn total(&self) -> Duration {
+        self.times.iter().sum()
+    }
+}
+
+impl AddAssign<&Self> for StageTimes {
+    fn add_assign(&mut self, other: &Self) {
+        self.samples += other.samples;
+        for (time, other) in self.times.iter_mut().zip(&other.times) {
+            *time += *other;
+        }
+    }
+}
+
+/// Measures the stages of a thread's samples. Without a clock it does nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Stopwatch {
+    clock: Option<Clock>,
+    /// Samples begun since one was measured.
+    waited: u32,
+    /// The end of the last stage. None: this sample is not measured.
+    last: Option<Instant>,
+    times: StageTimes,
+}
+
+impl Stopwatch {
+    /// Measures by `clock`, if there is one.
+    pub(crate) fn new(clock: Option<Clock>) -> Self {
+        Self {
+            clock,
+            ..Self::default()
+        }
+    }
+
+    /// A sample begins, and with it its first stage.
+    #[inline]
+    pub(crate) fn begin_sample(&mut self) {
+        let Some(clock) = self.clock else { return };
+        self.waited += 1;
+        self.last = None;
+        if self.waited == MEASURED_EVERY {
+            self.waited = 0;
+            self.times.samples += 1;
+            self.last = Some(clock());
+        }
+    }
+
+    /// `stage` ends, and the next begins.
+    #[inline]
+    pub(crate) fn end(&mut self, stage: Stage) {
+        if let (Some(clock), Some(last)) = (self.clock, self.last) {
+            let now = clock();
+            self.times.times[stage as usize] += now - last;
+            self.last = Some(now);
+        }
+    }
+
+    /// What was measured since it was taken last.
+    pub(crate) fn take(&mut self) -> StageTimes {
+        std::mem::take(&mut self.times)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    thread_local! {
+        static NOW: Cell<Option<Instant>> = const { Cell::new(None) };
+    }
+
+    /// Goes on by a microsecond whenever it is looked at.
+    fn ticking() -> Instant {
+        let now = NOW.get().unwrap_or_else(Instant::now) + Duration::from_micros(1);
+        NOW.set(Some(now));
+        now
+    }
+
+    fn measure(watch: &mut Stopwatch, samples: u32) {
+        for _ in 0..samples {
+            watch.begin_sample();
+            for stage in [Stage::Walk, Stage::Walk, Stage::Film] {
+                watch.end(stage);
+            }
+        }
+    }
+
+    #[test]
+    fn one_of_so_many_samples_is_measured() {
+        let mut watch = Stopwatch::new(Some(ticking));
+        measure(&mut watch, MEASURED_EVERY - 1);
+        assert_eq!(watch.take(), StageTimes::default());
+        measure(&mut watch, 2 * MEASURED_EVERY);
+        let times = watch.take();
+        let micros = |stage| times.of(stage).as_micros();
+        assert_eq!(times.samples, 2);
+        assert_eq!((micros(Stage::Walk), micros(Stage::Film)), (4, 2));
+        assert_eq!((micros(Stage::Shadow), times.total().as_micros()), (0, 6));
+        assert_eq!(watch.take(), StageTimes::default());
+    }
+
+    #[test]
+    fn nothing_is_measured_without_a_clock() {
+        let mut watch = Stopwatch::new(None);
+        measure(&mut watch, 3 * MEASURED_EVERY);
+        assert_eq!(watch.take(), StageTimes::default());
+    }
+
+    #[test]
+    fn times_add_up_stage_by_stage() {
+        let mut watch = Stopwatch::new(Some(ticking));
+        let mut sum = StageTimes::default();
+        for _ in 0..3 {
+            measure(&mut watch, MEASURED_EVERY);
+            sum += &watch.take();
+        }
+        assert_eq!((sum.samples, sum.of(Stage::Film).as_micros()), (3, 3));
+    }
+
+    #[test]
+    fn every_stage_has_its_place() {
+        for (i, (_, stage)) in Stage::NAMES.into_iter().enumerate() {
+            assert_eq!(stage as usize, i);
+        }
+    }
+}

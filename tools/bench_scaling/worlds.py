@@ -1,0 +1,106 @@
+"""Scenes of any size: a closed box with a terrain, instances of terrains, or many lamps.
+
+All are the same room to look at, so that paths are about as long whatever the number of things:
+only the work of finding, choosing and keeping them grows.
+"""
+
+import math
+import os
+import struct
+
+FILM = (80, 60)
+BOX = [(x, y, z) for x in (-1.5, 1.5) for y in (0.0, 2.0) for z in (-1.5, 2.5)]
+FACES = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+HEAD = """\
+LookAt 0 1.1 2.3  0 0.5 0  0 1 0
+Camera "perspective" "float fov" 60
+Film "rgb" "integer xresolution" %d "integer yresolution" %d
+PixelFilter "box"
+Sampler "sobol"
+Integrator "bdpt" "integer maxdepth" 6
+WorldBegin
+Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
+"""
+
+
+class Folder:
+    """Where scenes are written."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def _mesh(self, name, points, triangles):
+        """Writes a mesh as binary PLY; points and triangles are numbers and iterables of triples,
+        which are not kept: the memory of a render is at least that of who started it."""
+        head = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n"
+                "property float y\nproperty float z\nelement face %d\n"
+                "property list uchar int vertex_indices\nend_header\n")
+        with open(os.path.join(self.path, name), "wb") as file:
+            file.write((head % (points[0], triangles[0])).encode())
+            file.writelines(struct.pack("<3f", *point) for point in points[1])
+            file.writelines(struct.pack("<B3i", 3, *triangle) for triangle in triangles[1])
+        return 'Shape "plymesh" "string filename" "%s"\n' % name
+
+    def _scene(self, name, body):
+        path = os.path.join(self.path, name + ".pbrt")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(HEAD % FILM + _walls() + body)
+        return path
+
+    def triangles(self, count):
+        """A terrain of about so many triangles in one mesh: (scene, triangles)."""
+        side = max(1, round(math.sqrt(count / 2)))
+        body = self._mesh("terrain-%d.ply" % count, *_terrain(side)) + self._lamps(1)
+        return self._scene("triangles-%d" % count, body), 2 * side * side
+
+    def instances(self, places, side=22):
+        """A terrain of 2 · side² triangles, placed so many times: (scene, triangles)."""
+        across = max(1, round(math.sqrt(places)))
+        body = 'ObjectBegin "patch"\n%sObjectEnd\n' % self._mesh("patch.ply", *_terrain(side))
+        body += "".join(
+            "AttributeBegin\nTranslate %g 0 %g\nScale %g 1 %g\nObjectInstance \"patch\"\n"
+            "AttributeEnd\n" % ((2 * i + 1) / across - 1, (2 * j + 1) / across - 1,
+                                1 / across, 1 / across)
+            for i in range(across) for j in range(across))
+        body += self._lamps(1)
+        return self._scene("instances-%d" % places, body), 2 * side * side * across * across
+
+    def lamps(self, count):
+        """So many small triangles that emit, with the same power together: (scene, lamps)."""
+        across = max(1, round(math.sqrt(count)))
+        return self._scene("lamps-%d" % count, self._lamps(across)), across * across
+
+    def _lamps(self, across):
+        """A square of lamps under the ceiling that face down."""
+        # Of every square half is a lamp, so that their area does not depend on their number.
+        width = 1.0 / across
+        count = across * across
+        points = ((x, 1.98, z) for i in range(count)
+                  for x, z in _corners(i // across * width - 0.5, i % across * width - 0.5, width))
+        triangles = ((3 * i, 3 * i + 1, 3 * i + 2) for i in range(count))
+        mesh = self._mesh("lamps-%d.ply" % across, (3 * count, points), (count, triangles))
+        return ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [8 8 8]\n%sAttributeEnd\n'
+                % mesh)
+
+
+def _corners(x, z, width):
+    return (x, z), (x + width, z), (x, z + width)
+
+
+def _walls():
+    points = " ".join("%g %g %g" % point for point in BOX)
+    indices = " ".join("%d %d %d %d %d %d" % (a, b, c, a, c, d) for a, b, c, d in FACES)
+    return ('Shape "trianglemesh" "point3 P" [%s] "integer indices" [%s]\n' % (points, indices))
+
+
+def _terrain(side):
+    """Hills over [-1, 1]², 2 · side² triangles: points and triangles, each with their number."""
+    def point(i, j):
+        x, z = 2 * i / side - 1, 2 * j / side - 1
+        fine = 0.3 / side * ((i * 7919 + j * 104729) % 97 / 97)
+        return x, 0.2 + 0.15 * math.sin(5 * x) * math.cos(4 * z) + fine, z
+    row = side + 1
+    points = (point(i, j) for i in range(row) for j in range(row))
+    triangles = (triangle for i in range(side) for a in range(i * row, i * row + side)
+                 for triangle in ((a, a + 1, a + row), (a + 1, a + row + 1, a + row)))
+    return (row * row, points), (2 * side * side, triangles)
