@@ -9,7 +9,7 @@ use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
     JoinedPath, Junction, LightPointChoice, MisHeuristic, PathContext, PathDensities, PathRoulette,
-    PathSettings, RunningSums, Subpath, Vertex, sample_next_event,
+    PathSettings, RunningSums, Strategies, Subpath, Vertex, sample_next_event,
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
@@ -120,23 +120,37 @@ impl Comparison {
 
 /// Every heuristic, light point and kind of roulette, with some sets of strategies.
 fn all_settings() -> Vec<PathSettings> {
-    let mut all = Vec::new();
-    for (_, mis) in MisHeuristic::NAMES {
-        for (_, light_point) in LightPointChoice::NAMES {
-            for roulette in ["albedo:0", "albedo:3", "throughput:0", "off"] {
-                for strategies in ["all", "-s1,all", "-s0", "-t1", "-s1", "all,-s2t3,-t4"] {
-                    all.push(PathSettings {
-                        max_depth: Some(10),
-                        roulette: roulette.parse::<PathRoulette>().unwrap(),
-                        strategies: strategies.parse().unwrap(),
-                        light_point,
-                        mis,
-                    });
-                }
-            }
+    let roulettes = ["albedo:0", "albedo:3", "throughput:0", "off"]
+        .map(|text| text.parse::<PathRoulette>().expect("it is a roulette"));
+    let strategies = ["all", "-s1,all", "-s0", "-t1", "-s1", "all,-s2t3,-t4"]
+        .map(|text| text.parse::<Strategies>().expect("they are strategies"));
+    let all = vec![PathSettings {
+        max_depth: Some(10),
+        ..PathSettings::default()
+    }];
+    let all = vary(&all, &MisHeuristic::NAMES, |s, (_, mis)| s.mis = mis);
+    let all = vary(&all, &LightPointChoice::NAMES, |s, (_, choice)| {
+        s.light_point = choice;
+    });
+    let all = vary(&all, &roulettes, |s, roulette| s.roulette = roulette);
+    vary(&all, &strategies, |s, strategies| s.strategies = strategies)
+}
+
+/// All settings with every choice.
+fn vary<T: Clone>(
+    all: &[PathSettings],
+    choices: &[T],
+    set: impl Fn(&mut PathSettings, T),
+) -> Vec<PathSettings> {
+    let mut varied = Vec::new();
+    for settings in all {
+        for choice in choices {
+            let mut settings = settings.clone();
+            set(&mut settings, choice.clone());
+            varied.push(settings);
         }
     }
-    all
+    varied
 }
 
 /// Settings in words.
