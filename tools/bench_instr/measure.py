@@ -118,7 +118,7 @@ def stages(profile, samples):
     for stage, pattern in STAGES.items():
         names = profile.find(pattern)
         if not names:
-            raise Failed("no function is `%s`, the stage %s: has it another name, or was it inlined?"
+            raise Failed("no function is `%s`, the stage %s: has it another name, or is it inlined?"
                          % (pattern, stage))
         found[stage] = sum(profile.inclusive(name) for name in names) / samples
     found["other"] = profile.total() / samples - sum(found.values())
@@ -135,8 +135,7 @@ def functions(profile, samples, most=16):
 
 
 def short(name):
-    """A function's name, as people say it: `bidir::path::scatter::<impl bidir::path::vertex::Vertex>
-    ::pdf` is `Vertex::pdf`."""
+    """A function's name, as people say it: the type without its path, and the function."""
     name = re.sub(r"<impl ([^<>]*)>", r"\1", name)
     name = re.sub(r"^<([^<>]*) as ([^<>]*)>", r"\1", name)
     parts = re.split(r"::(?![^<]*>)", name)

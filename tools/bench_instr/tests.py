@@ -9,7 +9,7 @@ import callgrind
 import figures
 import measure
 
-# As callgrind writes it, with and without compressed names; the inlined lines of `b` count as `b`'s.
+# As callgrind writes it, with and without compressed names; lines inlined into `b` count as `b`'s.
 PROFILE = """\
 # callgrind format
 version: 1
