@@ -89,7 +89,9 @@ impl Changes {
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
-        path.roulette = self.path_roulette.unwrap_or(settings.integrator.roulette());
+        // Another integrator brings the roulette that suits it.
+        let brought = self.integrator.map(IntegratorKind::roulette);
+        path.roulette = self.path_roulette.or(brought).unwrap_or(path.roulette);
         if let Some(depth) = self.max_depth {
             path.max_depth = (depth > 0).then_some(depth);
         }

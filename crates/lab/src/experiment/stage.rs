@@ -47,6 +47,7 @@ impl<'a> Stage<'a> {
             ..Settings::default()
         };
         settings.path.max_depth = Some(loaded.settings.max_depth);
+        settings.path.roulette = settings.integrator.roulette();
         Ok(Self {
             spec,
             scene: loaded.scene,
