@@ -174,12 +174,7 @@ impl Vertex {
     /// The vertex as an end of a shadow ray.
     #[inline]
     pub fn segment_end(&self) -> SegmentEnd {
-        SegmentEnd {
-            point: self.point,
-            n_g: self.n_g,
-            error: self.error,
-            is_infinite: self.is_infinite,
-        }
+        self.light_point().segment_end()
     }
 
     /// True where all scattering is a Dirac distribution, so that nothing can connect here. What a

@@ -192,7 +192,7 @@ pub(crate) struct SceneArgs {
     pub(crate) strict: bool,
     /// The instruction set that rays are traced with. It changes speed, never a bit.
     ///
-    /// By default the best that this machine has.
+    /// By default the fastest that this machine has, but never avx512.
     #[arg(long, env = "BIDIR_ISA", value_name = "NAME", value_parser = values::isa)]
     #[arg(help_heading = "Resources")]
     pub(crate) isa: Option<accel::Isa>,
