@@ -180,6 +180,7 @@ fn a_point_looks_the_same_to_every_walk() {
         scene: &scene,
         settings: &PathSettings::default(),
         wavelengths: Wavelengths::default(),
+        connections: 1.0,
     };
     for i in 0..64 {
         let along = Vec2::new(

@@ -169,6 +169,7 @@ mod tests {
             scene: &scene,
             settings: &PathSettings::default(),
             wavelengths: Wavelengths::default(),
+        connections: 1.0,
         };
         Deposit {
             context: &context,

@@ -63,7 +63,7 @@ fn sample(
         camera: sampler.stream(Domain::TrainingCamera, i, 0),
         light: sampler.stream(Domain::TrainingLight, 0, i),
     };
-    let context = path_context(scene, settings, &sample);
+    let context = path_context(scene, settings, 1.0, &sample);
     integrator.sample(&context, &sample, workspace);
     let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
     let splats: f64 = workspace

@@ -45,7 +45,7 @@ impl Integrator for Bdpt {
 
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 #[inline(never)] // Profiles shall show the stages, each of which is called once.
-fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+pub(super) fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 1..workspace.camera.vertices.len() {
         let vertex = &workspace.camera.vertices[i];
         let Some(light) = vertex.light else { continue };
@@ -101,7 +101,7 @@ fn hit(
 
 /// t = 1: every light vertex is connected to a lens point of its own. All of these rays are traced.
 #[inline(never)]
-fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+pub(super) fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for s in 1..=workspace.light.vertices.len() {
         if context.count(s, 1) == 0.0 {
             continue;
@@ -119,7 +119,6 @@ fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
 /// s ≥ 1 and t ≥ 2: evaluates every connection, before visibility.
 #[inline(never)]
 fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-    let fresh = context.settings.light_point == LightPointChoice::Fresh;
     workspace
         .next_events
         .resize(workspace.camera.vertices.len(), None);
@@ -128,25 +127,38 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
         if y.is_delta() {
             continue;
         }
-        if fresh && t < context.settings.max_vertices() && context.count(1, t) > 0.0 {
-            let at = |purpose| Dimension::at(t - 1, purpose);
-            let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
-            let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-            if let Some((light, drawn)) = sample_next_event(context, y.point, u_light, u) {
-                let mut x0 = Vertex::light(context, light, &drawn.at);
-                x0.beta = Spectrum::splat(drawn.coverage / drawn.pdf);
-                workspace.next_events[t - 1] = Some(x0);
-                candidate(context, sample, workspace, Strategy::new(1, t));
-            }
-        }
+        next_event(context, sample, workspace, t);
         let longest = workspace
             .light
             .vertices
             .len()
             .min(context.settings.max_vertices() - t);
-        for s in if fresh { 2 } else { 1 }..=longest {
+        for s in context.settings.light_point.first_walked()..=longest {
             candidate(context, sample, workspace, Strategy::new(s, t));
         }
+    }
+}
+
+/// s = 1 with a light point of its own for camera vertex number `t`, if it has one.
+pub(super) fn next_event(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+    t: usize,
+) {
+    let is_fresh = context.settings.light_point == LightPointChoice::Fresh;
+    if !is_fresh || t >= context.settings.max_vertices() || context.count(1, t) == 0.0 {
+        return;
+    }
+    let at = |purpose| Dimension::at(t - 1, purpose);
+    let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
+    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+    let y = &workspace.camera.vertices[t - 1];
+    if let Some((light, drawn)) = sample_next_event(context, y.point, u_light, u) {
+        let mut x0 = Vertex::light(context, light, &drawn.at);
+        x0.beta = Spectrum::splat(drawn.coverage / drawn.pdf);
+        workspace.next_events[t - 1] = Some(x0);
+        candidate(context, sample, workspace, Strategy::new(1, t));
     }
 }
 

@@ -152,6 +152,7 @@ impl PathContext<'_> {
         match t {
             _ if !self.settings.strategies.contains(s, t) => 0.0,
             1 => self.scene.film().light_paths() as f64,
+            _ if s >= self.settings.light_point.first_walked() => self.connections,
             _ => 1.0,
         }
     }

@@ -33,7 +33,7 @@ pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
 pub use densities::{PathDensities, VertexDensities};
 pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;
-pub use running::RunningSums;
+pub use running::{LightEnd, LightShares, RunningSums};
 pub use segment::Segment;
 pub use strategy::{LightPointChoice, Strategies, Strategy};
 pub use vertex::{Vertex, VertexKind};
@@ -92,4 +92,7 @@ pub struct PathContext<'a> {
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
+    /// How many connections a camera vertex makes, on average, for each light vertex of a path: 1
+    /// where it is connected with one light subpath.
+    pub connections: f64,
 }

@@ -27,9 +27,18 @@ pub struct RunningSums {
     densities: PathDensities,
 }
 
+/// Sums of shares along a light subpath.
+#[derive(Clone, Copy, Debug)]
+pub struct LightShares<'a> {
+    /// L_m, without the last two vertices of the walk.
+    pub sums: &'a [f64],
+    /// The light's end of its paths.
+    pub start: LightEnd,
+}
+
 /// How x_0 is drawn.
 #[derive(Clone, Copy, Debug, Default)]
-struct LightEnd {
+pub struct LightEnd {
     /// a_0.
     emission: f64,
     /// e. Never zero: where s = 1 is impossible, the ratios across it must still cancel.
@@ -44,7 +53,7 @@ struct LightEnd {
 const FAR: usize = usize::MAX;
 
 impl RunningSums {
-    /// Sums along the two walks of a sample.
+    /// Sums along the two walks of a sample, either of which may be empty.
     pub fn sum(&mut self, context: &PathContext<'_>, light: &Subpath, camera: &Subpath) {
         let settings = context.settings;
         self.light.clear();
@@ -54,6 +63,14 @@ impl RunningSums {
             self.shortest = settings.roulette.density_start().unwrap_or(0);
             self.sum_light(context, &light.vertices);
             self.sum_camera(context, &camera.vertices);
+        }
+    }
+
+    /// The sums along the light walk.
+    pub fn light_shares(&self) -> LightShares<'_> {
+        LightShares {
+            sums: &self.light,
+            start: self.start,
         }
     }
 
@@ -69,10 +86,27 @@ impl RunningSums {
         let (s, t) = (path.light.len(), path.camera.len());
         let weight = match path.junction {
             Junction::Hit if self.shortest == 0 => self.hit(context, path),
-            Junction::Connection if self.shortest <= s.min(t) => self.connection(context, path),
+            Junction::Connection if self.shortest <= s.min(t) => {
+                self.connection(context, path, self.light_shares())
+            }
             _ => return path.weight(context, &mut self.densities),
         };
         weight as f32
+    }
+
+    /// The same for a path whose light subpath is the beginning of another walk, with these sums.
+    #[inline]
+    pub fn weight_of_cached(
+        &mut self,
+        context: &PathContext<'_>,
+        path: &JoinedPath<'_>,
+        shares: LightShares<'_>,
+    ) -> f32 {
+        if self.shortest <= path.light.len().min(path.camera.len()) {
+            self.connection(context, path, shares) as f32
+        } else {
+            path.weight(context, &mut self.densities)
+        }
     }
 
     fn sum_light(&mut self, context: &PathContext<'_>, walk: &[Vertex]) {
@@ -83,7 +117,8 @@ impl RunningSums {
         self.light.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
-            let links = self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
+            let count = share(context.count(i + 1, 2));
+            let links = count * self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
             sum = chain(links, share(self.start.down(i, a, b)), sum);
             self.light.push(sum);
         }
@@ -95,7 +130,7 @@ impl RunningSums {
         self.camera.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (c, [b, a]) in densities.take(walk.len().saturating_sub(1)).enumerate() {
-            let links = share(context.count(1, c + 1)) * walk[c].links(&walk[c + 1]);
+            let links = share(context.count(2, c + 1)) * walk[c].links(&walk[c + 1]);
             sum = chain(links, share(ratio(a, b)), sum);
             self.camera.push(sum);
         }
@@ -119,21 +154,27 @@ impl RunningSums {
     }
 
     /// s ≥ 1: the strategies with fewer light vertices, and those with fewer camera vertices.
-    fn connection(&self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f64 {
+    fn connection(
+        &self,
+        context: &PathContext<'_>,
+        path: &JoinedPath<'_>,
+        shares: LightShares<'_>,
+    ) -> f64 {
         let JoinedPath { light, camera, .. } = *path;
         let (s, t) = (light.len(), camera.len());
         let share = |ratio| context.settings.mis.share(ratio);
         let end = match s {
             1 => LightEnd::new(context, path.z(), path.y()),
-            _ => self.start,
+            _ => shares.start,
         };
         let reversed = path.reversed(context);
         let fewer_light = {
             let from_before = if let [.., before, _] = light {
-                let links = end.links(s - 1) * possible(!before.went_by_delta);
+                let count = share(context.count(s - 1, t + 1));
+                let links = count * end.links(s - 1) * possible(!before.went_by_delta);
                 let drawn = drawn_density(context, &light[..s - 1]);
                 let down = end.down(s - 2, drawn, reversed.before[0]);
-                chain(links, share(down), self.light[s - 2])
+                chain(links, share(down), shares.sums[s - 2])
             } else {
                 end.is_hit
             };

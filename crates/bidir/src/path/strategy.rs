@@ -42,6 +42,15 @@ pub enum LightPointChoice {
 impl LightPointChoice {
     /// Every choice with its name on the command line.
     pub const NAMES: [(&'static str, Self); 2] = [("fresh", Self::Fresh), ("shared", Self::Shared)];
+
+    /// The fewest light vertices of connections that use a light subpath.
+    #[inline]
+    pub fn first_walked(self) -> usize {
+        match self {
+            Self::Fresh => 2,
+            Self::Shared => 1,
+        }
+    }
 }
 
 /// Adds or removes the strategies that match it; a missing number matches all.

@@ -36,6 +36,8 @@ pub enum Purpose {
     Coverage,
     /// Which of mixed materials a surface point is made of.
     Mix,
+    /// Which vertices of the light vertex cache a camera vertex is connected with.
+    CachedVertex,
 }
 
 /// The address of a random number, or of a pair, within a sample.

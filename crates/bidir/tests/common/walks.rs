@@ -43,6 +43,7 @@ pub(crate) fn for_some_pairs(
         scene,
         settings,
         wavelengths: Wavelengths::default(),
+        connections: 1.0,
     };
     for index in 0..pairs {
         let (light, camera) = subpaths(&context, index);

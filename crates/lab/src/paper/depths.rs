@@ -94,6 +94,7 @@ fn means(scene: &Scene, part: u64, walks: u64) -> [f64; 2] {
         scene,
         settings: &settings,
         wavelengths: scene.color().sample_wavelengths(0.5),
+        connections: 1.0,
     };
     let sampler = Sampler::new(SamplerKind::Independent, part);
     let (mut camera, mut light) = (Subpath::default(), Subpath::default());
