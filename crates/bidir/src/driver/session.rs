@@ -61,7 +61,6 @@ pub struct Session<'a> {
     settings: Settings,
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
-    connections: f64,
     film: Film,
     /// No pass before this one is rendered.
     first_pass: u64,
@@ -97,7 +96,6 @@ impl<'a> Session<'a> {
             settings,
             integrator,
             training,
-            connections: std::env::var("C").ok().and_then(|m| m.parse().ok()).unwrap_or(1.0),
             film,
             first_pass: 0,
             buffer,
@@ -132,28 +130,9 @@ impl<'a> Session<'a> {
     /// Renders the next pass. False: `progress` asked to stop, and the pass is forgotten.
     pub fn step(&mut self, progress: &dyn Progress) -> bool {
         let pass = self.next_pass();
-        let subpaths = self.scene.film().light_paths();
-        self.integrator.begin_light(subpaths);
-        let mut finished = true;
-        if self.integrator.shares_light() {
-            finished = self.all_runs(progress, |index, workspace| {
-                self.light_sample(index, pass, workspace);
-            });
-            let sample = self.sample(0, pass);
-            let context = path_context(self.scene, &self.settings, self.connections, &sample);
-            self.integrator.end_light(&context);
-        }
-        finished &= self.all_runs(progress, |pixel, workspace| {
-            self.render_sample(pixel, pass, workspace, progress);
-        });
-        self.finish(pass, finished)
-    }
-
-    /// XX
-    fn all_runs(&self, progress: &dyn Progress, each: impl Fn(u64, &mut Workspace) + Sync) -> bool {
         let next = AtomicU64::new(0);
         let given_up = AtomicBool::new(false);
-        let this = self;
+        let this = &*self;
         this.pool.broadcast(|thread| {
             let Some(workspace) = this.workspaces.get(thread.index()) else {
                 return;
@@ -162,29 +141,10 @@ impl<'a> Session<'a> {
             let mut workspace = workspace
                 .lock()
                 .unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !this.render_runs(&next, &mut workspace, progress, &each) {
+            if !this.render_runs(pass, &next, &mut workspace, progress) {
                 given_up.store(true, Ordering::Relaxed);
             }
         });
-        !given_up.into_inner()
-    }
-
-    fn light_sample(&self, index: u64, pass: u64, workspace: &mut Workspace) {
-        workspace.stopwatch.begin_sample();
-        let sample = self.sample(index, pass);
-        let context = path_context(self.scene, &self.settings, self.connections, &sample);
-        self.integrator
-            .light_sample(&context, &sample, index, workspace);
-        Deposit {
-            context: &context,
-            layers: self.film.layers(),
-            buffer: &self.buffer,
-            pixel: index as usize,
-        }
-        .take(workspace);
-    }
-
-    fn finish(&mut self, pass: u64, finished: bool) -> bool {
         let (mut stats, mut stage_times) = (Stats::default(), StageTimes::default());
         for workspace in &mut self.workspaces {
             let workspace = workspace
@@ -193,6 +153,7 @@ impl<'a> Session<'a> {
             stats += &std::mem::take(&mut workspace.stats);
             stage_times += &workspace.stopwatch.take();
         }
+        let finished = !given_up.into_inner();
         if finished {
             self.stats += &stats;
             self.stage_times += &stage_times;
@@ -206,10 +167,10 @@ impl<'a> Session<'a> {
     /// Renders runs of pixels until none is left. False: a run was given up.
     fn render_runs(
         &self,
+        pass: u64,
         next: &AtomicU64,
         workspace: &mut Workspace,
         progress: &dyn Progress,
-        each: impl Fn(u64, &mut Workspace),
     ) -> bool {
         let pixels = self.scene.film().crop.area();
         loop {
@@ -222,7 +183,7 @@ impl<'a> Session<'a> {
             }
             let end = (begin + RUN).min(pixels);
             for pixel in begin..end {
-                each(pixel, workspace);
+                self.render_sample(pixel, pass, workspace, progress);
             }
             progress.advance(end - begin);
         }
@@ -238,7 +199,7 @@ impl<'a> Session<'a> {
     ) {
         workspace.stopwatch.begin_sample();
         let sample = self.sample(pixel, pass);
-        let context = path_context(self.scene, &self.settings, self.connections, &sample);
+        let context = path_context(self.scene, &self.settings, &sample);
         let layers = self.film.layers();
         let before = Meter::read(layers, workspace, progress);
         self.integrator.sample(&context, &sample, workspace);
@@ -279,7 +240,7 @@ impl<'a> Session<'a> {
         let index = self.scene.film().crop.index(x, y)?;
         let mut workspace = Workspace::with_journal();
         let sample = self.sample(index as u64, pass);
-        let context = path_context(self.scene, &self.settings, self.connections, &sample);
+        let context = path_context(self.scene, &self.settings, &sample);
         self.integrator.sample(&context, &sample, &mut workspace);
         let selector = selector(&self.settings, self.training.as_ref());
         Some(Replay::new(&context, workspace, &*selector))
@@ -331,7 +292,6 @@ impl<'a> Session<'a> {
 pub(super) fn path_context<'a>(
     scene: &'a Scene,
     settings: &'a Settings,
-    connections: f64,
     sample: &Sample,
 ) -> PathContext<'a> {
     let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
@@ -339,7 +299,6 @@ pub(super) fn path_context<'a>(
         scene,
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(u),
-        connections,
     }
 }
 

@@ -10,7 +10,6 @@ mod bdpt;
 mod blind;
 mod journal;
 mod light;
-mod lvc;
 mod path;
 mod workspace;
 
@@ -18,7 +17,6 @@ pub use bdpt::Bdpt;
 pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
-pub use lvc::Lvc;
 pub use path::PathTracer;
 pub(crate) use workspace::camera_ray;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
@@ -31,27 +29,6 @@ use crate::select::Selector;
 pub trait Integrator: Sync + Send {
     /// Adds the contributions of one sample to the workspace, which is cleared first.
     fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
-
-    /// True where the light subpaths of a pass are walked before its samples, for all of them.
-    fn shares_light(&self) -> bool {
-        false
-    }
-
-    /// Forgets the light subpaths of the last pass, and makes room for so many.
-    fn begin_light(&mut self, _subpaths: u64) {}
-
-    /// Walks light subpath number `index` of the pass, and adds its light image.
-    fn light_sample(
-        &self,
-        _context: &PathContext<'_>,
-        _sample: &Sample,
-        _index: u64,
-        _workspace: &mut Workspace,
-    ) {
-    }
-
-    /// Makes the light subpaths of the pass ready for its samples.
-    fn end_light(&mut self, _context: &PathContext<'_>) {}
 }
 
 /// The estimators by name.
@@ -64,23 +41,20 @@ pub enum IntegratorKind {
     /// Bidirectional path tracing with every strategy.
     #[default]
     Bdpt,
-    /// Bidirectional path tracing with a light vertex cache.
-    Lvc,
 }
 
 impl IntegratorKind {
     /// Every estimator with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 4] = [
+    pub const NAMES: [(&'static str, Self); 3] = [
         ("path", Self::Path),
         ("light", Self::Light),
         ("bdpt", Self::Bdpt),
-        ("lvc", Self::Lvc),
     ];
 
     /// True where the estimator has connections to choose from.
     pub fn has_candidates(self) -> bool {
         match self {
-            Self::Bdpt | Self::Lvc => true,
+            Self::Bdpt => true,
             Self::Path | Self::Light => false,
         }
     }
@@ -89,7 +63,7 @@ impl IntegratorKind {
     /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
     pub fn roulette(self) -> PathRoulette {
         let start = match self {
-            Self::Bdpt | Self::Lvc => 0,
+            Self::Bdpt => 0,
             Self::Path => 1,
             Self::Light => 2,
         };
@@ -102,11 +76,6 @@ impl IntegratorKind {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),
             Self::Bdpt => Box::new(Bdpt { selector }),
-            Self::Lvc => Box::new(Lvc {
-                selector,
-                candidates: std::env::var("M").ok().and_then(|m| m.parse().ok()).unwrap_or(4),
-                cache: lvc::LightCache::default(),
-            }),
         }
     }
 }

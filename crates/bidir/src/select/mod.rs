@@ -39,21 +39,9 @@ pub struct Candidate {
     pub light: u32,
     /// The strategy's share of the path, which is in `value` already.
     pub weight: f32,
-    /// The light vertex, by number in the cache of the pass. None: of the sample's own.
-    pub cached: Option<u32>,
 }
 
 impl Candidate {
-    /// The same candidate, whose light vertex is number `i` of the cache.
-    #[inline]
-    #[must_use]
-    pub fn of_cache(self, i: u32) -> Self {
-        Self {
-            cached: Some(i),
-            ..self
-        }
-    }
-
     /// A candidate for `value`, which is not black, has `weight` in it, and has the luminance
     /// `luminance` without regard to signs.
     #[inline]
@@ -70,7 +58,6 @@ impl Candidate {
             strategy,
             light,
             weight,
-            cached: None,
         }
     }
 
