@@ -70,9 +70,9 @@ verify-peers *FLAGS:
     cargo build --release
     python3 tools/peers verify {{FLAGS}}
 
-# What rays cost, beside Embree where there is one: BIDIR_EMBREE is the path of its library.
+# What rays cost, beside the crate obvhs and Embree where there is one: BIDIR_EMBREE is the path of its library.
 bench-rays *ARGS:
-    cargo bench -p bidir-accel --bench rays -- {{ARGS}}
+    cargo bench -p bidir-accel --features bench-peers --bench rays -- {{ARGS}}
 
 # Puts faults into a copy of the sources: each must turn some test red.
 mutants *FLAGS:

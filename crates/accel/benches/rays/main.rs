@@ -1,4 +1,5 @@
-//! What rays cost, here and by Embree: `cargo bench -p bidir-accel --bench rays [-- ROUNDS [SCENE]]`.
+//! What rays cost, here and by others: `cargo bench -p bidir-accel --bench rays [-- ROUNDS [SCENE]]`.
+//! Embree takes part where a library of it is found, obvhs with the feature `bench-peers`.
 //!
 //! The same rays for every engine, which take turns in each round, so that what else the machine does
 //! slows all of them. Ratios are medians over rounds; see `docs/performance.md`.
@@ -9,20 +10,24 @@
     reason = "scenes need not be the same on every machine"
 )]
 
+#[cfg(feature = "bench-peers")]
+mod cwbvh;
 mod embree;
 mod ours;
 mod rays;
 mod scenes;
 mod table;
 
+use std::fmt::Display;
+
 use bidir_accel::Isa;
 use rayon::ThreadPoolBuilder;
 
-use embree::{Embree, EmbreeScene};
+use embree::Embree;
 use ours::Ours;
 use rays::{aimed, batches};
 use scenes::{Mesh, Scene};
-use table::{Column, leak_table, scene_table};
+use table::{Column, EMBREE, leak_table, scene_table};
 
 /// Rays that look for leaks, of each mesh.
 const AIMED: usize = 400_000;
@@ -35,20 +40,16 @@ fn main() {
     let rounds = words.next().map_or(Ok(15), |word| word.parse());
     let rounds: usize = rounds.expect("the first word is the number of rounds");
     let wanted = words.next().unwrap_or_default();
-    let embree = Embree::load();
-    match &embree {
-        Ok(embree) => println!("Embree {}, robust, single rays", embree.version()),
-        Err(reason) => println!("skipped: {reason}"),
-    }
-    let embree = embree.as_ref().ok();
+    let loaded = Embree::load().into_iter();
+    let embrees: Vec<_> = loaded.filter_map(unless_skipped).collect();
     for scene in scenes::all()
         .iter()
         .filter(|scene| scene.name.contains(&wanted))
     {
-        measure(scene, embree, rounds);
+        measure(scene, &embrees, rounds);
     }
     if wanted.is_empty() {
-        count_leaks(embree);
+        count_leaks(&embrees);
     }
 }
 
@@ -56,29 +57,34 @@ fn main() {
 fn columns<'a>(
     scene: &Scene,
     ours: &Ours,
-    embree: Option<&'a Embree>,
+    embrees: &'a [Embree],
     threads: usize,
 ) -> Vec<Column<'a>> {
     let mut columns = Vec::new();
     for (isa, ours) in ours.for_each_isa() {
-        let reference = embree.filter(|_| isa != Isa::Scalar);
-        columns.push(Column::new(format!("ours {isa}"), Box::new(ours)));
-        let Some(embree) = reference else { continue };
-        match embree.build(scene, isa, threads) {
-            Ok(built) => {
-                let built: EmbreeScene<'a> = built;
-                columns.push(Column::new(format!("Embree {isa}"), Box::new(built)));
-            }
-            Err(reason) => println!("skipped: {reason}"),
+        columns.push(Column::new("ours", isa, ours));
+        for embree in embrees.iter().filter(|_| isa != Isa::Scalar) {
+            let name = format!("{EMBREE} {}", embree.version());
+            let built = embree.build(scene, isa, threads);
+            columns.extend(unless_skipped(built.map(|it| Column::new(&name, isa, it))));
         }
     }
+    #[cfg(feature = "bench-peers")]
+    columns.extend(unless_skipped(cwbvh::columns(scene)).unwrap_or_default());
     columns
 }
 
-fn measure(scene: &Scene, embree: Option<&Embree>, rounds: usize) {
+/// Prints why there is nothing.
+fn unless_skipped<T>(result: Result<T, impl Display>) -> Option<T> {
+    result
+        .inspect_err(|reason| println!("skipped: {reason}"))
+        .ok()
+}
+
+fn measure(scene: &Scene, embrees: &[Embree], rounds: usize) {
     let threads = rayon::current_num_threads();
     let ours = Ours::build(scene);
-    let columns = columns(scene, &ours, embree, threads);
+    let columns = columns(scene, &ours, embrees, threads);
     let batches = batches(scene, &ours);
     let triangles = scene.mesh.faces.len()
         + scene
@@ -94,7 +100,7 @@ fn measure(scene: &Scene, embree: Option<&Embree>, rounds: usize) {
 }
 
 /// Rays that leave closed meshes, the mesh as it is and as an instance, of every engine.
-fn count_leaks(embree: Option<&Embree>) {
+fn count_leaks(embrees: &[Embree]) {
     for (name, mesh, is_instance) in [
         ("ball", Mesh::ball(50, 0.0), false),
         ("bumpy ball", Mesh::ball(200, 0.2), false),
@@ -106,6 +112,6 @@ fn count_leaks(embree: Option<&Embree>) {
             map.map_or(p, |map| map.transform_point3(p.as_dvec3()).as_vec3())
         });
         let ours = Ours::build(&scene);
-        leak_table(name, &columns(&scene, &ours, embree, 1), &rays);
+        leak_table(name, &columns(&scene, &ours, embrees, 1), &rays);
     }
 }

@@ -3,28 +3,37 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use bidir_accel::Ray;
+use bidir_accel::{Isa, Ray};
 use rayon::ThreadPool;
 
 use crate::ours::Engine;
 use crate::rays::{Batch, Question};
 
+/// How the names of the engines begin that others are compared with.
+pub(crate) const EMBREE: &str = "Embree";
+
 /// An engine and its name.
 pub(crate) struct Column<'a> {
     name: String,
+    isa: Isa,
     engine: Box<dyn Engine + 'a>,
 }
 
 impl<'a> Column<'a> {
-    pub(crate) fn new(name: String, engine: Box<dyn Engine + 'a>) -> Self {
-        Self { name, engine }
+    /// `name` lacks the instructions, which are `isa`.
+    pub(crate) fn new(name: &str, isa: Isa, engine: impl Engine + 'a) -> Self {
+        Self {
+            name: format!("{name} {isa}"),
+            isa,
+            engine: Box::new(engine),
+        }
     }
 
-    /// The column that this one is compared with: Embree for the same instructions.
+    /// The column that this one is compared with: the first Embree for the same instructions.
     fn reference(&self, columns: &[Self]) -> Option<usize> {
-        let wanted = self.name.replace("ours", "Embree");
-        let same = |column: &Self| column.name == wanted && wanted != self.name;
-        columns.iter().position(same)
+        let same = |column: &Self| column.name.starts_with(EMBREE) && column.isa == self.isa;
+        let first = columns.iter().position(same)?;
+        (columns[first].name != self.name).then_some(first)
     }
 }
 
@@ -113,10 +122,14 @@ pub(crate) fn scene_table(columns: &[Column], batches: &[Batch], rounds: usize, 
         });
         println!("| {} | {} | {mean} |", column.name, cells.join(" | "));
     }
-    println!(
-        "| Rays that hit | {} | |",
-        hits(&columns[0], batches).join(" | ")
-    );
+    let first = hits(&columns[0], batches);
+    println!("| Rays that hit | {} | |", first.join(" | "));
+    for column in columns {
+        let hits = hits(column, batches);
+        if hits != first {
+            println!("| Those of {} | {} | |", column.name, hits.join(" | "));
+        }
+    }
 }
 
 fn hits(column: &Column, batches: &[Batch]) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! Embree 3 or 4, loaded when the bench runs: single rays, scenes with the flag `ROBUST`.
 
-use std::ffi::{CString, c_char, c_void};
+use std::ffi::{CString, OsStr, c_char, c_void};
 use std::mem::ManuallyDrop;
 
 use bidir_accel::Isa;
@@ -8,8 +8,6 @@ use libloading::Library;
 
 mod scene;
 mod single;
-
-pub(crate) use scene::EmbreeScene;
 
 /// An object of Embree.
 type Handle = *mut c_void;
@@ -25,32 +23,43 @@ pub(crate) struct Embree {
 }
 
 impl Embree {
-    /// The library that `BIDIR_EMBREE` names, or one of a usual name. `Err` tells what was tried.
-    pub(crate) fn load() -> Result<Self, String> {
-        let names = match std::env::var("BIDIR_EMBREE") {
-            Ok(path) => vec![path],
-            Err(_) => [
-                "libembree4.so.4",
-                "libembree4.so",
-                "libembree3.so.3",
-                "libembree3.so",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-        };
+    /// The libraries that `BIDIR_EMBREE` names, divided as in `PATH`, or one of a usual name. `Err` tells
+    /// what was tried.
+    pub(crate) fn load() -> Vec<Result<Self, String>> {
+        match std::env::var_os("BIDIR_EMBREE") {
+            Some(paths) => std::env::split_paths(&paths)
+                .map(|path| Self::open(path.as_os_str()))
+                .collect(),
+            None => vec![Self::with_usual_name()],
+        }
+    }
+
+    fn with_usual_name() -> Result<Self, String> {
+        let names = [
+            "libembree4.so.4",
+            "libembree4.so",
+            "libembree3.so.3",
+            "libembree3.so",
+        ];
         let mut failures = Vec::new();
-        for name in &names {
-            // SAFETY: what Embree and its libraries do when they are loaded is start no thread and touch
-            // nothing of ours; that the name is Embree's is for the user to see to.
-            match unsafe { Library::new(name) } {
-                Ok(library) => return Self::with_version(library),
-                Err(error) => failures.push(error.to_string()),
+        for name in names {
+            match Self::open(name.as_ref()) {
+                Ok(embree) => return Ok(embree),
+                Err(failure) => failures.push(failure),
             }
         }
         Err(format!(
             "no Embree ({}); set BIDIR_EMBREE to its path",
             failures.join("; ")
         ))
+    }
+
+    fn open(name: &OsStr) -> Result<Self, String> {
+        // SAFETY: what Embree and its libraries do when they are loaded is start no thread and touch
+        // nothing of ours; that the name is Embree's is for the user to see to.
+        let library = unsafe { Library::new(name) };
+        let reason = |error| format!("{}: {error}", name.display());
+        Self::with_version(library.map_err(reason)?)
     }
 
     fn with_version(library: Library) -> Result<Self, String> {
