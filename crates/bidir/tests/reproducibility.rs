@@ -206,9 +206,8 @@ fn a_replayed_sample_is_the_sample() {
             let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
             buffer.set_camera_sample(i, rgb(replay.workspace.value));
             for splat in &replay.workspace.splats {
-                let place = (splat.raster, splat.u);
                 let value = rgb(splat.contribution.value);
-                buffer.splat(film, place, value, std::iter::empty());
+                buffer.splat(film, splat.place, value, std::iter::empty());
             }
         }
         again.add_pass(pass, &buffer);

@@ -40,7 +40,7 @@ fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
         let replay = session.replay(crop.pixel(pixel), pass)?;
         let rgb = |value| color.to_rgb(value, &replay.wavelengths);
         let splats = replay.workspace.splats.iter();
-        let splats = splats.map(|splat| (splat.raster, splat.u, rgb(splat.contribution.value)));
+        let splats = splats.map(|splat| (splat.place, rgb(splat.contribution.value)));
         Some(Contributions {
             camera: rgb(replay.workspace.value),
             splats: splats.collect(),
@@ -90,8 +90,8 @@ fn plain(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions
     for pass in iter::repeat_n(passes, PLAYED).flatten() {
         on_all_threads(pool, pass.len(), |i| {
             film.add(i, pass[i].camera);
-            for &(raster, u, value) in &pass[i].splats {
-                if let Some((pixel, weight)) = settings.pick_pixel(raster, u) {
+            for &(place, value) in &pass[i].splats {
+                if let Some((pixel, weight)) = settings.pick_pixel(place) {
                     film.add(pixel, value.map(|channel| channel * weight));
                 }
             }
@@ -108,8 +108,8 @@ fn exact(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions
     for (index, pass) in (0..).zip(iter::repeat_n(passes, PLAYED).flatten()) {
         on_all_threads(pool, pass.len(), |i| {
             buffer.set_camera_sample(i, pass[i].camera);
-            for &(raster, u, value) in &pass[i].splats {
-                buffer.splat(settings, (raster, u), value, iter::empty());
+            for &(place, value) in &pass[i].splats {
+                buffer.splat(settings, place, value, iter::empty());
             }
         });
         pool.install(|| film.add_pass(index, &buffer));

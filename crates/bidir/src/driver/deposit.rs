@@ -24,9 +24,14 @@ impl Deposit<'_> {
                 self.part_of_pixel(contribution);
             }
         }
+        self.take_light(workspace);
+    }
+
+    /// Moves what came from a light subpath, where that was not walked for one sample.
+    pub(super) fn take_light(&self, workspace: &mut Workspace) {
         for splat in &workspace.splats {
             let contribution = &splat.contribution;
-            let (place, value) = ((splat.raster, splat.u), self.rgb(contribution.value));
+            let (place, value) = (splat.place, self.rgb(contribution.value));
             let parts = self.parts_of(contribution);
             let film = self.context.scene.film();
             self.buffer.splat(film, place, value, parts);
@@ -83,14 +88,13 @@ impl Deposit<'_> {
     /// The same for a splat, where it reaches the film.
     fn splat(&self, splat: &Splat, stats: &mut Stats) {
         let (film, contribution) = (self.context.scene.film(), &splat.contribution);
-        let Some((_, weight)) = film.pick_pixel(splat.raster, splat.u) else {
+        let Some((_, weight)) = film.pick_pixel(splat.place) else {
             return;
         };
         let luminance = self.luminance(contribution) * f64::from(weight);
         self.count_square(contribution, luminance, stats);
         if let Some((part, value)) = self.raw(contribution, stats) {
-            let place = (splat.raster, splat.u);
-            self.buffer.splat_to_part(film, place, value, part);
+            self.buffer.splat_to_part(film, splat.place, value, part);
         }
     }
 
@@ -122,7 +126,7 @@ impl Deposit<'_> {
 mod tests {
     use super::*;
     use crate::camera::{Camera, Perspective, PerspectiveSettings};
-    use crate::film::{Film, FilmSettings, Filter};
+    use crate::film::{Film, FilmSettings, Filter, SplatPlace};
     use crate::light::{InfiniteLight, Light};
     use crate::math::{Affine3A, Vec2};
     use crate::path::{PathSettings, Strategy};
@@ -150,6 +154,7 @@ mod tests {
             light: 0,
             value: Spectrum::splat(value),
             weight,
+            term: 0,
         }
     }
 
@@ -162,8 +167,10 @@ mod tests {
         workspace.contributions.extend(contributions);
         workspace.splats.push(Splat {
             contribution: splat,
-            raster: Vec2::splat(0.5),
-            u: Vec2::splat(0.5),
+            place: SplatPlace {
+                raster: Vec2::splat(0.5),
+                u: Vec2::splat(0.5),
+            },
         });
         let context = PathContext {
             scene: &scene,

@@ -30,12 +30,15 @@ use thiserror::Error;
 
 /// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
 /// passes.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// The estimator.
     pub integrator: IntegratorKind,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
+    /// How many vertices of shared light subpaths are candidates for each camera vertex, in
+    /// [`IntegratorKind::Lvc`]. Positive.
+    pub candidates: u32,
     /// How paths are made and weighted.
     pub path: PathSettings,
     /// The random numbers.
@@ -44,6 +47,20 @@ pub struct Settings {
     pub seed: u64,
     /// What the film keeps beside the picture, whose bits do not depend on it.
     pub layers: Layers,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            integrator: IntegratorKind::default(),
+            shadow_rays: ShadowRays::default(),
+            candidates: std::env::var("M").ok().and_then(|m| m.parse().ok()).unwrap_or(4),
+            path: PathSettings::default(),
+            sampler: SamplerKind::default(),
+            seed: 0,
+            layers: Layers::default(),
+        }
+    }
 }
 
 /// What a render may use; nothing here changes an image.

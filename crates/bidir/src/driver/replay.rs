@@ -4,8 +4,8 @@
 //! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
 //! are not counted.
 
-use crate::film::FilmSettings;
-use crate::integrator::{Entry, Fate, Link, Splat, Term, Workspace};
+use crate::film::{FilmSettings, SplatPlace};
+use crate::integrator::{Entry, Fate, Link, Term, Workspace};
 use crate::path::{PathContext, Strategy};
 use crate::select::Selector;
 use crate::spectrum::{Spectrum, Wavelengths};
@@ -69,17 +69,16 @@ impl Replay {
     ) -> Self {
         let probs = selector.probabilities(&workspace.candidates);
         let entries = workspace.journal.iter().flat_map(|j| &j.entries);
-        let term = |entry: &Entry| {
-            let strategy = entry.term.strategy;
+        let term = |(number, entry): (u32, &Entry)| {
             let mut candidates = workspace.candidates.iter().zip(&probs);
-            let candidate = candidates.find(|(candidate, _)| candidate.strategy == strategy);
+            let candidate = candidates.find(|(candidate, _)| candidate.term == number);
             let selection = candidate.map(|(candidate, &prob)| Selection {
                 score: candidate.score,
                 prob,
             });
             ReplayedTerm::new(context, entry, selection)
         };
-        let terms: Vec<_> = entries.map(term).collect();
+        let terms: Vec<_> = (0..).zip(entries).map(term).collect();
         Self {
             zeros: zeros(context, &workspace, &terms),
             terms,
@@ -111,8 +110,8 @@ impl ReplayedTerm {
         let transmittance = ends.map_or(1.0, |[a, b]| scene.transmittance(a, b));
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
-            Link::LightImage(_, splat) => {
-                let (landing, scale) = land(scene.film(), splat);
+            Link::LightImage(_, place) => {
+                let (landing, scale) = land(scene.film(), *place);
                 (Some(landing), scale)
             }
         };
@@ -143,10 +142,10 @@ impl ReplayedTerm {
 }
 
 /// Where a splat lands, and what makes of its value a part of a pixel in an image of one pass.
-fn land(film: &FilmSettings, splat: &Splat) -> (Landing, f32) {
-    let picked = film.pick_pixel(splat.raster, splat.u);
+fn land(film: &FilmSettings, place: SplatPlace) -> (Landing, f32) {
+    let picked = film.pick_pixel(place);
     let landing = Landing {
-        raster: splat.raster.to_array(),
+        raster: place.raster.to_array(),
         pixel: picked.map(|(i, _)| film.crop.pixel(i)),
     };
     let weight = picked.map_or(0.0, |(_, weight)| weight);

@@ -6,12 +6,13 @@ use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
-use crate::integrator::{Integrator, Sample, Workspace};
+use crate::integrator::{GROUP, Integrator, IntegratorKind, Sample, SharedLight, Workspace};
 use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -61,6 +62,8 @@ pub struct Session<'a> {
     settings: Settings,
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
+    /// For [`PathContext::connections`].
+    connections: f64,
     film: Film,
     /// No pass before this one is rendered.
     first_pass: u64,
@@ -87,15 +90,17 @@ impl<'a> Session<'a> {
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
         let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
-        let training = needs_mean.then(|| Training::run(scene, &settings));
-        let integrator = settings
-            .integrator
-            .integrator(selector(&settings, training.as_ref()));
+        let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
+        let training = needs_training.then(|| Training::run(scene, &settings));
+        let rule = selector(&settings, training.as_ref());
+        let integrator = settings.integrator.integrator(rule, settings.candidates);
+        let connections = connections(&settings, training.as_ref());
         Ok(Self {
             scene,
             settings,
             integrator,
             training,
+            connections,
             film,
             first_pass: 0,
             buffer,
@@ -173,20 +178,60 @@ impl<'a> Session<'a> {
         progress: &dyn Progress,
     ) -> bool {
         let pixels = self.scene.film().crop.area();
+        let run = match self.integrator.shared_light() {
+            None => RUN,
+            Some(_) => GROUP,
+        };
         loop {
-            let begin = next.fetch_add(RUN, Ordering::Relaxed);
+            let begin = next.fetch_add(run, Ordering::Relaxed);
             if begin >= pixels {
                 return true;
             }
             if progress.should_stop() {
                 return false;
             }
-            let end = (begin + RUN).min(pixels);
+            let end = (begin + run).min(pixels);
+            if let Some(shared) = self.integrator.shared_light() {
+                self.walk_light(shared, begin..end, pass, workspace);
+            }
             for pixel in begin..end {
                 self.render_sample(pixel, pass, workspace, progress);
             }
             progress.advance(end - begin);
         }
+    }
+
+    /// Walks the light subpaths of a group, and keeps their images.
+    fn walk_light(
+        &self,
+        shared: &dyn SharedLight,
+        group: Range<u64>,
+        pass: u64,
+        workspace: &mut Workspace,
+    ) {
+        shared.begin(workspace);
+        for pixel in group {
+            workspace.stopwatch.begin_sample();
+            let sample = self.sample(pixel, pass);
+            let context = self.context(&sample);
+            shared.walk(&context, &sample, workspace);
+            self.deposit(&context, pixel).take_light(workspace);
+            workspace.stopwatch.end(Stage::Film);
+        }
+    }
+
+    /// Where the contributions of a sample of `pixel` go.
+    fn deposit<'d>(&'d self, context: &'d PathContext<'d>, pixel: u64) -> Deposit<'d> {
+        Deposit {
+            context,
+            layers: self.film.layers(),
+            buffer: &self.buffer,
+            pixel: pixel as usize,
+        }
+    }
+
+    fn context(&self, sample: &Sample) -> PathContext<'_> {
+        path_context(self.scene, &self.settings, self.connections, sample)
     }
 
     /// Takes a sample, and keeps what it found.
@@ -199,17 +244,11 @@ impl<'a> Session<'a> {
     ) {
         workspace.stopwatch.begin_sample();
         let sample = self.sample(pixel, pass);
-        let context = path_context(self.scene, &self.settings, &sample);
+        let context = self.context(&sample);
         let layers = self.film.layers();
         let before = Meter::read(layers, workspace, progress);
         self.integrator.sample(&context, &sample, workspace);
-        Deposit {
-            context: &context,
-            layers,
-            buffer: &self.buffer,
-            pixel: pixel as usize,
-        }
-        .take(workspace);
+        self.deposit(&context, pixel).take(workspace);
         if layers.features() > 0 {
             let after = Meter::read(layers, workspace, progress);
             let taken = (&sample, &mut *workspace);
@@ -239,9 +278,27 @@ impl<'a> Session<'a> {
         let [x, y] = pixel.map(i64::from);
         let index = self.scene.film().crop.index(x, y)?;
         let mut workspace = Workspace::with_journal();
-        let sample = self.sample(index as u64, pass);
-        let context = path_context(self.scene, &self.settings, &sample);
+        let index = index as u64;
+        let sample = self.sample(index, pass);
+        let context = self.context(&sample);
+        let light = self.integrator.shared_light().map(|shared| {
+            let mut own = None;
+            shared.begin(&mut workspace);
+            let begin = index / GROUP * GROUP;
+            let end = (begin + GROUP).min(self.scene.film().crop.area());
+            for other in begin..end {
+                let sample = self.sample(other, pass);
+                shared.walk(&self.context(&sample), &sample, &mut workspace);
+                if other == index {
+                    own = Some(workspace.light_image());
+                }
+            }
+            own
+        });
         self.integrator.sample(&context, &sample, &mut workspace);
+        if let Some(image) = light.flatten() {
+            workspace.add_light_image(image);
+        }
         let selector = selector(&self.settings, self.training.as_ref());
         Some(Replay::new(&context, workspace, &*selector))
     }
@@ -292,6 +349,7 @@ impl<'a> Session<'a> {
 pub(super) fn path_context<'a>(
     scene: &'a Scene,
     settings: &'a Settings,
+    connections: f64,
     sample: &Sample,
 ) -> PathContext<'a> {
     let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
@@ -299,6 +357,16 @@ pub(super) fn path_context<'a>(
         scene,
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(u),
+        connections,
+    }
+}
+
+/// How many connections a camera vertex makes for each light vertex of a path.
+fn connections(settings: &Settings, training: Option<&Training>) -> f64 {
+    let vertices = training.map_or(0.0, |training| training.light_vertices);
+    match settings.integrator {
+        IntegratorKind::Lvc if vertices > 0.0 => f64::from(settings.candidates) / vertices,
+        _ => 1.0,
     }
 }
 

@@ -4,7 +4,7 @@
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace};
+use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, connectable};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
@@ -17,6 +17,8 @@ use crate::stats::RayCounts;
 pub struct Training {
     /// The mean luminance of the image.
     pub mean_luminance: f32,
+    /// The mean number of vertices of a light subpath that camera vertices can be connected with.
+    pub light_vertices: f64,
     /// The samples it took.
     pub samples: u64,
     /// The rays it cost.
@@ -33,27 +35,33 @@ const STRIDE: u64 = 2_654_435_761;
 impl Training {
     /// Renders a few samples spread over the film, tracing every connection.
     pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
-        let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0));
+        let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), 1);
         let mut workspace = Workspace::default();
-        let sum: f64 = (0..SAMPLES)
-            .map(|i| sample(scene, settings, &*integrator, i, &mut workspace))
-            .sum();
+        let (mut sum, mut vertices) = (0.0, 0);
+        for i in 0..SAMPLES {
+            let (luminance, light_vertices) =
+                sample(scene, settings, &*integrator, i, &mut workspace);
+            sum += luminance;
+            vertices += light_vertices;
+        }
         Self {
             mean_luminance: (sum / SAMPLES as f64) as f32,
+            light_vertices: vertices as f64 / SAMPLES as f64,
             samples: SAMPLES,
             rays: workspace.stats.rays,
         }
     }
 }
 
-/// The luminance that sample `i` adds to the mean pixel.
+/// The luminance that sample `i` adds to the mean pixel, and the number of its light vertices that can be
+/// connected.
 fn sample(
     scene: &Scene,
     settings: &Settings,
     integrator: &dyn Integrator,
     i: u64,
     workspace: &mut Workspace,
-) -> f64 {
+) -> (f64, usize) {
     let crop = scene.film().crop;
     let sampler = Sampler::new(settings.sampler, settings.seed);
     let pixel = crop.pixel((i.wrapping_mul(STRIDE) % crop.area()) as usize);
@@ -71,5 +79,7 @@ fn sample(
         .iter()
         .map(|splat| y(splat.contribution.value))
         .sum();
-    y(workspace.value) + splats / crop.area() as f64
+    let luminance = y(workspace.value) + splats / crop.area() as f64;
+    let light_vertices = connectable(&context, &workspace.light.vertices).count();
+    (luminance, light_vertices)
 }

@@ -31,7 +31,7 @@ pub use layers::{Aov, AovKind, Channels, Layers, StrategyImages};
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
 pub use sensor::Sensor;
-pub use settings::{FilmError, FilmSettings, PixelRect};
+pub use settings::{FilmError, FilmSettings, PixelRect, SplatPlace};
 
 use fixed::{MOMENT_SCALE, VALUE_SCALE};
 use layers::PICTURE_SUMS;

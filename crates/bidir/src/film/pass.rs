@@ -6,8 +6,7 @@
 
 use super::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
 use super::layers::PART_SUMS;
-use super::{FilmSettings, Layers};
-use crate::math::Vec2;
+use super::{FilmSettings, Layers, SplatPlace};
 use crate::spectrum::Rgb;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -127,17 +126,17 @@ impl PassBuffer {
         store(cells, sum);
     }
 
-    /// Adds a light-image contribution at `raster`, to one pixel drawn by the filter with `u`, and
+    /// Adds a light-image contribution at `place`, to one pixel, and
     /// to `parts` of that pixel. Nothing happens where it is outside the crop.
     #[inline]
     pub fn splat(
         &self,
         settings: &FilmSettings,
-        (raster, u): (Vec2, Vec2),
+        place: SplatPlace,
         value: Rgb,
         parts: impl Iterator<Item = usize>,
     ) {
-        let Some((i, weight)) = settings.pick_pixel(raster, u) else {
+        let Some((i, weight)) = settings.pick_pixel(place) else {
             return;
         };
         let parts = parts.map(|part| &self.part_light[i * self.layers[1] + part]);
@@ -149,11 +148,11 @@ impl PassBuffer {
     pub fn splat_to_part(
         &self,
         settings: &FilmSettings,
-        (raster, u): (Vec2, Vec2),
+        place: SplatPlace,
         value: Rgb,
         part: usize,
     ) {
-        if let Some((i, weight)) = settings.pick_pixel(raster, u) {
+        if let Some((i, weight)) = settings.pick_pixel(place) {
             let cells = &self.part_light[i * self.layers[1] + part];
             add(std::iter::once(cells), value, weight);
         }

@@ -81,11 +81,11 @@ impl FilmSettings {
         }
     }
 
-    /// The pixel that a splat at `raster` goes to, drawn by the filter with `u`: its position in row
-    /// order of the crop, and what its value is multiplied by. None: it is outside.
+    /// The pixel that a splat goes to, drawn by the filter: its position in row order of the crop, and
+    /// what its value is multiplied by. None: it is outside.
     #[inline]
-    pub fn pick_pixel(&self, raster: Vec2, u: Vec2) -> Option<(usize, f32)> {
-        let (x, y, weight) = self.filter.pick_pixel(raster, u)?;
+    pub fn pick_pixel(&self, place: SplatPlace) -> Option<(usize, f32)> {
+        let (x, y, weight) = self.filter.pick_pixel(place.raster, place.u)?;
         Some((self.crop.index(x, y)?, weight))
     }
 
@@ -94,6 +94,15 @@ impl FilmSettings {
     pub fn light_paths(&self) -> u64 {
         self.crop.area()
     }
+}
+
+/// Where a contribution to the light image lands.
+#[derive(Clone, Copy, Debug)]
+pub struct SplatPlace {
+    /// The point on the film. Unit: pixels.
+    pub raster: Vec2,
+    /// The numbers by which the filter draws a pixel.
+    pub u: Vec2,
 }
 
 /// Why a film cannot be made.

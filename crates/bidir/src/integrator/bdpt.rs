@@ -2,7 +2,8 @@
 
 use super::light::{lens_vertex, light_image};
 use super::workspace::light_vertices;
-use super::{Contribution, Integrator, Link, Sample, Term, Workspace};
+use super::journal::Counted;
+use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::path::{
@@ -169,18 +170,29 @@ fn candidate(
     workspace: &mut Workspace,
     strategy: Strategy,
 ) {
-    let Some(term) = connection(context, workspace, strategy) else {
-        return;
-    };
-    let value = term.value();
-    let weighted = (value, term.weight);
-    workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
-    if workspace.accepts(sample, strategy, value) && !value.is_black() {
+    if let Some(term) = connection(context, workspace, strategy) {
+        let counted = workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
+        offer(context, sample, workspace, &counted, None);
+    }
+}
+
+/// Offers a term for selection, of light vertex number `cached` of the light cache or of the sample's own
+/// subpath.
+#[inline]
+pub(super) fn offer(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+    counted: &Counted,
+    cached: Option<u32>,
+) {
+    let whole = counted.whole();
+    if workspace.accepts(sample, counted.mark(), whole.value) && !whole.value.is_black() {
         let color = context.scene.color();
-        let luminance = color.luminance(value.map(f32::abs), &context.wavelengths);
+        let luminance = color.luminance(whole.value.map(f32::abs), &context.wavelengths);
         workspace
             .candidates
-            .push(Candidate::new(strategy, term.light, weighted, luminance));
+            .push(Candidate::new(&whole, luminance, cached));
     }
 }
 
@@ -216,18 +228,13 @@ fn connection(
 
 /// Traces the chosen connections and adds what arrives, divided by its probability.
 #[inline(never)]
-fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+pub(super) fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];
-        let contribution = Contribution {
-            strategy: candidate.strategy,
-            light: candidate.light,
-            value: candidate.contribution(chosen.prob),
-            weight: candidate.weight,
-        };
-        let ends = workspace.ends(candidate.strategy);
-        if let Some(arrives) = workspace.trace(context.scene, candidate.strategy, &ends) {
+        let contribution = candidate.contribution(chosen.prob);
+        let ends = workspace.ends_of(&candidate);
+        if let Some(arrives) = workspace.trace(context.scene, contribution.mark(), &ends) {
             workspace.add(sample, contribution.behind(arrives));
         }
     }

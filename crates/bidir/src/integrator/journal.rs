@@ -3,7 +3,8 @@
 //!
 //! A render drops them as it goes; a replayed sample keeps a journal of what became of each.
 
-use super::{Contribution, Splat};
+use super::Contribution;
+use crate::film::SplatPlace;
 use crate::path::Strategy;
 use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
@@ -28,14 +29,43 @@ impl Term {
         self.contribution * self.weight
     }
 
+}
+
+/// A term that was counted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counted {
+    pub(super) term: Term,
+    /// Its number among the terms of the sample.
+    pub(super) number: u32,
+}
+
+/// Which term of a sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark {
+    /// Its strategy, for counters.
+    pub(super) strategy: Strategy,
+    /// Its number, for the journal.
+    pub(super) number: u32,
+}
+
+impl Counted {
+    #[inline]
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            strategy: self.term.strategy,
+            number: self.number,
+        }
+    }
+
     /// What it adds where it is certain to be traced.
     #[inline]
     pub(super) fn whole(&self) -> Contribution {
         Contribution {
-            strategy: self.strategy,
-            light: self.light,
-            value: self.value(),
-            weight: self.weight,
+            strategy: self.term.strategy,
+            light: self.term.light,
+            value: self.term.value(),
+            weight: self.term.weight,
+            term: self.number,
         }
     }
 }
@@ -47,8 +77,8 @@ pub enum Link {
     Walk,
     /// A shadow ray for the sample's own pixel: s ≥ 1 and t ≥ 2.
     Connection([SegmentEnd; 2]),
-    /// A shadow ray for a splat: t = 1.
-    LightImage([SegmentEnd; 2], Splat),
+    /// A shadow ray for a splat there: t = 1.
+    LightImage([SegmentEnd; 2], SplatPlace),
 }
 
 impl Link {
@@ -87,7 +117,7 @@ pub struct Entry {
     pub added: Spectrum,
 }
 
-/// The terms of one sample that are not zero, in the order in which they were evaluated.
+/// The terms of one sample that are not zero, in the order in which they were evaluated: by number.
 #[derive(Clone, Debug, Default)]
 pub struct Journal {
     /// The entries.
@@ -105,10 +135,9 @@ impl Journal {
         });
     }
 
-    /// Completes the last entry of `strategy`.
-    pub(super) fn end(&mut self, strategy: Strategy, fate: Fate, added: Spectrum) {
-        let mut entries = self.entries.iter_mut().rev();
-        if let Some(entry) = entries.find(|entry| entry.term.strategy == strategy) {
+    /// Completes the entry of term number `number`.
+    pub(super) fn end(&mut self, number: u32, fate: Fate, added: Spectrum) {
+        if let Some(entry) = self.entries.get_mut(number as usize) {
             (entry.fate, entry.added) = (fate, added);
         }
     }

@@ -3,6 +3,7 @@
 //! is divided by the number of light paths by the film, not here.
 
 use super::{Integrator, Link, Sample, Splat, Term, Workspace};
+use crate::film::SplatPlace;
 use crate::math::{Vec2, Vec3};
 use crate::path::{JoinedPath, PathContext, Strategy, Vertex, VertexKind};
 use crate::sampler::{Dimension, Purpose};
@@ -156,17 +157,15 @@ impl Workspace {
         let u = sample
             .light
             .get_2d(Dimension::at(s, Purpose::LightImagePixel));
-        let mut splat = Splat {
-            contribution: term.whole(),
-            raster,
-            u,
-        };
-        self.count(term, |_| Link::LightImage(ends, splat));
-        if self.accepts(sample, term.strategy, term.value())
-            && let Some(arrives) = self.trace(context.scene, term.strategy, &ends)
+        let place = SplatPlace { raster, u };
+        let counted = self.count(term, |_| Link::LightImage(ends, place));
+        if self.accepts(sample, counted.mark(), term.value())
+            && let Some(arrives) = self.trace(context.scene, counted.mark(), &ends)
         {
-            splat.contribution = splat.contribution.behind(arrives);
-            self.add_splat(splat);
+            self.add_splat(Splat {
+                contribution: counted.whole().behind(arrives),
+                place,
+            });
         }
     }
 }

@@ -10,6 +10,7 @@ mod bdpt;
 mod blind;
 mod journal;
 mod light;
+mod lvc;
 mod path;
 mod workspace;
 
@@ -17,6 +18,8 @@ pub use bdpt::Bdpt;
 pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
+pub use lvc::Lvc;
+pub(crate) use lvc::connectable;
 pub use path::PathTracer;
 pub(crate) use workspace::camera_ray;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
@@ -29,7 +32,27 @@ use crate::select::Selector;
 pub trait Integrator: Sync + Send {
     /// Adds the contributions of one sample to the workspace, which is cleared first.
     fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
+
+    /// What is done before the samples of a group, where they share light subpaths. None: each has its
+    /// own.
+    fn shared_light(&self) -> Option<&dyn SharedLight> {
+        None
+    }
 }
+
+/// The light subpaths that the samples of a group share: there are as many, and they are in the
+/// workspace.
+pub trait SharedLight {
+    /// Forgets those of another group.
+    fn begin(&self, workspace: &mut Workspace);
+
+    /// Walks the light subpath that `sample` brings to its group, and adds its light image.
+    fn walk(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
+}
+
+/// Samples of a group: those of as many pixels that follow each other in row order of the crop, less where
+/// these end. So few that their light subpaths stay in a processor's cache.
+pub const GROUP: u64 = 2048;
 
 /// The estimators by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -41,20 +64,23 @@ pub enum IntegratorKind {
     /// Bidirectional path tracing with every strategy.
     #[default]
     Bdpt,
+    /// Bidirectional path tracing that connects with light subpaths of many samples.
+    Lvc,
 }
 
 impl IntegratorKind {
     /// Every estimator with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 3] = [
+    pub const NAMES: [(&'static str, Self); 4] = [
         ("path", Self::Path),
         ("light", Self::Light),
         ("bdpt", Self::Bdpt),
+        ("lvc", Self::Lvc),
     ];
 
     /// True where the estimator has connections to choose from.
     pub fn has_candidates(self) -> bool {
         match self {
-            Self::Bdpt => true,
+            Self::Bdpt | Self::Lvc => true,
             Self::Path | Self::Light => false,
         }
     }
@@ -63,7 +89,7 @@ impl IntegratorKind {
     /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
     pub fn roulette(self) -> PathRoulette {
         let start = match self {
-            Self::Bdpt => 0,
+            Self::Bdpt | Self::Lvc => 0,
             Self::Path => 1,
             Self::Light => 2,
         };
@@ -71,11 +97,15 @@ impl IntegratorKind {
     }
 
     /// The estimator; `selector` chooses the shadow rays of those that have candidates.
-    pub fn integrator(self, selector: Box<dyn Selector>) -> Box<dyn Integrator> {
+    pub fn integrator(self, selector: Box<dyn Selector>, candidates: u32) -> Box<dyn Integrator> {
         match self {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),
             Self::Bdpt => Box::new(Bdpt { selector }),
+            Self::Lvc => Box::new(Lvc {
+                selector,
+                candidates,
+            }),
         }
     }
 }

@@ -112,12 +112,11 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
         contribution,
         weight: context.settings.mis.weight_of_two(x0.pdf, p),
     };
-    workspace.count(term, |_| Link::Connection(ends));
-    let (strategy, value) = (term.strategy, term.value());
-    if workspace.accepts(sample, strategy, value)
-        && let Some(arrives) = workspace.trace(context.scene, strategy, &ends)
+    let counted = workspace.count(term, |_| Link::Connection(ends));
+    if workspace.accepts(sample, counted.mark(), term.value())
+        && let Some(arrives) = workspace.trace(context.scene, counted.mark(), &ends)
     {
-        workspace.add(sample, term.whole().behind(arrives));
+        workspace.add(sample, counted.whole().behind(arrives));
     }
 }
 

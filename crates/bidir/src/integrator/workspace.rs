@@ -1,8 +1,11 @@
 //! What a sample leaves behind: subpaths, candidates, chosen rays and contributions, in buffers
 //! that the next sample uses again. A value that no film can sum is dropped and counted here.
 
-use super::{Fate, Journal, Link, Term};
+use super::journal::{Counted, Mark};
+use super::lvc::LightCache;
+use super::{Entry, Fate, Journal, Link, Term};
 use crate::camera::CameraRay;
+use crate::film::SplatPlace;
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
@@ -39,9 +42,19 @@ pub struct Contribution {
     pub value: Spectrum,
     /// The strategy's share of the path, which is in the value.
     pub weight: f32,
+    /// The number of its term within the sample.
+    pub term: u32,
 }
 
 impl Contribution {
+    #[inline]
+    pub(super) fn mark(&self) -> Mark {
+        Mark {
+            strategy: self.strategy,
+            number: self.term,
+        }
+    }
+
     /// What is left of it behind surfaces that let `transmittance` pass.
     #[inline]
     pub(super) fn behind(self, transmittance: f32) -> Self {
@@ -72,10 +85,8 @@ fn is_summable(value: Spectrum) -> bool {
 pub struct Splat {
     /// What is added.
     pub contribution: Contribution,
-    /// Where it lands on the film.
-    pub raster: Vec2,
-    /// The numbers that draw the pixel.
-    pub u: Vec2,
+    /// Where it lands.
+    pub place: SplatPlace,
 }
 
 /// What a thread keeps from sample to sample, so that no sample allocates: buffers, the
@@ -98,6 +109,8 @@ pub struct Workspace {
     pub value: Spectrum,
     /// The contributions to the light image.
     pub splats: Vec<Splat>,
+    /// The number of terms so far.
+    terms: u32,
     /// What was counted.
     pub stats: Stats,
     /// What became of every term; kept where somebody asks for it.
@@ -106,6 +119,8 @@ pub struct Workspace {
     pub stopwatch: Stopwatch,
     /// Weights of the paths that the two subpaths make.
     pub(super) weights: RunningSums,
+    /// The light subpaths that some samples share.
+    pub(super) light_cache: LightCache,
 }
 
 impl Workspace {
@@ -135,6 +150,7 @@ impl Workspace {
         self.contributions.clear();
         self.splats.clear();
         self.value = Spectrum::ZERO;
+        self.terms = 0;
         if let Some(journal) = &mut self.journal {
             journal.entries.clear();
         }
@@ -169,80 +185,103 @@ impl Workspace {
         [z.segment_end(), y.segment_end()]
     }
 
+    /// The same of a candidate, whose light vertex may be in the light cache.
+    pub(super) fn ends_of(&self, candidate: &Candidate) -> [SegmentEnd; 2] {
+        let Some(cached) = candidate.cached else {
+            return self.ends(candidate.strategy);
+        };
+        let light = self.light_cache.get(cached as usize).light;
+        let y = &self.camera.vertices[usize::from(candidate.strategy.t) - 1];
+        [light[light.len() - 1].segment_end(), y.segment_end()]
+    }
+
     /// Counts a term that is not zero; `link` is asked for the journal only.
     #[inline]
-    pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) {
+    pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) -> Counted {
         self.stats.count_candidate(term.strategy);
         if let Some(mut journal) = self.journal.take() {
             journal.begin(term, link(self));
             self.journal = Some(journal);
         }
+        let number = self.terms;
+        self.terms += 1;
+        Counted { term, number }
     }
 
     /// True where a contribution can be summed; else it is counted as dropped.
-    pub(super) fn accepts(&mut self, sample: &Sample, strategy: Strategy, value: Spectrum) -> bool {
+    pub(super) fn accepts(&mut self, sample: &Sample, mark: Mark, value: Spectrum) -> bool {
         let fine = is_summable(value);
         if !fine {
             let dropped = Dropped {
                 pass: sample.pass,
                 pixel: sample.pixel,
-                strategy,
+                strategy: mark.strategy,
             };
             self.stats.drop_contribution(dropped);
-            self.note(strategy, Fate::Dropped, Spectrum::ZERO);
+            self.note(mark, Fate::Dropped, Spectrum::ZERO);
         }
         fine
     }
 
     /// Adds a contribution to the sample's own pixel, if it can be summed.
     pub(super) fn add(&mut self, sample: &Sample, contribution: Contribution) {
-        let Contribution {
-            strategy, value, ..
-        } = contribution;
-        if self.accepts(sample, strategy, value) {
+        let (mark, value) = (contribution.mark(), contribution.value);
+        if self.accepts(sample, mark, value) {
             self.contributions.push(contribution);
             self.value += value;
-            self.note(strategy, Fate::Added, value);
+            self.note(mark, Fate::Added, value);
         }
     }
 
     /// Adds the light that a camera walk found by itself: s = 0.
     pub(super) fn add_hit(&mut self, sample: &Sample, term: Term) {
-        self.count(term, |_| Link::Walk);
-        self.add(sample, term.whole());
+        let counted = self.count(term, |_| Link::Walk);
+        self.add(sample, counted.whole());
     }
 
     /// Adds a contribution to the light image.
     pub(super) fn add_splat(&mut self, splat: Splat) {
         self.splats.push(splat);
-        let Contribution {
-            strategy, value, ..
-        } = splat.contribution;
-        self.note(strategy, Fate::Added, value);
+        let contribution = &splat.contribution;
+        self.note(contribution.mark(), Fate::Added, contribution.value);
     }
 
-    /// Traces the shadow ray of a strategy: how much of it arrives. None: nothing.
+    /// The light image of the last light subpath: its splats and the journal of its terms.
+    pub(crate) fn light_image(&self) -> (Vec<Splat>, Vec<Entry>) {
+        let entries = self.journal.iter().flat_map(|journal| &journal.entries);
+        (self.splats.clone(), entries.copied().collect())
+    }
+
+    /// Puts the light image of a light subpath, walked apart, beside what the sample left.
+    pub(crate) fn add_light_image(&mut self, (splats, entries): (Vec<Splat>, Vec<Entry>)) {
+        self.splats.extend(splats);
+        if let Some(journal) = &mut self.journal {
+            journal.entries.extend(entries);
+        }
+    }
+
+    /// Traces the shadow ray of a term: how much of it arrives. None: nothing.
     pub(super) fn trace(
         &mut self,
         scene: &Scene,
-        strategy: Strategy,
+        mark: Mark,
         [a, b]: &[SegmentEnd; 2],
     ) -> Option<f32> {
-        self.stats.count_shadow_ray(strategy);
+        self.stats.count_shadow_ray(mark.strategy);
         let transmittance = scene.transmittance(a, b);
         if transmittance > 0.0 {
             return Some(transmittance);
         }
-        self.stats.count_blocked(strategy);
-        self.note(strategy, Fate::Blocked, Spectrum::ZERO);
+        self.stats.count_blocked(mark.strategy);
+        self.note(mark, Fate::Blocked, Spectrum::ZERO);
         None
     }
 
     /// Completes the journal of a term.
     #[inline]
-    fn note(&mut self, strategy: Strategy, fate: Fate, added: Spectrum) {
+    fn note(&mut self, mark: Mark, fate: Fate, added: Spectrum) {
         if let Some(journal) = &mut self.journal {
-            journal.end(strategy, fate, added);
+            journal.end(mark.number, fate, added);
         }
     }
 }

@@ -20,6 +20,7 @@ pub use budget::Budget;
 pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 
+use crate::integrator::Contribution;
 use crate::path::Strategy;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::spectrum::Spectrum;
@@ -39,33 +40,40 @@ pub struct Candidate {
     pub light: u32,
     /// The strategy's share of the path, which is in `value` already.
     pub weight: f32,
+    /// The number of its term within the sample.
+    pub term: u32,
+    /// Its light vertex, by number in the light cache. None: it is of the sample's own subpath.
+    pub cached: Option<u32>,
 }
 
 impl Candidate {
-    /// A candidate for `value`, which is not black, has `weight` in it, and has the luminance
+    /// A candidate for what is certain to be traced, which is not black and has the luminance
     /// `luminance` without regard to signs.
     #[inline]
-    pub fn new(
-        strategy: Strategy,
-        light: u32,
-        (value, weight): (Spectrum, f32),
-        luminance: f32,
-    ) -> Self {
+    pub fn new(whole: &Contribution, luminance: f32, cached: Option<u32>) -> Self {
         Self {
-            value,
+            value: whole.value,
             // What underflows must keep a chance.
             score: luminance.max(f32::MIN_POSITIVE),
-            strategy,
-            light,
-            weight,
+            strategy: whole.strategy,
+            light: whole.light,
+            weight: whole.weight,
+            term: whole.term,
+            cached,
         }
     }
 
     /// What the candidate adds if it was chosen with probability `prob` and nothing blocks it:
     /// value / π.
     #[inline]
-    pub fn contribution(&self, prob: f64) -> Spectrum {
-        self.value.map(|lane| (f64::from(lane) / prob) as f32)
+    pub fn contribution(&self, prob: f64) -> Contribution {
+        Contribution {
+            strategy: self.strategy,
+            light: self.light,
+            value: self.value.map(|lane| (f64::from(lane) / prob) as f32),
+            weight: self.weight,
+            term: self.term,
+        }
     }
 }
 

@@ -8,6 +8,8 @@ fn candidate(s: usize, t: usize, score: f32) -> Candidate {
         strategy: Strategy::new(s, t),
         light: 0,
         weight: 1.0,
+        term: 0,
+        cached: None,
     }
 }
 

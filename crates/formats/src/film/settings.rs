@@ -27,6 +27,8 @@ pub struct SettingsText {
     pub path_roulette: String,
     /// The most bounces. None: no limit.
     pub max_depth: Option<u32>,
+    /// The cached light vertices that are candidates for each camera vertex.
+    pub candidates: u32,
     /// The random numbers.
     pub sampler: &'static str,
     /// Their seed.
@@ -74,6 +76,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             mis: named(&MisHeuristic::NAMES, flag("mis")?)?,
             light_point: named(&LightPointChoice::NAMES, flag("light-point")?)?,
         },
+        candidates: parse(flag("candidates")?)?,
         sampler: named(&SamplerKind::NAMES, flag("sampler")?)?,
         seed: parse(flag("seed")?)?,
         ..Settings::default()
@@ -125,6 +128,7 @@ impl From<&Settings> for SettingsText {
         let Settings {
             integrator,
             shadow_rays,
+            candidates,
             path,
             sampler,
             seed,
@@ -145,6 +149,7 @@ impl From<&Settings> for SettingsText {
             light_point: name_of(&LightPointChoice::NAMES, *light_point),
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
+            candidates: *candidates,
             sampler: name_of(&SamplerKind::NAMES, *sampler),
             seed: *seed,
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),

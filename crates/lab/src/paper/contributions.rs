@@ -81,7 +81,7 @@ fn pass_of(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
         wavelengths: scene.color().sample_wavelengths(0.5),
         connections: 1.0,
     };
-    let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0));
+    let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), 1);
     let mut workspace = Workspace::default();
     workspace.journal = Some(Journal::default());
     let mut terms = Vec::new();

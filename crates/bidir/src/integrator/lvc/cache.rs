@@ -1,136 +1,106 @@
-//! The light subpaths of a pass, kept for all of its samples, in the order of their numbers.
+//! The light subpaths of a group of samples, in the order of the samples.
 
-use crate::path::{LightShares, PathContext, RunningSums, Subpath, Vertex};
-use std::sync::{Mutex, PoisonError};
+use crate::path::{LightEnd, LightShares, PathContext, RunningSums, Subpath, Vertex};
 
-/// Light subpaths are kept in runs of this length, each written by one thread.
-const RUN: u64 = 256;
-
-/// The light subpaths of a pass.
-///
-/// They are written by many threads, run by run, between [`begin`](Self::begin) and
-/// [`end`](Self::end); then they are read.
+/// Light subpaths, one for each sample of a group.
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
-    writing: Vec<Mutex<Run>>,
-    runs: Vec<Run>,
-    /// The vertices that can be connected, in the order of their subpaths.
-    entries: Vec<Entry>,
-    /// The number of subpaths, those without a vertex included.
-    subpaths: u64,
-}
-
-/// Subpaths that follow each other.
-#[derive(Debug, Default)]
-struct Run {
     vertices: Vec<Vertex>,
-    /// For each vertex the sum with its number, as long as there is one.
+    /// For each vertex the sum of its number along its subpath, as long as there is one.
     sums: Vec<f64>,
-    starts: Vec<Start>,
+    subpaths: Vec<Start>,
+    /// The vertices that can be connected.
+    entries: Vec<Entry>,
 }
 
-/// Where a subpath begins in its run.
+/// How a subpath begins.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     vertex: u32,
-    end: crate::path::LightEnd,
+    end: LightEnd,
 }
 
 /// A vertex that can be connected.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    run: u32,
-    start: u32,
     vertex: u32,
+    subpath: u32,
 }
 
 /// A vertex of the cache, with the subpath up to it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cached<'a> {
+pub(crate) struct Cached<'a> {
     /// From x_0 to the vertex.
-    pub(super) light: &'a [Vertex],
-    /// The sums of its subpath.
-    pub(super) shares: LightShares<'a>,
+    pub(crate) light: &'a [Vertex],
+    /// The sums along its subpath.
+    pub(crate) shares: LightShares<'a>,
 }
 
 impl LightCache {
-    /// Forgets all, and makes room for so many subpaths.
-    pub(super) fn begin(&mut self, subpaths: u64) {
-        let mut runs = std::mem::take(&mut self.runs);
-        for run in &mut runs {
-            run.vertices.clear();
-            run.sums.clear();
-            run.starts.clear();
-        }
-        runs.resize_with(subpaths.div_ceil(RUN) as usize, Run::default);
-        self.writing = runs.into_iter().map(Mutex::new).collect();
+    /// Forgets all, and keeps the memory.
+    pub(super) fn clear(&mut self) {
+        self.vertices.clear();
+        self.sums.clear();
+        self.subpaths.clear();
         self.entries.clear();
-        self.subpaths = subpaths;
     }
 
-    /// Keeps subpath number `index`. Those of a run come in order.
-    pub(super) fn keep(&self, index: u64, subpath: &Subpath, weights: &RunningSums) {
-        let mut run = self.writing[(index / RUN) as usize]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
+    /// Keeps a subpath, which may be empty, with the sums along it.
+    pub(super) fn push(
+        &mut self,
+        context: &PathContext<'_>,
+        subpath: &Subpath,
+        weights: &RunningSums,
+    ) {
         let shares = weights.light_shares();
-        let vertex = run.vertices.len() as u32;
-        run.starts.push(Start {
-            vertex,
+        let (first, number) = (self.vertices.len(), self.subpaths.len() as u32);
+        self.subpaths.push(Start {
+            vertex: first as u32,
             end: shares.start,
         });
-        run.vertices.extend_from_slice(&subpath.vertices);
-        run.sums.extend_from_slice(shares.sums);
-        let length = run.vertices.len();
-        run.sums.resize(length, 0.0);
-    }
-
-    /// Lists what can be connected.
-    pub(super) fn end(&mut self, context: &PathContext<'_>) {
-        let first_walked = context.settings.light_point.first_walked() as u32;
-        let written = std::mem::take(&mut self.writing).into_iter();
-        self.runs
-            .extend(written.map(|run| run.into_inner().unwrap_or_else(PoisonError::into_inner)));
-        for (number, run) in self.runs.iter().enumerate() {
-            for (start, Start { vertex: first, .. }) in run.starts.iter().enumerate() {
-                let next = run.starts.get(start + 1);
-                let after = next.map_or(run.vertices.len() as u32, |next| next.vertex);
-                for vertex in (first + first_walked - 1..after)
-                    .filter(|&vertex| !run.vertices[vertex as usize].is_delta())
-                {
-                    self.entries.push(Entry {
-                        run: number as u32,
-                        start: start as u32,
-                        vertex,
-                    });
-                }
-            }
-        }
+        self.vertices.extend_from_slice(&subpath.vertices);
+        self.sums.extend_from_slice(shares.sums);
+        self.sums.resize(self.vertices.len(), 0.0);
+        let connectable = connectable(context, &subpath.vertices);
+        self.entries.extend(connectable.map(|i| Entry {
+            vertex: (first + i) as u32,
+            subpath: number,
+        }));
     }
 
     /// How many vertices can be connected.
+    #[inline]
     pub(super) fn len(&self) -> usize {
         self.entries.len()
     }
 
     /// How many that is for each subpath.
+    #[inline]
     pub(super) fn per_subpath(&self) -> f64 {
-        self.entries.len() as f64 / self.subpaths as f64
+        self.entries.len() as f64 / self.subpaths.len() as f64
     }
 
-    /// Vertex number `i` of those.
+    /// Number `i` of the vertices that can be connected.
     #[inline]
-    pub(super) fn get(&self, i: usize) -> Cached<'_> {
-        let entry = self.entries[i];
-        let run = &self.runs[entry.run as usize];
-        let start = &run.starts[entry.start as usize];
-        let range = start.vertex as usize..entry.vertex as usize + 1;
+    pub(crate) fn get(&self, i: usize) -> Cached<'_> {
+        let Entry { vertex, subpath } = self.entries[i];
+        let start = &self.subpaths[subpath as usize];
+        let range = start.vertex as usize..vertex as usize + 1;
         Cached {
             shares: LightShares {
-                sums: &run.sums[range.clone()],
+                sums: &self.sums[range.clone()],
                 start: start.end,
             },
-            light: &run.vertices[range],
+            light: &self.vertices[range],
         }
     }
+}
+
+/// The vertices of a light subpath that camera vertices may be connected with, by number.
+pub(crate) fn connectable(
+    context: &PathContext<'_>,
+    subpath: &[Vertex],
+) -> impl Iterator<Item = usize> {
+    let first = context.settings.light_point.first_walked() - 1;
+    (first..subpath.len()).filter(move |&i| !subpath[i].is_delta())
 }

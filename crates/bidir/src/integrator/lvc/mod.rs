@@ -1,63 +1,44 @@
-//! Bidirectional path tracing with a light vertex cache [Davidovic14, §4]: a camera vertex is
-//! connected with vertices of all light subpaths of the pass, drawn at random.
+//! ⟨C⟩ = (K / (N M)) Σ_m C(y, z_m): bidirectional path tracing with a light vertex cache
+//! [Davidovic14, §4]. A camera vertex y is connected with M of the K vertices z of N light subpaths, in place
+//! of those of one.
+//!
+//! **Weights.** For each vertex of the light subpath of a path, strategy (s, t) takes M N / K samples on
+//! average. K differs from group to group; weights must not, or the estimate is biased. They take
+//! M / κ, with κ the mean of K / N in a training render
+//! ([`PathContext::connections`](crate::path::PathContext::connections)).
+//!
+//! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt).
 
 mod cache;
 
-use super::bdpt::{hits, light_images, next_event};
-use super::{Contribution, Integrator, Link, Sample, Term, Workspace};
+pub(crate) use cache::{LightCache, connectable};
+
+use super::bdpt::{hits, light_images, next_event, offer, trace_chosen};
+use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
 use crate::path::{JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
-use crate::select::{Candidate, Draws, Selector};
+use crate::select::{Draws, Selector};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use cache::Cached;
-pub(super) use cache::LightCache;
 
-/// Bidirectional path tracing with a light vertex cache.
+/// Bidirectional path tracing with a light vertex cache, and with the connections that `selector`
+/// chooses.
 pub struct Lvc {
     /// Chooses the connections that are traced.
     pub selector: Box<dyn Selector>,
-    /// Vertices of the cache that are candidates for each camera vertex.
+    /// M: the vertices of the cache that are candidates for each camera vertex.
     pub candidates: u32,
-    pub(super) cache: LightCache,
 }
 
 impl Integrator for Lvc {
-    fn shares_light(&self) -> bool {
-        true
-    }
-
-    fn begin_light(&mut self, subpaths: u64) {
-        self.cache.begin(subpaths);
-    }
-
-    fn light_sample(
-        &self,
-        context: &PathContext<'_>,
-        sample: &Sample,
-        index: u64,
-        workspace: &mut Workspace,
-    ) {
-        workspace.begin();
-        workspace.walk_light(context, sample);
-        workspace.sum_weights(context);
-        light_images(context, sample, workspace);
-        workspace.stopwatch.end(Stage::LightImage);
-        self.cache
-            .keep(index, &workspace.light, &workspace.weights);
-    }
-
-    fn end_light(&mut self, context: &PathContext<'_>) {
-        self.cache.end(context);
-    }
-
     fn sample(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
         workspace.begin();
         workspace.walk_camera(context, sample);
         workspace.sum_weights(context);
         hits(context, sample, workspace);
         workspace.stopwatch.end(Stage::Hits);
-        self.gather(context, sample, workspace);
+        self.gather_candidates(context, sample, workspace);
         workspace.stopwatch.end(Stage::Candidates);
         let Workspace {
             candidates, chosen, ..
@@ -65,30 +46,60 @@ impl Integrator for Lvc {
         self.selector
             .select(candidates, Draws(&sample.camera), chosen);
         workspace.stopwatch.end(Stage::Select);
-        self.trace(context, sample, workspace);
+        trace_chosen(context, sample, workspace);
         workspace.stopwatch.end(Stage::Shadow);
+    }
+
+    fn shared_light(&self) -> Option<&dyn SharedLight> {
+        Some(self)
+    }
+}
+
+impl SharedLight for Lvc {
+    fn begin(&self, workspace: &mut Workspace) {
+        workspace.light_cache.clear();
+    }
+
+    fn walk(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+        workspace.begin();
+        workspace.walk_light(context, sample);
+        workspace.sum_weights(context);
+        light_images(context, sample, workspace);
+        workspace.stopwatch.end(Stage::LightImage);
+        let Workspace {
+            light,
+            weights,
+            light_cache,
+            ..
+        } = workspace;
+        light_cache.push(context, light, weights);
     }
 }
 
 impl Lvc {
-    /// Evaluates the connections of all camera vertices, before visibility.
-    fn gather(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    /// s ≥ 1 and t ≥ 2: evaluates the connections of all camera vertices, before visibility.
+    #[inline(never)]
+    fn gather_candidates(
+        &self,
+        context: &PathContext<'_>,
+        sample: &Sample,
+        workspace: &mut Workspace,
+    ) {
         workspace
             .next_events
             .resize(workspace.camera.vertices.len(), None);
+        let count = f64::from(self.candidates);
+        let size = workspace.light_cache.len();
         for t in 2..=workspace.camera.vertices.len() {
             if workspace.camera.vertices[t - 1].is_delta() {
                 continue;
             }
             next_event(context, sample, workspace, t);
-            let u = sample
-                .camera
-                .get_1d(Dimension::at(t - 1, Purpose::CachedVertex));
-            let (count, size) = (self.candidates as usize, self.cache.len());
-            for m in 0..count {
-                // One of each of as many strata.
-                let i = (m as f64 + f64::from(u)) / count as f64 * size as f64;
-                let i = i as usize;
+            let at = Dimension::at(t - 1, Purpose::CachedVertex);
+            let u = f64::from(sample.camera.get_1d(at));
+            // One of each of as many parts of the cache.
+            for m in 0..self.candidates {
+                let i = ((f64::from(m) + u) / count * size as f64) as usize;
                 if i < size {
                     self.candidate(context, sample, workspace, t, i);
                 }
@@ -96,6 +107,8 @@ impl Lvc {
         }
     }
 
+    /// Evaluates the connection of camera vertex number `t` with vertex number `i` of the cache, and offers
+    /// it for selection.
     fn candidate(
         &self,
         context: &PathContext<'_>,
@@ -104,67 +117,46 @@ impl Lvc {
         t: usize,
         i: usize,
     ) {
-        let Cached { light, shares } = self.cache.get(i);
-        let strategy = Strategy::new(light.len(), t);
-        if light.len() + t > context.settings.max_vertices()
-            || context.count(light.len(), t) == 0.0
-        {
+        let Some((term, path)) = self.connection(context, workspace, t, i) else {
             return;
-        }
-        let Some(start) = light[0].light else { return };
-        let Workspace {
-            camera, weights, ..
-        } = workspace;
-        let path = JoinedPath::connection(light, &camera.vertices[..t]);
-        let contribution = path.contribution(context);
-        if contribution == Spectrum::ZERO {
-            return;
-        }
-        // Of all subpaths' vertices this was one of so many.
-        let scale = self.cache.per_subpath() / f64::from(self.candidates);
-        let term = Term {
-            strategy,
-            light: start,
-            contribution: contribution * scale as f32,
-            weight: weights.weight_of_cached(context, &path, shares),
         };
-        let ends = [
-            path.light[light.len() - 1].segment_end(),
-            path.camera[t - 1].segment_end(),
-        ];
-        let value = term.value();
-        let weighted = (value, term.weight);
-        workspace.count(term, |_| Link::Connection(ends));
-        if workspace.accepts(sample, strategy, value) && !value.is_black() {
-            let color = context.scene.color();
-            let luminance = color.luminance(value.map(f32::abs), &context.wavelengths);
-            let candidate = Candidate::new(strategy, term.light, weighted, luminance);
-            workspace.candidates.push(candidate.of_cache(i as u32));
-        }
+        let counted = workspace.count(term, |_| Link::Connection(path));
+        offer(context, sample, workspace, &counted, Some(i as u32));
     }
 
-    /// Traces the chosen connections and adds what arrives, divided by its probability.
-    fn trace(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-        for i in 0..workspace.chosen.len() {
-            let chosen = workspace.chosen[i];
-            let candidate = workspace.candidates[chosen.candidate as usize];
-            let contribution = Contribution {
-                strategy: candidate.strategy,
-                light: candidate.light,
-                value: candidate.contribution(chosen.prob),
-                weight: candidate.weight,
-            };
-            let ends = match candidate.cached {
-                None => workspace.ends(candidate.strategy),
-                Some(i) => {
-                    let Cached { light, .. } = self.cache.get(i as usize);
-                    let y = &workspace.camera.vertices[usize::from(candidate.strategy.t) - 1];
-                    [light[light.len() - 1].segment_end(), y.segment_end()]
-                }
-            };
-            if let Some(arrives) = workspace.trace(context.scene, candidate.strategy, &ends) {
-                workspace.add(sample, contribution.behind(arrives));
-            }
+    /// The term of such a connection, with the ends of its shadow ray. None: it is zero.
+    fn connection(
+        &self,
+        context: &PathContext<'_>,
+        workspace: &mut Workspace,
+        t: usize,
+        i: usize,
+    ) -> Option<(Term, [crate::scene::SegmentEnd; 2])> {
+        let Workspace {
+            camera,
+            weights,
+            light_cache,
+            ..
+        } = workspace;
+        let Cached { light, shares } = light_cache.get(i);
+        let s = light.len();
+        if s + t > context.settings.max_vertices() || context.count(s, t) == 0.0 {
+            return None;
         }
+        let camera = &camera.vertices[..t];
+        let path = JoinedPath::connection(light, camera);
+        let contribution = path.contribution(context);
+        if contribution == Spectrum::ZERO {
+            return None;
+        }
+        let share = light_cache.per_subpath() / f64::from(self.candidates);
+        let term = Term {
+            strategy: Strategy::new(s, t),
+            light: light[0].light?,
+            contribution: contribution * share as f32,
+            weight: weights.weight_of_cached(context, &path, shares),
+        };
+        let ends = [light[s - 1].segment_end(), camera[t - 1].segment_end()];
+        Some((term, ends))
     }
 }
