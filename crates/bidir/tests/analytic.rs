@@ -52,7 +52,7 @@ fn check_expectation(name: &str, a: &Replicates, expected: f64) {
 fn passes(integrator: IntegratorKind, most: u64) -> u64 {
     match integrator {
         IntegratorKind::Light => most,
-        IntegratorKind::Path | IntegratorKind::Bdpt => most / 4,
+        IntegratorKind::Path | IntegratorKind::Bdpt | IntegratorKind::Lvc => most / 4,
     }
 }
 
@@ -161,7 +161,11 @@ fn white_objects_vanish_in_a_white_environment() {
             let material = builder.material(material.clone());
             builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
         });
-        for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+        for integrator in [
+            IntegratorKind::Path,
+            IntegratorKind::Bdpt,
+            IntegratorKind::Lvc,
+        ] {
             let result = replicates(&scene, &settings(integrator, None), 8192);
             check_expectation(&format!("{name}, {integrator:?}"), &result, 1.0);
         }
@@ -171,7 +175,11 @@ fn white_objects_vanish_in_a_white_environment() {
 #[test]
 fn an_empty_scene_shows_the_environment() {
     let scene = furnace(|_| ());
-    for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+    for integrator in [
+        IntegratorKind::Path,
+        IntegratorKind::Bdpt,
+        IntegratorKind::Lvc,
+    ] {
         let result = replicates(&scene, &settings(integrator, None), 1024);
         check_expectation(&format!("{integrator:?}"), &result, 1.0);
     }
@@ -202,7 +210,11 @@ fn a_ring_light_over_a_floor_gives_its_form_factor() {
     let scene = builder.build().expect("the scene is valid");
     let disk = |r: f32| f64::from(r * r / (r * r + height * height));
     let expected = f64::from(rho) * 2.0 * (disk(radius) - disk(inner));
-    for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+    for integrator in [
+        IntegratorKind::Path,
+        IntegratorKind::Bdpt,
+        IntegratorKind::Lvc,
+    ] {
         let result = replicates(&scene, &settings(integrator, Some(1)), 8192);
         check_expectation(&format!("{integrator:?}"), &result, expected);
     }
@@ -215,7 +227,11 @@ fn rough_surfaces_lose_but_never_gain() {
             let material = builder.material(material.clone());
             builder.shape(sphere(Vec3::new(0.0, 0.0, 1.0), 1.0), material, None);
         });
-        for integrator in [IntegratorKind::Path, IntegratorKind::Bdpt] {
+        for integrator in [
+            IntegratorKind::Path,
+            IntegratorKind::Bdpt,
+            IntegratorKind::Lvc,
+        ] {
             let result = replicates(&scene, &settings(integrator, None), 1024);
             let mean = result.mean();
             assert!(mean < 1.0 && mean > 0.75, "{name}: {mean}");

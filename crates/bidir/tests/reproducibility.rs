@@ -63,7 +63,7 @@ fn measuring_stages_changes_no_bit_and_no_counter() {
         assert_eq!(*plain.stage_times(), StageTimes::default(), "{name}");
         let times = timed.stage_times();
         assert!((1..=10).contains(&times.samples), "{name}: {times:?}");
-        let of_bdpt = integrator == IntegratorKind::Bdpt;
+        let of_bdpt = integrator.has_candidates();
         for stage in [Stage::Walk, Stage::Film] {
             assert!(!times.of(stage).is_zero(), "{name}: {times:?}");
         }
@@ -166,6 +166,8 @@ fn parts_in_any_order_are_the_whole() {
         (IntegratorKind::Bdpt, "per-pair"),
         (IntegratorKind::Bdpt, "ray-roulette"),
         (IntegratorKind::Bdpt, "budget:2"),
+        (IntegratorKind::Lvc, "all"),
+        (IntegratorKind::Lvc, "budget:2"),
     ] {
         let settings = settings(integrator, rule);
         let whole = part(&scene, &settings, 0..7);
@@ -191,8 +193,15 @@ fn parts_in_any_order_are_the_whole() {
 
 #[test]
 fn a_replayed_sample_is_the_sample() {
+    for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+        check_replays(integrator);
+    }
+}
+
+#[track_caller]
+fn check_replays(integrator: IntegratorKind) {
     let scene = common::room(0.1);
-    let settings = settings(IntegratorKind::Bdpt, "budget:2");
+    let settings = settings(integrator, "budget:2");
     let resources = with_threads(1);
     let session = Session::new(&scene, settings.clone(), &resources).expect("the film is small");
     let film = scene.film();

@@ -20,6 +20,9 @@ const TOLERANCE: f32 = 1e-6;
 /// Weights below this are compared absolutely.
 const SMALL: f32 = 1e-30;
 
+/// For [`PathContext::connections`].
+const CONNECTIONS: [f64; 2] = [1.0, 2.7];
+
 /// What is compared, and how much of it says something.
 #[derive(Default)]
 struct Comparison {
@@ -170,7 +173,13 @@ fn check(scene: &Scene, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     for settings in all_settings() {
         for_some_pairs(pairs, &settings, scene, |context, light, camera| {
-            comparison.compare_pair(context, light, camera);
+            for connections in CONNECTIONS {
+                let context = PathContext {
+                    connections,
+                    ..*context
+                };
+                comparison.compare_pair(&context, light, camera);
+            }
         });
         least += pairs as usize;
     }

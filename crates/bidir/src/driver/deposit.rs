@@ -176,7 +176,7 @@ mod tests {
             scene: &scene,
             settings: &PathSettings::default(),
             wavelengths: Wavelengths::default(),
-        connections: 1.0,
+            connections: 1.0,
         };
         Deposit {
             context: &context,

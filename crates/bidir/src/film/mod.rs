@@ -253,7 +253,10 @@ mod tests {
         for pass in 0..2u8 {
             let buffer = PassBuffer::new(film.settings(), film.layers());
             buffer.set_camera_sample(3, [1.0, f32::from(pass), 0.0]);
-            let place = (Vec2::new(1.5, 1.5), Vec2::splat(0.5));
+            let place = SplatPlace {
+                raster: Vec2::new(1.5, 1.5),
+                u: Vec2::splat(0.5),
+            };
             buffer.splat(film.settings(), place, [4.0, 0.0, 8.0], iter::empty());
             film.add_pass(pass.into(), &buffer);
         }
@@ -281,7 +284,10 @@ mod tests {
         let add = |order: [usize; 3]| {
             let mut film = film(1, 1, Filter::default());
             let buffer = PassBuffer::new(film.settings(), film.layers());
-            let place = (Vec2::splat(0.5), Vec2::splat(0.5));
+            let place = SplatPlace {
+                raster: Vec2::splat(0.5),
+                u: Vec2::splat(0.5),
+            };
             for i in order {
                 buffer.splat(film.settings(), place, values[i], iter::empty());
             }

@@ -1,8 +1,8 @@
 //! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen \[Lafortune95\].
 
+use super::journal::Counted;
 use super::light::{lens_vertex, light_image};
 use super::workspace::light_vertices;
-use super::journal::Counted;
 use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;

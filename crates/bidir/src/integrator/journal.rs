@@ -28,7 +28,6 @@ impl Term {
     pub fn value(&self) -> Spectrum {
         self.contribution * self.weight
     }
-
 }
 
 /// A term that was counted.

@@ -74,7 +74,7 @@ impl<'a> Case<'a> {
         change(&mut settings);
         let passes = match integrator {
             IntegratorKind::Path | IntegratorKind::Light => 2 * self.passes,
-            IntegratorKind::Bdpt => self.passes,
+            IntegratorKind::Bdpt | IntegratorKind::Lvc => self.passes,
         };
         replicates(self.scene, &settings, passes)
     }

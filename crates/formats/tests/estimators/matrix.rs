@@ -72,7 +72,7 @@ const OTHERS: [World; 13] = [
 ];
 
 impl World {
-    /// Compares the bidirectional path tracer under each of `rules`, and the light tracer where it
+    /// Compares the bidirectional path tracers under each of `rules`, and the light tracer where it
     /// sees all, with the path tracer.
     #[track_caller]
     fn check(&self, rules: impl IntoIterator<Item = &'static str>) {
@@ -80,7 +80,9 @@ impl World {
         let case = Case::new(&loaded, self.passes);
         let reference = case.with_effort(self.effort).path();
         for rule in rules {
-            self.check_rule(&case, rule, &reference);
+            for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+                self.check_rule(&case, integrator, rule, &reference);
+            }
         }
         if let Light::Whole(effort) = self.light {
             let light = case
@@ -92,9 +94,16 @@ impl World {
     }
 
     #[track_caller]
-    fn check_rule(&self, case: &Case<'_>, rule: &str, reference: &Replicates) {
-        let result = case.bdpt(|settings| settings.shadow_rays = rule.parse().expect("a rule"));
-        let name = format!("{}, {rule}", self.name);
+    fn check_rule(
+        &self,
+        case: &Case<'_>,
+        integrator: IntegratorKind,
+        rule: &str,
+        reference: &Replicates,
+    ) {
+        let rays = rule.parse().expect("a rule");
+        let result = case.render(integrator, |settings| settings.shadow_rays = rays);
+        let name = format!("{}, {integrator:?}, {rule}", self.name);
         let blocks = if rule == "all" { PIXELS } else { QUARTERS };
         check_agree(&name, &result, reference, blocks);
     }
@@ -165,6 +174,7 @@ fn nothing_is_black() {
         IntegratorKind::Path,
         IntegratorKind::Light,
         IntegratorKind::Bdpt,
+        IntegratorKind::Lvc,
     ] {
         let picture = case.render(integrator, |_| ());
         assert!(picture.mean().abs() <= 0.0, "{integrator:?}");
