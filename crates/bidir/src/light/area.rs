@@ -112,6 +112,11 @@ impl AreaLight {
         self.is_hidden = true;
     }
 
+    #[cfg(test)]
+    pub(super) fn shape_index(&self) -> usize {
+        self.shape
+    }
+
     pub(super) fn is_hidden(&self) -> bool {
         self.is_hidden
     }
@@ -285,9 +290,7 @@ impl AreaLight {
         match (part, shape) {
             (Part::Primitive(i), _) => shape.pdf_from(i as usize, reference, at.point, at.n_g),
             (Part::Whole, Shape::Mesh(_) | Shape::Disk(_)) => self.inverse_area,
-            (Part::Whole, Shape::Sphere(sphere)) => {
-                sphere.pdf_from(reference, at.point, at.n_g)
-            }
+            (Part::Whole, Shape::Sphere(sphere)) => sphere.pdf_from(reference, at.point, at.n_g),
             (Part::Whole, Shape::Cylinder(cylinder)) => cylinder.pdf(at.point),
         }
     }

@@ -5,7 +5,9 @@
 //! point.
 
 use super::differentials::normal_derivative;
-use super::{Differentials, Normals, Orientation, Place, ShapeSample, SurfacePoint, position_error};
+use super::{
+    Differentials, Normals, Orientation, Place, ShapeSample, SurfacePoint, position_error,
+};
 use crate::math::{Frame, Vec2, Vec3, warp};
 
 /// Triangles that share vertices, in world space.

@@ -127,10 +127,14 @@ fn environments_are_drawn_by_the_density() {
         let points = samples(name, N).map(|sample| {
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
             Some(to_square(
-                &light.sample_next_event(&context, Part::Whole, receivers()[0], u)?.at,
+                &light
+                    .sample_next_event(&context, Part::Whole, receivers()[0], u)?
+                    .at,
             ))
         });
-        let pdf = |p| light.pdf_next_event(&context, Part::Whole, receivers()[0], &direction(p)) * 4.0 * PI;
+        let pdf = |p| {
+            light.pdf_next_event(&context, Part::Whole, receivers()[0], &direction(p)) * 4.0 * PI
+        };
         battery.chi2(&format!("{name}, receivers"), &grid, pdf, points);
     }
     battery.check();
@@ -229,7 +233,9 @@ fn points_of_a_mesh_follow_the_density() {
         let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
         Some(on_square(
             mesh,
-            &light.sample_next_event(&context, Part::Whole, receiver, u)?.at,
+            &light
+                .sample_next_event(&context, Part::Whole, receiver, u)?
+                .at,
         ))
     });
     let pdf = |p| {

@@ -70,7 +70,9 @@ fn points_for_a_receiver_have_the_density_that_the_light_says() {
         for (sample, i) in samples(name, 2000).zip(0..) {
             let receiver = receivers()[i % 3];
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
-            let drawn = light.sample_next_event(&context, Part::Whole, receiver, u).unwrap();
+            let drawn = light
+                .sample_next_event(&context, Part::Whole, receiver, u)
+                .unwrap();
             assert!(drawn.pdf > 0.0 && drawn.pdf.is_finite(), "{name}");
             let pdf = light.pdf_next_event(&context, Part::Whole, receiver, &drawn.at);
             check_close(drawn.pdf, pdf, 1e-3, name);

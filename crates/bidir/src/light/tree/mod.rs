@@ -131,7 +131,10 @@ impl LightTree {
         let Built { nodes, paths } = if power_part < 1.0 {
             build(&mut items, paths)
         } else {
-            Built { nodes: Vec::new(), paths }
+            Built {
+                nodes: Vec::new(),
+                paths,
+            }
         };
         Self {
             emitters,
