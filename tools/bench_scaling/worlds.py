@@ -1,7 +1,8 @@
-"""Scenes of any size: a closed box with a terrain, instances of terrains, or many lamps.
+"""Scenes of any size: a closed box with a terrain, instances of terrains, or many lamps, and a hall
+with lamps all over.
 
-All are the same room to look at, so that paths are about as long whatever the number of things:
-only the work of finding, choosing and keeping them grows.
+Each is the same to look at, so that paths are about as long whatever the number of things: only the
+work of finding, choosing and keeping them grows.
 """
 
 import math

@@ -7,8 +7,8 @@
 //! 1/π times the measure that [Conty18] takes, of a cone evenly filled with flat emitters' normals.
 
 use super::bounds::EmitterBounds;
-use super::node::{Child, Node, WIDTH, radius2};
-use crate::math::Vec3;
+use super::node::{Child, Node, WIDTH, is_narrow, radius2};
+use crate::math::{PI, Vec3};
 use accel::Aabb;
 
 /// Places to divide at along each axis, and one.
@@ -23,17 +23,24 @@ pub(super) struct Item {
     pub(super) around: EmitterBounds,
 }
 
-/// Nodes, the root first, and the path to each emitter: two bits for each level, the root's lowest.
+/// A tree, the root first.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Built {
     pub(super) nodes: Vec<Node>,
+    /// The emitters below each child of a node, as a range of `order`, which begins here and ends
+    /// where the next begins.
+    pub(super) begins: Vec<[u32; WIDTH + 1]>,
+    /// The emitters, those below a node beside each other, with their intensities.
+    pub(super) order: Vec<(u32, f32)>,
+    /// The path to each emitter: two bits for each level, the root's lowest.
     pub(super) paths: Vec<u64>,
 }
 
 /// The tree over `items`, of which there is one at least; `paths` has room for every emitter.
 pub(super) fn build(items: &mut [Item], paths: Vec<u64>) -> Built {
     let mut built = Built {
-        nodes: Vec::new(),
         paths,
+        ..Built::default()
     };
     built.node(items, 0, 0);
     built
@@ -44,13 +51,17 @@ impl Built {
     fn node(&mut self, items: &mut [Item], path: u64, level: u32) -> (u32, EmitterBounds) {
         let index = self.nodes.len();
         self.nodes.push(Node::EMPTY);
+        self.begins.push([0; WIDTH + 1]);
         let mut around: Option<EmitterBounds> = None;
         for (i, part) in quarters(items, level).into_iter().enumerate() {
+            self.begins[index][i] = self.order.len() as u32;
+            let is_uniform = are_even(part);
             let path = path | (i as u64) << (2 * level);
             let (child, of_child) = match part {
                 [] => continue,
                 [item] => {
                     self.paths[item.emitter as usize] = path;
+                    self.order.push((item.emitter, item.around.intensity));
                     (Child::Leaf(item.emitter), item.around)
                 }
                 items => {
@@ -59,11 +70,20 @@ impl Built {
                 }
             };
             self.nodes[index].set(i, child, &of_child);
+            if is_uniform || is_narrow(&of_child.cone) {
+                self.nodes[index].set_uniform(i);
+            }
             around = Some(around.map_or(of_child, |around| around.union(&of_child)));
         }
+        self.begins[index][WIDTH] = self.order.len() as u32;
         let around = around.unwrap_or_else(|| unreachable!("a node has an emitter"));
         (index as u32, around)
     }
+}
+
+/// True where all shine in all directions.
+fn are_even(items: &[Item]) -> bool {
+    items.iter().all(|item| item.around.cone.spread >= PI)
 }
 
 /// The emitters of the children of a node: those of a half beside each other.

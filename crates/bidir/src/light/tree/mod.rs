@@ -23,6 +23,9 @@
 //! is 1/16, which costs as much of the tree's; with them it is 1/2, so that neither the sky nor the
 //! lamps can cost more than twice what they must.
 //!
+//! Below a child that is at least eight radii away, and whose emitters send their light in much the
+//! same directions, or evenly, the choice is by intensity alone: more nodes would tell little more.
+//!
 //! One number is used at every level, so that its stratification is kept. What a receiver is given
 //! for an emitter can be found again: each knows its path from the root, as bits.
 
@@ -35,7 +38,8 @@ pub(super) use bounds::{Cone, EmitterBounds};
 use super::{Light, LightContext, Part};
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, Vec3};
 use build::{Built, Item, build};
-use node::{Child, Node};
+use node::Child;
+use std::ops::Range;
 
 /// The part of choices by power where there is light at infinity.
 const POWER_BESIDE_INFINITY: f32 = 0.5;
@@ -92,9 +96,11 @@ pub struct LightTree {
     by_power: Distribution1d,
     /// a. Range: `[0, 1]`.
     power_part: f32,
-    nodes: Vec<Node>,
-    /// The path from the root to each emitter.
-    paths: Vec<u64>,
+    tree: Built,
+    /// Sums of the intensities of the first emitters in the tree's order, from 0.
+    sums: Vec<f64>,
+    /// The place of each emitter in that order.
+    places: Vec<u32>,
 }
 
 impl LightTree {
@@ -128,21 +134,30 @@ impl LightTree {
         };
         let by_power = Distribution1d::new(powers);
         let paths = vec![NOWHERE; emitters.len()];
-        let Built { nodes, paths } = if power_part < 1.0 {
+        let tree = if power_part < 1.0 {
             build(&mut items, paths)
         } else {
             Built {
-                nodes: Vec::new(),
                 paths,
+                ..Built::default()
             }
         };
+        let mut places = vec![0; emitters.len()];
+        let mut sums = vec![0.0];
+        let mut sum = 0.0;
+        for (place, &(emitter, intensity)) in (0..).zip(&tree.order) {
+            places[emitter as usize] = place;
+            sum += f64::from(intensity);
+            sums.push(sum);
+        }
         Self {
             emitters,
             first,
             by_power,
             power_part,
-            nodes,
-            paths,
+            tree,
+            sums,
+            places,
         }
     }
 
@@ -193,10 +208,16 @@ impl LightTree {
     fn descend(&self, receiver: &Receiver, u: f32) -> (usize, f32) {
         let (mut u, mut prob, mut node) = (u, 1.0, 0);
         loop {
-            let shares = self.nodes[node].shares(receiver);
-            let (i, share) = choose(&mut u, shares);
+            let shares = self.tree.nodes[node].shares(receiver);
+            let (i, share) = choose(&mut u, shares.of);
             prob *= share;
-            match self.nodes[node].children[i] {
+            match self.tree.nodes[node].children[i] {
+                Child::Inner(_) if shares.are_alike(i) => {
+                    let range = self.below(node, i);
+                    let place = self.choose_alike(&range, u);
+                    let (emitter, _) = self.tree.order[place];
+                    return (emitter as usize, prob * self.prob_alike(&range, place));
+                }
                 Child::Inner(next) => node = next as usize,
                 Child::Leaf(emitter) => return (emitter as usize, prob),
                 Child::None => unreachable!("what is not there has no share"),
@@ -207,7 +228,7 @@ impl LightTree {
     /// The probability that [`descend`](Self::descend) draws `emitter` with: the same products.
     #[inline]
     fn prob_in_tree(&self, receiver: &Receiver, emitter: usize) -> f32 {
-        let mut path = self.paths[emitter];
+        let mut path = self.tree.paths[emitter];
         if path == NOWHERE {
             return 0.0;
         }
@@ -215,12 +236,40 @@ impl LightTree {
         loop {
             let i = (path & 3) as usize;
             path >>= 2;
-            prob *= self.nodes[node].shares(receiver)[i];
-            let Child::Inner(next) = self.nodes[node].children[i] else {
+            let shares = self.tree.nodes[node].shares(receiver);
+            prob *= shares.of[i];
+            let Child::Inner(next) = self.tree.nodes[node].children[i] else {
                 return prob;
             };
+            if shares.are_alike(i) {
+                let place = self.places[emitter] as usize;
+                return prob * self.prob_alike(&self.below(node, i), place);
+            }
             node = next as usize;
         }
+    }
+
+    /// The places of the emitters below child number `i` of a node.
+    #[inline]
+    fn below(&self, node: usize, i: usize) -> Range<usize> {
+        let begins = &self.tree.begins[node];
+        begins[i] as usize..begins[i + 1] as usize
+    }
+
+    /// Draws one of the places of a range by intensity.
+    #[inline]
+    fn choose_alike(&self, range: &Range<usize>, u: f32) -> usize {
+        let (from, to) = (self.sums[range.start], self.sums[range.end]);
+        let target = from + f64::from(u) * (to - from);
+        let ends = &self.sums[range.start + 1..range.end];
+        range.start + ends.partition_point(|&end| end <= target)
+    }
+
+    /// The probability of [`choose_alike`](Self::choose_alike).
+    #[inline]
+    fn prob_alike(&self, range: &Range<usize>, place: usize) -> f32 {
+        let width = |from: usize, to: usize| self.sums[to] - self.sums[from];
+        (width(place, place + 1) / width(range.start, range.end)) as f32
     }
 }
 

@@ -1,7 +1,7 @@
 //! I = Φ max(cosθ' cosθ_r', ε) / d², about the irradiance (W/m², luminance) of a receiver by all
 //! emitters of a child, for the four children of a node at once.
 
-use super::{EmitterBounds, Facing, Receiver};
+use super::{Cone, EmitterBounds, Facing, Receiver};
 use crate::math::Vec3;
 use accel::Aabb;
 use glam::Vec4;
@@ -26,6 +26,14 @@ pub(super) enum Child {
     Inner(u32),
 }
 
+/// From how many radii away emitters are alike: their distances differ by an eighth at the most.
+const FAR: f32 = 8.0;
+/// The most that directions of emitters differ which are alike. Unit: rad.
+const NARROW: f32 = 0.35;
+/// The narrowest emission of emitters that are alike: of smaller cones a receiver may be in some.
+/// Unit: rad.
+const OPEN: f32 = 1.0;
+
 /// Four children, each with a ball around its emitters and a cone around their normals.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
@@ -40,7 +48,26 @@ pub(super) struct Node {
     mirrored: Vec4,
     /// Φ; 0 where there is no child. Unit: W/sr, luminance.
     intensity: Vec4,
+    /// The square of the distance beyond which emitters below are alike. Unit: m².
+    far2: Vec4,
     pub(super) children: [Child; WIDTH],
+}
+
+/// What the children are to a receiver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    /// I / Σ I of each.
+    pub(super) of: [f32; WIDTH],
+    /// A bit for each whose emitters are alike.
+    alike: u32,
+}
+
+impl Shares {
+    /// True where the emitters of child number `i` differ in intensity alone.
+    #[inline]
+    pub(super) fn are_alike(&self, i: usize) -> bool {
+        self.alike >> i & 1 == 1
+    }
 }
 
 /// Cosine and sine of angles from 0 to π.
@@ -83,6 +110,7 @@ impl Node {
         cos_opening: Vec4::ZERO,
         mirrored: Vec4::ZERO,
         intensity: Vec4::ZERO,
+        far2: Vec4::INFINITY,
         children: [Child::None; WIDTH],
     };
 
@@ -103,25 +131,33 @@ impl Node {
         self.children[i] = child;
     }
 
-    /// I / Σ I of each child.
+    /// Says that child number `i` is of emitters that shine evenly, or in much the same directions.
+    pub(super) fn set_uniform(&mut self, i: usize) {
+        self.far2[i] = FAR * FAR * self.radius2[i];
+    }
+
+    /// What the children are to `receiver`.
     #[inline]
-    pub(super) fn shares(&self, receiver: &Receiver) -> [f32; WIDTH] {
-        let importances = self.importances(receiver);
+    pub(super) fn shares(&self, receiver: &Receiver) -> Shares {
+        let across = offset(receiver.point, &self.centre);
+        let importances = self.importances(receiver, &across);
         let [a, b, c, d] = importances.to_array();
-        (importances / ((a + b) + (c + d))).to_array()
+        Shares {
+            of: (importances / ((a + b) + (c + d))).to_array(),
+            alike: dot(&across, &across).cmpgt(self.far2).bitmask(),
+        }
     }
 
     /// I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
     #[inline]
-    fn importances(&self, receiver: &Receiver) -> Vec4 {
-        let across = offset(receiver.point, &self.centre);
-        let distance2 = dot(&across, &across);
+    fn importances(&self, receiver: &Receiver, across: &[Vec4; 3]) -> Vec4 {
+        let distance2 = dot(across, across);
         let is_outside = distance2.cmpgt(self.radius2);
         // Seen from outside, the ball is in a cone around its centre.
         let inverse = Vec4::ONE / distance2.max(Vec4::splat(f32::MIN_POSITIVE));
         let seen = Angle::of_cos((Vec4::ONE - self.radius2 * inverse).max(Vec4::ZERO).sqrt());
         let inverse_distance = inverse.sqrt();
-        let cos = dot(&across, &self.axis) * inverse_distance;
+        let cos = dot(across, &self.axis) * inverse_distance;
         let leaves = self.emission(cos, &seen);
         let n = receiver.facing.normal();
         let cos = (across[0] * n.x + across[1] * n.y + across[2] * n.z) * -inverse_distance;
@@ -157,6 +193,11 @@ fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
     Vec4::select(least.cmpgt(Vec4::ZERO), lit, Vec4::ZERO)
 }
 
+/// True where `cone` is so narrow that its emitters' directions hardly matter from far away.
+pub(super) fn is_narrow(cone: &Cone) -> bool {
+    cone.spread <= NARROW && cone.opening >= OPEN
+}
+
 /// The square of the radius of a ball around the box. Unit: m².
 pub(super) fn radius2(bounds: &Aabb) -> f32 {
     bounds.max.distance_squared(bounds.center())
@@ -175,7 +216,6 @@ fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::tree::Cone;
     use crate::math::{Vec2, warp};
     use crate::testing::check_property;
     use proptest::prelude::*;
@@ -248,7 +288,8 @@ mod tests {
             node.set(2, Child::Leaf(0), &around);
             let distance2 = receiver.point.distance_squared(around.bounds.center());
             let clamped = distance2.max(radius2(&around.bounds));
-            let bound = node.importances(&receiver)[2] * clamped / around.intensity;
+            let across = offset(receiver.point, &node.centre);
+            let bound = node.importances(&receiver, &across)[2] * clamped / around.intensity;
             for emitter in &emitters {
                 prop_assert!(
                     emitter.cosines(&receiver) <= bound * 1.001 + 1e-4,
@@ -274,7 +315,7 @@ mod tests {
             }
             for point in [Vec3::ZERO, Vec3::X * scale, -Vec3::X * scale] {
                 let facing = Facing::Front(-Vec3::X);
-                let [a, b, c, d] = node.shares(&Receiver { point, facing });
+                let [a, b, c, d] = node.shares(&Receiver { point, facing }).of;
                 assert!(a + b > 0.999 && a + b < 1.001, "{a} and {b}");
                 assert!(a >= 0.0 && b >= 0.0 && c + d <= 0.0);
             }
