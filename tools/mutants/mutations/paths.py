@@ -128,7 +128,7 @@ PATHS = [
     ),
     (
         "the tree of lights takes the share of another child",
-        "crates/bidir/src/light/tree/mod.rs",
+        "crates/bidir/src/light/tree/hierarchy.rs",
         "prob *= shares.of[i];",
         "prob *= shares.of[i ^ 1];",
         unit("light::tests::tree"),

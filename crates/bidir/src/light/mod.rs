@@ -283,11 +283,11 @@ impl Light {
         })
     }
 
-    /// The part of [`power`](Self::power) that a primitive has. Unit: W, luminance.
-    fn primitive_power(&self, context: &LightContext<'_>, primitive: u32) -> f32 {
-        match self {
-            Self::Area(light) => light.primitive_power(context, primitive),
-            Self::Point(_) | Self::Spot(_) | Self::Distant(_) | Self::Infinite(_) => 0.0,
+    /// What of [`power`](Self::power) a part has. Unit: W, luminance.
+    fn part_power(&self, context: &LightContext<'_>, part: Part) -> f32 {
+        match (self, part) {
+            (Self::Area(light), Part::Primitive(i)) => light.primitive_power(context, i),
+            _ => self.power(context),
         }
     }
 

@@ -174,7 +174,7 @@ pub(crate) fn octahedron(centre: Vec3, radius: f32) -> Mesh {
     let triangle = |signs: u32| {
         let [x, y, z] = [0, 1, 2].map(|axis| corner(axis, signs >> axis & 1));
         // An odd number of mirrors turns the winding.
-        if signs.count_ones() % 2 == 0 {
+        if signs.count_ones().is_multiple_of(2) {
             [x, y, z]
         } else {
             [x, z, y]

@@ -31,23 +31,20 @@
 
 mod bounds;
 mod build;
+mod hierarchy;
 mod node;
 
 pub(super) use bounds::{Cone, EmitterBounds};
 
 use super::{Light, LightContext, Part};
 use crate::math::{Distribution1d, ONE_MINUS_EPSILON, Vec3};
-use build::{Built, Item, build};
-use node::Child;
-use std::ops::Range;
+use build::Item;
+use hierarchy::Hierarchy;
 
 /// The part of choices by power where there is light at infinity.
 const POWER_BESIDE_INFINITY: f32 = 0.5;
 /// The same elsewhere.
 const POWER: f32 = 1.0 / 16.0;
-
-/// The path of an emitter that is not in the tree: no path ends with so many bits.
-const NOWHERE: u64 = u64::MAX;
 
 /// Where the light that a surface scatters comes from.
 #[derive(Clone, Copy, Debug)]
@@ -96,11 +93,17 @@ pub struct LightTree {
     by_power: Distribution1d,
     /// a. Range: `[0, 1]`.
     power_part: f32,
-    tree: Built,
-    /// Sums of the intensities of the first emitters in the tree's order, from 0.
-    sums: Vec<f64>,
-    /// The place of each emitter in that order.
-    places: Vec<u32>,
+    tree: Hierarchy,
+}
+
+/// a, where so many emitters are in the tree.
+fn power_part(in_tree: usize, beside_infinity: bool) -> f32 {
+    match (in_tree, beside_infinity) {
+        // There is nothing to choose among.
+        (0, _) | (1, false) => 1.0,
+        (_, true) => POWER_BESIDE_INFINITY,
+        (_, false) => POWER,
+    }
 }
 
 impl LightTree {
@@ -113,51 +116,21 @@ impl LightTree {
             emitters.extend(light.parts(context).map(|part| (i, part)));
         }
         let light = |i: u32| &lights[i as usize];
-        let powers = emitters.iter().map(|&(i, part)| match part {
-            Part::Whole => light(i).power(context),
-            Part::Primitive(primitive) => light(i).primitive_power(context, primitive),
+        let powers = emitters
+            .iter()
+            .map(|&(i, part)| light(i).part_power(context, part));
+        let finite = (0..).zip(&emitters).filter_map(|(emitter, &(i, part))| {
+            let around = light(i).bounds(context, part)?;
+            Some(Item { emitter, around })
         });
-        let mut items: Vec<Item> = (0..)
-            .zip(&emitters)
-            .filter_map(|(emitter, &(i, part))| {
-                let around = light(i).bounds(context, part)?;
-                let is_lit = around.intensity > 0.0;
-                is_lit.then_some(Item { emitter, around })
-            })
-            .collect();
+        let mut items: Vec<Item> = finite.filter(|item| item.around.intensity > 0.0).collect();
         let shines = |light: &Light| light.is_infinite() && light.power(context) > 0.0;
-        let power_part = match (items.len(), lights.iter().any(shines)) {
-            // There is nothing to choose among.
-            (0, _) | (1, false) => 1.0,
-            (_, true) => POWER_BESIDE_INFINITY,
-            (_, false) => POWER,
-        };
-        let by_power = Distribution1d::new(powers);
-        let paths = vec![NOWHERE; emitters.len()];
-        let tree = if power_part < 1.0 {
-            build(&mut items, paths)
-        } else {
-            Built {
-                paths,
-                ..Built::default()
-            }
-        };
-        let mut places = vec![0; emitters.len()];
-        let mut sums = vec![0.0];
-        let mut sum = 0.0;
-        for (place, &(emitter, intensity)) in (0..).zip(&tree.order) {
-            places[emitter as usize] = place;
-            sum += f64::from(intensity);
-            sums.push(sum);
-        }
         Self {
+            power_part: power_part(items.len(), lights.iter().any(shines)),
+            by_power: Distribution1d::new(powers),
+            tree: Hierarchy::new(&mut items, emitters.len()),
             emitters,
             first,
-            by_power,
-            power_part,
-            tree,
-            sums,
-            places,
         }
     }
 
@@ -172,9 +145,10 @@ impl LightTree {
         let (u, a) = (u(), self.power_part);
         let (emitter, in_tree) = if u < a {
             let (emitter, ..) = self.by_power.sample((u / a).min(ONE_MINUS_EPSILON));
-            (emitter, self.prob_in_tree(receiver, emitter))
+            (emitter, self.tree.prob(receiver, emitter))
         } else {
-            self.descend(receiver, ((u - a) / (1.0 - a)).min(ONE_MINUS_EPSILON))
+            self.tree
+                .sample(receiver, ((u - a) / (1.0 - a)).min(ONE_MINUS_EPSILON))
         };
         Some(self.chosen(emitter, in_tree))
     }
@@ -192,7 +166,7 @@ impl LightTree {
             Part::Whole => first,
             Part::Primitive(_) => first + primitive as usize,
         };
-        self.chosen(emitter, self.prob_in_tree(receiver, emitter))
+        self.chosen(emitter, self.tree.prob(receiver, emitter))
     }
 
     /// The emitter with its probability, of which `in_tree` is the tree's.
@@ -202,90 +176,4 @@ impl LightTree {
         let prob = a * self.by_power.prob(emitter) + (1.0 - a) * in_tree;
         ChosenEmitter { light, part, prob }
     }
-
-    /// Draws an emitter of the tree with its probability.
-    #[inline]
-    fn descend(&self, receiver: &Receiver, u: f32) -> (usize, f32) {
-        let (mut u, mut prob, mut node) = (u, 1.0, 0);
-        loop {
-            let shares = self.tree.nodes[node].shares(receiver);
-            let (i, share) = choose(&mut u, shares.of);
-            prob *= share;
-            match self.tree.nodes[node].children[i] {
-                Child::Inner(_) if shares.are_alike(i) => {
-                    let range = self.below(node, i);
-                    let place = self.choose_alike(&range, u);
-                    let (emitter, _) = self.tree.order[place];
-                    return (emitter as usize, prob * self.prob_alike(&range, place));
-                }
-                Child::Inner(next) => node = next as usize,
-                Child::Leaf(emitter) => return (emitter as usize, prob),
-                Child::None => unreachable!("what is not there has no share"),
-            }
-        }
-    }
-
-    /// The probability that [`descend`](Self::descend) draws `emitter` with: the same products.
-    #[inline]
-    fn prob_in_tree(&self, receiver: &Receiver, emitter: usize) -> f32 {
-        let mut path = self.tree.paths[emitter];
-        if path == NOWHERE {
-            return 0.0;
-        }
-        let (mut prob, mut node) = (1.0, 0);
-        loop {
-            let i = (path & 3) as usize;
-            path >>= 2;
-            let shares = self.tree.nodes[node].shares(receiver);
-            prob *= shares.of[i];
-            let Child::Inner(next) = self.tree.nodes[node].children[i] else {
-                return prob;
-            };
-            if shares.are_alike(i) {
-                let place = self.places[emitter] as usize;
-                return prob * self.prob_alike(&self.below(node, i), place);
-            }
-            node = next as usize;
-        }
-    }
-
-    /// The places of the emitters below child number `i` of a node.
-    #[inline]
-    fn below(&self, node: usize, i: usize) -> Range<usize> {
-        let begins = &self.tree.begins[node];
-        begins[i] as usize..begins[i + 1] as usize
-    }
-
-    /// Draws one of the places of a range by intensity.
-    #[inline]
-    fn choose_alike(&self, range: &Range<usize>, u: f32) -> usize {
-        let (from, to) = (self.sums[range.start], self.sums[range.end]);
-        let target = from + f64::from(u) * (to - from);
-        let ends = &self.sums[range.start + 1..range.end];
-        range.start + ends.partition_point(|&end| end <= target)
-    }
-
-    /// The probability of [`choose_alike`](Self::choose_alike).
-    #[inline]
-    fn prob_alike(&self, range: &Range<usize>, place: usize) -> f32 {
-        let width = |from: usize, to: usize| self.sums[to] - self.sums[from];
-        (width(place, place + 1) / width(range.start, range.end)) as f32
-    }
-}
-
-/// Chooses one of the shares, which sum to 1, and stretches what is left of `u` to `[0, 1)`.
-#[inline]
-fn choose(u: &mut f32, shares: [f32; node::WIDTH]) -> (usize, f32) {
-    let mut before = 0.0;
-    let mut chosen = (0, 0.0, 0.0);
-    for (i, &share) in shares.iter().enumerate() {
-        // The last that begins at or before u; rounding may leave a little after the last one.
-        if share > 0.0 && (before <= *u || chosen.1 <= 0.0) {
-            chosen = (i, share, before);
-        }
-        before += share;
-    }
-    let (i, share, from) = chosen;
-    *u = ((*u - from) / share).clamp(0.0, ONE_MINUS_EPSILON);
-    (i, share)
 }
