@@ -200,11 +200,9 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
         LightChoiceKind::Power => (Part::Whole, by_power),
         LightChoiceKind::Tree => {
             // Light leaves on the side that it goes on at.
-            let receiver = x1.receiver(path[2].point - x1.point);
-            let chosen = context
-                .scene
-                .light_tree()
-                .find(&receiver, index, at.primitive);
+            let receiver = || x1.receiver(path[2].point - x1.point);
+            let tree = context.scene.light_tree();
+            let chosen = tree.find(receiver, index, at.primitive);
             (chosen.part, chosen.prob)
         }
     };

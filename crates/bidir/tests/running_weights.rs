@@ -108,8 +108,7 @@ impl Comparison {
     fn compare_next_events(&mut self, context: &PathContext<'_>, camera: &[Vertex]) {
         for t in 2..=camera.len() {
             let (u_light, u) = (0.17 * t as f32 % 1.0, Vec2::new(0.4, 0.11 * t as f32 % 1.0));
-            let receiver = camera[t - 1].receiver(camera[t - 1].wo);
-            let drawn = sample_next_event(context, &receiver, || u_light, u);
+            let drawn = sample_next_event(context, &camera[t - 1], || u_light, u);
             let Some((light, drawn)) = drawn else {
                 continue;
             };

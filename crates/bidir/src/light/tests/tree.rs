@@ -58,7 +58,7 @@ impl World {
         let found = self
             .primitives()
             .into_iter()
-            .map(|(light, primitive)| tree.find(receiver, light, primitive));
+            .map(|(light, primitive)| tree.find(|| *receiver, light, primitive));
         let mut emitters: Vec<ChosenEmitter> = found.collect();
         emitters.dedup();
         emitters
@@ -129,7 +129,7 @@ fn probabilities_sum_to_one_and_are_those_of_the_draws() {
             let mut counts = vec![0; emitters.len()];
             for sample in samples(&case, 1 << 20) {
                 let u = sample.get_1d(Dimension::at(0, Purpose::NextEventLight));
-                let drawn = tree.sample(&receiver, || u).unwrap();
+                let drawn = tree.sample(|| receiver, || u).unwrap();
                 // The same number, so that both ends of a path agree.
                 let found = emitters.iter().position(|emitter| *emitter == drawn);
                 counts[found.unwrap_or_else(|| panic!("{case}: {drawn:?}"))] += 1;
@@ -186,12 +186,12 @@ fn points_of_parts_have_the_density_that_is_found_again() {
         for sample in samples(&format!("parts {k}"), 500) {
             let get = |purpose| Dimension::at(0, purpose);
             let u = sample.get_1d(get(Purpose::NextEventLight));
-            let drawn = tree.sample(&receiver, || u).unwrap();
+            let drawn = tree.sample(|| receiver, || u).unwrap();
             let light = &world.lights[drawn.light as usize];
             let u = sample.get_2d(get(Purpose::NextEventPosition));
             let point = light.sample_next_event(&context, drawn.part, receiver.point, u);
             let Some(point) = point else { continue };
-            let found = tree.find(&receiver, drawn.light, point.at.primitive);
+            let found = tree.find(|| receiver, drawn.light, point.at.primitive);
             assert_eq!(found, drawn);
             let pdf = light.pdf_next_event(&context, found.part, receiver.point, &point.at);
             check_close(point.pdf, pdf, 1e-3, "a point");
@@ -210,7 +210,7 @@ fn half_of_the_choices_know_of_the_sky() {
     for receiver in all_receivers() {
         for (i, light) in (0..).zip(&world.lights).filter(|(_, l)| l.is_infinite()) {
             let expected = 0.5 * power(light) / total;
-            check_close(tree.find(&receiver, i, 0).prob, expected, 1e-4, "a sky");
+            check_close(tree.find(|| receiver, i, 0).prob, expected, 1e-4, "a sky");
         }
     }
 }
@@ -221,11 +221,11 @@ fn one_emitter_takes_no_number() {
     let receiver = all_receivers()[0];
     let drawn = world
         .tree()
-        .sample(&receiver, || panic!("a number is asked for"));
-    assert_eq!(drawn, Some(world.tree().find(&receiver, 0, 0)));
+        .sample(|| receiver, || panic!("a number is asked for"));
+    assert_eq!(drawn, Some(world.tree().find(|| receiver, 0, 0)));
     assert!((drawn.unwrap().prob - 1.0).abs() <= 0.0);
     let dark = World::new(|_| false);
-    assert!(dark.tree().sample(&receiver, || 0.5).is_none());
+    assert!(dark.tree().sample(|| receiver, || 0.5).is_none());
 }
 
 /// Emitters that are near are preferred, as are those that face the receiver.
@@ -237,7 +237,7 @@ fn what_is_near_and_faces_the_receiver_is_preferred() {
         point: Vec3::new(8.0, 0.0, 0.5),
         facing: Facing::Front(-Vec3::X),
     };
-    let probs = (0..48).map(|i| world.tree().find(&outside, ring, i).prob);
+    let probs = (0..48).map(|i| world.tree().find(|| outside, ring, i).prob);
     let probs: Vec<f32> = probs.collect();
     assert!(probs[0] > 5.0 * probs[24], "{} and {}", probs[0], probs[24]);
     assert!(Vec2::new(probs[12], probs[36]).max_element() < probs[0]);

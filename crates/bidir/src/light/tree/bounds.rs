@@ -6,7 +6,7 @@ use accel::Aabb;
 use crate::math::{PI, Vec3};
 
 /// Directions of emission: within `opening` of some normal, which is itself within `spread` of the
-/// axis [Conty18, §4.1].
+/// axis \[Conty18\].
 #[derive(Clone, Copy, Debug)]
 pub(in crate::light) struct Cone {
     /// The unit axis.

@@ -1,10 +1,10 @@
 //! Building from the root: emitters are divided where Σ Φ r² m is least, over both sides, r² that of
 //! the ball around a side and m from 1 to 4 by how unlike its directions are: the surface-area
-//! orientation heuristic of [Conty18, §4.4] with the ball that the importance knows in place of the
+//! orientation heuristic of \[Conty18\] with the ball that the importance knows in place of the
 //! box, and without cones, which would have to be united for every place where one could divide.
 //!
 //! With c the length of the mean of the axes, weighted by Φ, m = 4 - 3 c³ is within 5 % of
-//! 1/π times the measure that [Conty18] takes, of a cone evenly filled with flat emitters' normals.
+//! 1/π times the measure that \[Conty18\] takes, of a cone evenly filled with flat emitters' normals.
 
 use super::bounds::EmitterBounds;
 use super::node::{Child, Node, WIDTH, is_narrow, radius2};
@@ -162,7 +162,7 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
         extent: extent[k],
         bins: items.len().min(BINS),
     });
-    // Thin slices are penalised [Conty18, §4.4].
+    // Thin slices are penalised [Conty18].
     let planes = axes.filter_map(|axis| {
         let (cost, bin) = best_bin(items, &axis)?;
         Some((cost * longest / axis.extent, Plane { axis, bin }))

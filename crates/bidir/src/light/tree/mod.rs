@@ -1,13 +1,13 @@
 //! P(emitter | receiver) = a P(power) + (1 - a) Π I_child / Σ I: a choice for next-event estimation
-//! that knows where its receiver is, by a tree over the emitters [Conty18] with four children to a
+//! that knows where its receiver is, by a tree over the emitters \[Conty18\] with four children to a
 //! node.
 //!
 //! An emitter is a light, or a triangle of a mesh that emits from more than two. From the root down,
 //! a child is chosen by its importance I, about the irradiance that it gives, Φ cosθ / d² for one
-//! emitter of intensity Φ. For a child that is a ball of radius r at distance d, with normals within
+//! emitter of intensity Φ [PBRT4, §12.6.3]. For a child that is a ball of radius r at distance d, with normals within
 //! θ_o of an axis and emission within θ_e of those, each factor takes its greatest value:
 //!
-//! - d² is that of the centre, and r² at the least: no point of the ball is a better guess;
+//! - d² is that of the centre, and r² at the least, so that what is within does not depend on where;
 //! - θ' = max(0, θ - θ_o - θ_u), with θ from the axis to the receiver, and sinθ_u = r/d the cone in
 //!   which the ball is seen: no normal is nearer to the receiver's direction. Beyond θ_e none emits;
 //! - θ_r' = max(0, θ_r - θ_u), from the receiver's shading normal to the centre, on the side that
@@ -134,15 +134,26 @@ impl LightTree {
         }
     }
 
-    /// Draws an emitter. None: there is no light. The number `u` is asked for where there is a choice.
+    /// Draws an emitter. None: there is no light. Where there is a choice, it is asked for whom, and for
+    /// the number `u`.
     #[inline]
-    pub fn sample(&self, receiver: &Receiver, u: impl FnOnce() -> f32) -> Option<ChosenEmitter> {
+    pub fn sample(
+        &self,
+        receiver: impl FnOnce() -> Receiver,
+        u: impl FnOnce() -> f32,
+    ) -> Option<ChosenEmitter> {
         if self.emitters.len() < 2 {
             let &(light, part) = self.emitters.first()?;
             let prob = 1.0;
             return Some(ChosenEmitter { light, part, prob });
         }
-        let (u, a) = (u(), self.power_part);
+        Some(self.sample_among(&receiver(), u()))
+    }
+
+    /// The same where there are several: apart, as scenes with one lamp shall not pay for it.
+    #[inline(never)]
+    fn sample_among(&self, receiver: &Receiver, u: f32) -> ChosenEmitter {
+        let a = self.power_part;
         let (emitter, in_tree) = if u < a {
             let (emitter, ..) = self.by_power.sample((u / a).min(ONE_MINUS_EPSILON));
             (emitter, self.tree.prob(receiver, emitter))
@@ -150,18 +161,28 @@ impl LightTree {
             self.tree
                 .sample(receiver, ((u - a) / (1.0 - a)).min(ONE_MINUS_EPSILON))
         };
-        Some(self.chosen(emitter, in_tree))
+        self.chosen(emitter, in_tree)
     }
 
     /// The emitter that primitive number `primitive` of a light is, or is a part of, with the
     /// probability that [`sample`](Self::sample) draws it with.
     #[inline]
-    pub fn find(&self, receiver: &Receiver, light: u32, primitive: u32) -> ChosenEmitter {
-        let first = self.first[light as usize] as usize;
+    pub fn find(
+        &self,
+        receiver: impl FnOnce() -> Receiver,
+        light: u32,
+        primitive: u32,
+    ) -> ChosenEmitter {
         if self.emitters.len() < 2 {
             let (part, prob) = (Part::Whole, 1.0);
             return ChosenEmitter { light, part, prob };
         }
+        self.find_among(&receiver(), light, primitive)
+    }
+
+    #[inline(never)]
+    fn find_among(&self, receiver: &Receiver, light: u32, primitive: u32) -> ChosenEmitter {
+        let first = self.first[light as usize] as usize;
         let emitter = match self.emitters[first].1 {
             Part::Whole => first,
             Part::Primitive(_) => first + primitive as usize,
