@@ -1,6 +1,6 @@
 """How speed and memory grow with threads, triangles, instances, pixels, lights and bounces.
 
-    python3 tools/bench_scaling                 all tables, in Markdown; some four minutes
+    python3 tools/bench_scaling                 all tables, in Markdown; some five minutes
     python3 tools/bench_scaling --only lights   one of them
     python3 tools/bench_scaling --self-test     tests of this tool, which need no program
 

@@ -109,6 +109,15 @@ def lamps(worlds, scenes):
                  ["load (s)", "peak of memory (MB)"], lambda _, at: [_load(at), _peak(at)])
 
 
+def hall(worlds, scenes):
+    """More and more lamps, each of which lights what is near."""
+    del scenes
+    built = [worlds.hall(10 ** i) for i in range(6)]
+    cases = [case for scene, count in built for case in _cases(count, scene, *ONE_THREAD)]
+    return Sweep("Lights all over a hall, of the same power together", "lights", cases,
+                 ["load (s)", "peak of memory (MB)"], lambda _, at: [_load(at), _peak(at)])
+
+
 def length(worlds, scenes):
     """Longer and longer paths; none ends by chance."""
     del scenes
@@ -126,7 +135,8 @@ def length(worlds, scenes):
 
 
 SWEEPS = {"threads": threads, "triangles": triangles, "instances": instances,
-          "resolution": resolution, "lights": lamps, "length": length}
+          "resolution": resolution, "lights": lamps, "hall": hall,
+          "length": length}
 
 
 def _load(at):

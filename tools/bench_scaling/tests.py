@@ -39,8 +39,14 @@ class Worlds(unittest.TestCase):
             self.assertEqual(968 * file.read().count("ObjectInstance"), count)
 
     def test_lamps_have_the_same_area_and_face_down(self):
+        self.check_lamps(self.worlds.lamps, 0.5)
+
+    def test_lamps_of_the_hall_too(self):
+        self.check_lamps(self.worlds.hall, 72.0)
+
+    def check_lamps(self, make, whole):
         for asked in (1, 10, 100, 1000):
-            _, count = self.worlds.lamps(asked)
+            _, count = make(asked)
             across = round(count ** 0.5)
             points, faces = self.mesh("lamps-%d.ply" % across)
             self.assertEqual(len(faces), count)
@@ -51,7 +57,7 @@ class Worlds(unittest.TestCase):
                 normal = u[2] * v[0] - u[0] * v[2]
                 self.assertLess(normal, 0)
                 area -= normal / 2
-            self.assertAlmostEqual(area, 0.5, places=4)
+            self.assertAlmostEqual(area / whole, 1.0, places=4)
 
 
 class Tables(unittest.TestCase):

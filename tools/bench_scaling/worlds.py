@@ -1,15 +1,18 @@
-"""Scenes of any size: a closed box with a terrain, instances of terrains, or many lamps.
+"""Scenes of any size: a closed box with a terrain, instances of terrains, or many lamps, and a hall
+with lamps all over.
 
-All are the same room to look at, so that paths are about as long whatever the number of things:
-only the work of finding, choosing and keeping them grows.
+Each is the same to look at, so that paths are about as long whatever the number of things: only the
+work of finding, choosing and keeping them grows.
 """
 
 import math
 import os
 import struct
+from typing import NamedTuple
 
 FILM = (80, 60)
-BOX = [(x, y, z) for x in (-1.5, 1.5) for y in (0.0, 2.0) for z in (-1.5, 2.5)]
+BOX = ((-1.5, 1.5), (0.0, 2.0), (-1.5, 2.5))
+HALL = ((-20.0, 20.0), (0.0, 3.0), (-37.0, 3.0))
 FACES = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
 HEAD = """\
 LookAt 0 1.1 2.3  0 0.5 0  0 1 0
@@ -21,6 +24,16 @@ Integrator "bdpt" "integer maxdepth" 6
 WorldBegin
 Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
 """
+
+
+class Ceiling(NamedTuple):
+    """Where lamps are: over a square around (0, height, centre), `part` of each one's own square
+    wide."""
+
+    side: float = 1.0
+    part: float = 1.0
+    height: float = 1.98
+    centre: float = 0.0
 
 
 class Folder:
@@ -41,10 +54,10 @@ class Folder:
             file.writelines(struct.pack("<B3i", 3, *triangle) for triangle in triangles[1])
         return 'Shape "plymesh" "string filename" "%s"\n' % name
 
-    def _scene(self, name, body):
+    def _scene(self, name, body, box=BOX):
         path = os.path.join(self.path, name + ".pbrt")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(HEAD % FILM + _walls() + body)
+            file.write(HEAD % FILM + _walls(box) + body)
         return path
 
     def triangles(self, count):
@@ -70,13 +83,23 @@ class Folder:
         across = max(1, round(math.sqrt(count)))
         return self._scene("lamps-%d" % count, self._lamps(across)), across * across
 
-    def _lamps(self, across):
+    def hall(self, count):
+        """The same all over a hall of 40 m, with a terrain on its floor: (scene, lamps)."""
+        across = max(1, round(math.sqrt(count)))
+        body = ('AttributeBegin\nTranslate 0 0 -17\nScale 20 2 20\n%sAttributeEnd\n'
+                % self._mesh("terrain.ply", *_terrain(60)))
+        body += self._lamps(across, Ceiling(side=40.0, part=0.3, height=2.98, centre=-17.0))
+        return self._scene("hall-%d" % count, body, HALL), across * across
+
+    def _lamps(self, across, ceiling=None):
         """A square of lamps under the ceiling that face down."""
-        # Of every square half is a lamp, so that their area does not depend on their number.
-        width = 1.0 / across
+        side, part, height, centre = ceiling or Ceiling()
+        # A lamp is half a square, so that their area does not depend on their number.
+        spacing = side / across
         count = across * across
-        points = ((x, 1.98, z) for i in range(count)
-                  for x, z in _corners(i // across * width - 0.5, i % across * width - 0.5, width))
+        points = ((x, height, z) for i in range(count)
+                  for x, z in _corners(i // across * spacing - side / 2,
+                                       i % across * spacing - side / 2 + centre, part * spacing))
         triangles = ((3 * i, 3 * i + 1, 3 * i + 2) for i in range(count))
         mesh = self._mesh("lamps-%d.ply" % across, (3 * count, points), (count, triangles))
         return ('AttributeBegin\nAreaLightSource "diffuse" "rgb L" [8 8 8]\n%sAttributeEnd\n'
@@ -87,8 +110,9 @@ def _corners(x, z, width):
     return (x, z), (x + width, z), (x, z + width)
 
 
-def _walls():
-    points = " ".join("%g %g %g" % point for point in BOX)
+def _walls(box):
+    corners = [(x, y, z) for x in box[0] for y in box[1] for z in box[2]]
+    points = " ".join("%g %g %g" % point for point in corners)
     indices = " ".join("%d %d %d %d %d %d" % (a, b, c, a, c, d) for a, b, c, d in FACES)
     return ('Shape "trianglemesh" "point3 P" [%s] "integer indices" [%s]\n' % (points, indices))
 

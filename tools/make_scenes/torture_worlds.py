@@ -180,6 +180,52 @@ def leaves(project):
     out.finish()
 
 
+def lamps(project):
+    out = start(project, "lamps", [
+        "Many lamps of every kind.",
+        "Small ones in rows, some of which shine to both sides, a mesh of many triangles, pictures, a",
+        "spot and a point, the sun and the sky; each is near to some of what it lights."],
+        ((0, 1.3, -2.6), (0, 0.45, 0.2), 50, ""))
+    out.line('LightSource "infinite" "rgb L" [0.03 0.04 0.06]')
+    out.line('LightSource "distant" "rgb L" [0.2 0.18 0.15]')
+    out.line('  "point3 from" [2 3 -1] "point3 to" [0 0 0]')
+    out.line('LightSource "point" "rgb I" [0.05 0.02 0.02] "point3 from" [-1.1 0.25 -0.4]')
+    out.line('LightSource "spot" "rgb I" [0.5 0.8 0.5] "point3 from" [1.3 1.5 -0.5]')
+    out.line('  "point3 to" [0.8 0 0.1] "float coneangle" 20 "float conedeltaangle" 8')
+    diffuse(out, GREY)
+    out.mesh(up(-3, 3, 0, -2, 3))
+    for i in range(12):
+        x, z = 0.45 * (i % 6) - 1.1, 0.8 * (i // 6) - 0.5
+        lamp = down(x, x + 0.08, 0.2 + 0.03 * i, z, z + 0.1 + 0.02 * i)
+        color = [(3, 1, 1), (1, 3, 1), (1, 1, 4)][i % 3]
+        light(out, lamp, color, ' "bool twosided" true' if i % 4 == 0 else "")
+    out.begin()
+    out.emit((0.8, 1.2, 0.5))
+    diffuse(out, (0.2, 0.2, 0.2))
+    out.line("Translate -0.7 0.5 0.5")
+    out.line("Scale 0.25 0.25 0.25")
+    out.line('Shape "loopsubdiv" "integer levels" 2')
+    out.line('  "point3 P" [1 1 1 -1 -1 1 -1 1 -1 1 -1 -1]')
+    out.line('  "integer indices" [0 2 1 0 1 3 0 3 2 1 2 3]')
+    out.end()
+    out.begin()
+    out.line('AreaLightSource "diffuse" "string filename" "lamp.pfm" "bool twosided" true'
+             ' "float scale" 0.2')
+    diffuse(out, (0, 0, 0))
+    out.line("Translate 1.1 0.6 0.9")
+    out.line("Rotate 60 1 0.4 0")
+    out.line('Shape "disk" "float radius" 0.2')
+    out.end()
+    diffuse(out, (0.65, 0.3, 0.25))
+    out.mesh(slab(-0.1, -0.001, 0.7, 0.4, 0.7, 0.4).turned("y", 20))
+    out.line('Material "coateddiffuse" "rgb reflectance" [0.3 0.4 0.6] "float roughness" 0.3')
+    sphere(out, (0.5, 0.3, 0.0), 0.3)
+    out.line('Material "diffusetransmission" "rgb reflectance" [0.3 0.5 0.2]'
+             ' "rgb transmittance" [0.2 0.3 0.1]')
+    out.mesh(towards_camera(-1.5, -0.9, 0, 0.7, 0.1))
+    out.finish()
+
+
 def empty(project):
     out = start(project, "empty", [
         "Nothing at all.", "Neither surfaces nor lights: the picture is black."],
@@ -193,5 +239,6 @@ def empty(project):
 
 
 def write_all(project):
-    for make in (picture_lamp, sky_alone, within_glass, bulb, narrow_spot, shapes, leaves, empty):
+    for make in (picture_lamp, sky_alone, within_glass, bulb, narrow_spot, shapes, leaves, lamps,
+                 empty):
         make(project)

@@ -7,11 +7,12 @@
 mod common;
 
 use bidir::bsdf::TransportMode;
+use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    JoinedPath, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext, PathDensities,
-    PathRoulette, PathSettings, Vertex,
+    JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext,
+    PathDensities, PathRoulette, PathSettings, Vertex,
 };
 use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
@@ -190,13 +191,22 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
     let index = path[0].light.expect("x_0 is on a light");
     let (light, lights) = (context.scene.light(index), context.scene.light_context());
     let at = path[0].light_point();
-    let shared = context.settings.light_point == LightPointChoice::Shared || path.len() == 2;
-    let pdf = if shared {
-        light.pdf_position(&lights, &at)
-    } else {
-        light.pdf_next_event(&lights, path[1].point, &at)
+    let by_power = context.scene.light_choice().prob(index as usize);
+    if context.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
+        return by_power * light.pdf_position(&lights, &at);
+    }
+    let x1 = &path[1];
+    let (part, prob) = match context.settings.light_choice {
+        LightChoiceKind::Power => (Part::Whole, by_power),
+        LightChoiceKind::Tree => {
+            // Light leaves on the side that it goes on at.
+            let receiver = || x1.receiver(path[2].point - x1.point);
+            let tree = context.scene.light_tree();
+            let chosen = tree.find(receiver, index, at.primitive);
+            (chosen.part, chosen.prob)
+        }
     };
-    context.scene.light_choice().prob(index as usize) * pdf
+    prob * light.pdf_next_event(&lights, part, x1.point, &at)
 }
 
 /// For every strategy that can make the path: its index, its weight, and f / (p n) with the
@@ -231,9 +241,12 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
 }
 
 fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
-    let settings = settings(mis, light_point);
+    check_paths_with(&settings(mis, light_point), scene);
+}
+
+fn check_paths_with(settings: &PathSettings, scene: &Scene) {
     let mut paths = 0;
-    for_each_pair(&settings, scene, |context, light, camera| {
+    for_each_pair(settings, scene, |context, light, camera| {
         for s in 1..=light.vertices.len() {
             for t in 1..=camera.vertices.len() {
                 let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
@@ -245,7 +258,7 @@ fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) 
                     continue;
                 }
                 let path = whole_path(context, light, camera);
-                check_path(context, &path, mis);
+                check_path(context, &path, settings.mis);
                 paths += 1;
             }
         }
@@ -297,6 +310,21 @@ fn layered_and_mixed_surfaces_are_one_function_of_the_path() {
     let scene = common::gallery(0.1);
     check_paths(MisHeuristic::Balance, LightPointChoice::Fresh, &scene);
     check_paths(MisHeuristic::Power, LightPointChoice::Fresh, &scene);
+}
+
+/// The same where next-event estimation chooses among many lamps, and where it does so by power.
+#[test]
+fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
+    let scene = common::lamp_room(0.1);
+    for (_, light_choice) in LightChoiceKind::NAMES {
+        for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
+            let settings = PathSettings {
+                light_choice,
+                ..settings(mis, LightPointChoice::Fresh)
+            };
+            check_paths_with(&settings, &scene);
+        }
+    }
 }
 
 #[test]

@@ -8,8 +8,9 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    JoinedPath, Junction, LightPointChoice, MisHeuristic, PathContext, PathDensities, PathRoulette,
-    PathSettings, RunningSums, Strategies, Subpath, Vertex, sample_next_event,
+    JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic, PathContext,
+    PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath, Vertex,
+    sample_next_event,
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
@@ -110,9 +111,8 @@ impl Comparison {
     fn compare_next_events(&mut self, context: &PathContext<'_>, camera: &[Vertex]) {
         for t in 2..=camera.len() {
             let (u_light, u) = (0.17 * t as f32 % 1.0, Vec2::new(0.4, 0.11 * t as f32 % 1.0));
-            let Some((light, drawn)) =
-                sample_next_event(context, camera[t - 1].point, || u_light, u)
-            else {
+            let drawn = sample_next_event(context, &camera[t - 1], || u_light, u);
+            let Some((light, drawn)) = drawn else {
                 continue;
             };
             let x0 = Vertex::light(context, light, &drawn.at);
@@ -132,8 +132,13 @@ fn all_settings() -> Vec<PathSettings> {
         ..PathSettings::default()
     }];
     let all = vary(&all, &MisHeuristic::NAMES, |s, (_, mis)| s.mis = mis);
-    let all = vary(&all, &LightPointChoice::NAMES, |s, (_, choice)| {
-        s.light_point = choice;
+    let choices = [
+        (LightPointChoice::Fresh, LightChoiceKind::Power),
+        (LightPointChoice::Fresh, LightChoiceKind::Tree),
+        (LightPointChoice::Shared, LightChoiceKind::Tree),
+    ];
+    let all = vary(&all, &choices, |s, (point, choice)| {
+        (s.light_point, s.light_choice) = (point, choice);
     });
     let all = vary(&all, &roulettes, |s, roulette| s.roulette = roulette);
     vary(&all, &strategies, |s, strategies| s.strategies = strategies)
@@ -162,10 +167,11 @@ fn describe(settings: &PathSettings) -> String {
         roulette,
         strategies,
         light_point,
+        light_choice,
         mis,
         ..
     } = settings;
-    format!("{mis:?}, {light_point:?}, {roulette}, {strategies}")
+    format!("{mis:?}, {light_point:?}, {light_choice:?}, {roulette}, {strategies}")
 }
 
 #[track_caller]
@@ -242,6 +248,7 @@ fn perspective(unit: f32) -> Camera {
 fn rooms_and_layers() {
     check(&common::room(0.1), 20);
     check(&common::gallery(0.1), 20);
+    check(&common::lamp_room(0.1), 20);
 }
 
 #[test]

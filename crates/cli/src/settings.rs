@@ -18,6 +18,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     let path = &mut settings.path;
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
+    path.light_choice = args.light_choice.unwrap_or(path.light_choice);
     path.roulette = args.path_roulette.unwrap_or(settings.integrator.roulette());
     if let Some(depth) = args.max_depth {
         path.max_depth = (depth > 0).then_some(depth);
@@ -42,6 +43,10 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
     let unused = [
         ("--strategies", estimator.strategies.is_some() && !is_bdpt),
         ("--light-point", estimator.light_point.is_some() && !is_bdpt),
+        (
+            "--light-choice",
+            estimator.light_choice.is_some() && is_light,
+        ),
         ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
         ("--mis", estimator.mis.is_some() && is_light),
     ];

@@ -127,6 +127,20 @@ PATHS = [
         estimators("point_spot_distant"),
     ),
     (
+        "the tree of lights takes the share of another child",
+        "crates/bidir/src/light/tree/hierarchy.rs",
+        "prob *= shares.of[i];",
+        "prob *= shares.of[i ^ 1];",
+        unit("light::tests::tree"),
+    ),
+    (
+        "part of lights at infinity forgotten in the choice of a light",
+        "crates/bidir/src/light/tree/mod.rs",
+        "a * self.by_power.prob(emitter) + (1.0 - a) * in_tree;",
+        "self.by_power.prob(emitter) + in_tree;",
+        unit("light::tests::tree"),
+    ),
+    (
         "survivors of roulette not raised",
         "crates/bidir/src/path/walk.rs",
         "beta: beta / survival,",

@@ -215,6 +215,19 @@ impl Bsdf {
         }
     }
 
+    /// False where light stays on the side it comes from.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Diffuse(_)
+            | Self::Conductor(_)
+            | Self::CoatedDiffuse(_)
+            | Self::CoatedConductor(_) => false,
+            Self::Dielectric(_) | Self::ThinDielectric(_) | Self::DiffuseTransmission(_) => true,
+            Self::Principled(bsdf) => bsdf.transmits(),
+        }
+    }
+
     /// About which part of the light that arrives along `wo` is scattered: what path roulette
     /// goes by. Deterministic in (`self`, `wo`), and positive where anything is scattered, but no
     /// exact integral. Range: `[0, 1]` per lane.

@@ -155,7 +155,7 @@ pub(super) fn next_event(
     let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
     let y = &workspace.camera.vertices[t - 1];
-    if let Some((light, drawn)) = sample_next_event(context, y.point, u_light, u) {
+    if let Some((light, drawn)) = sample_next_event(context, y, u_light, u) {
         let mut x0 = Vertex::light(context, light, &drawn.at);
         x0.beta = Spectrum::splat(drawn.coverage / drawn.pdf);
         workspace.next_events[t - 1] = Some(x0);

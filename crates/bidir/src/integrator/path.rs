@@ -73,7 +73,7 @@ fn hit(
         let weight = if i == 1 || from.went_by_delta {
             1.0
         } else {
-            let q = next_event_pdf(context, from.point, arrival.light, &arrival.at);
+            let q = next_event_pdf(context, from, arrival.light, &arrival.at);
             context.settings.mis.weight_of_two(arrival.pdf, q)
         };
         let term = Term {
@@ -92,7 +92,7 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     let at = |purpose| Dimension::at(i, purpose);
     let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let Some((light, x0)) = sample_next_event(context, vertex.point, u_light, u) else {
+    let Some((light, x0)) = sample_next_event(context, vertex, u_light, u) else {
         return;
     };
     let ends = [x0.at.segment_end(), vertex.segment_end()];

@@ -4,13 +4,15 @@
 //! A point is drawn by area, or as the receiver sees its shape (1/m²); a direction by |cosθ|/π
 //! (1/sr), half of that where both sides emit.
 
-use super::{EmissionSample, LightContext, LightPoint, LightSample};
+use super::{Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, Part};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
 use crate::scene::clamped_coverage;
-use crate::shape::{Shape, ShapeSample, SurfacePoint};
+use crate::shape::{Normals, Shape, ShapeSample, SurfacePoint};
 use crate::spectrum::{Rgb, luminance};
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
+/// A mesh of more primitives is many emitters for a tree of lights: a quadrilateral is one.
+const UNDIVIDED: usize = 2;
 /// Points at which a pattern's mean is estimated: lights are chosen by it.
 const PATTERN_POINTS: usize = 4096;
 
@@ -110,6 +112,11 @@ impl AreaLight {
         self.is_hidden = true;
     }
 
+    #[cfg(test)]
+    pub(super) fn shape_index(&self) -> usize {
+        self.shape
+    }
+
     pub(super) fn is_hidden(&self) -> bool {
         self.is_hidden
     }
@@ -120,11 +127,56 @@ impl AreaLight {
     }
 
     pub(super) fn power(&self) -> f32 {
-        let sides = match self.sides {
+        self.sides() * PI * self.primitives.total() as f32 * self.mean
+    }
+
+    /// The power of a primitive, by its area.
+    pub(super) fn primitive_power(&self, context: &LightContext<'_>, primitive: u32) -> f32 {
+        let area = context.shapes[self.shape].primitive_area(primitive as usize);
+        self.sides() * PI * area * self.mean
+    }
+
+    fn sides(&self) -> f32 {
+        match self.sides {
             EmissionSides::Front => 1.0,
             EmissionSides::Both => 2.0,
+        }
+    }
+
+    /// How many emitters it is for a tree of lights. None: one.
+    pub(super) fn divided_into(&self, context: &LightContext<'_>) -> Option<u32> {
+        let count = context.shapes[self.shape].primitive_count();
+        (count > UNDIVIDED).then_some(count as u32)
+    }
+
+    /// Where `part` is, and where it sends light to.
+    pub(super) fn bounds(&self, context: &LightContext<'_>, part: Part) -> EmitterBounds {
+        let shape = &context.shapes[self.shape];
+        let of_primitive = |i| self.primitive_bounds(shape, i);
+        match part {
+            Part::Primitive(i) => of_primitive(i as usize),
+            Part::Whole => {
+                let all = (0..shape.primitive_count()).map(of_primitive);
+                let union = |sum: EmitterBounds, bounds| sum.union(&bounds);
+                all.reduce(union).unwrap_or(EmitterBounds::NOTHING)
+            }
+        }
+    }
+
+    fn primitive_bounds(&self, shape: &Shape, i: usize) -> EmitterBounds {
+        let both = self.sides == EmissionSides::Both;
+        let facing = shape.primitive_area(i) * self.mean;
+        let (cone, intensity) = match shape.normals(i) {
+            Normals::One(n) => (Cone::flat(n, both), facing),
+            Normals::Opposite(n) => (Cone::flat(n, true), facing),
+            // A convex surface shows a quarter of its area, in the mean over directions.
+            Normals::Any => (Cone::EVERYWHERE, facing / 4.0),
         };
-        sides * PI * self.primitives.total() as f32 * self.mean
+        EmitterBounds {
+            bounds: shape.primitive(i).bounds(),
+            cone,
+            intensity,
+        }
     }
 
     #[inline]
@@ -141,11 +193,20 @@ impl AreaLight {
     fn sample_shape(&self, u: Vec2, sample: impl Fn(usize, Vec2) -> ShapeSample) -> LightSample {
         let (primitive, prob, rest) = self.primitives.sample(u.x);
         let drawn = sample(primitive, Vec2::new(rest, u.y));
-        let at = LightPoint::on_surface(&drawn.surface, primitive as u32);
+        let sample = self.light_sample(primitive as u32, &drawn);
+        LightSample {
+            pdf: sample.pdf * prob,
+            ..sample
+        }
+    }
+
+    /// A point drawn on a primitive, with its density among the points of that primitive.
+    #[inline]
+    fn light_sample(&self, primitive: u32, drawn: &ShapeSample) -> LightSample {
         let coverage = self.coverage.as_ref();
         LightSample {
-            at,
-            pdf: drawn.pdf * prob,
+            at: LightPoint::on_surface(&drawn.surface, primitive),
+            pdf: drawn.pdf,
             coverage: coverage.map_or(1.0, |alpha| {
                 clamped_coverage(alpha.eval(&TexturePoint::new(&drawn.surface)))
             }),
@@ -204,11 +265,16 @@ impl AreaLight {
     pub(super) fn sample_next_event(
         &self,
         context: &LightContext<'_>,
+        part: Part,
         reference: Vec3,
         u: Vec2,
     ) -> Option<LightSample> {
         let shape = &context.shapes[self.shape];
-        let sample = self.sample_shape(u, |i, u| shape.sample_from(i, reference, u));
+        let draw = |i, u| shape.sample_from(i, reference, u);
+        let sample = match part {
+            Part::Whole => self.sample_shape(u, draw),
+            Part::Primitive(i) => self.light_sample(i, &draw(i as usize, u)),
+        };
         (sample.pdf > 0.0).then_some(sample)
     }
 
@@ -216,13 +282,16 @@ impl AreaLight {
     pub(super) fn pdf_next_event(
         &self,
         context: &LightContext<'_>,
+        part: Part,
         reference: Vec3,
         at: &LightPoint,
     ) -> f32 {
-        match &context.shapes[self.shape] {
-            Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
-            Shape::Sphere(sphere) => sphere.pdf_from(reference, at.point, at.n_g),
-            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
+        let shape = &context.shapes[self.shape];
+        match (part, shape) {
+            (Part::Primitive(i), _) => shape.pdf_from(i as usize, reference, at.point, at.n_g),
+            (Part::Whole, Shape::Mesh(_) | Shape::Disk(_)) => self.inverse_area,
+            (Part::Whole, Shape::Sphere(sphere)) => sphere.pdf_from(reference, at.point, at.n_g),
+            (Part::Whole, Shape::Cylinder(cylinder)) => cylinder.pdf(at.point),
         }
     }
 }

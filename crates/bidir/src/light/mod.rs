@@ -12,6 +12,9 @@
 //! A Dirac endpoint (point, spot and distant lights) counts 1 for the density it lacks: it cancels,
 //! because no strategy can hit such a light by chance ([`Light::is_delta`]).
 //!
+//! Light subpaths choose a light by power ([`LightChoice`]), next-event estimation by power or by a tree
+//! that knows the receiver ([`LightTree`]).
+//!
 //! **Adding one**: a file, a variant in [`Light`] with an arm in each match, and a mapping in the
 //! scene reader.
 
@@ -19,6 +22,7 @@ mod area;
 mod choice;
 mod infinite;
 mod point;
+mod tree;
 
 #[cfg(test)]
 mod tests;
@@ -27,11 +31,13 @@ pub use area::{AreaLight, EmissionSides};
 pub use choice::LightChoice;
 pub use infinite::{DistantLight, InfiniteLight, Radiance};
 pub use point::{PointLight, SpotLight};
+pub use tree::{ChosenEmitter, Facing, LightTree, Receiver};
 
 use crate::math::{Vec2, Vec3};
 use crate::scene::SegmentEnd;
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::Rgb;
+use tree::{Cone, EmitterBounds};
 
 /// Where a path starts.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +74,16 @@ impl LightPoint {
             n_g: self.n_g,
             error: self.error,
             is_infinite: self.is_infinite,
+        }
+    }
+
+    /// The direction to it from the point `from`, of any length.
+    #[inline]
+    pub fn direction_from(&self, from: Vec3) -> Vec3 {
+        if self.is_infinite {
+            self.point
+        } else {
+            self.point - from
         }
     }
 
@@ -138,6 +154,15 @@ pub struct LightContext<'a> {
     pub centre: Vec3,
     /// Its radius.
     pub radius: f32,
+}
+
+/// What of a light a point is drawn on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Anywhere.
+    Whole,
+    /// A primitive of its shape, by number.
+    Primitive(u32),
 }
 
 /// A light of the scene.
@@ -246,16 +271,47 @@ impl Light {
         }
     }
 
-    /// Draws a light point for a receiver at `reference`. None: the draw has no density.
+    /// The parts that are chosen among by themselves: all of it, or each primitive.
+    fn parts(&self, context: &LightContext<'_>) -> impl Iterator<Item = Part> {
+        let primitives = match self {
+            Self::Area(light) => light.divided_into(context),
+            Self::Point(_) | Self::Spot(_) | Self::Distant(_) | Self::Infinite(_) => None,
+        };
+        (0..primitives.unwrap_or(1)).map(move |i| match primitives {
+            Some(_) => Part::Primitive(i),
+            None => Part::Whole,
+        })
+    }
+
+    /// What of [`power`](Self::power) a part has. Unit: W, luminance.
+    fn part_power(&self, context: &LightContext<'_>, part: Part) -> f32 {
+        match (self, part) {
+            (Self::Area(light), Part::Primitive(i)) => light.primitive_power(context, i),
+            _ => self.power(context),
+        }
+    }
+
+    /// Where a part is, and where it sends light to. None: from infinity.
+    fn bounds(&self, context: &LightContext<'_>, part: Part) -> Option<EmitterBounds> {
+        match self {
+            Self::Area(light) => Some(light.bounds(context, part)),
+            Self::Point(light) => Some(light.bounds()),
+            Self::Spot(light) => Some(light.bounds()),
+            Self::Distant(_) | Self::Infinite(_) => None,
+        }
+    }
+
+    /// Draws a light point of `part` for a receiver at `reference`. None: the draw has no density.
     #[inline]
     pub fn sample_next_event(
         &self,
         context: &LightContext<'_>,
+        part: Part,
         reference: Vec3,
         u: Vec2,
     ) -> Option<LightSample> {
         match self {
-            Self::Area(light) => light.sample_next_event(context, reference, u),
+            Self::Area(light) => light.sample_next_event(context, part, reference, u),
             Self::Point(light) => Some(light.at()),
             Self::Spot(light) => Some(light.at()),
             Self::Distant(light) => Some(light.at()),
@@ -268,11 +324,12 @@ impl Light {
     pub fn pdf_next_event(
         &self,
         context: &LightContext<'_>,
+        part: Part,
         reference: Vec3,
         at: &LightPoint,
     ) -> f32 {
         match self {
-            Self::Area(light) => light.pdf_next_event(context, reference, at),
+            Self::Area(light) => light.pdf_next_event(context, part, reference, at),
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
             Self::Infinite(light) => light.pdf(at.point),
         }

@@ -2,9 +2,10 @@
 //! Dirac distribution, its density counted 1; directions are drawn evenly over the sphere, 1/(4π),
 //! or the cone, 1/(2π(1 - cosθ_end)), both 1/sr.
 
-use super::{EmissionSample, LightPoint, LightSample};
+use super::{Cone, EmissionSample, EmitterBounds, LightPoint, LightSample};
 use crate::math::{Frame, PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::{Rgb, luminance};
+use accel::Aabb;
 
 /// A point that emits the same intensity in all directions.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,14 @@ impl PointLight {
 
     pub(super) fn power(&self) -> f32 {
         4.0 * PI * luminance(self.intensity)
+    }
+
+    pub(super) fn bounds(&self) -> EmitterBounds {
+        EmitterBounds {
+            bounds: Aabb::around(&[self.position]),
+            cone: Cone::EVERYWHERE,
+            intensity: luminance(self.intensity),
+        }
     }
 
     /// The point itself.
@@ -110,6 +119,22 @@ impl SpotLight {
     pub(super) fn power(&self) -> f32 {
         let rim = self.rim.mean() * (self.end_height - self.full_height);
         2.0 * PI * (self.full_height + rim) * luminance(self.intensity)
+    }
+
+    /// As bright as within the full cone, up to the end of the rim.
+    pub(super) fn bounds(&self) -> EmitterBounds {
+        let angle = |height: f32| 2.0 * libm::asinf((height / 2.0).sqrt().min(1.0));
+        let [full, end] = [self.full_height, self.end_height].map(angle);
+        EmitterBounds {
+            bounds: Aabb::around(&[self.position]),
+            cone: Cone {
+                axis: self.axis.z,
+                spread: full.min(end),
+                opening: (end - full).max(0.0),
+                is_mirrored: false,
+            },
+            intensity: luminance(self.intensity),
+        }
     }
 
     /// 1 - cosθ of the unit direction `w`.

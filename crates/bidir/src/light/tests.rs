@@ -4,6 +4,7 @@
 mod densities;
 mod emission;
 mod power;
+mod tree;
 
 use super::{
     AreaLight, DistantLight, EmissionSides, InfiniteLight, Light, LightContext, PointLight,

@@ -3,10 +3,10 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{PathContext, PathDensities, Segment, Vertex, mis_weight};
+use super::{LightChoiceKind, PathContext, PathDensities, Segment, Vertex, mis_weight};
 use crate::bsdf::TransportMode;
-use crate::light::{LightPoint, LightSample};
-use crate::math::{Vec2, Vec3};
+use crate::light::{ChosenEmitter, LightPoint, LightSample, Part};
+use crate::math::Vec2;
 use crate::spectrum::Spectrum;
 
 /// How the two subpaths of a path came together.
@@ -108,39 +108,61 @@ impl<'a> JoinedPath<'a> {
     }
 }
 
-/// A light point drawn for the point `receiver`: the light's index, and the point with its density
-/// e(x_0 | x_1), the light's probability included.
+/// A light point drawn for the vertex `x1` of a camera subpath: the light's index, and the point with
+/// its density e(x_0 | x_1), the light's probability included.
 ///
 /// The number `u_light` is asked for where there is a choice of lights. None: there is no light, the
 /// draw has no density, or nothing of the light is there.
 #[inline]
 pub fn sample_next_event(
     context: &PathContext<'_>,
-    receiver: Vec3,
+    x1: &Vertex,
     u_light: impl FnOnce() -> f32,
     u: Vec2,
 ) -> Option<(u32, LightSample)> {
     let scene = context.scene;
-    let (light, prob) = scene.light_choice().sample(u_light)?;
+    let ChosenEmitter { light, part, prob } = match context.settings.light_choice {
+        LightChoiceKind::Power => scene.light_choice().sample(u_light).map(by_power)?,
+        LightChoiceKind::Tree => {
+            let tree = scene.light_tree();
+            tree.sample(|| x1.receiver(x1.wo), u_light)?
+        }
+    };
     let lights = scene.light_context();
-    let mut sample = scene.lights()[light].sample_next_event(&lights, receiver, u)?;
+    let of_light = scene.light(light);
+    let mut sample = of_light.sample_next_event(&lights, part, x1.point, u)?;
     sample.pdf *= prob;
-    (sample.coverage > 0.0).then_some((light as u32, sample))
+    (sample.coverage > 0.0 && sample.pdf > 0.0).then_some((light, sample))
 }
 
 /// The density e(x_0 | x_1) with which [`sample_next_event`] draws the point `at` of light number
-/// `light` for the point `receiver`. Measure: area, 1/m²; solid angle, 1/sr, for a light at infinity.
+/// `light` for `x1`, a vertex of any subpath. Measure: area, 1/m²; solid angle, 1/sr, for a light at infinity.
 #[inline]
-pub fn next_event_pdf(
-    context: &PathContext<'_>,
-    receiver: Vec3,
-    light: u32,
-    at: &LightPoint,
-) -> f32 {
+pub fn next_event_pdf(context: &PathContext<'_>, x1: &Vertex, light: u32, at: &LightPoint) -> f32 {
     let scene = context.scene;
-    let prob = scene.light_choice().prob(light as usize);
+    let ChosenEmitter { part, prob, .. } = match context.settings.light_choice {
+        LightChoiceKind::Power => {
+            let prob = scene.light_choice().prob(light as usize);
+            by_power((light as usize, prob))
+        }
+        LightChoiceKind::Tree => {
+            let receiver = || x1.receiver(at.direction_from(x1.point));
+            scene.light_tree().find(receiver, light, at.primitive)
+        }
+    };
     let lights = scene.light_context();
-    prob * scene.light(light).pdf_next_event(&lights, receiver, at)
+    let of_light = scene.light(light);
+    prob * of_light.pdf_next_event(&lights, part, x1.point, at)
+}
+
+/// A light that was chosen as a whole.
+#[inline]
+fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
+    ChosenEmitter {
+        light: light as u32,
+        part: Part::Whole,
+        prob,
+    }
 }
 
 impl PathContext<'_> {

@@ -35,7 +35,7 @@ pub use mis::{MisHeuristic, mis_weight};
 pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
 pub use segment::Segment;
-pub use strategy::{LightPointChoice, Strategies, Strategy};
+pub use strategy::{LightChoiceKind, LightPointChoice, Strategies, Strategy};
 pub use vertex::{Vertex, VertexKind};
 pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
 
@@ -57,6 +57,8 @@ pub struct PathSettings {
     pub strategies: Strategies,
     /// Where s = 1 takes its light point from.
     pub light_point: LightPointChoice,
+    /// How s = 1 chooses the light.
+    pub light_choice: LightChoiceKind,
     /// How strategies are combined.
     pub mis: MisHeuristic,
 }
@@ -68,6 +70,7 @@ impl Default for PathSettings {
             roulette: PathRoulette::default(),
             strategies: Strategies::default(),
             light_point: LightPointChoice::default(),
+            light_choice: LightChoiceKind::default(),
             mis: MisHeuristic::default(),
         }
     }

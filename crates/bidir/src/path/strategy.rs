@@ -53,6 +53,21 @@ impl LightPointChoice {
     }
 }
 
+/// How next-event estimation (s = 1) chooses the light of a point of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightChoiceKind {
+    /// By power, as light subpaths do.
+    Power,
+    /// By a tree that knows the receiver \[Conty18\].
+    #[default]
+    Tree,
+}
+
+impl LightChoiceKind {
+    /// Every choice with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 2] = [("power", Self::Power), ("tree", Self::Tree)];
+}
+
 /// Adds or removes the strategies that match it; a missing number matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rule {

@@ -7,7 +7,7 @@
 use super::{PathContext, Segment};
 use crate::bsdf::{Bsdf, Diffuse};
 use crate::camera::LensSample;
-use crate::light::LightPoint;
+use crate::light::{Facing, LightPoint, Receiver};
 use crate::math::{Frame, Vec3};
 use crate::scene::{SegmentEnd, SurfaceHit};
 use crate::spectrum::Spectrum;
@@ -169,6 +169,22 @@ impl Vertex {
             primitive: self.light_primitive,
             is_infinite: self.is_infinite,
         }
+    }
+
+    /// The vertex as what a light is chosen for, on a path that goes on along `w` from here, of any
+    /// length: towards the light, or towards the camera. Where nothing is transmitted both are on one side.
+    #[inline]
+    pub fn receiver(&self, w: Vec3) -> Receiver {
+        let n = self.shading.z;
+        let facing = if self.bsdf.transmits() {
+            Facing::Both(n)
+        } else if n.dot(w) < 0.0 {
+            Facing::Front(-n)
+        } else {
+            Facing::Front(n)
+        };
+        let point = self.point;
+        Receiver { point, facing }
     }
 
     /// The vertex as an end of a shadow ray.

@@ -6,7 +6,7 @@ use super::object::{Geometry, ObjectId, Objects};
 use super::{Presence, Scene, Surface, TextureFiltering, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
-use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext};
+use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::shape::{Place, Shape};
@@ -295,6 +295,7 @@ impl SceneBuilder {
             radius,
         };
         let light_choice = LightChoice::new(&self.lights, &context);
+        let light_tree = LightTree::new(&self.lights, &context);
         let is_environment = |light: &Light| light.is_infinite() && !light.is_delta();
         let environment = (0..self.lights.len())
             .filter(|&i| is_environment(&self.lights[i]))
@@ -315,6 +316,7 @@ impl SceneBuilder {
             filtering: self.filtering,
             lights: self.lights,
             light_choice,
+            light_tree,
             bvh,
             centre,
             radius,

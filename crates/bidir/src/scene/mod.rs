@@ -22,7 +22,7 @@ use object::Placed;
 
 use crate::camera::Camera;
 use crate::film::FilmSettings;
-use crate::light::{Light, LightChoice, LightContext, LightPoint};
+use crate::light::{Light, LightChoice, LightContext, LightPoint, LightTree};
 use crate::material::Material;
 use crate::math::{Vec2, Vec3};
 use crate::shape::{Differentials, Shape, SurfacePoint};
@@ -102,6 +102,7 @@ pub struct Scene {
     filtering: TextureFiltering,
     lights: Vec<Light>,
     light_choice: LightChoice,
+    light_tree: LightTree,
     /// The group of each light, by index into the names.
     light_groups: Vec<u32>,
     group_names: Vec<String>,
@@ -155,10 +156,16 @@ impl Scene {
         self.light_groups[i as usize]
     }
 
-    /// The choice of a light.
+    /// The choice of a light by power.
     #[inline]
     pub fn light_choice(&self) -> &LightChoice {
         &self.light_choice
+    }
+
+    /// The choice of an emitter for a receiver.
+    #[inline]
+    pub fn light_tree(&self) -> &LightTree {
+        &self.light_tree
     }
 
     /// The lights that escaping rays hit, by index.

@@ -78,6 +78,11 @@ impl Disk {
             .surface_point(local, Vec3::Z, self.orientation, uv)
     }
 
+    /// The geometric normal.
+    pub(super) fn normal(&self) -> Vec3 {
+        self.placement.normal(Vec3::Z).normalize() * self.orientation.sign()
+    }
+
     pub(super) fn parameters_at(&self, p: Vec3) -> Vec2 {
         let local = self.placement.local_from_world.transform_point3(p);
         let width = self.radius - self.inner_radius;

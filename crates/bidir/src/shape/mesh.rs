@@ -5,7 +5,9 @@
 //! point.
 
 use super::differentials::normal_derivative;
-use super::{Differentials, Orientation, Place, ShapeSample, SurfacePoint, position_error};
+use super::{
+    Differentials, Normals, Orientation, Place, ShapeSample, SurfacePoint, position_error,
+};
 use crate::math::{Frame, Vec2, Vec3, warp};
 
 /// Triangles that share vertices, in world space.
@@ -50,6 +52,21 @@ impl Mesh {
     /// The area of triangle `i`. Unit: m².
     pub fn triangle_area(&self, i: usize) -> f32 {
         self.corners(i).area()
+    }
+
+    /// The geometric normals of triangle `i`, which follow the shading normals' side.
+    pub(super) fn triangle_normals(&self, i: usize) -> Normals {
+        let corners = self.corners(i);
+        let [p0, p1, p2] = corners.positions;
+        let winding = (p1 - p0).cross(p2 - p0).normalize_or(Vec3::Z);
+        let n_g = winding * corners.winding_sign;
+        // Interpolated normals lie between those of the corners.
+        let sides = corners.normals.map(|normals| normals.map(|n| n_g.dot(n)));
+        match sides {
+            Some(sides) if sides.iter().all(|&side| side < 0.0) => Normals::One(-n_g),
+            Some(sides) if sides.iter().any(|&side| side <= 0.0) => Normals::Opposite(n_g),
+            _ => Normals::One(n_g),
+        }
     }
 
     #[inline]

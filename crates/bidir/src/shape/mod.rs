@@ -54,6 +54,17 @@ pub struct ShapeSample {
     pub pdf: f32,
 }
 
+/// The geometric normals of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Normals {
+    /// The same everywhere.
+    One(Vec3),
+    /// This one and its opposite: shading normals lie on both sides.
+    Opposite(Vec3),
+    /// The surface is curved.
+    Any,
+}
+
 /// A surface of the scene.
 #[derive(Clone, Debug)]
 pub enum Shape {
@@ -179,6 +190,15 @@ impl Shape {
             Self::Sphere(sphere) => sphere.area(),
             Self::Disk(disk) => disk.area(),
             Self::Cylinder(cylinder) => cylinder.area(),
+        }
+    }
+
+    /// The geometric normals of primitive `i`.
+    pub fn normals(&self, i: usize) -> Normals {
+        match self {
+            Self::Mesh(mesh) => mesh.triangle_normals(i),
+            Self::Disk(disk) => Normals::One(disk.normal()),
+            Self::Sphere(_) | Self::Cylinder(_) => Normals::Any,
         }
     }
 

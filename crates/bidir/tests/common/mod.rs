@@ -167,6 +167,30 @@ pub(crate) fn quad(corner: Vec3, a: Vec3, b: Vec3) -> Mesh {
     }
 }
 
+/// Eight triangles that face outwards.
+pub(crate) fn octahedron(centre: Vec3, radius: f32) -> Mesh {
+    let positions = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| [axis, -axis]);
+    let corner = |axis: u32, sign: u32| 2 * axis + sign;
+    let triangle = |signs: u32| {
+        let [x, y, z] = [0, 1, 2].map(|axis| corner(axis, signs >> axis & 1));
+        // An odd number of mirrors turns the winding.
+        if signs.count_ones().is_multiple_of(2) {
+            [x, y, z]
+        } else {
+            [x, z, y]
+        }
+    };
+    Mesh {
+        positions: positions
+            .iter()
+            .flatten()
+            .map(|&axis| centre + axis * radius)
+            .collect(),
+        triangles: (0..8).map(triangle).collect(),
+        ..Mesh::default()
+    }
+}
+
 pub(crate) fn sphere(centre: Vec3, radius: f32) -> Shape {
     Shape::Sphere(Sphere::new(
         Affine3A::from_translation(centre),
@@ -241,6 +265,38 @@ pub(crate) fn room_of(size: u32, lens_radius: f32) -> Scene {
     builder.shape(Shape::Mesh(panel), wall, None);
     builder.shape(sphere(Vec3::new(-0.8, -1.2, 0.2), 0.7), rough_metal, None);
     builder.shape(sphere(Vec3::new(0.6, -1.1, -0.2), 0.6), rough_glass, None);
+    builder.build().expect("the room is valid")
+}
+
+/// A closed room with many lamps: a mesh, a ball, and quadrilaterals of one and of two sides, on the
+/// walls and among what they light.
+pub(crate) fn lamp_room(lens_radius: f32) -> Scene {
+    let mut builder = builder(8, lens_radius);
+    let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
+    let sheet = builder.material(paper());
+    let rough_glass = builder.material(glass(0.5));
+    add_walls(&mut builder, wall);
+    let mesh = octahedron(Vec3::new(-0.9, 0.3, 0.4), 0.4);
+    builder.shape(Shape::Mesh(mesh), wall, emission([2.0, 3.0, 4.0]));
+    for i in 0..5u8 {
+        let corner = Vec3::new(-1.5 + 0.6 * f32::from(i), 1.9 - 0.3 * f32::from(i % 3), 0.5);
+        let light = quad(corner, Vec3::X * 0.2, Vec3::Z * 0.3);
+        let sides = match i % 2 {
+            0 => EmissionSides::Front,
+            _ => EmissionSides::Both,
+        };
+        let emission = emission([6.0, 5.0, 4.0]).map(|light| Emission { sides, ..light });
+        builder.shape(Shape::Mesh(light), wall, emission);
+    }
+    let ball = sphere(Vec3::new(1.3, -0.4, 0.8), 0.3);
+    builder.shape(ball, wall, emission([2.0, 3.0, 4.0]));
+    let hanging = quad(
+        Vec3::new(0.4, -0.2, 1.0),
+        Vec3::Y * 1.2,
+        Vec3::new(1.0, 0.0, 0.4),
+    );
+    builder.shape(Shape::Mesh(hanging), sheet, None);
+    builder.shape(sphere(Vec3::new(-0.2, -1.1, -0.2), 0.6), rough_glass, None);
     builder.build().expect("the room is valid")
 }
 

@@ -7,7 +7,7 @@ use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, na
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
 use clap::{Args, ValueHint};
@@ -132,6 +132,12 @@ pub(crate) struct EstimatorArgs {
     /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
     #[arg(long, value_parser = named(LightPointChoice::NAMES))]
     pub(crate) light_point: Option<LightPointChoice>,
+    /// How next-event estimation chooses the light [default: tree].
+    ///
+    /// tree: by what arrives from it at the point, as a hierarchy of the lights estimates. power: by
+    /// power alone, as light subpaths do.
+    #[arg(long, value_parser = named(LightChoiceKind::NAMES))]
+    pub(crate) light_choice: Option<LightChoiceKind>,
     /// How subpaths end by chance [default: the integrator's].
     ///
     /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
@@ -204,7 +210,7 @@ pub(crate) struct FilmArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::{IntegratorKind, LightPointChoice, MisHeuristic};
+    use super::{IntegratorKind, LightChoiceKind, LightPointChoice, MisHeuristic};
     use crate::args::Cli;
     use crate::settings::name_of;
     use bidir::driver::Settings;
@@ -246,6 +252,10 @@ mod tests {
         check_default(
             "light-point",
             name_of(&LightPointChoice::NAMES, path.light_point),
+        );
+        check_default(
+            "light-choice",
+            name_of(&LightChoiceKind::NAMES, path.light_choice),
         );
         check_default("seed", format_args!("the scene's, or {}", settings.seed));
     }

@@ -76,6 +76,7 @@ fn settings_change_the_image() {
         "--max-depth 1",
         "--strategies all,-s0",
         "--light-point shared",
+        "--light-choice power",
         "--path-roulette off",
         "--shadow-rays budget:2",
         "--spp 3",

@@ -3,7 +3,7 @@
 use bidir::driver::Settings;
 use bidir::film::{Aov, StrategyImages};
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathSettings};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
 use serde_json::Value;
@@ -23,6 +23,8 @@ pub struct SettingsText {
     pub strategies: String,
     /// Where next-event estimation takes its point from.
     pub light_point: &'static str,
+    /// How it chooses the light.
+    pub light_choice: &'static str,
     /// How subpaths end by chance.
     pub path_roulette: String,
     /// The most bounces. None: no limit.
@@ -75,6 +77,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             strategies: parse(flag("strategies")?)?,
             mis: named(&MisHeuristic::NAMES, flag("mis")?)?,
             light_point: named(&LightPointChoice::NAMES, flag("light-point")?)?,
+            light_choice: named(&LightChoiceKind::NAMES, flag("light-choice")?)?,
         },
         candidates: parse(flag("candidates")?)?,
         sampler: named(&SamplerKind::NAMES, flag("sampler")?)?,
@@ -140,6 +143,7 @@ impl From<&Settings> for SettingsText {
             strategies,
             mis,
             light_point,
+            light_choice,
         } = path;
         Self {
             integrator: name_of(&IntegratorKind::NAMES, *integrator),
@@ -147,6 +151,7 @@ impl From<&Settings> for SettingsText {
             mis: name_of(&MisHeuristic::NAMES, *mis),
             strategies: strategies.to_string(),
             light_point: name_of(&LightPointChoice::NAMES, *light_point),
+            light_choice: name_of(&LightChoiceKind::NAMES, *light_choice),
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
             candidates: *candidates,
@@ -174,6 +179,7 @@ mod tests {
         };
         settings.path.strategies = "all,-s0,-t1".parse().unwrap();
         settings.path.light_point = LightPointChoice::Shared;
+        settings.path.light_choice = LightChoiceKind::Power;
         for max_depth in [None, Some(7)] {
             settings.path.max_depth = max_depth;
             let mut flags = SettingsText::from(&settings).by_flag();

@@ -11,7 +11,7 @@ mod matrix;
 mod statistics;
 
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette};
 use bidir_formats::pbrt::Crop;
 use case::{Case, PIXELS, QUARTERS, open, open_part};
 use statistics::check_agree;
@@ -72,6 +72,23 @@ fn mirrored_transforms_and_two_sided_lights() {
 #[test]
 fn point_spot_distant_and_infinite_lights() {
     Case::new(&open("lights.pbrt"), 9216).check_all();
+}
+
+#[test]
+fn lamps_chosen_by_a_tree_and_by_power() {
+    let loaded = open("lamps.pbrt");
+    let case = Case::new(&loaded, 2304);
+    let reference = case
+        .with_effort(4)
+        .render(IntegratorKind::Path, |settings| {
+            settings.path.light_choice = LightChoiceKind::Power;
+        });
+    check_agree("path, tree", &case.path(), &reference, PIXELS);
+    case.check_bdpt(&reference);
+    case.with_effort(2).check_light(&reference);
+    // Weights that know the tree's densities, and points that do not come from it.
+    let shared = case.bdpt(|settings| settings.path.light_point = LightPointChoice::Shared);
+    check_agree("bdpt, shared", &shared, &reference, PIXELS);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use super::names::nearest;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use bidir::path::{LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
 use formats::film::SettingsText;
@@ -25,6 +25,8 @@ pub struct Changes {
     pub strategies: Option<Strategies>,
     /// Where next-event estimation takes its light point from.
     pub light_point: Option<LightPointChoice>,
+    /// How it chooses the light.
+    pub light_choice: Option<LightChoiceKind>,
     /// How subpaths end by chance.
     pub path_roulette: Option<PathRoulette>,
     /// The random numbers.
@@ -35,12 +37,13 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 8] = [
+    pub const NAMES: [&'static str; 9] = [
         "integrator",
         "shadow-rays",
         "mis",
         "strategies",
         "light-point",
+        "light-choice",
         "path-roulette",
         "sampler",
         "max-depth",
@@ -56,6 +59,7 @@ impl Changes {
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
             "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
+            "light-choice" => self.light_choice = Some(named(&LightChoiceKind::NAMES, value)?),
             "path-roulette" => self.path_roulette = Some(parsed(value)?),
             "sampler" => self.sampler = Some(named(&SamplerKind::NAMES, value)?),
             "max-depth" => {
@@ -76,6 +80,7 @@ impl Changes {
             mis: self.mis.or(defaults.mis),
             strategies: self.strategies.or_else(|| defaults.strategies.clone()),
             light_point: self.light_point.or(defaults.light_point),
+            light_choice: self.light_choice.or(defaults.light_choice),
             path_roulette: self.path_roulette.or(defaults.path_roulette),
             sampler: self.sampler.or(defaults.sampler),
             max_depth: self.max_depth.or(defaults.max_depth),
@@ -89,6 +94,7 @@ impl Changes {
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
+        path.light_choice = self.light_choice.unwrap_or(path.light_choice);
         // Another integrator brings the roulette that suits it.
         let brought = self.integrator.map(IntegratorKind::roulette);
         path.roulette = self.path_roulette.or(brought).unwrap_or(path.roulette);
@@ -142,7 +148,7 @@ mod tests {
     fn settings_are_read_as_they_are_written() {
         let mut changes = Changes::default();
         let values = [
-            "light", "per-pair", "uniform", "all,-s0", "shared", "off", "sobol", "7",
+            "light", "per-pair", "uniform", "all,-s0", "shared", "power", "off", "sobol", "7",
         ];
         for (name, value) in Changes::NAMES.into_iter().zip(values) {
             changes.set(name, value).unwrap();

@@ -78,6 +78,7 @@ pub(crate) fn setting() -> Changes {
         ("integrator", "bdpt"),
         ("strategies", "all,-s0,-t1"),
         ("light-point", "shared"),
+        ("light-choice", "power"),
         ("path-roulette", "albedo:0"),
         ("sampler", "independent"),
         ("max-depth", "0"),

@@ -223,6 +223,11 @@ impl Principled {
     }
 
     #[inline]
+    pub(super) fn transmits(&self) -> bool {
+        self.glass > 0.0 || !self.through.is_black()
+    }
+
+    #[inline]
     pub(super) fn is_delta(&self) -> bool {
         let no_base = self.diffuse <= 0.0 || self.tint.is_black();
         let is_bare = self.coat <= 0.0 || self.coat_ggx().is_smooth();

@@ -1,6 +1,7 @@
 use super::{MODES, cases, numbers};
 use crate::bsdf::{Bsdf, BsdfSample, TransportMode, same_hemisphere};
-use crate::math::{Vec2, Vec3, sqr};
+use crate::math::{Vec2, Vec3, sqr, warp};
+use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::testing::{check_close, samples};
 
@@ -179,4 +180,23 @@ fn coefficients_of_dirac_distributions_hold_the_probability_of_the_lobe() {
             assert!((reflected as f32 / n as f32 - low).abs() < 2e-4, "{name}");
         }
     }
+}
+
+/// What does not transmit has no value for directions on opposite sides.
+#[test]
+fn light_goes_through_only_what_transmits() {
+    let mut all = 0;
+    for (name, bsdf) in Bsdf::examples() {
+        let mut crossing = 0;
+        for (wo, wi) in samples(name, 400).map(|sample| {
+            let get = |i| sample.get_2d(Dimension::at(i, Purpose::Scatter));
+            (warp::uniform_sphere(get(0)), warp::uniform_sphere(get(1)))
+        }) {
+            let f = bsdf.eval(wo, wi, TransportMode::Radiance);
+            crossing += usize::from(!f.is_black() && !same_hemisphere(wo, wi));
+        }
+        assert!(crossing == 0 || bsdf.transmits(), "{name}: {crossing}");
+        all += crossing;
+    }
+    assert!(all > 1000, "{all}");
 }

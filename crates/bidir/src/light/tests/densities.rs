@@ -1,5 +1,5 @@
 use super::{Surroundings, environment, examples, numbers, pole, receivers, turn};
-use crate::light::{EmissionSides, InfiniteLight, Light, LightContext, LightPoint};
+use crate::light::{EmissionSides, InfiniteLight, Light, LightContext, LightPoint, Part};
 use crate::math::{Frame, PI, Vec2, Vec3, direction_to_square, sqr, square_to_direction, warp};
 use crate::sampler::{Dimension, Purpose};
 use crate::shape::{Mesh, Shape};
@@ -56,7 +56,7 @@ fn directions_follow_the_density() {
             Some(frame(&drawn.from.at).to_local(drawn.direction))
         });
         let at = light
-            .sample_next_event(&context, receivers()[0], Vec2::splat(0.3))
+            .sample_next_event(&context, Part::Whole, receivers()[0], Vec2::splat(0.3))
             .unwrap()
             .at;
         let pdf = |w| light.pdf_direction(&context, &at, frame(&at).to_world(w));
@@ -127,10 +127,14 @@ fn environments_are_drawn_by_the_density() {
         let points = samples(name, N).map(|sample| {
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
             Some(to_square(
-                &light.sample_next_event(&context, receivers()[0], u)?.at,
+                &light
+                    .sample_next_event(&context, Part::Whole, receivers()[0], u)?
+                    .at,
             ))
         });
-        let pdf = |p| light.pdf_next_event(&context, receivers()[0], &direction(p)) * 4.0 * PI;
+        let pdf = |p| {
+            light.pdf_next_event(&context, Part::Whole, receivers()[0], &direction(p)) * 4.0 * PI
+        };
         battery.chi2(&format!("{name}, receivers"), &grid, pdf, points);
     }
     battery.check();
@@ -229,12 +233,14 @@ fn points_of_a_mesh_follow_the_density() {
         let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
         Some(on_square(
             mesh,
-            &light.sample_next_event(&context, receiver, u)?.at,
+            &light
+                .sample_next_event(&context, Part::Whole, receiver, u)?
+                .at,
         ))
     });
     let pdf = |p| {
         over_square(
-            &|context, at| light.pdf_next_event(context, receiver, at),
+            &|context, at| light.pdf_next_event(context, Part::Whole, receiver, at),
             p,
         )
     };

@@ -1,5 +1,5 @@
 use super::{Surroundings, examples, numbers, receivers};
-use crate::light::{EmissionSample, Light, LightContext, SpotLight};
+use crate::light::{EmissionSample, Light, LightContext, Part, SpotLight};
 use crate::math::{Vec2, Vec3, sin_cos};
 use crate::sampler::{Dimension, Purpose};
 use crate::testing::{check_close, samples};
@@ -70,9 +70,11 @@ fn points_for_a_receiver_have_the_density_that_the_light_says() {
         for (sample, i) in samples(name, 2000).zip(0..) {
             let receiver = receivers()[i % 3];
             let u = sample.get_2d(Dimension::at(0, Purpose::NextEventPosition));
-            let drawn = light.sample_next_event(&context, receiver, u).unwrap();
+            let drawn = light
+                .sample_next_event(&context, Part::Whole, receiver, u)
+                .unwrap();
             assert!(drawn.pdf > 0.0 && drawn.pdf.is_finite(), "{name}");
-            let pdf = light.pdf_next_event(&context, receiver, &drawn.at);
+            let pdf = light.pdf_next_event(&context, Part::Whole, receiver, &drawn.at);
             check_close(drawn.pdf, pdf, 1e-3, name);
         }
     }
@@ -116,7 +118,7 @@ fn sides_that_do_not_emit_are_dark() {
             continue;
         }
         let drawn = light
-            .sample_next_event(&context, Vec3::ZERO, Vec2::splat(0.3))
+            .sample_next_event(&context, Part::Whole, Vec3::ZERO, Vec2::splat(0.3))
             .unwrap();
         let at = &drawn.at;
         let bright = |w: Vec3| light.emitted(&context, at, w)[1] > 0.0;

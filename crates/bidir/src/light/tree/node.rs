@@ -1,0 +1,217 @@
+//! I = Φ max(cosθ' cosθ_r', ε) / d², about the irradiance (W/m², luminance) of a receiver by all
+//! emitters of a child, for the four children of a node at once.
+
+#[cfg(test)]
+mod tests;
+
+use super::{Cone, EmitterBounds, Facing, Receiver};
+use crate::math::Vec3;
+use accel::Aabb;
+use glam::Vec4;
+
+/// The children of a node.
+pub(super) const WIDTH: usize = 4;
+
+/// What is left of the importance where bounds say that no light can come: they are rounded, and a
+/// receiver whose emitters all turn away still needs a choice.
+const LEAST: f32 = 1e-3;
+/// The least cosine of a receiver within its horizon: what shines does so at grazing angles too.
+const GRAZING: f32 = 0.1;
+
+/// What a child is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Child {
+    /// Nothing: a place that is left.
+    None,
+    /// An emitter, by number.
+    Leaf(u32),
+    /// A node, by index.
+    Inner(u32),
+}
+
+/// From how many radii away emitters are alike: their distances differ by an eighth at the most.
+const FAR: f32 = 8.0;
+/// The most that directions of emitters differ which are alike. Unit: rad.
+const NARROW: f32 = 0.35;
+/// The narrowest emission of emitters that are alike: of smaller cones a receiver may be in some.
+/// Unit: rad.
+const OPEN: f32 = 1.0;
+
+/// Four children, each with a ball around its emitters and a cone around their normals.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    centre: [Vec4; 3],
+    radius2: Vec4,
+    axis: [Vec4; 3],
+    /// Cosine and sine of θ_o.
+    spread: Angle,
+    /// cosθ_e.
+    cos_opening: Vec4,
+    /// 1 where emission is mirrored, else 0.
+    mirrored: Vec4,
+    /// Φ; 0 where there is no child. Unit: W/sr, luminance.
+    intensity: Vec4,
+    /// The square of the distance beyond which emitters below are alike. Unit: m².
+    far2: Vec4,
+    pub(super) children: [Child; WIDTH],
+}
+
+/// What the children are to a receiver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    /// I / Σ I of each.
+    pub(super) of: [f32; WIDTH],
+    /// A bit for each whose emitters are alike.
+    alike: u32,
+}
+
+impl Shares {
+    /// True where the emitters of child number `i` differ in intensity alone.
+    #[inline]
+    pub(super) fn are_alike(&self, i: usize) -> bool {
+        self.alike >> i & 1 == 1
+    }
+}
+
+/// Cosine and sine of angles from 0 to π.
+#[derive(Clone, Copy, Debug)]
+struct Angle {
+    cos: Vec4,
+    sin: Vec4,
+}
+
+impl Angle {
+    #[inline]
+    fn of_cos(cos: Vec4) -> Self {
+        let sin = (Vec4::ONE - cos * cos).max(Vec4::ZERO).sqrt();
+        Self { cos, sin }
+    }
+
+    /// What is left of this angle after `other`; 0 where nothing is.
+    #[inline]
+    fn less(&self, other: &Self) -> Self {
+        let is_within = self.cos.cmpgt(other.cos);
+        let cos = self.cos * other.cos + self.sin * other.sin;
+        let sin = self.sin * other.cos - self.cos * other.sin;
+        Self {
+            cos: Vec4::select(is_within, Vec4::ONE, cos),
+            sin: Vec4::select(is_within, Vec4::ZERO, sin),
+        }
+    }
+}
+
+impl Node {
+    /// A node without children.
+    pub(super) const EMPTY: Self = Self {
+        centre: [Vec4::ZERO; 3],
+        radius2: Vec4::ZERO,
+        axis: [Vec4::ZERO; 3],
+        spread: Angle {
+            cos: Vec4::ONE,
+            sin: Vec4::ZERO,
+        },
+        cos_opening: Vec4::ZERO,
+        mirrored: Vec4::ZERO,
+        intensity: Vec4::ZERO,
+        far2: Vec4::INFINITY,
+        children: [Child::None; WIDTH],
+    };
+
+    /// Puts in child number `i`.
+    pub(super) fn set(&mut self, i: usize, child: Child, around: &EmitterBounds) {
+        let (bounds, cone) = (&around.bounds, &around.cone);
+        let centre = bounds.center();
+        for k in 0..3 {
+            self.centre[k][i] = centre[k];
+            self.axis[k][i] = cone.axis[k];
+        }
+        self.radius2[i] = radius2(bounds);
+        self.spread.cos[i] = libm::cosf(cone.spread);
+        self.spread.sin[i] = libm::sinf(cone.spread).max(0.0);
+        self.cos_opening[i] = libm::cosf(cone.opening);
+        self.mirrored[i] = f32::from(cone.is_mirrored);
+        self.intensity[i] = around.intensity;
+        self.children[i] = child;
+    }
+
+    /// Says that child number `i` is of emitters that shine evenly, or in much the same directions.
+    pub(super) fn set_uniform(&mut self, i: usize) {
+        self.far2[i] = FAR * FAR * self.radius2[i];
+    }
+
+    /// What the children are to `receiver`.
+    #[inline]
+    pub(super) fn shares(&self, receiver: &Receiver) -> Shares {
+        let across = offset(receiver.point, &self.centre);
+        let importances = self.importances(receiver, &across);
+        let [a, b, c, d] = importances.to_array();
+        Shares {
+            of: (importances / ((a + b) + (c + d))).to_array(),
+            alike: dot(&across, &across).cmpgt(self.far2).bitmask(),
+        }
+    }
+
+    /// I of each child; 0 where there is none, positive elsewhere. Unit: W/m², luminance.
+    #[inline]
+    fn importances(&self, receiver: &Receiver, across: &[Vec4; 3]) -> Vec4 {
+        let distance2 = dot(across, across);
+        let is_outside = distance2.cmpgt(self.radius2);
+        // Seen from outside, the ball is in a cone around its centre.
+        let inverse = Vec4::ONE / distance2.max(Vec4::splat(f32::MIN_POSITIVE));
+        let seen = Angle::of_cos((Vec4::ONE - self.radius2 * inverse).max(Vec4::ZERO).sqrt());
+        let inverse_distance = inverse.sqrt();
+        let cos = dot(across, &self.axis) * inverse_distance;
+        let leaves = self.emission(cos, &seen);
+        let n = receiver.facing.normal();
+        let cos = (across[0] * n.x + across[1] * n.y + across[2] * n.z) * -inverse_distance;
+        let arrives = reception(receiver.facing, cos, &seen);
+        let factor = (leaves * arrives).max(Vec4::splat(LEAST));
+        let factor = Vec4::select(is_outside, factor, Vec4::ONE);
+        let irradiance = self.intensity / distance2.max(self.radius2) * factor;
+        // Neither zero nor infinite, so that every child has a share.
+        let [least, most] = [f32::MIN_POSITIVE, f32::MAX / 8.0].map(Vec4::splat);
+        let is_there = self.intensity.cmpgt(Vec4::ZERO);
+        Vec4::select(is_there, irradiance.clamp(least, most), Vec4::ZERO)
+    }
+
+    /// cosθ', where θ is between the axes and the direction to the receiver; 0 beyond θ_e.
+    #[inline]
+    fn emission(&self, cos: Vec4, seen: &Angle) -> Vec4 {
+        let cos = Vec4::select(self.mirrored.cmpgt(Vec4::ZERO), cos.abs(), cos);
+        let least = Angle::of_cos(cos).less(&self.spread).less(seen).cos;
+        Vec4::select(least.cmpgt(self.cos_opening), least, Vec4::ZERO)
+    }
+}
+
+/// cosθ_r', where θ_r is between the receiver's normal and the direction to the centre; 0 below the
+/// horizon.
+#[inline]
+fn reception(facing: Facing, cos: Vec4, seen: &Angle) -> Vec4 {
+    let cos = match facing {
+        Facing::Front(_) => cos,
+        Facing::Both(_) => cos.abs(),
+    };
+    let least = Angle::of_cos(cos).less(seen).cos;
+    let lit = least.max(Vec4::splat(GRAZING));
+    Vec4::select(least.cmpgt(Vec4::ZERO), lit, Vec4::ZERO)
+}
+
+/// True where `cone` is so narrow that its emitters' directions hardly matter from far away.
+pub(super) fn is_narrow(cone: &Cone) -> bool {
+    cone.spread <= NARROW && cone.opening >= OPEN
+}
+
+/// The square of the radius of a ball around the box. Unit: m².
+pub(super) fn radius2(bounds: &Aabb) -> f32 {
+    bounds.max.distance_squared(bounds.center())
+}
+
+#[inline]
+fn offset(p: Vec3, from: &[Vec4; 3]) -> [Vec4; 3] {
+    [p.x - from[0], p.y - from[1], p.z - from[2]]
+}
+
+#[inline]
+fn dot(a: &[Vec4; 3], b: &[Vec4; 3]) -> Vec4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
