@@ -15,6 +15,7 @@ pub(crate) use formats::film::{SettingsText, name_of};
 pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     let mut settings = scene;
     settings.integrator = args.integrator.unwrap_or(settings.integrator);
+    settings.candidates = args.candidates.unwrap_or(settings.candidates);
     let path = &mut settings.path;
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
@@ -35,7 +36,8 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
 /// Tells which flags and variables have no influence on this render. Returns how many there are.
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
     let estimator = &args.estimator;
-    let is_bdpt = settings.integrator == IntegratorKind::Bdpt;
+    let is_bdpt = settings.integrator.has_candidates();
+    let is_lvc = settings.integrator == IntegratorKind::Lvc;
     let is_light = settings.integrator == IntegratorKind::Light;
     let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
     let integrator = format!("on the integrator `{integrator}`");
@@ -47,6 +49,7 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
             "--light-choice",
             estimator.light_choice.is_some() && is_light,
         ),
+        ("--candidates", estimator.candidates.is_some() && !is_lvc),
         ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
         ("--mis", estimator.mis.is_some() && is_light),
     ];

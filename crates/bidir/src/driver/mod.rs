@@ -54,10 +54,7 @@ impl Default for Settings {
         Self {
             integrator: IntegratorKind::default(),
             shadow_rays: ShadowRays::default(),
-            candidates: std::env::var("M")
-                .ok()
-                .and_then(|m| m.parse().ok())
-                .unwrap_or(4),
+            candidates: 4,
             path: PathSettings::default(),
             sampler: SamplerKind::default(),
             seed: 0,

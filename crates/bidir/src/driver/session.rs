@@ -2,17 +2,18 @@
 //! and pass, and the film gets the pass when all of it is done. A pass that was stopped leaves no
 //! trace. No clock is looked at but the host's, where it gives one.
 
+mod group;
+
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
-use crate::integrator::{GROUP, Integrator, IntegratorKind, Sample, SharedLight, Workspace};
+use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size};
 use crate::path::PathContext;
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
-use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -178,9 +179,11 @@ impl<'a> Session<'a> {
         progress: &dyn Progress,
     ) -> bool {
         let pixels = self.scene.film().crop.area();
-        let run = match self.integrator.shared_light() {
-            None => RUN,
-            Some(_) => GROUP,
+        let shared = self.integrator.shared_light();
+        let run = if shared.is_some() {
+            group_size(pixels)
+        } else {
+            RUN
         };
         loop {
             let begin = next.fetch_add(run, Ordering::Relaxed);
@@ -191,32 +194,13 @@ impl<'a> Session<'a> {
                 return false;
             }
             let end = (begin + run).min(pixels);
-            if let Some(shared) = self.integrator.shared_light() {
+            if let Some(shared) = shared {
                 self.walk_light(shared, begin..end, pass, workspace);
             }
             for pixel in begin..end {
                 self.render_sample(pixel, pass, workspace, progress);
             }
             progress.advance(end - begin);
-        }
-    }
-
-    /// Walks the light subpaths of a group, and keeps their images.
-    fn walk_light(
-        &self,
-        shared: &dyn SharedLight,
-        group: Range<u64>,
-        pass: u64,
-        workspace: &mut Workspace,
-    ) {
-        shared.begin(workspace);
-        for pixel in group {
-            workspace.stopwatch.begin_sample();
-            let sample = self.sample(pixel, pass);
-            let context = self.context(&sample);
-            shared.walk(&context, &sample, workspace);
-            self.deposit(&context, pixel).take_light(workspace);
-            workspace.stopwatch.end(Stage::Film);
         }
     }
 
@@ -277,27 +261,15 @@ impl<'a> Session<'a> {
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
         let index = self.scene.film().crop.index(x, y)?;
-        let mut workspace = Workspace::with_journal();
         let index = index as u64;
+        let mut workspace = Workspace::with_journal();
         let sample = self.sample(index, pass);
         let context = self.context(&sample);
-        let light = self.integrator.shared_light().map(|shared| {
-            let mut own = None;
-            shared.begin(&mut workspace);
-            let begin = index / GROUP * GROUP;
-            let end = (begin + GROUP).min(self.scene.film().crop.area());
-            for other in begin..end {
-                let sample = self.sample(other, pass);
-                shared.walk(&self.context(&sample), &sample, &mut workspace);
-                if other == index {
-                    own = Some(workspace.light_image());
-                }
-            }
-            own
-        });
+        let shared = self.integrator.shared_light();
+        let images = shared.map(|shared| self.replay_light(shared, index, pass, &mut workspace));
         self.integrator.sample(&context, &sample, &mut workspace);
-        if let Some(image) = light.flatten() {
-            workspace.add_light_image(image);
+        if let Some(images) = images {
+            workspace.add_light_images(images);
         }
         let selector = selector(&self.settings, self.training.as_ref());
         Some(Replay::new(&context, workspace, &*selector))

@@ -19,10 +19,10 @@ pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::Lvc;
-pub(crate) use lvc::connectable;
+pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
-pub(crate) use workspace::camera_ray;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
+pub(crate) use workspace::{LightImages, camera_ray};
 
 use crate::path::{PathContext, PathRoulette};
 use crate::select::Selector;
@@ -49,10 +49,6 @@ pub trait SharedLight {
     /// Walks the light subpath that `sample` brings to its group, and adds its light image.
     fn walk(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
 }
-
-/// Samples of a group: those of as many pixels that follow each other in row order of the crop, less where
-/// these end. So few that their light subpaths stay in a processor's cache.
-pub const GROUP: u64 = 2048;
 
 /// The estimators by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -89,6 +89,13 @@ pub struct Splat {
     pub place: SplatPlace,
 }
 
+/// The light images of a light subpath, with the journal of their terms.
+#[derive(Debug, Default)]
+pub(crate) struct LightImages {
+    splats: Vec<Splat>,
+    entries: Vec<Entry>,
+}
+
 /// What a thread keeps from sample to sample, so that no sample allocates: buffers, the
 /// contributions of the last sample, and counters.
 #[derive(Debug, Default)]
@@ -246,17 +253,20 @@ impl Workspace {
         self.note(contribution.mark(), Fate::Added, contribution.value);
     }
 
-    /// The light image of the last light subpath: its splats and the journal of its terms.
-    pub(crate) fn light_image(&self) -> (Vec<Splat>, Vec<Entry>) {
+    /// The light images of a light subpath that was walked alone.
+    pub(crate) fn light_images(&self) -> LightImages {
         let entries = self.journal.iter().flat_map(|journal| &journal.entries);
-        (self.splats.clone(), entries.copied().collect())
+        LightImages {
+            splats: self.splats.clone(),
+            entries: entries.copied().collect(),
+        }
     }
 
-    /// Puts the light image of a light subpath, walked apart, beside what the sample left.
-    pub(crate) fn add_light_image(&mut self, (splats, entries): (Vec<Splat>, Vec<Entry>)) {
-        self.splats.extend(splats);
+    /// Puts light images beside what the sample left.
+    pub(crate) fn add_light_images(&mut self, images: LightImages) {
+        self.splats.extend(images.splats);
         if let Some(journal) = &mut self.journal {
-            journal.entries.extend(entries);
+            journal.entries.extend(images.entries);
         }
     }
 

@@ -107,9 +107,12 @@ pub(crate) struct TalkArgs {
 #[command(next_help_heading = "Estimator")]
 pub(crate) struct EstimatorArgs {
     /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
+    ///
+    /// bdpt joins the two subpaths of a sample; lvc joins camera subpaths with light subpaths of many
+    /// samples.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
-    /// Which connections between subpaths are traced (bdpt) [default: all].
+    /// Which connections between subpaths are traced (bdpt, lvc) [default: all].
     ///
     /// all: every one. per-light-vertex, per-camera-vertex, per-pair: one for each light vertex, for
     /// each camera vertex, for each pair of subpaths, drawn by unshadowed contribution.
@@ -117,17 +120,21 @@ pub(crate) struct EstimatorArgs {
     /// budget:K: at most K for each pair of subpaths.
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
+    /// How many vertices of shared light subpaths are weighed for each camera vertex (lvc)
+    /// [default: 4].
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) candidates: Option<u32>,
     /// How strategies that make the same path share it [default: balance].
     #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
     pub(crate) mis: Option<MisHeuristic>,
-    /// The strategies that take part (bdpt) [default: all].
+    /// The strategies that take part (bdpt, lvc) [default: all].
     ///
     /// A list of rules, of which the last that matches decides: `all`, `-s0` (without s = 0), `-t1`,
     /// `s2t3` (with this one). s counts vertices from the light, t from the camera. A list that does
     /// not begin with `all` begins with none.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) strategies: Option<Strategies>,
-    /// Where next-event estimation takes its light point from (bdpt) [default: fresh].
+    /// Where next-event estimation takes its light point from (bdpt, lvc) [default: fresh].
     ///
     /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
     #[arg(long, value_parser = named(LightPointChoice::NAMES))]
@@ -140,7 +147,7 @@ pub(crate) struct EstimatorArgs {
     pub(crate) light_choice: Option<LightChoiceKind>,
     /// How subpaths end by chance [default: the integrator's].
     ///
-    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
+    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt and albedo:0 for lvc. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
     /// from bounce START on. off: only by --max-depth or escape.
     #[arg(long, value_name = "RULE")]
     pub(crate) path_roulette: Option<PathRoulette>,
@@ -242,6 +249,7 @@ mod tests {
         let settings = Settings::default();
         let path = &settings.path;
         check_default("shadow-rays", settings.shadow_rays);
+        check_default("candidates", settings.candidates);
         check_default("strategies", &path.strategies);
         let help = help_of("path-roulette");
         for (name, integrator) in IntegratorKind::NAMES {

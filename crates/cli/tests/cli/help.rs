@@ -30,7 +30,7 @@ fn every_flag_is_described() {
     check_flags("", "--help --no-color --version");
     check_flags(
         "render",
-        "--aov --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
+        "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
          --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --pyramid --quiet --replay --restart \
          --resume --sampler --seed --shadow-rays --size --spp --stats --strategies --strategy-layers \

@@ -72,6 +72,7 @@ fn settings_change_the_image() {
         "--seed 1",
         "--sampler independent",
         "--integrator path",
+        "--integrator lvc",
         "--mis uniform",
         "--max-depth 1",
         "--strategies all,-s0",

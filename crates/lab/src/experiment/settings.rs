@@ -19,6 +19,8 @@ pub struct Changes {
     pub integrator: Option<IntegratorKind>,
     /// Which connections are traced.
     pub shadow_rays: Option<ShadowRays>,
+    /// The cached light vertices that are candidates for each camera vertex.
+    pub candidates: Option<u32>,
     /// How strategies share paths.
     pub mis: Option<MisHeuristic>,
     /// The strategies that take part.
@@ -37,9 +39,10 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 9] = [
+    pub const NAMES: [&'static str; 10] = [
         "integrator",
         "shadow-rays",
+        "candidates",
         "mis",
         "strategies",
         "light-point",
@@ -56,6 +59,10 @@ impl Changes {
         match name {
             "integrator" => self.integrator = Some(named(&IntegratorKind::NAMES, value)?),
             "shadow-rays" => self.shadow_rays = Some(parsed(value)?),
+            "candidates" => {
+                let count = value.parse().ok().filter(|&count: &u32| count > 0);
+                self.candidates = Some(count.ok_or("expected a positive whole number")?);
+            }
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
             "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
@@ -77,6 +84,7 @@ impl Changes {
         Self {
             integrator: self.integrator.or(defaults.integrator),
             shadow_rays: self.shadow_rays.or(defaults.shadow_rays),
+            candidates: self.candidates.or(defaults.candidates),
             mis: self.mis.or(defaults.mis),
             strategies: self.strategies.or_else(|| defaults.strategies.clone()),
             light_point: self.light_point.or(defaults.light_point),
@@ -91,6 +99,7 @@ impl Changes {
     pub fn apply(&self, scene: &Settings) -> Settings {
         let mut settings = scene.clone();
         settings.integrator = self.integrator.unwrap_or(settings.integrator);
+        settings.candidates = self.candidates.unwrap_or(settings.candidates);
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
@@ -148,7 +157,7 @@ mod tests {
     fn settings_are_read_as_they_are_written() {
         let mut changes = Changes::default();
         let values = [
-            "light", "per-pair", "uniform", "all,-s0", "shared", "power", "off", "sobol", "7",
+            "light", "per-pair", "9", "uniform", "all,-s0", "shared", "power", "off", "sobol", "7",
         ];
         for (name, value) in Changes::NAMES.into_iter().zip(values) {
             changes.set(name, value).unwrap();
@@ -176,5 +185,7 @@ mod tests {
         );
         assert!(wrong("strategies", "s").contains("no strategy"));
         assert_eq!(wrong("max-depth", "-1"), "expected a whole number");
+        let positive = "expected a positive whole number";
+        assert_eq!(wrong("candidates", "0"), positive);
     }
 }

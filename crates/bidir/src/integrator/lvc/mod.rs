@@ -17,10 +17,18 @@ use super::bdpt::{hits, light_images, next_event, offer, trace_chosen};
 use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
 use crate::path::{JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
+use crate::scene::SegmentEnd;
 use crate::select::{Draws, Selector};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use cache::Cached;
+
+/// How many samples share light subpaths where so many pixels are rendered: those of pixels that follow
+/// each other in row order of the crop. So few that the subpaths stay in a processor's cache, and that
+/// there are some groups for every thread.
+pub(crate) fn group_size(pixels: u64) -> u64 {
+    (pixels / 64).next_power_of_two().clamp(256, 2048)
+}
 
 /// Bidirectional path tracing with a light vertex cache, and with the connections that `selector`
 /// chooses.
@@ -117,10 +125,10 @@ impl Lvc {
         t: usize,
         i: usize,
     ) {
-        let Some((term, path)) = self.connection(context, workspace, t, i) else {
+        let Some((term, ends)) = self.connection(context, workspace, t, i) else {
             return;
         };
-        let counted = workspace.count(term, |_| Link::Connection(path));
+        let counted = workspace.count(term, |_| Link::Connection(ends));
         offer(context, sample, workspace, &counted, Some(i as u32));
     }
 
@@ -131,7 +139,7 @@ impl Lvc {
         workspace: &mut Workspace,
         t: usize,
         i: usize,
-    ) -> Option<(Term, [crate::scene::SegmentEnd; 2])> {
+    ) -> Option<(Term, [SegmentEnd; 2])> {
         let Workspace {
             camera,
             weights,

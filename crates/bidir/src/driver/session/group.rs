@@ -1,0 +1,50 @@
+//! Groups of samples that share their light subpaths: these are walked before the samples.
+
+use super::Session;
+use crate::integrator::{LightImages, SharedLight, Workspace, group_size};
+use crate::stats::Stage;
+use std::ops::Range;
+
+impl Session<'_> {
+    /// Walks the light subpaths of the samples at `pixels`, a group, and keeps their images.
+    pub(super) fn walk_light(
+        &self,
+        shared: &dyn SharedLight,
+        pixels: Range<u64>,
+        pass: u64,
+        workspace: &mut Workspace,
+    ) {
+        shared.begin(workspace);
+        for pixel in pixels {
+            workspace.stopwatch.begin_sample();
+            let sample = self.sample(pixel, pass);
+            let context = self.context(&sample);
+            shared.walk(&context, &sample, workspace);
+            self.deposit(&context, pixel).take_light(workspace);
+            workspace.stopwatch.end(Stage::Film);
+        }
+    }
+
+    /// Walks the light subpaths of the group of `pixel` again; returns what that of `pixel` gave.
+    pub(super) fn replay_light(
+        &self,
+        shared: &dyn SharedLight,
+        pixel: u64,
+        pass: u64,
+        workspace: &mut Workspace,
+    ) -> LightImages {
+        let pixels = self.scene.film().crop.area();
+        let size = group_size(pixels);
+        let begin = pixel / size * size;
+        let mut own = LightImages::default();
+        shared.begin(workspace);
+        for other in begin..(begin + size).min(pixels) {
+            let sample = self.sample(other, pass);
+            shared.walk(&self.context(&sample), &sample, workspace);
+            if other == pixel {
+                own = workspace.light_images();
+            }
+        }
+        own
+    }
+}
