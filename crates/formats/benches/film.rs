@@ -6,9 +6,8 @@
 //! in every round; the table shows medians over rounds.
 
 use bidir::driver::{Progress, Resources, Session, Settings};
-use bidir::film::{Film, FilmSettings, PassBuffer};
+use bidir::film::{Film, FilmSettings, PassBuffer, SplatPlace};
 use bidir::integrator::IntegratorKind;
-use bidir::math::Vec2;
 use bidir::scene::Scene;
 use bidir::spectrum::Rgb;
 use bidir_formats::pbrt::{LoadOptions, load};
@@ -28,7 +27,7 @@ const RUN: usize = 256;
 /// What a sample leaves: its own pixel's value, and splats with place and the pixel's numbers.
 struct Contributions {
     camera: Rgb,
-    splats: Vec<(Vec2, Vec2, Rgb)>,
+    splats: Vec<(SplatPlace, Rgb)>,
 }
 
 /// Records the contributions of a pass, pixel by pixel.

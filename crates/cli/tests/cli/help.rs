@@ -86,7 +86,7 @@ fn help_tells_exit_codes_defaults_environment_and_other_spellings() {
     }
     render
         .prints("[default: fresh]")
-        .prints("[possible values: path, light, bdpt]");
+        .prints("[possible values: path, light, bdpt, lvc]");
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::*;
-use bidir::film::{Aov, FilmSettings, Filter, PassBuffer, PassSet};
+use bidir::film::{Aov, FilmSettings, Filter, PassBuffer, PassSet, SplatPlace};
 use bidir::math::Vec2;
 use serde_json::json;
 
@@ -17,7 +17,10 @@ fn film(first_pass: u64) -> Film {
             buffer.set_features(i, [value, 1.0].into_iter());
             buffer.add_to_part(i, i % film.layers().parts(), [value; 3]);
         }
-        let place = (Vec2::new(3.5, 80.5), Vec2::splat(0.5));
+        let place = SplatPlace {
+            raster: Vec2::new(3.5, 80.5),
+            u: Vec2::splat(0.5),
+        };
         buffer.splat(film.settings(), place, [1e-3, 2.0, 1e9], [1].into_iter());
         film.add_pass(pass, &buffer);
     }
