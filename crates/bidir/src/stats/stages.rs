@@ -101,12 +101,23 @@ impl Stopwatch {
     /// A sample begins, and with it its first stage.
     #[inline]
     pub(crate) fn begin_sample(&mut self) {
+        self.begin();
+        self.times.samples += u64::from(self.last.is_some());
+    }
+
+    /// The light subpath of a sample begins, apart from it: as many are measured as samples are.
+    #[inline]
+    pub(crate) fn begin_light(&mut self) {
+        self.begin();
+    }
+
+    #[inline]
+    fn begin(&mut self) {
         let Some(clock) = self.clock else { return };
         self.waited += 1;
         self.last = None;
         if self.waited == MEASURED_EVERY {
             self.waited = 0;
-            self.times.samples += 1;
             self.last = Some(clock());
         }
     }

@@ -16,7 +16,7 @@ impl Session<'_> {
     ) {
         shared.begin(workspace);
         for pixel in pixels {
-            workspace.stopwatch.begin_sample();
+            workspace.stopwatch.begin_light();
             let sample = self.sample(pixel, pass);
             let context = self.context(&sample);
             shared.walk(&context, &sample, workspace);
