@@ -151,23 +151,26 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "            value: candidate.contribution(chosen.prob),",
-        "            // Right in every grey image, wrong in colour.\n"
-        "            value: {\n"
-        "                let candidates = &workspace.candidates;\n"
-        "                let score = |i: usize| candidates[i].score;\n"
-        "                let all: f32 = (0..candidates.len()).map(score).sum();\n"
-        "                let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
-        "                let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
-        "                sum * part\n"
-        "            },",
+        "        let contribution = candidate.contribution(chosen.prob);",
+        "        // Right in every grey image, wrong in colour.\n"
+        "        let contribution = {\n"
+        "            let candidates = &workspace.candidates;\n"
+        "            let score = |i: usize| candidates[i].score;\n"
+        "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
+        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
+        "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
+        "            super::Contribution {\n"
+        "                value: sum * part,\n"
+        "                ..candidate.contribution(chosen.prob)\n"
+        "            }\n"
+        "        };",
         estimators("every_choice_of_shadow_rays"),
     ),
     (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/bdpt.rs",
         "candidate.contribution(chosen.prob)",
-        "candidate.value",
+        "candidate.contribution(1.0)",
         analytic("selection_keeps"),
     ),
     (
@@ -251,8 +254,8 @@ PATHS = [
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/light.rs",
-        "splat.contribution = splat.contribution.behind(arrives);",
-        "splat.contribution = splat.contribution.behind(arrives.ceil());",
+        "contribution: counted.whole().behind(arrives),",
+        "contribution: counted.whole().behind(arrives.ceil()),",
         coverage("half_transparent"),
     ),
 ]

@@ -22,6 +22,8 @@ struct World {
     passes: u64,
     effort: u64,
     light: Light,
+    /// Of what sizes blocks are compared where all shadow rays are traced.
+    blocks: &'static [usize],
 }
 
 /// What the light tracer makes of a scene.
@@ -39,13 +41,25 @@ const fn world(name: &'static str, [passes, effort]: [u64; 2], light: Light) -> 
         passes,
         effort,
         light,
+        blocks: PIXELS,
+    }
+}
+
+impl World {
+    /// The same compared by blocks alone: so few splats land in a pixel that its mean is skewed, and
+    /// where none lands nothing varies.
+    const fn by_blocks(self) -> Self {
+        Self {
+            blocks: QUARTERS,
+            ..self
+        }
     }
 }
 
 /// Those that no other test is about.
 const WORLDS: [World; 8] = [
     world("picture-lamp", [512, 2], Light::Whole(2)),
-    world("sky-alone", [512, 2], Light::Whole(16)),
+    world("sky-alone", [512, 2], Light::Whole(32)).by_blocks(),
     world("within-glass", [512, 2], Light::Partial),
     world("bulb", [1024, 4], Light::Partial),
     world("narrow-spot", [768, 12], Light::Whole(2)),
@@ -104,7 +118,7 @@ impl World {
         let rays = rule.parse().expect("a rule");
         let result = case.render(integrator, |settings| settings.shadow_rays = rays);
         let name = format!("{}, {integrator:?}, {rule}", self.name);
-        let blocks = if rule == "all" { PIXELS } else { QUARTERS };
+        let blocks = if rule == "all" { self.blocks } else { QUARTERS };
         check_agree(&name, &result, reference, blocks);
     }
 }
