@@ -167,6 +167,20 @@ PATHS = [
         estimators("every_choice_of_shadow_rays"),
     ),
     (
+        "candidates of a light cache not shared among each other",
+        "crates/bidir/src/integrator/lvc/mod.rs",
+        "light_cache.per_subpath() / f64::from(self.candidates);",
+        "light_cache.per_subpath();",
+        analytic("a_closed_sphere"),
+    ),
+    (
+        "shared light subpaths counted as one in sums",
+        "crates/bidir/src/path/running.rs",
+        "let count = share(context.count(i + 1, 2));",
+        "let count = 1.0;",
+        RUNNING,
+    ),
+    (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/bdpt.rs",
         "candidate.contribution(chosen.prob)",
