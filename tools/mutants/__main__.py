@@ -82,6 +82,8 @@ def cargo(test, *arguments):
     environment = dict(os.environ, CARGO_TARGET_DIR=os.path.join(WORK, "build"))
     # A shrunk counterexample of a mutant is no regression of the project.
     environment["PROPTEST_DISABLE_FAILURE_PERSISTENCE"] = "1"
+    # One file differs from mutant to mutant.
+    environment["CARGO_INCREMENTAL"] = "1"
     try:
         run = subprocess.run(
             command,

@@ -169,7 +169,7 @@ PATHS = [
     (
         "candidates of a light cache not shared among each other",
         "crates/bidir/src/integrator/lvc/mod.rs",
-        "light_cache.per_subpath() / f64::from(self.candidates);",
+        "light_cache.per_subpath() / f64::from(self.candidates.get());",
         "light_cache.per_subpath();",
         analytic("a_closed_sphere"),
     ),

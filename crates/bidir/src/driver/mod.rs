@@ -20,7 +20,7 @@ pub use training::Training;
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
-use crate::integrator::IntegratorKind;
+use crate::integrator::{CandidateCount, IntegratorKind};
 use crate::path::PathSettings;
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
@@ -30,15 +30,15 @@ use thiserror::Error;
 
 /// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
 /// passes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Settings {
     /// The estimator.
     pub integrator: IntegratorKind,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
     /// How many vertices of shared light subpaths are candidates for each camera vertex, in
-    /// [`IntegratorKind::Lvc`]. Positive.
-    pub candidates: u32,
+    /// [`IntegratorKind::Lvc`].
+    pub candidates: CandidateCount,
     /// How paths are made and weighted.
     pub path: PathSettings,
     /// The random numbers.
@@ -47,20 +47,6 @@ pub struct Settings {
     pub seed: u64,
     /// What the film keeps beside the picture, whose bits do not depend on it.
     pub layers: Layers,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            integrator: IntegratorKind::default(),
-            shadow_rays: ShadowRays::default(),
-            candidates: 4,
-            path: PathSettings::default(),
-            sampler: SamplerKind::default(),
-            seed: 0,
-            layers: Layers::default(),
-        }
-    }
 }
 
 /// What a render may use; nothing here changes an image.

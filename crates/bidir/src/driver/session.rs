@@ -337,7 +337,7 @@ pub(super) fn path_context<'a>(
 fn connections(settings: &Settings, training: Option<&Training>) -> f64 {
     let vertices = training.map_or(0.0, |training| training.light_vertices);
     match settings.integrator {
-        IntegratorKind::Lvc if vertices > 0.0 => f64::from(settings.candidates) / vertices,
+        IntegratorKind::Lvc if vertices > 0.0 => f64::from(settings.candidates.get()) / vertices,
         _ => 1.0,
     }
 }

@@ -4,7 +4,9 @@
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, connectable};
+use crate::integrator::{
+    CandidateCount, Integrator, IntegratorKind, Sample, Workspace, connectable,
+};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
@@ -35,7 +37,8 @@ const STRIDE: u64 = 2_654_435_761;
 impl Training {
     /// Renders a few samples spread over the film, tracing every connection.
     pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
-        let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), 1);
+        let integrator = IntegratorKind::Bdpt
+            .integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
         let mut workspace = Workspace::default();
         let (mut sum, mut vertices) = (0.0, 0);
         for i in 0..SAMPLES {

@@ -33,14 +33,7 @@ impl Integrator for Bdpt {
         workspace.stopwatch.end(Stage::LightImage);
         gather_candidates(context, sample, workspace);
         workspace.stopwatch.end(Stage::Candidates);
-        let Workspace {
-            candidates, chosen, ..
-        } = workspace;
-        self.selector
-            .select(candidates, Draws(&sample.camera), chosen);
-        workspace.stopwatch.end(Stage::Select);
-        trace_chosen(context, sample, workspace);
-        workspace.stopwatch.end(Stage::Shadow);
+        choose_and_trace(&*self.selector, context, sample, workspace);
     }
 }
 
@@ -226,9 +219,25 @@ fn connection(
     })
 }
 
+/// Has `selector` choose among the candidates, and traces what it chose.
+pub(super) fn choose_and_trace(
+    selector: &dyn Selector,
+    context: &PathContext<'_>,
+    sample: &Sample,
+    workspace: &mut Workspace,
+) {
+    let Workspace {
+        candidates, chosen, ..
+    } = workspace;
+    selector.select(candidates, Draws(&sample.camera), chosen);
+    workspace.stopwatch.end(Stage::Select);
+    trace_chosen(context, sample, workspace);
+    workspace.stopwatch.end(Stage::Shadow);
+}
+
 /// Traces the chosen connections and adds what arrives, divided by its probability.
 #[inline(never)]
-pub(super) fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];

@@ -18,7 +18,7 @@ pub use bdpt::Bdpt;
 pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
-pub use lvc::Lvc;
+pub use lvc::{CandidateCount, CandidateCountError, Lvc};
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
@@ -93,7 +93,11 @@ impl IntegratorKind {
     }
 
     /// The estimator; `selector` chooses the shadow rays of those that have candidates.
-    pub fn integrator(self, selector: Box<dyn Selector>, candidates: u32) -> Box<dyn Integrator> {
+    pub fn integrator(
+        self,
+        selector: Box<dyn Selector>,
+        candidates: CandidateCount,
+    ) -> Box<dyn Integrator> {
         match self {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),

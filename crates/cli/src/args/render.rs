@@ -6,7 +6,7 @@ use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
@@ -120,10 +120,10 @@ pub(crate) struct EstimatorArgs {
     /// budget:K: at most K for each pair of subpaths.
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
-    /// How many vertices of shared light subpaths are weighed for each camera vertex (lvc)
-    /// [default: 4].
-    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) candidates: Option<u32>,
+    /// How many vertices of shared light subpaths are weighed for each camera vertex (lvc), up to
+    /// 4096 [default: 4].
+    #[arg(long, value_name = "M")]
+    pub(crate) candidates: Option<CandidateCount>,
     /// How strategies that make the same path share it [default: balance].
     #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
     pub(crate) mis: Option<MisHeuristic>,

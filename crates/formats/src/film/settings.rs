@@ -30,7 +30,7 @@ pub struct SettingsText {
     /// The most bounces. None: no limit.
     pub max_depth: Option<u32>,
     /// The cached light vertices that are candidates for each camera vertex.
-    pub candidates: u32,
+    pub candidates: u16,
     /// The random numbers.
     pub sampler: &'static str,
     /// Their seed.
@@ -154,7 +154,7 @@ impl From<&Settings> for SettingsText {
             light_choice: name_of(&LightChoiceKind::NAMES, *light_choice),
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
-            candidates: *candidates,
+            candidates: candidates.get(),
             sampler: name_of(&SamplerKind::NAMES, *sampler),
             seed: *seed,
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),

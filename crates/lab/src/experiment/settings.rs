@@ -3,7 +3,7 @@
 
 use super::names::nearest;
 use bidir::driver::Settings;
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
@@ -20,7 +20,7 @@ pub struct Changes {
     /// Which connections are traced.
     pub shadow_rays: Option<ShadowRays>,
     /// The cached light vertices that are candidates for each camera vertex.
-    pub candidates: Option<u32>,
+    pub candidates: Option<CandidateCount>,
     /// How strategies share paths.
     pub mis: Option<MisHeuristic>,
     /// The strategies that take part.
@@ -59,10 +59,7 @@ impl Changes {
         match name {
             "integrator" => self.integrator = Some(named(&IntegratorKind::NAMES, value)?),
             "shadow-rays" => self.shadow_rays = Some(parsed(value)?),
-            "candidates" => {
-                let count = value.parse().ok().filter(|&count: &u32| count > 0);
-                self.candidates = Some(count.ok_or("expected a positive whole number")?);
-            }
+            "candidates" => self.candidates = Some(parsed(value)?),
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
             "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
@@ -185,7 +182,6 @@ mod tests {
         );
         assert!(wrong("strategies", "s").contains("no strategy"));
         assert_eq!(wrong("max-depth", "-1"), "expected a whole number");
-        let positive = "expected a positive whole number";
-        assert_eq!(wrong("candidates", "0"), positive);
+        assert!(wrong("candidates", "0").contains("from 1 to 4096"));
     }
 }

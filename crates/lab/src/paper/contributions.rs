@@ -6,7 +6,7 @@
 
 use crate::statistics::{Interval, mean_interval};
 use bidir::driver::Settings;
-use bidir::integrator::{IntegratorKind, Journal, Link, Sample, Workspace};
+use bidir::integrator::{CandidateCount, IntegratorKind, Journal, Link, Sample, Workspace};
 use bidir::path::PathContext;
 use bidir::sampler::{Domain, Sampler};
 use bidir::scene::Scene;
@@ -81,7 +81,8 @@ fn pass_of(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
         wavelengths: scene.color().sample_wavelengths(0.5),
         connections: 1.0,
     };
-    let integrator = IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), 1);
+    let integrator =
+        IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
     let mut workspace = Workspace::default();
     workspace.journal = Some(Journal::default());
     let mut terms = Vec::new();

@@ -10,15 +10,17 @@
 //! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt).
 
 mod cache;
+mod count;
 
 pub(crate) use cache::{LightCache, connectable};
+pub use count::{CandidateCount, CandidateCountError};
 
-use super::bdpt::{hits, light_images, next_event, offer, trace_chosen};
+use super::bdpt::{choose_and_trace, hits, light_images, next_event, offer};
 use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
 use crate::path::{JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
-use crate::select::{Draws, Selector};
+use crate::select::Selector;
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use cache::Cached;
@@ -36,7 +38,7 @@ pub struct Lvc {
     /// Chooses the connections that are traced.
     pub selector: Box<dyn Selector>,
     /// M: the vertices of the cache that are candidates for each camera vertex.
-    pub candidates: u32,
+    pub candidates: CandidateCount,
 }
 
 impl Integrator for Lvc {
@@ -48,14 +50,7 @@ impl Integrator for Lvc {
         workspace.stopwatch.end(Stage::Hits);
         self.gather_candidates(context, sample, workspace);
         workspace.stopwatch.end(Stage::Candidates);
-        let Workspace {
-            candidates, chosen, ..
-        } = workspace;
-        self.selector
-            .select(candidates, Draws(&sample.camera), chosen);
-        workspace.stopwatch.end(Stage::Select);
-        trace_chosen(context, sample, workspace);
-        workspace.stopwatch.end(Stage::Shadow);
+        choose_and_trace(&*self.selector, context, sample, workspace);
     }
 
     fn shared_light(&self) -> Option<&dyn SharedLight> {
@@ -96,7 +91,7 @@ impl Lvc {
         workspace
             .next_events
             .resize(workspace.camera.vertices.len(), None);
-        let count = f64::from(self.candidates);
+        let count = self.candidates.get();
         let size = workspace.light_cache.len();
         for t in 2..=workspace.camera.vertices.len() {
             if workspace.camera.vertices[t - 1].is_delta() {
@@ -106,8 +101,8 @@ impl Lvc {
             let at = Dimension::at(t - 1, Purpose::CachedVertex);
             let u = f64::from(sample.camera.get_1d(at));
             // One of each of as many parts of the cache.
-            for m in 0..self.candidates {
-                let i = ((f64::from(m) + u) / count * size as f64) as usize;
+            for m in 0..count {
+                let i = ((f64::from(m) + u) / f64::from(count) * size as f64) as usize;
                 if i < size {
                     self.candidate(context, sample, workspace, t, i);
                 }
@@ -157,7 +152,7 @@ impl Lvc {
         if contribution == Spectrum::ZERO {
             return None;
         }
-        let share = light_cache.per_subpath() / f64::from(self.candidates);
+        let share = light_cache.per_subpath() / f64::from(self.candidates.get());
         let term = Term {
             strategy: Strategy::new(s, t),
             light: light[0].light?,
