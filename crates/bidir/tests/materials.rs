@@ -53,7 +53,7 @@ fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Repli
         IntegratorKind::Light => 20480,
         // Weights that do not look at densities leave the tails heavy.
         IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 28672,
-        IntegratorKind::Bdpt | IntegratorKind::Lvc => 4096,
+        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => 4096,
     };
     replicates(scene, &settings, passes)
 }

@@ -11,12 +11,12 @@ use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic, PathContext,
-    PathDensities, PathRoulette, PathSettings, Vertex,
+    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic,
+    PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
 };
 use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
-use common::walks::for_each_pair;
+use common::walks::{for_each_pair, for_some_pairs, some_proposals};
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {
@@ -232,37 +232,56 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
             let density = next_event_density(context, path);
             light[0].beta = Spectrum::splat(1.0 / density);
         }
-        // The film of the room has 64 pixels, and as many light subpaths a pass.
-        let count = if n - s == 1 { 64.0 } else { 1.0 };
+        let count = count(context, s, path) as f32;
         let value = JoinedPath::connection(&light, &camera).contribution(context);
         result.push((s, w, value / count));
     }
     result
 }
 
-fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
-    check_paths_with(&settings(mis, light_point), scene);
+/// n_s of the film of the rooms, which has 64 pixels.
+fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
+    let Connections {
+        proposals,
+        samples_per_subpath,
+        ..
+    } = context.connections;
+    match (s, path.len() - s) {
+        (_, 1) => 64.0 / samples_per_subpath,
+        (s, t) if s > 1 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
+        _ => 1.0,
+    }
 }
 
-fn check_paths_with(settings: &PathSettings, scene: &Scene) {
+fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
+    check_paths_with(&settings(mis, light_point), scene, Connections::ONE_SUBPATH);
+}
+
+fn check_paths_with(settings: &PathSettings, scene: &Scene, connections: Connections<'_>) {
     let mut paths = 0;
-    for_each_pair(settings, scene, |context, light, camera| {
-        for s in 1..=light.vertices.len() {
-            for t in 1..=camera.vertices.len() {
-                let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
-                let path = JoinedPath::connection(light, camera);
-                let contributes = !path.contribution(context).is_black();
-                // Such a step cannot be made again from points alone.
-                let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
-                if s + t > settings.max_vertices() || !contributes || is_bound {
-                    continue;
+    for_some_pairs(
+        400,
+        settings,
+        scene,
+        connections,
+        |context, light, camera| {
+            for s in 1..=light.vertices.len() {
+                for t in 1..=camera.vertices.len() {
+                    let (light, camera) = (&light.vertices[..s], &camera.vertices[..t]);
+                    let path = JoinedPath::connection(light, camera);
+                    let contributes = !path.contribution(context).is_black();
+                    // Such a step cannot be made again from points alone.
+                    let is_bound = took_a_dirac_lobe(light) || took_a_dirac_lobe(camera);
+                    if s + t > settings.max_vertices() || !contributes || is_bound {
+                        continue;
+                    }
+                    let path = whole_path(context, light, camera);
+                    check_path(context, &path, settings.mis);
+                    paths += 1;
                 }
-                let path = whole_path(context, light, camera);
-                check_path(context, &path, settings.mis);
-                paths += 1;
             }
-        }
-    });
+        },
+    );
     assert!(paths > 1000, "{paths} paths");
 }
 
@@ -322,7 +341,24 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
                 light_choice,
                 ..settings(mis, LightPointChoice::Fresh)
             };
-            check_paths_with(&settings, &scene);
+            check_paths_with(&settings, &scene, Connections::ONE_SUBPATH);
+        }
+    }
+}
+
+/// The same where connections are proposed from place to place, to light subpaths of other samples.
+#[test]
+fn proposals_are_one_function_of_the_path() {
+    for scene in [common::room(0.1), common::gallery(0.1)] {
+        let proposals = some_proposals(&scene);
+        let connections = Connections {
+            per_vertex: 0.7,
+            proposals: Some(&proposals),
+            samples_per_subpath: 4.0,
+        };
+        for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
+            let settings = settings(mis, LightPointChoice::Fresh);
+            check_paths_with(&settings, &scene, connections);
         }
     }
 }

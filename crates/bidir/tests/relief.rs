@@ -10,7 +10,7 @@ use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::path::{PathContext, PathSettings, Vertex};
+use bidir::path::{Connections, PathContext, PathSettings, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, Scene, SceneBuilder};
 use bidir::shape::Shape;
@@ -180,7 +180,7 @@ fn a_point_looks_the_same_to_every_walk() {
         scene: &scene,
         settings: &PathSettings::default(),
         wavelengths: Wavelengths::default(),
-        connections: 1.0,
+        connections: Connections::ONE_SUBPATH,
     };
     for i in 0..64 {
         let along = Vec2::new(

@@ -63,7 +63,7 @@ fn measuring_stages_changes_no_bit_and_no_counter() {
         assert_eq!(*plain.stage_times(), StageTimes::default(), "{name}");
         let times = timed.stage_times();
         assert!((1..=10).contains(&times.samples), "{name}: {times:?}");
-        let of_bdpt = integrator.has_candidates();
+        let of_bdpt = timed.settings().integrator.has_candidates();
         for stage in [Stage::Walk, Stage::Film] {
             assert!(!times.of(stage).is_zero(), "{name}: {times:?}");
         }
@@ -168,6 +168,7 @@ fn parts_in_any_order_are_the_whole() {
         (IntegratorKind::Bdpt, "budget:2"),
         (IntegratorKind::Lvc, "all"),
         (IntegratorKind::Lvc, "budget:2"),
+        (IntegratorKind::Auto, "all"),
     ] {
         let settings = settings(integrator, rule);
         let whole = part(&scene, &settings, 0..7);
@@ -193,7 +194,11 @@ fn parts_in_any_order_are_the_whole() {
 
 #[test]
 fn a_replayed_sample_is_the_sample() {
-    for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+    for integrator in [
+        IntegratorKind::Bdpt,
+        IntegratorKind::Lvc,
+        IntegratorKind::Auto,
+    ] {
         check_replays(integrator);
     }
 }

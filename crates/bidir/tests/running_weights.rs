@@ -8,21 +8,18 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic, PathContext,
-    PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath, Vertex,
-    sample_next_event,
+    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
+    PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
+    Vertex, sample_next_event,
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
-use common::walks::for_some_pairs;
+use common::walks::{for_some_pairs, some_proposals};
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
 const TOLERANCE: f32 = 1e-6;
 /// Weights below this are compared absolutely.
 const SMALL: f32 = 1e-30;
-
-/// For [`PathContext::connections`].
-const CONNECTIONS: [f64; 2] = [1.0, 2.7];
 
 /// What is compared, and how much of it says something.
 #[derive(Default)]
@@ -42,7 +39,7 @@ impl Comparison {
             Junction::Hit => (0, light + camera),
             Junction::Connection => (light, camera),
         };
-        if context.count(s, t) == 0.0 {
+        if !context.takes(s, t) {
             return;
         }
         let pure = path.weight(context, &mut self.densities);
@@ -177,9 +174,19 @@ fn describe(settings: &PathSettings) -> String {
 #[track_caller]
 fn check(scene: &Scene, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
+    let proposals = some_proposals(scene);
+    let shared = Connections {
+        per_vertex: 2.7,
+        proposals: Some(&proposals),
+        samples_per_subpath: 4.0,
+    };
+    let uniform = Connections {
+        proposals: None,
+        ..shared
+    };
     for settings in all_settings() {
-        for_some_pairs(pairs, &settings, scene, |context, light, camera| {
-            for connections in CONNECTIONS {
+        for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
+            for connections in [Connections::ONE_SUBPATH, uniform, shared] {
                 let context = PathContext {
                     connections,
                     ..*context
@@ -286,9 +293,15 @@ fn long_paths() {
             ..PathSettings::default()
         };
         let mut comparison = Comparison::default();
-        for_some_pairs(4, &settings, &scene, |context, light, camera| {
-            comparison.compare_pair(context, light, camera);
-        });
+        for_some_pairs(
+            4,
+            &settings,
+            &scene,
+            Connections::ONE_SUBPATH,
+            |context, light, camera| {
+                comparison.compare_pair(context, light, camera);
+            },
+        );
         assert!(comparison.shared > 400, "{} are shared", comparison.shared);
     }
 }

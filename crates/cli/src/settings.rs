@@ -15,7 +15,10 @@ pub(crate) use formats::film::{SettingsText, name_of};
 pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     let mut settings = scene;
     settings.integrator = args.integrator.unwrap_or(settings.integrator);
-    settings.candidates = args.candidates.unwrap_or(settings.candidates);
+    let lvc = &mut settings.lvc;
+    lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
+    lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
+    lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
     let path = &mut settings.path;
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
@@ -37,7 +40,9 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
     let estimator = &args.estimator;
     let is_bdpt = settings.integrator.has_candidates();
+    let is_auto = settings.integrator == IntegratorKind::Auto;
     let is_lvc = settings.integrator == IntegratorKind::Lvc;
+    let may_share = is_lvc || is_auto;
     let is_light = settings.integrator == IntegratorKind::Light;
     let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
     let integrator = format!("on the integrator `{integrator}`");
@@ -49,7 +54,12 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
             "--light-choice",
             estimator.light_choice.is_some() && is_light,
         ),
-        ("--candidates", estimator.candidates.is_some() && !is_lvc),
+        ("--candidates", estimator.candidates.is_some() && !may_share),
+        ("--proposal", estimator.proposal.is_some() && !may_share),
+        (
+            "--samples-per-subpath",
+            estimator.samples_per_subpath.is_some() && !is_lvc,
+        ),
         ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
         ("--mis", estimator.mis.is_some() && is_light),
     ];

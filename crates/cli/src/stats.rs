@@ -116,9 +116,11 @@ impl Report {
             0 => String::new(),
             rays => format!("; {} rays for training", short(rays as f64)),
         };
+        let plan = self.training.as_ref().and_then(|t| t.plan.as_ref());
+        let plan = plan.map_or(String::new(), |plan| format!("; auto: {plan}"));
         format!(
             "{} spp in {}, {} samples/s; rays per sample: {:.2} camera, {:.2} light, \
-             {:.2} connection, {:.2} light image{training}",
+             {:.2} connection, {:.2} light image{training}{plan}",
             self.spp,
             args::Duration(Duration::from_secs_f64(self.seconds)),
             short(self.samples_per_second),
@@ -197,6 +199,7 @@ mod tests {
             mean_luminance: f32::NAN,
             threshold: Some(f32::INFINITY),
             rays: RayCounts::default().into(),
+            plan: None,
         };
         let json = serde_json::to_value(report).unwrap();
         assert!(json["mean_luminance"].is_null() && json["threshold"].is_null());

@@ -173,9 +173,12 @@ fn main() {
     let scene = load(&file, &options).expect("the project's scene").scene;
     println!("room-indirect, 320x240, milliseconds for each pass, medians of {ROUNDS} rounds");
     println!("estimator  threads  render (exact)      plain      exact      cost");
-    // What `lvc` adds is like what `bdpt` does, and a sample of it cannot be taken alone.
+    // What `lvc` adds is like what `bdpt` does, and a sample of it cannot be taken alone; `auto` is
+    // one of the others.
     let estimators = IntegratorKind::NAMES.into_iter();
-    for (name, integrator) in estimators.filter(|(_, kind)| *kind != IntegratorKind::Lvc) {
+    for (name, integrator) in
+        estimators.filter(|(_, kind)| !matches!(kind, IntegratorKind::Lvc | IntegratorKind::Auto))
+    {
         for threads in [1, 2] {
             let settings = Settings {
                 integrator,

@@ -129,7 +129,7 @@ mod tests {
     use crate::film::{Film, FilmSettings, Filter, SplatPlace};
     use crate::light::{InfiniteLight, Light};
     use crate::math::{Affine3A, Vec2};
-    use crate::path::{PathSettings, Strategy};
+    use crate::path::{Connections, PathSettings, Strategy};
     use crate::scene::{Scene, SceneBuilder};
     use crate::spectrum::Wavelengths;
 
@@ -176,7 +176,7 @@ mod tests {
             scene: &scene,
             settings: &PathSettings::default(),
             wavelengths: Wavelengths::default(),
-            connections: 1.0,
+            connections: Connections::ONE_SUBPATH,
         };
         Deposit {
             context: &context,

@@ -16,11 +16,11 @@ mod variance;
 
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::Session;
-pub use training::Training;
+pub use training::{Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
-use crate::integrator::{CandidateCount, IntegratorKind};
+use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
 use crate::path::PathSettings;
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
@@ -36,9 +36,8 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
-    /// How many vertices of shared light subpaths are candidates for each camera vertex, in
-    /// [`IntegratorKind::Lvc`].
-    pub candidates: CandidateCount,
+    /// How light subpaths are shared, in [`IntegratorKind::Lvc`].
+    pub lvc: LvcSettings,
     /// How paths are made and weighted.
     pub path: PathSettings,
     /// The random numbers.
@@ -47,6 +46,13 @@ pub struct Settings {
     pub seed: u64,
     /// What the film keeps beside the picture, whose bits do not depend on it.
     pub layers: Layers,
+}
+
+impl Settings {
+    /// True where the estimator learns about connections before the first pass.
+    fn learns(&self) -> bool {
+        self.integrator == IntegratorKind::Lvc && self.lvc.proposal == ProposalKind::Learned
+    }
 }
 
 /// What a render may use; nothing here changes an image.

@@ -6,10 +6,11 @@ mod group;
 
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
+use super::training::prepare;
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size};
-use crate::path::PathContext;
+use crate::path::{Connections, PathContext};
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
@@ -63,8 +64,6 @@ pub struct Session<'a> {
     settings: Settings,
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
-    /// For [`PathContext::connections`].
-    connections: f64,
     film: Film,
     /// No pass before this one is rendered.
     first_pass: u64,
@@ -90,18 +89,16 @@ impl<'a> Session<'a> {
         let buffer = PassBuffer::new(scene.film(), film.layers());
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
-        let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
-        let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
-        let training = needs_training.then(|| Training::run(scene, &settings));
+        let (settings, training) = pool.install(|| prepare(scene, settings));
         let rule = selector(&settings, training.as_ref());
-        let integrator = settings.integrator.integrator(rule, settings.candidates);
-        let connections = connections(&settings, training.as_ref());
+        let integrator = settings
+            .integrator
+            .integrator(rule, settings.lvc.candidates);
         Ok(Self {
             scene,
             settings,
             integrator,
             training,
-            connections,
             film,
             first_pass: 0,
             buffer,
@@ -215,7 +212,22 @@ impl<'a> Session<'a> {
     }
 
     fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(self.scene, &self.settings, self.connections, sample)
+        path_context(self.scene, &self.settings, self.connections(), sample)
+    }
+
+    /// How many connections a camera vertex makes.
+    fn connections(&self) -> Connections<'_> {
+        match (self.settings.integrator, &self.training) {
+            (IntegratorKind::Lvc, Some(training)) => {
+                let pixels = self.scene.film().light_paths();
+                let subpaths = pixels.div_ceil(self.samples_per_subpath());
+                Connections {
+                    samples_per_subpath: pixels as f64 / subpaths as f64,
+                    ..training.connections(self.settings.lvc.candidates)
+                }
+            }
+            _ => Connections::ONE_SUBPATH,
+        }
     }
 
     /// Takes a sample, and keeps what it found.
@@ -253,7 +265,7 @@ impl<'a> Session<'a> {
             pass,
             pixel: [x, y],
             camera: sampler.stream(Domain::Camera, stream, pass),
-            light: sampler.member(Domain::Light, pixel, pass),
+            light: sampler.member(Domain::Light, pixel / self.samples_per_subpath(), pass),
         }
     }
 
@@ -280,7 +292,7 @@ impl<'a> Session<'a> {
         self.scene
     }
 
-    /// How it is rendered.
+    /// How it is rendered, with everything decided that was left open.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -321,7 +333,7 @@ impl<'a> Session<'a> {
 pub(super) fn path_context<'a>(
     scene: &'a Scene,
     settings: &'a Settings,
-    connections: f64,
+    connections: Connections<'a>,
     sample: &Sample,
 ) -> PathContext<'a> {
     let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
@@ -330,15 +342,6 @@ pub(super) fn path_context<'a>(
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(u),
         connections,
-    }
-}
-
-/// How many connections a camera vertex makes for each light vertex of a path.
-fn connections(settings: &Settings, training: Option<&Training>) -> f64 {
-    let vertices = training.map_or(0.0, |training| training.light_vertices);
-    match settings.integrator {
-        IntegratorKind::Lvc if vertices > 0.0 => f64::from(settings.candidates.get()) / vertices,
-        _ => 1.0,
     }
 }
 

@@ -72,7 +72,7 @@ fn hit(
     i: usize,
     x0: &Vertex,
 ) {
-    if context.count(0, i + 1) == 0.0 {
+    if !context.takes(0, i + 1) {
         return;
     }
     let contribution = x0.beta * x0.scatter(context, x0.wo, x0.wo, TransportMode::Importance);
@@ -97,7 +97,7 @@ fn hit(
 #[inline(never)]
 pub(super) fn light_images(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
     for s in 1..=workspace.light.vertices.len() {
-        if context.count(s, 1) == 0.0 {
+        if !context.takes(s, 1) {
             continue;
         }
         let Workspace { light, weights, .. } = workspace;
@@ -141,7 +141,7 @@ pub(super) fn next_event(
     t: usize,
 ) {
     let is_fresh = context.settings.light_point == LightPointChoice::Fresh;
-    if !is_fresh || t >= context.settings.max_vertices() || context.count(1, t) == 0.0 {
+    if !is_fresh || t >= context.settings.max_vertices() || !context.takes(1, t) {
         return;
     }
     let at = |purpose| Dimension::at(t - 1, purpose);
@@ -196,7 +196,7 @@ fn connection(
     strategy: Strategy,
 ) -> Option<Term> {
     let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-    if context.count(s, t) == 0.0 {
+    if !context.takes(s, t) {
         return None;
     }
     let Workspace {

@@ -88,7 +88,7 @@ pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> 
             (true, BlindSpot::Caustics),
             (false, BlindSpot::ChanceCaustics),
         ],
-        IntegratorKind::Bdpt | IntegratorKind::Lvc => &[
+        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => &[
             (true, BlindSpot::CausticsSeenBySpecular),
             (false, BlindSpot::ChanceCausticsSeenBySpecular),
         ],

@@ -82,7 +82,7 @@ pub(super) fn light_image<'a>(
     if !reaches_film(context, raster) {
         return None;
     }
-    let contribution = path.contribution(context);
+    let contribution = path.contribution(context) * context.connections.samples_per_subpath as f32;
     (contribution != Spectrum::ZERO).then_some(LightImage {
         light: light[0].light?,
         camera_end: camera_end(context, lens, end),

@@ -18,13 +18,13 @@ pub use bdpt::Bdpt;
 pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
-pub use lvc::{CandidateCount, CandidateCountError, Lvc};
+pub use lvc::{CandidateCount, CountError, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath};
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub use workspace::{Contribution, Sample, Splat, Workspace};
 pub(crate) use workspace::{LightImages, camera_ray};
 
-use crate::path::{PathContext, PathRoulette};
+use crate::path::{Connections, PathContext, PathRoulette};
 use crate::select::Selector;
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length
@@ -48,6 +48,9 @@ pub trait SharedLight {
 
     /// Walks the light subpath that `sample` brings to its group, and adds its light image.
     fn walk(&self, context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace);
+
+    /// Makes ready what the samples share, when all of it is walked.
+    fn end(&self, connections: Connections<'_>, workspace: &mut Workspace);
 }
 
 /// The estimators by name.
@@ -62,21 +65,24 @@ pub enum IntegratorKind {
     Bdpt,
     /// Bidirectional path tracing that connects with light subpaths of many samples.
     Lvc,
+    /// Path tracing or [`Lvc`](Self::Lvc), by what a short render before the first pass finds.
+    Auto,
 }
 
 impl IntegratorKind {
     /// Every estimator with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 4] = [
+    pub const NAMES: [(&'static str, Self); 5] = [
         ("path", Self::Path),
         ("light", Self::Light),
         ("bdpt", Self::Bdpt),
         ("lvc", Self::Lvc),
+        ("auto", Self::Auto),
     ];
 
     /// True where the estimator has connections to choose from.
     pub fn has_candidates(self) -> bool {
         match self {
-            Self::Bdpt | Self::Lvc => true,
+            Self::Bdpt | Self::Lvc | Self::Auto => true,
             Self::Path | Self::Light => false,
         }
     }
@@ -84,12 +90,12 @@ impl IntegratorKind {
     /// The path roulette that suits the estimator: of several scenes the least product of error and
     /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
     pub fn roulette(self) -> PathRoulette {
-        let start = match self {
-            Self::Bdpt | Self::Lvc => 0,
-            Self::Path => 1,
-            Self::Light => 2,
-        };
-        PathRoulette::Albedo { start }
+        match self {
+            Self::Bdpt | Self::Lvc => PathRoulette::Albedo { start: 0 },
+            Self::Path => PathRoulette::Albedo { start: 1 },
+            Self::Light => PathRoulette::Albedo { start: 2 },
+            Self::Auto => PathRoulette::Suited,
+        }
     }
 
     /// The estimator; `selector` chooses the shadow rays of those that have candidates.
@@ -102,7 +108,8 @@ impl IntegratorKind {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),
             Self::Bdpt => Box::new(Bdpt { selector }),
-            Self::Lvc => Box::new(Lvc {
+            // What is open is decided before; this is what it would most often be.
+            Self::Lvc | Self::Auto => Box::new(Lvc {
                 selector,
                 candidates,
             }),

@@ -9,7 +9,7 @@ use crate::film::SplatPlace;
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
-    PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
+    Cell, PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Scene, SegmentEnd};
@@ -200,6 +200,22 @@ impl Workspace {
         let light = self.light_cache.get(cached as usize).light;
         let y = &self.camera.vertices[usize::from(candidate.strategy.t) - 1];
         [light[light.len() - 1].segment_end(), y.segment_end()]
+    }
+
+    /// What arrived by connections with vertices of the light cache: the cells of light and camera
+    /// vertex, and the value.
+    pub(crate) fn cached_connections(&self) -> impl Iterator<Item = (Cell, Cell, Spectrum)> {
+        let mut candidates = self.candidates.iter();
+        self.contributions.iter().filter_map(move |contribution| {
+            // Both are in the order of terms; hits, which have none, are before all of them.
+            let candidate = candidates
+                .clone()
+                .position(|candidate| candidate.term == contribution.term)?;
+            let candidate = candidates.nth(candidate)?;
+            let light = self.light_cache.get(candidate.cached? as usize).light;
+            let y = &self.camera.vertices[usize::from(candidate.strategy.t) - 1];
+            Some((light[light.len() - 1].cell, y.cell, contribution.value))
+        })
     }
 
     /// Counts a term that is not zero; `link` is asked for the journal only.

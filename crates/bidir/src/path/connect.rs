@@ -3,10 +3,13 @@
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
-use super::{LightChoiceKind, PathContext, PathDensities, Segment, Vertex, mis_weight};
+use super::{
+    Cell, Connections, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment,
+    Vertex, mis_weight,
+};
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightPoint, LightSample, Part};
-use crate::math::Vec2;
+use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
 /// How the two subpaths of a path came together.
@@ -69,6 +72,17 @@ impl<'a> JoinedPath<'a> {
         &self.camera[self.camera.len() - 1]
     }
 
+    /// x_i.
+    #[inline]
+    fn vertex(&self, i: usize) -> &'a Vertex {
+        let s = self.light.len();
+        if i < s {
+            &self.light[i]
+        } else {
+            &self.camera[self.len() - 1 - i]
+        }
+    }
+
     /// The number of vertices.
     #[inline]
     pub(super) fn len(&self) -> usize {
@@ -103,7 +117,10 @@ impl<'a> JoinedPath<'a> {
             Junction::Hit => 0,
             Junction::Connection => self.light.len(),
         };
-        let count = |j| context.count(j, n - j);
+        let count = |j| match (j, n - j) {
+            (0, _) | (_, 0) => context.count_hits(n - j),
+            (s, t) => context.count(s, t, [self.vertex(s - 1), self.vertex(s)]),
+        };
         mis_weight(densities, count, context.settings.mis, s) as f32
     }
 }
@@ -166,16 +183,45 @@ fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
 }
 
 impl PathContext<'_> {
-    /// n_j: how many samples strategy (s, t) takes of each of its paths in a pass. Camera densities
+    /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking `z`,
+    /// its last light vertex, with `y`, its last camera vertex. Camera densities
     /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
-    /// one per light subpath. This is the only place where normalisation meets weights.
+    /// one per light subpath. With [`count_hits`](Self::count_hits) this is the only place where
+    /// normalisation meets weights.
     #[inline]
-    pub fn count(&self, s: usize, t: usize) -> f64 {
+    pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
         match t {
-            _ if !self.settings.strategies.contains(s, t) => 0.0,
-            1 => self.scene.film().light_paths() as f64,
-            _ if s >= self.settings.light_point.first_walked() => self.connections,
+            _ if !self.takes(s, t) => 0.0,
+            1 => self.scene.film().light_paths() as f64 / self.connections.samples_per_subpath,
+            _ if s >= self.settings.light_point.first_walked() => {
+                let Connections {
+                    per_vertex,
+                    proposals,
+                    ..
+                } = self.connections;
+                let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
+                per_vertex * proposals.map_or(1.0, relative)
+            }
             _ => 1.0,
         }
+    }
+
+    /// The same for s = 0, which links nothing.
+    #[inline]
+    pub fn count_hits(&self, t: usize) -> f64 {
+        f64::from(self.takes(0, t))
+    }
+
+    /// True where strategy (s, t) takes part.
+    #[inline]
+    pub fn takes(&self, s: usize, t: usize) -> bool {
+        self.settings.strategies.contains(s, t)
+    }
+
+    /// The cell of a vertex with the unit normal `n`, where anything is learnt for cells.
+    #[inline]
+    pub(super) fn cell(&self, point: Vec3, n: Vec3) -> Cell {
+        let cell = |all: &LightProposals| all.cells().of(point, n);
+        self.connections.proposals.map_or(Cell::default(), cell)
     }
 }

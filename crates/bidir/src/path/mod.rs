@@ -18,9 +18,11 @@
 //!
 //! Nothing here knows the film, and no ray is traced but those of the walks.
 
+mod cells;
 mod connect;
 mod densities;
 mod mis;
+mod proposals;
 mod roulette;
 mod running;
 mod scatter;
@@ -29,9 +31,12 @@ mod strategy;
 mod vertex;
 mod walk;
 
+pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
 pub use densities::{PathDensities, VertexDensities};
 pub use mis::{MisHeuristic, mis_weight};
+pub(crate) use proposals::CellDraw;
+pub use proposals::{Connections, LightProposals, PairSums};
 pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
 pub use segment::Segment;
@@ -95,7 +100,6 @@ pub struct PathContext<'a> {
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
-    /// How many connections a camera vertex makes, on average, for each light vertex of a path: 1
-    /// where it is connected with one light subpath.
-    pub connections: f64,
+    /// How many connections a camera vertex makes.
+    pub connections: Connections<'a>,
 }

@@ -24,6 +24,8 @@ pub enum PathRoulette {
     },
     /// Walks end by the limit of path length, or by escaping.
     Off,
+    /// What suits the estimator: decided before the first pass. A walk takes it for `albedo:0`.
+    Suited,
 }
 
 impl Default for PathRoulette {
@@ -38,7 +40,7 @@ impl PathRoulette {
     #[inline]
     pub fn survival_prob(self, bounce: usize, albedo: f32, throughput: f32) -> f32 {
         match self {
-            Self::Albedo { .. } => self.density_factor(bounce, || albedo),
+            Self::Albedo { .. } | Self::Suited => self.density_factor(bounce, || albedo),
             Self::Throughput { start } if bounce >= start as usize => throughput.clamp(0.0, 1.0),
             Self::Throughput { .. } | Self::Off => 1.0,
         }
@@ -49,8 +51,9 @@ impl PathRoulette {
     #[inline]
     pub fn density_factor(self, bounce: usize, albedo: impl FnOnce() -> f32) -> f32 {
         match self {
-            Self::Albedo { start } if bounce >= start as usize => albedo().clamp(0.0, 1.0),
-            _ => 1.0,
+            Self::Albedo { start } if bounce < start as usize => 1.0,
+            Self::Albedo { .. } | Self::Suited => albedo().clamp(0.0, 1.0),
+            Self::Throughput { .. } | Self::Off => 1.0,
         }
     }
 
@@ -59,6 +62,7 @@ impl PathRoulette {
     pub(super) fn density_start(self) -> Option<usize> {
         match self {
             Self::Albedo { start } => Some(start as usize),
+            Self::Suited => Some(0),
             Self::Throughput { .. } | Self::Off => None,
         }
     }
@@ -66,7 +70,7 @@ impl PathRoulette {
 
 /// Why a roulette cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]` or `off`")]
+#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]`, `off` or `suited`")]
 pub struct PathRouletteError(String);
 
 impl FromStr for PathRoulette {
@@ -86,6 +90,7 @@ impl FromStr for PathRoulette {
                 start: start.unwrap_or(0),
             }),
             ("off", None) => Ok(Self::Off),
+            ("suited", None) => Ok(Self::Suited),
             _ => Err(error()),
         }
     }
@@ -97,6 +102,7 @@ impl fmt::Display for PathRoulette {
             Self::Albedo { start } => write!(f, "albedo:{start}"),
             Self::Throughput { start } => write!(f, "throughput:{start}"),
             Self::Off => write!(f, "off"),
+            Self::Suited => write!(f, "suited"),
         }
     }
 }
@@ -107,7 +113,7 @@ mod tests {
 
     #[test]
     fn names_are_read_and_written() {
-        for text in ["albedo:0", "albedo:3", "throughput:2", "off"] {
+        for text in ["albedo:0", "albedo:3", "throughput:2", "off", "suited"] {
             assert_eq!(text.parse::<PathRoulette>().unwrap().to_string(), text);
         }
         assert_eq!("albedo".parse(), Ok(PathRoulette::Albedo { start: 0 }));

@@ -117,7 +117,7 @@ impl RunningSums {
         self.light.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
-            let count = share(context.count(i + 1, 2));
+            let count = share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));
             let links = count * self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
             sum = chain(links, share(self.start.down(i, a, b)), sum);
             self.light.push(sum);
@@ -130,7 +130,8 @@ impl RunningSums {
         self.camera.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (c, [b, a]) in densities.take(walk.len().saturating_sub(1)).enumerate() {
-            let links = share(context.count(2, c + 1)) * walk[c].links(&walk[c + 1]);
+            let [y, z] = [&walk[c], &walk[c + 1]];
+            let links = share(context.count(2, c + 1, [z, y])) * y.links(z);
             sum = chain(links, share(ratio(a, b)), sum);
             self.camera.push(sum);
         }
@@ -142,7 +143,8 @@ impl RunningSums {
         let share = |ratio| context.settings.mis.share(ratio);
         let end = LightEnd::new(context, path.z(), y);
         let reversed = path.reversed(context);
-        let links = share(context.count(1, t)) * end.is_drawn * possible(!y.went_by_delta);
+        let count = share(context.count(1, t, [path.z(), y]));
+        let links = count * end.is_drawn * possible(!y.went_by_delta);
         let up = end.up(1, reversed.y, drawn_density(context, path.camera));
         let from_drawn = chain(links, share(up), self.camera[t - 1]);
         let others = chain(
@@ -169,8 +171,8 @@ impl RunningSums {
         };
         let reversed = path.reversed(context);
         let fewer_light = {
-            let from_before = if let [.., before, _] = light {
-                let count = share(context.count(s - 1, t + 1));
+            let from_before = if let [.., before, z] = light {
+                let count = share(context.count(s - 1, t + 1, [before, z]));
                 let links = count * end.links(s - 1) * possible(!before.went_by_delta);
                 let drawn = drawn_density(context, &light[..s - 1]);
                 let down = end.down(s - 2, drawn, reversed.before[0]);
@@ -181,8 +183,9 @@ impl RunningSums {
             let down = end.down(s - 1, drawn_density(context, light), reversed.z);
             chain(0.0, share(down), from_before)
         };
-        let fewer_camera = if let [.., before, _] = camera {
-            let links = share(context.count(s + 1, t - 1)) * possible(!before.went_by_delta);
+        let fewer_camera = if let [.., before, y] = camera {
+            let count = share(context.count(s + 1, t - 1, [y, before]));
+            let links = count * possible(!before.went_by_delta);
             let drawn = drawn_density(context, &camera[..t - 1]);
             let up = end.up(s + 1, reversed.before[1], drawn);
             let from_before = chain(links, share(up), self.camera[t - 2]);
@@ -191,7 +194,7 @@ impl RunningSums {
         } else {
             0.0
         };
-        let own = share(context.count(s, t));
+        let own = share(context.count(s, t, [path.z(), path.y()]));
         own / (own + fewer_light + fewer_camera)
     }
 }

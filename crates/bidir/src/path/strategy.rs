@@ -115,7 +115,7 @@ impl Strategies {
 
     /// True where the list says so of every strategy, by its last word.
     #[inline]
-    pub(super) fn is_all(&self) -> bool {
+    pub(crate) fn is_all(&self) -> bool {
         self.rules.last() == Some(&Rule::ALL)
     }
 

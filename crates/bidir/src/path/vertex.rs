@@ -4,7 +4,7 @@
 //! `scatter` is in 1/sr at a surface; densities are per area, 1/m² (solid angle, 1/sr, for a light
 //! at infinity). Visibility and roulette are no part of a vertex.
 
-use super::{PathContext, Segment};
+use super::{Cell, PathContext, Segment};
 use crate::bsdf::{Bsdf, Diffuse};
 use crate::camera::LensSample;
 use crate::light::{Facing, LightPoint, Receiver};
@@ -64,6 +64,8 @@ pub struct Vertex {
     pub light_primitive: u32,
     /// True for a light or camera at infinity.
     pub is_infinite: bool,
+    /// What is learnt about its connections is learnt for this cell.
+    pub cell: Cell,
 }
 
 impl Vertex {
@@ -93,6 +95,7 @@ impl Vertex {
             light: None,
             light_primitive: 0,
             is_infinite: false,
+            cell: Cell::default(),
         }
     }
 
@@ -111,12 +114,18 @@ impl Vertex {
         let scene = context.scene;
         let prob = scene.light_choice().prob(light as usize);
         let pdf_position = scene.light(light).pdf_position(&scene.light_context(), at);
-        Self::on_light(light, at, prob * pdf_position)
+        Self::on_light(context, light, at, prob * pdf_position)
     }
 
     /// A point on light number `light`, the density of which is known.
-    pub(super) fn on_light(light: u32, at: &LightPoint, pdf_fwd: f32) -> Self {
+    pub(super) fn on_light(
+        context: &PathContext<'_>,
+        light: u32,
+        at: &LightPoint,
+        pdf_fwd: f32,
+    ) -> Self {
         Self {
+            cell: context.cell(at.point, at.n_g),
             error: at.error,
             pdf_fwd,
             light: Some(light),
@@ -155,6 +164,7 @@ impl Vertex {
             albedo_fwd: bsdf.albedo(shading.to_local(wo)).max_lane(),
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
+            cell: context.cell(surface.point, shading.z),
             ..Self::endpoint(VertexKind::Surface, surface.point, surface.n_g)
         }
     }
@@ -169,6 +179,15 @@ impl Vertex {
             primitive: self.light_primitive,
             is_infinite: self.is_infinite,
         }
+    }
+
+    /// Its point and its unit normal: that of the shading frame where there is one.
+    pub(crate) fn place(&self) -> [Vec3; 2] {
+        let n = match self.kind {
+            VertexKind::Surface => self.shading.z,
+            VertexKind::Camera | VertexKind::Light => self.n_g,
+        };
+        [self.point, n]
     }
 
     /// The vertex as what a light is chosen for, on a path that goes on along `w` from here, of any

@@ -123,7 +123,7 @@ fn draw_emission(
     let lights = scene.light_context();
     let emission = scene.lights()[light].sample_emission(&lights, u_position, u_direction)?;
     let from = &emission.from;
-    let mut start = Vertex::on_light(light as u32, &from.at, prob * from.pdf);
+    let mut start = Vertex::on_light(context, light as u32, &from.at, prob * from.pdf);
     start.beta = Spectrum::splat(from.coverage / start.pdf_fwd);
     (from.coverage > 0.0).then_some((start, emission))
 }

@@ -1,6 +1,9 @@
 //! Pairs of subpaths, walked in a scene.
 
-use bidir::path::{PathContext, PathSettings, Subpath, camera_subpath, light_subpath};
+use bidir::path::{
+    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath,
+    camera_subpath, light_subpath,
+};
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::scene::Scene;
 use bidir::spectrum::Wavelengths;
@@ -29,7 +32,24 @@ pub(crate) fn for_each_pair(
     scene: &Scene,
     f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
 ) {
-    for_some_pairs(PAIRS, settings, scene, f);
+    for_some_pairs(PAIRS, settings, scene, Connections::ONE_SUBPATH, f);
+}
+
+/// Proposals for cells of the scene that say something else of every pair, and nothing of some.
+pub(crate) fn some_proposals(scene: &Scene) -> LightProposals {
+    let (mut points, settings) = (Vec::new(), PathSettings::default());
+    for_each_pair(&settings, scene, |_, light, camera| {
+        let vertices = light.vertices.iter().chain(&camera.vertices);
+        points.extend(vertices.map(|vertex| vertex.point));
+    });
+    // Any numbers, zero among them.
+    let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 11;
+    let numbers = |count: usize| (0..count).map(|i| number(i) as f64);
+    let sums = PairSums {
+        light_vertices: numbers(Cells::COUNT).collect(),
+        squares: numbers(Cells::COUNT * Cells::COUNT).collect(),
+    };
+    LightProposals::new(Cells::new(&mut points), &sums)
 }
 
 /// The same with the first `pairs` of them.
@@ -37,13 +57,14 @@ pub(crate) fn for_some_pairs(
     pairs: u64,
     settings: &PathSettings,
     scene: &Scene,
+    connections: Connections<'_>,
     mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
 ) {
     let context = PathContext {
         scene,
         settings,
         wavelengths: Wavelengths::default(),
-        connections: 1.0,
+        connections,
     };
     for index in 0..pairs {
         let (light, camera) = subpaths(&context, index);

@@ -6,7 +6,7 @@ use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
-use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
@@ -109,7 +109,7 @@ pub(crate) struct EstimatorArgs {
     /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
     ///
     /// bdpt joins the two subpaths of a sample; lvc joins camera subpaths with light subpaths of many
-    /// samples.
+    /// samples; auto tries path and lvc with a few samples, and takes what suits the scene.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
     /// Which connections between subpaths are traced (bdpt, lvc) [default: all].
@@ -121,9 +121,19 @@ pub(crate) struct EstimatorArgs {
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
     /// How many vertices of shared light subpaths are weighed for each camera vertex (lvc), up to
-    /// 4096 [default: 4].
+    /// 4096 [default: 2].
     #[arg(long, value_name = "M")]
     pub(crate) candidates: Option<CandidateCount>,
+    /// How these vertices are chosen (lvc) [default: learned].
+    ///
+    /// learned: by what connections between places contributed in a short render before the first
+    /// pass. uniform: each is as likely as others.
+    #[arg(long, value_parser = named(ProposalKind::NAMES))]
+    pub(crate) proposal: Option<ProposalKind>,
+    /// How many samples bring one light subpath to those that are shared (lvc): a power of two, up to
+    /// 256 [default: 2].
+    #[arg(long, value_name = "K")]
+    pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
     /// How strategies that make the same path share it [default: balance].
     #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
     pub(crate) mis: Option<MisHeuristic>,
@@ -147,8 +157,9 @@ pub(crate) struct EstimatorArgs {
     pub(crate) light_choice: Option<LightChoiceKind>,
     /// How subpaths end by chance [default: the integrator's].
     ///
-    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt and albedo:0 for lvc. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput. Both
-    /// from bounce START on. off: only by --max-depth or escape.
+    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt, albedo:0 for lvc and suited
+    /// for auto. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput.
+    /// Both from bounce START on. off: only by --max-depth or escape. suited: what suits the integrator.
     #[arg(long, value_name = "RULE")]
     pub(crate) path_roulette: Option<PathRoulette>,
     /// The most bounces of a path; 0 is no limit [default: the scene's].
@@ -217,7 +228,7 @@ pub(crate) struct FilmArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::{IntegratorKind, LightChoiceKind, LightPointChoice, MisHeuristic};
+    use super::{IntegratorKind, LightChoiceKind, LightPointChoice, MisHeuristic, ProposalKind};
     use crate::args::Cli;
     use crate::settings::name_of;
     use bidir::driver::Settings;
@@ -249,7 +260,12 @@ mod tests {
         let settings = Settings::default();
         let path = &settings.path;
         check_default("shadow-rays", settings.shadow_rays);
-        check_default("candidates", settings.candidates);
+        check_default("candidates", settings.lvc.candidates);
+        check_default("samples-per-subpath", settings.lvc.samples_per_subpath);
+        check_default(
+            "proposal",
+            name_of(&ProposalKind::NAMES, settings.lvc.proposal),
+        );
         check_default("strategies", &path.strategies);
         let help = help_of("path-roulette");
         for (name, integrator) in IntegratorKind::NAMES {

@@ -102,7 +102,7 @@ impl StagesReport {
 }
 
 /// The render before the first pass.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct TrainingReport {
     pub(crate) samples: u64,
     /// Of the image.
@@ -110,6 +110,9 @@ pub(crate) struct TrainingReport {
     /// The score from which on a candidate is sure to be traced.
     pub(crate) threshold: Option<f32>,
     pub(crate) rays: KindsReport,
+    /// What `auto` renders with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) plan: Option<String>,
 }
 
 impl TrainingReport {
@@ -122,6 +125,7 @@ impl TrainingReport {
             mean_luminance: training.mean_luminance,
             threshold: rule.threshold(training.mean_luminance),
             rays: KindsReport::from(training.rays),
+            plan: training.plan.map(|plan| plan.to_string()),
         })
     }
 }

@@ -32,8 +32,8 @@ fn every_flag_is_described() {
         "render",
         "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
          --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --no-color --noise \
-         --output --part --passes --path-roulette --pixelbounds --progress --pyramid --quiet --replay --restart \
-         --resume --sampler --seed --shadow-rays --size --spp --stats --strategies --strategy-layers \
+         --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
+         --resume --sampler --samples-per-subpath --seed --shadow-rays --size --spp --stats --strategies --strategy-layers \
          --strict --threads --time --version",
     );
     check_flags(
@@ -86,7 +86,7 @@ fn help_tells_exit_codes_defaults_environment_and_other_spellings() {
     }
     render
         .prints("[default: fresh]")
-        .prints("[possible values: path, light, bdpt, lvc]");
+        .prints("[possible values: path, light, bdpt, lvc, auto]");
 }
 
 #[test]

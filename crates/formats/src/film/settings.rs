@@ -2,7 +2,7 @@
 
 use bidir::driver::Settings;
 use bidir::film::{Aov, StrategyImages};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{IntegratorKind, LvcSettings, ProposalKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
@@ -31,6 +31,10 @@ pub struct SettingsText {
     pub max_depth: Option<u32>,
     /// The cached light vertices that are candidates for each camera vertex.
     pub candidates: u16,
+    /// How they are chosen.
+    pub proposal: &'static str,
+    /// How many samples bring one light subpath to the cache.
+    pub samples_per_subpath: u16,
     /// The random numbers.
     pub sampler: &'static str,
     /// Their seed.
@@ -79,7 +83,11 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             light_point: named(&LightPointChoice::NAMES, flag("light-point")?)?,
             light_choice: named(&LightChoiceKind::NAMES, flag("light-choice")?)?,
         },
-        candidates: parse(flag("candidates")?)?,
+        lvc: LvcSettings {
+            candidates: parse(flag("candidates")?)?,
+            proposal: named(&ProposalKind::NAMES, flag("proposal")?)?,
+            samples_per_subpath: parse(flag("samples-per-subpath")?)?,
+        },
         sampler: named(&SamplerKind::NAMES, flag("sampler")?)?,
         seed: parse(flag("seed")?)?,
         ..Settings::default()
@@ -131,7 +139,7 @@ impl From<&Settings> for SettingsText {
         let Settings {
             integrator,
             shadow_rays,
-            candidates,
+            lvc,
             path,
             sampler,
             seed,
@@ -145,6 +153,11 @@ impl From<&Settings> for SettingsText {
             light_point,
             light_choice,
         } = path;
+        let LvcSettings {
+            candidates,
+            proposal,
+            samples_per_subpath,
+        } = lvc;
         Self {
             integrator: name_of(&IntegratorKind::NAMES, *integrator),
             shadow_rays: shadow_rays.to_string(),
@@ -155,6 +168,8 @@ impl From<&Settings> for SettingsText {
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
             candidates: candidates.get(),
+            proposal: name_of(&ProposalKind::NAMES, *proposal),
+            samples_per_subpath: samples_per_subpath.get(),
             sampler: name_of(&SamplerKind::NAMES, *sampler),
             seed: *seed,
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),

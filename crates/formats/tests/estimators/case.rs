@@ -73,7 +73,7 @@ impl<'a> Case<'a> {
         };
         change(&mut settings);
         let passes = match integrator {
-            IntegratorKind::Path | IntegratorKind::Light => 2 * self.passes,
+            IntegratorKind::Path | IntegratorKind::Light | IntegratorKind::Auto => 2 * self.passes,
             IntegratorKind::Bdpt | IntegratorKind::Lvc => self.passes,
         };
         replicates(self.scene, &settings, passes)

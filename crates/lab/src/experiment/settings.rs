@@ -3,7 +3,7 @@
 
 use super::names::nearest;
 use bidir::driver::Settings;
-use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
@@ -21,6 +21,10 @@ pub struct Changes {
     pub shadow_rays: Option<ShadowRays>,
     /// The cached light vertices that are candidates for each camera vertex.
     pub candidates: Option<CandidateCount>,
+    /// How they are chosen.
+    pub proposal: Option<ProposalKind>,
+    /// How many samples bring one light subpath to the cache.
+    pub samples_per_subpath: Option<SamplesPerSubpath>,
     /// How strategies share paths.
     pub mis: Option<MisHeuristic>,
     /// The strategies that take part.
@@ -39,10 +43,12 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 10] = [
+    pub const NAMES: [&'static str; 12] = [
         "integrator",
         "shadow-rays",
         "candidates",
+        "proposal",
+        "samples-per-subpath",
         "mis",
         "strategies",
         "light-point",
@@ -60,6 +66,8 @@ impl Changes {
             "integrator" => self.integrator = Some(named(&IntegratorKind::NAMES, value)?),
             "shadow-rays" => self.shadow_rays = Some(parsed(value)?),
             "candidates" => self.candidates = Some(parsed(value)?),
+            "samples-per-subpath" => self.samples_per_subpath = Some(parsed(value)?),
+            "proposal" => self.proposal = Some(named(&ProposalKind::NAMES, value)?),
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
             "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
@@ -82,6 +90,8 @@ impl Changes {
             integrator: self.integrator.or(defaults.integrator),
             shadow_rays: self.shadow_rays.or(defaults.shadow_rays),
             candidates: self.candidates.or(defaults.candidates),
+            proposal: self.proposal.or(defaults.proposal),
+            samples_per_subpath: self.samples_per_subpath.or(defaults.samples_per_subpath),
             mis: self.mis.or(defaults.mis),
             strategies: self.strategies.or_else(|| defaults.strategies.clone()),
             light_point: self.light_point.or(defaults.light_point),
@@ -96,7 +106,10 @@ impl Changes {
     pub fn apply(&self, scene: &Settings) -> Settings {
         let mut settings = scene.clone();
         settings.integrator = self.integrator.unwrap_or(settings.integrator);
-        settings.candidates = self.candidates.unwrap_or(settings.candidates);
+        let lvc = &mut settings.lvc;
+        lvc.candidates = self.candidates.unwrap_or(lvc.candidates);
+        lvc.proposal = self.proposal.unwrap_or(lvc.proposal);
+        lvc.samples_per_subpath = self.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
@@ -154,7 +167,8 @@ mod tests {
     fn settings_are_read_as_they_are_written() {
         let mut changes = Changes::default();
         let values = [
-            "light", "per-pair", "9", "uniform", "all,-s0", "shared", "power", "off", "sobol", "7",
+            "light", "per-pair", "9", "uniform", "4", "uniform", "all,-s0", "shared", "power",
+            "off", "sobol", "7",
         ];
         for (name, value) in Changes::NAMES.into_iter().zip(values) {
             changes.set(name, value).unwrap();

@@ -7,7 +7,7 @@
 use crate::statistics::{Interval, mean_interval};
 use bidir::driver::Settings;
 use bidir::integrator::{CandidateCount, IntegratorKind, Journal, Link, Sample, Workspace};
-use bidir::path::PathContext;
+use bidir::path::{Connections, PathContext};
 use bidir::sampler::{Domain, Sampler};
 use bidir::scene::Scene;
 use bidir::select::ShadowRays;
@@ -79,7 +79,7 @@ fn pass_of(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
         scene,
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(0.5),
-        connections: 1.0,
+        connections: Connections::ONE_SUBPATH,
     };
     let integrator =
         IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), CandidateCount::default());

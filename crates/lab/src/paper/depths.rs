@@ -17,7 +17,7 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::light::EmissionSides;
 use bidir::material::Material;
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::path::{PathContext, PathSettings, Subpath, camera_subpath, light_subpath};
+use bidir::path::{Connections, PathContext, PathSettings, Subpath, camera_subpath, light_subpath};
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use bidir::scene::{Emission, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
@@ -94,7 +94,7 @@ fn means(scene: &Scene, part: u64, walks: u64) -> [f64; 2] {
         scene,
         settings: &settings,
         wavelengths: scene.color().sample_wavelengths(0.5),
-        connections: 1.0,
+        connections: Connections::ONE_SUBPATH,
     };
     let sampler = Sampler::new(SamplerKind::Independent, part);
     let (mut camera, mut light) = (Subpath::default(), Subpath::default());

@@ -6,6 +6,20 @@ use crate::stats::Stage;
 use std::ops::Range;
 
 impl Session<'_> {
+    /// How many samples there are for one light subpath.
+    pub(super) fn samples_per_subpath(&self) -> u64 {
+        match self.integrator.shared_light() {
+            Some(_) => u64::from(self.settings.lvc.samples_per_subpath.get()),
+            None => 1,
+        }
+    }
+
+    /// Those of `pixels`, the range of a group, that bring a light subpath: as many of each group begin
+    /// with one.
+    fn bringers(&self, pixels: Range<u64>) -> impl Iterator<Item = u64> {
+        pixels.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
+    }
+
     /// Walks the light subpaths of the samples at `pixels`, a group, and keeps their images.
     pub(super) fn walk_light(
         &self,
@@ -15,7 +29,7 @@ impl Session<'_> {
         workspace: &mut Workspace,
     ) {
         shared.begin(workspace);
-        for pixel in pixels {
+        for pixel in self.bringers(pixels) {
             workspace.stopwatch.begin_light();
             let sample = self.sample(pixel, pass);
             let context = self.context(&sample);
@@ -23,6 +37,7 @@ impl Session<'_> {
             self.deposit(&context, pixel).take_light(workspace);
             workspace.stopwatch.end(Stage::Film);
         }
+        shared.end(self.connections(), workspace);
     }
 
     /// Walks the light subpaths of the group of `pixel` again; returns what that of `pixel` gave.
@@ -38,13 +53,14 @@ impl Session<'_> {
         let begin = pixel / size * size;
         let mut own = LightImages::default();
         shared.begin(workspace);
-        for other in begin..(begin + size).min(pixels) {
+        for other in self.bringers(begin..(begin + size).min(pixels)) {
             let sample = self.sample(other, pass);
             shared.walk(&self.context(&sample), &sample, workspace);
             if other == pixel {
                 own = workspace.light_images();
             }
         }
+        shared.end(self.connections(), workspace);
         own
     }
 }

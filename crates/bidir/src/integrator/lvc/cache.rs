@@ -1,6 +1,10 @@
 //! The light subpaths of a group of samples, in the order of the samples.
 
-use crate::path::{LightEnd, LightShares, PathContext, RunningSums, Subpath, Vertex};
+use crate::path::{
+    Cell, CellDraw, Cells, LightEnd, LightPointChoice, LightProposals, LightShares, RunningSums,
+    Subpath, Vertex,
+};
+use std::ops::Range;
 
 /// Light subpaths, one for each sample of a group.
 #[derive(Debug, Default)]
@@ -9,8 +13,12 @@ pub(crate) struct LightCache {
     /// For each vertex the sum of its number along its subpath, as long as there is one.
     sums: Vec<f64>,
     subpaths: Vec<Start>,
-    /// The vertices that can be connected.
+    /// The vertices that can be connected, those of a cell beside each other.
     entries: Vec<Entry>,
+    /// The same, in the order of the subpaths.
+    unsorted: Vec<Entry>,
+    /// For each cell where its entries begin, and where the last ones end. Empty: there are no cells.
+    begins: Vec<u32>,
 }
 
 /// How a subpath begins.
@@ -25,6 +33,15 @@ struct Start {
 struct Entry {
     vertex: u32,
     subpath: u32,
+}
+
+/// A vertex that was drawn from the cache.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Draw {
+    /// Its number.
+    pub(super) entry: usize,
+    /// 1 / (N P), with N subpaths and P the probability of drawing it.
+    pub(super) share: f64,
 }
 
 /// A vertex of the cache, with the subpath up to it.
@@ -43,12 +60,14 @@ impl LightCache {
         self.sums.clear();
         self.subpaths.clear();
         self.entries.clear();
+        self.unsorted.clear();
+        self.begins.clear();
     }
 
     /// Keeps a subpath, which may be empty, with the sums along it.
     pub(super) fn push(
         &mut self,
-        context: &PathContext<'_>,
+        light_point: LightPointChoice,
         subpath: &Subpath,
         weights: &RunningSums,
     ) {
@@ -61,23 +80,72 @@ impl LightCache {
         self.vertices.extend_from_slice(&subpath.vertices);
         self.sums.extend_from_slice(shares.sums);
         self.sums.resize(self.vertices.len(), 0.0);
-        let connectable = connectable(context, &subpath.vertices);
-        self.entries.extend(connectable.map(|i| Entry {
+        let connectable = connectable(light_point, &subpath.vertices);
+        self.unsorted.extend(connectable.map(|i| Entry {
             vertex: (first + i) as u32,
             subpath: number,
         }));
     }
 
-    /// How many vertices can be connected.
-    #[inline]
-    pub(super) fn len(&self) -> usize {
-        self.entries.len()
+    /// Makes ready for draws, when all subpaths are here.
+    pub(super) fn sort(&mut self, proposals: Option<&LightProposals>) {
+        if proposals.is_none() {
+            std::mem::swap(&mut self.entries, &mut self.unsorted);
+            return;
+        }
+        let cell = |entry: &Entry| self.vertices[entry.vertex as usize].cell.index();
+        self.begins.resize(Cells::COUNT + 1, 0);
+        for entry in &self.unsorted {
+            self.begins[cell(entry) + 1] += 1;
+        }
+        for i in 0..Cells::COUNT {
+            self.begins[i + 1] += self.begins[i];
+        }
+        let mut next = self.begins.clone();
+        self.entries.resize(
+            self.unsorted.len(),
+            Entry {
+                vertex: 0,
+                subpath: 0,
+            },
+        );
+        for entry in &self.unsorted {
+            let place = &mut next[cell(entry)];
+            self.entries[*place as usize] = *entry;
+            *place += 1;
+        }
     }
 
-    /// How many that is for each subpath.
+    /// Draws a vertex for the camera vertex `y` by the number `u`. None: there is none, and the draw
+    /// counts as one that finds nothing.
     #[inline]
-    pub(super) fn per_subpath(&self) -> f64 {
-        self.entries.len() as f64 / self.subpaths.len() as f64
+    pub(super) fn draw(
+        &self,
+        proposals: Option<&LightProposals>,
+        y: &Vertex,
+        u: f64,
+    ) -> Option<Draw> {
+        let all = 0..self.entries.len();
+        let subpaths = self.subpaths.len() as f64;
+        let Some(proposals) = proposals else {
+            let share = all.len() as f64 / subpaths;
+            return pick(&all, u).map(|entry| Draw { entry, share });
+        };
+        let entry = match proposals.draw(y.cell, u) {
+            CellDraw::All(u) => pick(&all, u),
+            CellDraw::One(cell, u) => pick(&self.of_cell(cell), u),
+        }?;
+        let cell = self.vertices[self.entries[entry].vertex as usize].cell;
+        let counts = [all.len(), self.of_cell(cell).len()];
+        let share = 1.0 / (subpaths * proposals.prob(cell, y.cell, counts));
+        Some(Draw { entry, share })
+    }
+
+    /// The entries of a cell.
+    #[inline]
+    fn of_cell(&self, cell: Cell) -> Range<usize> {
+        let cell = cell.index();
+        self.begins[cell] as usize..self.begins[cell + 1] as usize
     }
 
     /// Number `i` of the vertices that can be connected.
@@ -96,11 +164,19 @@ impl LightCache {
     }
 }
 
+/// The number at the part `u` of a range. None: it is empty.
+#[inline]
+fn pick(range: &Range<usize>, u: f64) -> Option<usize> {
+    let i = range.start + (u * range.len() as f64) as usize;
+    // Rounding may lead to the end.
+    (!range.is_empty()).then(|| i.min(range.end - 1))
+}
+
 /// The vertices of a light subpath that camera vertices may be connected with, by number.
 pub(crate) fn connectable(
-    context: &PathContext<'_>,
+    light_point: LightPointChoice,
     subpath: &[Vertex],
 ) -> impl Iterator<Item = usize> {
-    let first = context.settings.light_point.first_walked() - 1;
+    let first = light_point.first_walked() - 1;
     (first..subpath.len()).filter(move |&i| !subpath[i].is_delta())
 }

@@ -10,20 +10,22 @@
 //! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt).
 
 mod cache;
-mod count;
+mod settings;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use cache::{LightCache, connectable};
-pub use count::{CandidateCount, CandidateCountError};
+pub use settings::{CandidateCount, CountError, LvcSettings, ProposalKind, SamplesPerSubpath};
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_event, offer};
 use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
-use crate::path::{JoinedPath, PathContext, Strategy};
+use crate::path::{Connections, JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
 use crate::select::Selector;
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
-use cache::Cached;
+use cache::{Cached, Draw};
 
 /// How many samples share light subpaths where so many pixels are rendered: those of pixels that follow
 /// each other in row order of the crop. So few that the subpaths stay in a processor's cache, and that
@@ -75,7 +77,11 @@ impl SharedLight for Lvc {
             light_cache,
             ..
         } = workspace;
-        light_cache.push(context, light, weights);
+        light_cache.push(context.settings.light_point, light, weights);
+    }
+
+    fn end(&self, connections: Connections<'_>, workspace: &mut Workspace) {
+        workspace.light_cache.sort(connections.proposals);
     }
 }
 
@@ -92,7 +98,7 @@ impl Lvc {
             .next_events
             .resize(workspace.camera.vertices.len(), None);
         let count = self.candidates.get();
-        let size = workspace.light_cache.len();
+        let proposals = context.connections.proposals;
         for t in 2..=workspace.camera.vertices.len() {
             if workspace.camera.vertices[t - 1].is_delta() {
                 continue;
@@ -102,29 +108,36 @@ impl Lvc {
             let u = f64::from(sample.camera.get_1d(at));
             // One of each of as many parts of the cache.
             for m in 0..count {
-                let i = ((f64::from(m) + u) / f64::from(count) * size as f64) as usize;
-                if i < size {
-                    self.candidate(context, sample, workspace, t, i);
+                let u = (f64::from(m) + u) / f64::from(count);
+                let y = &workspace.camera.vertices[t - 1];
+                if let Some(draw) = workspace.light_cache.draw(proposals, y, u) {
+                    self.candidate(context, sample, workspace, t, draw);
                 }
             }
         }
     }
 
-    /// Evaluates the connection of camera vertex number `t` with vertex number `i` of the cache, and offers
-    /// it for selection.
+    /// Evaluates the connection of camera vertex number `t` with a vertex of the cache, and offers it for
+    /// selection.
     fn candidate(
         &self,
         context: &PathContext<'_>,
         sample: &Sample,
         workspace: &mut Workspace,
         t: usize,
-        i: usize,
+        draw: Draw,
     ) {
-        let Some((term, ends)) = self.connection(context, workspace, t, i) else {
+        let Some((term, ends)) = self.connection(context, workspace, t, draw) else {
             return;
         };
         let counted = workspace.count(term, |_| Link::Connection(ends));
-        offer(context, sample, workspace, &counted, Some(i as u32));
+        offer(
+            context,
+            sample,
+            workspace,
+            &counted,
+            Some(draw.entry as u32),
+        );
     }
 
     /// The term of such a connection, with the ends of its shadow ray. None: it is zero.
@@ -133,7 +146,7 @@ impl Lvc {
         context: &PathContext<'_>,
         workspace: &mut Workspace,
         t: usize,
-        i: usize,
+        draw: Draw,
     ) -> Option<(Term, [SegmentEnd; 2])> {
         let Workspace {
             camera,
@@ -141,9 +154,9 @@ impl Lvc {
             light_cache,
             ..
         } = workspace;
-        let Cached { light, shares } = light_cache.get(i);
+        let Cached { light, shares } = light_cache.get(draw.entry);
         let s = light.len();
-        if s + t > context.settings.max_vertices() || context.count(s, t) == 0.0 {
+        if s + t > context.settings.max_vertices() || !context.takes(s, t) {
             return None;
         }
         let camera = &camera.vertices[..t];
@@ -152,7 +165,7 @@ impl Lvc {
         if contribution == Spectrum::ZERO {
             return None;
         }
-        let share = light_cache.per_subpath() / f64::from(self.candidates.get());
+        let share = draw.share / f64::from(self.candidates.get());
         let term = Term {
             strategy: Strategy::new(s, t),
             light: light[0].light?,

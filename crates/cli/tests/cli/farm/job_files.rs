@@ -91,7 +91,7 @@ const FAULTS: [(&str, &str); 18] = [
     ("shell room.pbrt --parts 8 -o room.png", "end it with .exr"),
     (
         "shell room.pbrt --parts 8 -- --integrator photon",
-        "[possible values: path, light, bdpt, lvc]",
+        "[possible values: path, light, bdpt, lvc, auto]",
     ),
     (
         "shell room.pbrt --parts 8 -o room.part-2.exr",

@@ -1,0 +1,203 @@
+//! What the samples of a plan find: their variance, block by block of the film, and their cost.
+//!
+//! **Variance** is that of a pixel in one pass, in the mean over a block. For a block of B pixels, n
+//! samples, of which n_b fell into the block and have the variance v, and light images with the sum of
+//! squares Q in it, of P samples in a pass,
+//!
+//! V = v + Q / (n P B),
+//!
+//! as the light images of a pass are many, each of them rare.
+//!
+//! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
+//! every run. They fit the times of ten scenes to 6 % (docs/performance.md).
+
+use super::Settings;
+use super::probe::{Probe, Witness};
+use crate::film::PixelRect;
+use crate::integrator::{IntegratorKind, Sample, Workspace};
+use crate::path::PathContext;
+use crate::spectrum::{Spectrum, luminance};
+use crate::stats::{RayCounts, Stats};
+use rayon::prelude::*;
+
+/// The groups that a plan is tried with.
+const GROUPS: u64 = 32;
+/// Blocks along each side of the film.
+const SIDE: usize = 16;
+/// The blocks.
+pub(super) const BLOCKS: usize = SIDE * SIDE;
+
+/// What a ray of a camera walk takes where its vertices are connected with shared light subpaths.
+const CONNECTED_CAMERA_RAY: f64 = 1.5;
+/// What a connection ray takes, without what it connects.
+const CONNECTION_RAY: f64 = 0.4;
+/// What evaluating a connection takes.
+const CANDIDATE: f64 = 0.3;
+/// What a light image takes, with its ray.
+const LIGHT_IMAGE: f64 = 1.1;
+
+/// What the samples of a plan found in a block.
+#[derive(Clone, Copy, Debug, Default)]
+struct Block {
+    samples: f64,
+    own: f64,
+    own_squares: f64,
+    splats: f64,
+    splat_squares: f64,
+}
+
+/// What the samples of a plan found.
+pub(super) struct Trial {
+    blocks: Vec<Block>,
+    pub(super) stats: Stats,
+}
+
+impl Default for Trial {
+    fn default() -> Self {
+        Self {
+            blocks: vec![Block::default(); BLOCKS],
+            stats: Stats::default(),
+        }
+    }
+}
+
+/// The block of pixel number `index` of the crop.
+fn block(crop: &PixelRect, index: u64) -> usize {
+    let [width, rows] = [u64::from(crop.width()), crop.area()].map(|size| size.max(1));
+    let rows = rows.div_ceil(width);
+    let part = |i: u64, size: u64| i * SIDE as u64 / size;
+    (part(index / width, rows) * SIDE as u64 + part(index % width, width)) as usize
+}
+
+fn y(context: &PathContext<'_>, value: Spectrum) -> f64 {
+    f64::from(luminance(
+        context.scene.color().to_rgb(value, &context.wavelengths),
+    ))
+}
+
+impl Witness for Trial {
+    fn light(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
+        let film = context.scene.film();
+        for splat in &workspace.splats {
+            let Some((index, weight)) = film.pick_pixel(splat.place) else {
+                continue;
+            };
+            let value = y(context, splat.contribution.value) * f64::from(weight);
+            let block = &mut self.blocks[block(&film.crop, index as u64)];
+            block.splats += value;
+            block.splat_squares += value * value;
+        }
+    }
+
+    fn sample(&mut self, context: &PathContext<'_>, sample: &Sample, workspace: &Workspace) {
+        let crop = &context.scene.film().crop;
+        let [x, top] = sample.pixel.map(i64::from);
+        let Some(index) = crop.index(x, top) else {
+            return;
+        };
+        let value = y(context, workspace.value);
+        let block = &mut self.blocks[block(crop, index as u64)];
+        block.samples += 1.0;
+        block.own += value;
+        block.own_squares += value * value;
+    }
+}
+
+impl Trial {
+    /// `mean` is the mean luminance of the image.
+    pub(super) fn run(probe: &Probe<'_>, mean: f32) -> Self {
+        let Settings {
+            shadow_rays,
+            integrator,
+            lvc,
+            ..
+        } = probe.settings;
+        let groups: Vec<_> = (0..GROUPS)
+            .into_par_iter()
+            .map_init(Workspace::default, |workspace, group| {
+                let mut trial = Self::default();
+                let integrator = integrator.integrator(shadow_rays.selector(mean), lvc.candidates);
+                probe.group(&*integrator, group, workspace, &mut trial);
+                trial.stats = std::mem::take(&mut workspace.stats);
+                trial
+            })
+            .collect();
+        let mut all = Self::default();
+        for group in &groups {
+            all += group;
+        }
+        all
+    }
+
+    /// The mean of a pixel of block number `i` of a film of `pixels`.
+    pub(super) fn mean(&self, i: usize, pixels: f64) -> f64 {
+        let block = &self.blocks[i];
+        let of_block = pixels / BLOCKS as f64;
+        block.own / block.samples.max(1.0) + block.splats / (self.samples() * of_block)
+    }
+
+    /// The variance of a pixel of it in one pass.
+    pub(super) fn variance(&self, i: usize, pixels: f64) -> f64 {
+        let block = &self.blocks[i];
+        let (count, of_block) = (block.samples.max(2.0), pixels / BLOCKS as f64);
+        let squares = block.own_squares - block.own * block.own / count;
+        squares / (count - 1.0) + block.splat_squares / (self.samples() * pixels * of_block)
+    }
+
+    fn samples(&self) -> f64 {
+        self.stats.samples as f64
+    }
+
+    /// What a sample of `integrator` costs. Unit: rays of path tracing's walks.
+    pub(super) fn cost(&self, integrator: IntegratorKind) -> f64 {
+        let camera_ray = match integrator {
+            IntegratorKind::Lvc => CONNECTED_CAMERA_RAY,
+            _ => 1.0,
+        };
+        let RayCounts {
+            camera,
+            light,
+            connection,
+            light_image,
+        } = self.stats.rays;
+        let walked = camera as f64 * camera_ray + light as f64;
+        let connected = connection as f64 * CONNECTION_RAY;
+        let evaluated = self.stats.candidates as f64 * CANDIDATE;
+        (walked + connected + evaluated + light_image as f64 * LIGHT_IMAGE) / self.samples()
+    }
+}
+
+impl std::ops::AddAssign<&Self> for Trial {
+    fn add_assign(&mut self, other: &Self) {
+        self.stats += &other.stats;
+        for (sum, block) in self.blocks.iter_mut().zip(&other.blocks) {
+            sum.samples += block.samples;
+            sum.own += block.own;
+            sum.own_squares += block.own_squares;
+            sum.splats += block.splats;
+            sum.splat_squares += block.splat_squares;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_divide_the_crop() {
+        let crop = PixelRect {
+            min: [3, 5],
+            max: [3 + 40, 5 + 20],
+        };
+        let mut counts = vec![0; BLOCKS];
+        for index in 0..crop.area() {
+            counts[block(&crop, index)] += 1;
+        }
+        assert_eq!(counts.iter().sum::<u64>(), crop.area());
+        assert!(
+            counts.iter().all(|&count| (2..=6).contains(&count)),
+            "{counts:?}"
+        );
+    }
+}

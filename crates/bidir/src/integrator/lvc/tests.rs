@@ -1,0 +1,82 @@
+//! Draws from a light cache have the probability that they say.
+
+use super::cache::LightCache;
+use crate::camera::LensSample;
+use crate::math::Vec3;
+use crate::path::{
+    Cell, Cells, LightPointChoice, LightProposals, PairSums, RunningSums, Subpath, Vertex,
+};
+
+const SUBPATHS: usize = 20;
+/// The places of numbers that are drawn with, evenly spaced.
+const DRAWS: u32 = 1 << 20;
+
+/// A vertex in a cell.
+fn vertex(cell: Cell) -> Vertex {
+    let lens = LensSample {
+        point: Vec3::ZERO,
+        n_g: Vec3::Z,
+        pdf: 1.0,
+        is_infinite: false,
+    };
+    Vertex {
+        cell,
+        ..Vertex::camera(&lens)
+    }
+}
+
+/// One of three cells.
+fn cell(cells: &Cells, i: usize) -> Cell {
+    let axis = [Vec3::X, Vec3::Y, Vec3::Z][i % 3];
+    cells.of(Vec3::ZERO, axis)
+}
+
+fn cache(proposals: Option<&LightProposals>, cells: &Cells) -> LightCache {
+    let mut cache = LightCache::default();
+    for i in 0..SUBPATHS {
+        // x_0 is not connected; some subpaths have nothing else.
+        let vertices = (0..=i % 4).map(|j| vertex(cell(cells, i * j)));
+        let subpath = Subpath {
+            vertices: vertices.collect(),
+            escape: None,
+        };
+        cache.push(LightPointChoice::Fresh, &subpath, &RunningSums::default());
+    }
+    cache.sort(proposals);
+    cache
+}
+
+/// Each vertex comes up as often as 1 / (N share).
+fn check(proposals: Option<&LightProposals>, cells: &Cells) {
+    let cache = cache(proposals, cells);
+    let connectable = (0..SUBPATHS).map(|i| i % 4).sum();
+    let mut found = vec![(0u32, 0.0); connectable];
+    let y = vertex(cell(cells, 1));
+    for i in 0..DRAWS {
+        let u = (f64::from(i) + 0.5) / f64::from(DRAWS);
+        if let Some(draw) = cache.draw(proposals, &y, u) {
+            found[draw.entry].0 += 1;
+            found[draw.entry].1 = draw.share;
+        }
+    }
+    for (i, (count, share)) in found.into_iter().enumerate() {
+        let prob = f64::from(count) / f64::from(DRAWS);
+        let told = 1.0 / (share * SUBPATHS as f64);
+        assert!((prob - told).abs() < 1e-5, "{i}: {prob} instead of {told}");
+    }
+}
+
+#[test]
+fn draws_have_the_probability_that_they_say() {
+    let cells = Cells::new(&mut []);
+    let numbers = |count: usize, step: usize| (0..count).map(move |i| (i * step % 7) as f64);
+    let sums = PairSums {
+        light_vertices: numbers(Cells::COUNT, 5).collect(),
+        squares: numbers(Cells::COUNT * Cells::COUNT, 3).collect(),
+    };
+    let uniform = PairSums::uniform(sums.light_vertices.clone());
+    let [learned, uniform] = [sums, uniform].map(|sums| LightProposals::new(cells.clone(), &sums));
+    for proposals in [None, Some(&uniform), Some(&learned)] {
+        check(proposals, &cells);
+    }
+}

@@ -1,0 +1,186 @@
+//! Cells of vertices: boxes of space, each divided by where normals point to. What is learnt about
+//! connections is learnt for cells.
+//!
+//! The boxes are the leaves of a k-d tree over vertices of a training render, so that each has about
+//! as many of them. A plane goes through the widest gap near the median: a wall that lies in a plane
+//! would be in one box or the other by rounding, that is by the walk that found it, and weights would
+//! not be one function of the path.
+
+use crate::math::Vec3;
+
+/// A cell, by number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cell(u16);
+
+impl Cell {
+    /// Its number, below [`Cells::COUNT`].
+    #[inline]
+    pub(crate) fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// Levels of planes.
+const LEVELS: u32 = 5;
+/// The boxes.
+const BOXES: usize = 1 << LEVELS;
+/// The classes of normals: the axis that they are nearest to, and its sign.
+const NORMALS: usize = 6;
+
+/// The part of the vertices, on either side of the median, among which a gap is looked for.
+const NEAR_MEDIAN: f64 = 0.15;
+
+/// A division of space and normals into cells.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    /// The planes in the order of a heap, the root at 1.
+    planes: Vec<Plane>,
+}
+
+/// Before it is where coordinate number `axis` is below `at`, in m.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    axis: u32,
+    at: f32,
+}
+
+impl Cells {
+    /// How many there are.
+    pub const COUNT: usize = BOXES * NORMALS;
+
+    /// The number of a pair of cells, by that of camera vertices first, among the square of as many.
+    #[inline]
+    pub(crate) fn pair(light: Cell, camera: Cell) -> usize {
+        camera.index() * Self::COUNT + light.index()
+    }
+
+    /// The cell of a number.
+    #[inline]
+    pub(super) fn cell(index: usize) -> Cell {
+        Cell(index as u16)
+    }
+
+    /// Divides space so that each box has about as many of `points`.
+    pub fn new(points: &mut [Vec3]) -> Self {
+        let nowhere = Plane { axis: 0, at: 0.0 };
+        let mut planes = vec![nowhere; BOXES];
+        divide(points, 1, &mut planes);
+        Self { planes }
+    }
+
+    /// The cell of a vertex with the unit normal `n`.
+    #[inline]
+    pub fn of(&self, point: Vec3, n: Vec3) -> Cell {
+        let point = point.to_array();
+        let mut i = 1;
+        for _ in 0..LEVELS {
+            let plane = self.planes[i];
+            i = 2 * i + usize::from(point[plane.axis as usize] >= plane.at);
+        }
+        let size = n.abs();
+        let axis = if size.x > size.y.max(size.z) {
+            0
+        } else {
+            1 + usize::from(size.z > size.y)
+        };
+        let sign = usize::from(n[axis] < 0.0);
+        Self::cell((i - BOXES) * NORMALS + 2 * axis + sign)
+    }
+}
+
+/// Sets plane number `i`, and those below, for `points`.
+fn divide(points: &mut [Vec3], i: usize, planes: &mut [Plane]) {
+    if i >= planes.len() || points.is_empty() {
+        return;
+    }
+    let axis = longest(points);
+    points.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]));
+    let middle = widest_gap(points, axis);
+    let at = 0.5 * (points[middle.saturating_sub(1)][axis] + points[middle][axis]);
+    planes[i] = Plane {
+        axis: axis as u32,
+        at,
+    };
+    let (before, behind) = points.split_at_mut(middle);
+    divide(before, 2 * i, planes);
+    divide(behind, 2 * i + 1, planes);
+}
+
+/// The axis along which `points` vary most.
+fn longest(points: &[Vec3]) -> usize {
+    let count = points.len() as f32;
+    let mean = points.iter().sum::<Vec3>() / count;
+    let squares: Vec3 = points.iter().map(|&p| (p - mean) * (p - mean)).sum();
+    let [x, y, z] = squares.to_array();
+    match (x >= y && x >= z, y >= z) {
+        (true, _) => 0,
+        (false, true) => 1,
+        (false, false) => 2,
+    }
+}
+
+/// The number of the first point behind the widest gap near the median of sorted `points`.
+fn widest_gap(points: &[Vec3], axis: usize) -> usize {
+    let count = points.len() as f64;
+    let end = |part: f64| ((count * part) as usize).clamp(1, points.len());
+    let (from, to) = (end(0.5 - NEAR_MEDIAN), end(0.5 + NEAR_MEDIAN));
+    let gap = |i: usize| points[i][axis] - points[i - 1][axis];
+    let widest = (from..to).max_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    widest.unwrap_or(points.len() / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::check_property;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        // Many points have some coordinate in common, as those of walls have.
+        let coordinate = || prop_oneof![-2.0f32..2.0, Just(0.0f32), Just(1.0f32)];
+        (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+    }
+
+    #[test]
+    fn every_point_has_a_cell_and_boxes_have_about_as_many() {
+        let points = prop::collection::vec(point(), 0..600);
+        check_property(&points, |points| {
+            let cells = Cells::new(&mut points.clone());
+            let mut counts = [0usize; Cells::COUNT];
+            for &p in &points {
+                counts[cells.of(p, Vec3::Z).index()] += 1;
+            }
+            let most = counts.iter().max().copied().unwrap_or(0);
+            // What shares a coordinate stays together.
+            prop_assert!(most <= 32 + points.len() / 8, "{most} of {}", points.len());
+            Ok(())
+        });
+    }
+
+    #[test]
+    fn rounding_moves_no_wall_to_another_box() {
+        let grid = (0..64 * 64).map(|i| (i % 64, i / 64));
+        let mut points: Vec<_> = grid
+            .flat_map(|(x, y)| {
+                let (x, y) = (x as f32 / 64.0, y as f32 / 64.0);
+                [Vec3::new(x, y, 1.0), Vec3::new(x, y, 3.0)]
+            })
+            .collect();
+        let cells = Cells::new(&mut points);
+        for p in points {
+            let [below, above] = [-1e-5, 1e-5].map(|z| cells.of(p + Vec3::Z * z, Vec3::Z));
+            assert_eq!(below, above, "{p}");
+        }
+    }
+
+    #[test]
+    fn normals_have_six_classes() {
+        let cells = Cells::new(&mut []);
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        let classes = axes.map(|n| [n, -n].map(|n| cells.of(Vec3::ZERO, n).0));
+        let mut classes = classes.as_flattened().to_vec();
+        classes.sort_unstable();
+        classes.dedup();
+        assert_eq!(classes.len(), NORMALS);
+    }
+}

@@ -1,0 +1,168 @@
+//! P(z | y) = ε / K + (1 - ε) Γ(c_z | c_y) / K_c: which of K cached light vertices z is a candidate for
+//! the camera vertex y, by their cells c; K_c of the K are in the cell of z. Γ is learnt before the
+//! first pass, and frozen: in the spirit of the subspaces of \[Su22\].
+//!
+//! With X the contribution of a connection, weighted and behind what is in its way, the variance of
+//! one candidate is least where Γ(c | r) ∝ κ_c √E[X² | r, c], κ_c the mean of K_c for a light subpath.
+//! In a training render whose candidates are uniform, pairs of cells come up in proportion to κ_c, so
+//! that this is √(κ_c Σ X²), the sum over the candidates of the pair.
+//!
+//! **Weights** need the number of samples that a strategy takes of a path, as a function of the path
+//! alone: K and K_c are of the group at hand, and κ and κ_c stand in for them,
+//!
+//! n = (M / κ) (ε + (1 - ε) Γ(c | r) κ / κ_c),
+//!
+//! with M candidates for each camera vertex.
+
+use super::cells::{Cell, Cells};
+
+/// ε: how often what was learnt is not asked. What training did not see costs no more than 1/ε times
+/// as much as without it.
+const UNIFORM_PART: f32 = 0.2;
+
+/// How light vertices of a cache are proposed to camera vertices.
+#[derive(Clone, Debug)]
+pub struct LightProposals {
+    cells: Cells,
+    /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
+    cumulative: Vec<f32>,
+    /// For each pair of cells, by that of camera vertices first, n κ / M.
+    relative: Vec<f32>,
+}
+
+/// What training found of pairs of cells.
+#[derive(Clone, Debug)]
+pub struct PairSums {
+    /// κ_c.
+    pub light_vertices: Vec<f64>,
+    /// Σ X², by the cell of camera vertices first. Unit: squared luminance, of any scale.
+    pub squares: Vec<f64>,
+}
+
+impl PairSums {
+    /// Of cells with so many light vertices for each light subpath; nothing is known of pairs.
+    pub fn uniform(light_vertices: Vec<f64>) -> Self {
+        Self {
+            light_vertices,
+            squares: vec![0.0; Cells::COUNT * Cells::COUNT],
+        }
+    }
+}
+
+/// A draw of a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum CellDraw {
+    /// None: all light vertices, at this part of them.
+    All(f64),
+    /// One, at this part of its light vertices.
+    One(Cell, f64),
+}
+
+impl LightProposals {
+    /// The proposals that suit `sums`.
+    pub fn new(cells: Cells, sums: &PairSums) -> Self {
+        let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
+        let mut relative = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
+        let kappa = &sums.light_vertices;
+        let all: f64 = kappa.iter().sum();
+        for squares in sums.squares.chunks_exact(Cells::COUNT) {
+            let begin = cumulative.len();
+            accumulate(kappa, squares, &mut cumulative);
+            let ends = &cumulative[begin..];
+            let of_cell = |(&kappa, ends): (&f64, &[f32])| match kappa {
+                0.0 => UNIFORM_PART,
+                kappa => {
+                    let prob = f64::from(ends[1] - ends[0]);
+                    UNIFORM_PART + (1.0 - UNIFORM_PART) * (prob * all / kappa) as f32
+                }
+            };
+            relative.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
+        }
+        Self {
+            cells,
+            cumulative,
+            relative,
+        }
+    }
+
+    /// The cells of vertices.
+    #[inline]
+    pub(super) fn cells(&self) -> &Cells {
+        &self.cells
+    }
+
+    /// n κ / M of a light vertex in the cell `light` for a camera vertex in the cell `camera`.
+    #[inline]
+    pub(super) fn relative(&self, light: Cell, camera: Cell) -> f64 {
+        f64::from(self.relative[Cells::pair(light, camera)])
+    }
+
+    /// Draws a cell of light vertices for a camera vertex in the cell `camera`.
+    #[inline]
+    pub(crate) fn draw(&self, camera: Cell, u: f64) -> CellDraw {
+        let part = f64::from(UNIFORM_PART);
+        if u < part {
+            return CellDraw::All(u / part);
+        }
+        let u = (u - part) / (1.0 - part);
+        let row = self.row(camera);
+        let cell = row[1..Cells::COUNT].partition_point(|&end| f64::from(end) <= u);
+        let [from, to] = [row[cell], row[cell + 1]].map(f64::from);
+        CellDraw::One(Cells::cell(cell), (u - from) / (to - from))
+    }
+
+    /// P(z | y) for a light vertex in the cell `light`, where `[K, K_c]` = `counts`.
+    #[inline]
+    pub(crate) fn prob(&self, light: Cell, camera: Cell, [all, of_cell]: [usize; 2]) -> f64 {
+        let (row, cell) = (self.row(camera), light.index());
+        let gamma = f64::from(row[cell + 1] - row[cell]);
+        let part = f64::from(UNIFORM_PART);
+        part / all as f64 + (1.0 - part) * gamma / of_cell as f64
+    }
+
+    #[inline]
+    fn row(&self, camera: Cell) -> &[f32] {
+        let begin = camera.index() * (Cells::COUNT + 1);
+        &self.cumulative[begin..=begin + Cells::COUNT]
+    }
+}
+
+/// Appends the sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found.
+fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
+    let learnt = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
+    let total: f64 = learnt().sum();
+    let all: f64 = kappa.iter().sum();
+    let mut sum = 0.0;
+    sums.push(0.0);
+    for (kappa, learnt) in kappa.iter().zip(learnt()) {
+        sum += if total > 0.0 {
+            learnt / total
+        } else {
+            kappa / all
+        };
+        sums.push(sum.min(1.0) as f32);
+    }
+    if let Some(last) = sums.last_mut() {
+        *last = 1.0;
+    }
+}
+
+/// How many connections camera vertices make.
+#[derive(Clone, Copy, Debug)]
+pub struct Connections<'a> {
+    /// On average, for each light vertex of a path.
+    pub per_vertex: f64,
+    /// How light vertices are chosen. None: each is as likely as others.
+    pub proposals: Option<&'a LightProposals>,
+    /// How many samples there are for each light subpath.
+    pub samples_per_subpath: f64,
+}
+
+impl Connections<'_> {
+    /// With every vertex of one light subpath.
+    pub const ONE_SUBPATH: Self = Self {
+        per_vertex: 1.0,
+        proposals: None,
+        samples_per_subpath: 1.0,
+    };
+}
