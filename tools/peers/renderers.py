@@ -128,7 +128,7 @@ def all_renderers(program, environment, variants):
         return Peer(name, "pyluxcore", environment, engine=engine)
 
     return [
-        *(Ours(program, flags) for flags in ["path", "light", "bdpt", "lvc"] + variants),
+        *(Ours(program, flags) for flags in ["path", "light", "bdpt", "lvc", "auto"] + variants),
         mitsuba("Mitsuba path, LLVM", "llvm_ad_rgb", "path"),
         mitsuba("Mitsuba path, scalar", "scalar_rgb", "path"),
         mitsuba("Mitsuba ptracer, LLVM", "llvm_ad_rgb", "ptracer"),

@@ -1,6 +1,6 @@
 """Faults in layered and mixed materials, and in what Dirac lobes beside others mean to weights."""
 
-from .tests import materials, unit
+from .tests import RUNNING, materials, unit
 
 MATERIALS = [
     # --- layered and mixed materials ----------------------------------------------------------
@@ -9,14 +9,14 @@ MATERIALS = [
         "crates/bidir/src/path/densities.rs",
         "is_delta: i < walked && subpath[i].went_by_delta,",
         "is_delta: false,",
-        materials("a_smooth_varnish"),
+        RUNNING,
     ),
     (
         "an end that is connected taken for Dirac",
         "crates/bidir/src/path/densities.rs",
         "is_delta: i < walked && subpath[i].went_by_delta,",
         "is_delta: subpath[i].went_by_delta,",
-        materials("a_smooth_varnish"),
+        RUNNING,
     ),
     (
         "the path tracer weighs hits by a Dirac lobe against next-event estimation",
