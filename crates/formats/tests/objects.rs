@@ -27,12 +27,14 @@ AttributeBegin
 AttributeEnd
 "#;
 
-/// A smooth tent, a reversed and stretched sphere, and a part of a disk.
+/// A smooth tent, a roof without normals, a reversed and stretched sphere, and a part of a disk.
 const SHAPES: &str = r#"
 Material "diffuse" "rgb reflectance" [0.3 0.6 0.7]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3 0 3 1]
   "point3 P" [0 0.9 0 0.4 0 0 -0.2 0 0.35 -0.2 0 -0.35] "point2 uv" [0 0 1 0 1 1 0 1]
   "normal N" [0 1 0 0.9 0.3 0 -0.5 0.3 0.8 -0.5 0.3 -0.8]
+Shape "trianglemesh" "integer indices" [0 1 2 1 3 2]
+  "point3 P" [-0.4 1.3 -0.4 0.3 1.3 -0.4 -0.4 1.6 0.1 0.4 1.6 0.1]
 AttributeBegin
   Translate 0.2 1.1 0.1 Scale 1 0.5 0.8
   ReverseOrientation
@@ -70,21 +72,21 @@ fn copied() -> Loaded {
 #[test]
 fn shared_objects_are_kept_once() {
     let (shared, copied) = (shared(), copied());
-    let own = 6;
-    assert_eq!(shared.summary.primitives, own + 5);
+    let (own, object) = (6, 7);
+    assert_eq!(shared.summary.primitives, own + object);
     assert_eq!(
         (shared.summary.instances, shared.scene.instance_count()),
         (5, 5)
     );
-    assert_eq!(shared.scene.unique_primitives(), own + 5);
-    assert_eq!(shared.scene.placed_primitives(), own + 25);
-    assert_eq!(copied.scene.placed_primitives(), own + 25);
+    assert_eq!(shared.scene.unique_primitives(), own + object);
+    assert_eq!(shared.scene.placed_primitives(), own + 5 * object);
+    assert_eq!(copied.scene.placed_primitives(), own + 5 * object);
     assert_eq!(
         (
             copied.scene.unique_primitives(),
             copied.scene.instance_count()
         ),
-        (own + 25, 0)
+        (own + 5 * object, 0)
     );
 }
 
@@ -165,11 +167,11 @@ fn settings(integrator: IntegratorKind) -> Settings {
 #[test]
 fn pictures_of_shared_objects_and_of_copies_agree() {
     let (shared, copied) = (shared(), copied());
-    let path = |scene| replicates(scene, &settings(IntegratorKind::Path), 2048);
+    let path = |scene| replicates(scene, &settings(IntegratorKind::Path), 4096);
     let reference = path(&copied.scene);
     let blocks = [WHOLE, 1];
     check_agree("shared", &path(&shared.scene), &reference, &blocks);
-    let bdpt = replicates(&shared.scene, &settings(IntegratorKind::Bdpt), 1536);
+    let bdpt = replicates(&shared.scene, &settings(IntegratorKind::Bdpt), 3072);
     check_agree("shared, bdpt", &bdpt, &reference, &blocks);
 }
 

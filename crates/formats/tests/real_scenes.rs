@@ -96,7 +96,7 @@ fn gltf_flight_helmet() {
 /// the noisiest small test: blocks of 16 × 16 pixels agree, and means are within 1 %.
 #[track_caller]
 fn check_large(name: &str) {
-    let Some(loaded) = open(name, 256) else {
+    let Some(loaded) = open(name, 192) else {
         return;
     };
     let bdpt = estimate(&loaded, IntegratorKind::Bdpt, 64);

@@ -48,7 +48,7 @@ PRINCIPLED = [
         DRAW,
         "pdf += probs.coat * self.coat_ggx().mirror_pdf(wo, wi);",
         "pdf += 0.8 * probs.coat * self.coat_ggx().mirror_pdf(wo, wi);",
-        materials("a_principled_surface_of_rough_lobes"),
+        unit("samples_follow_the_density"),
     ),
     # --- glTF ---------------------------------------------------------------------------------
     (

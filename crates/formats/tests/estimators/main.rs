@@ -196,7 +196,7 @@ fn shared_light_points_and_missing_strategies() {
 #[test]
 fn single_strategies_at_fixed_length() {
     let loaded = open("separated.pbrt");
-    let case = Case::new(&loaded, 8192);
+    let case = Case::new(&loaded, 16384);
     let single = |s: usize, length: usize, effort: u64| {
         let only = format!("s{s}t{}", length - s);
         case.with_effort(effort)

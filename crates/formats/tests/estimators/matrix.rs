@@ -73,7 +73,7 @@ const OTHERS: [World; 13] = [
     world("conductor", [4608, 1], Light::Partial),
     world("crop", [9216, 1], Light::Whole(2)),
     world("glass", [4608, 1], Light::Partial),
-    world("lens", [3072, 2], Light::Whole(2)),
+    world("lens", [3072, 2], Light::Whole(8)),
     world("lights", [6912, 1], Light::Whole(2)),
     world("mirror", [1536, 1], Light::Whole(2)),
     world("parallel", [2304, 1], Light::Partial),
@@ -171,11 +171,41 @@ fn a_sky_over_nothing() {
     check("empty-sky");
 }
 
-#[test]
-#[ignore = "long: the whole matrix"]
-fn every_integrator_with_every_choice_of_shadow_rays_on_every_world() {
-    for world in WORLDS.iter().chain(&OTHERS) {
-        world.check(RULES);
+/// One test for each world, so that they run side by side and each tells of itself.
+mod every_choice_of_shadow_rays {
+    use super::{OTHERS, RULES, WORLDS};
+
+    #[track_caller]
+    fn check(name: &str) {
+        let mut worlds = WORLDS.iter().chain(&OTHERS);
+        let world = worlds.find(|world| world.name.replace('-', "_") == name);
+        world.expect("a world").check(RULES);
+    }
+
+    /// A test with the name of each world.
+    macro_rules! worlds {
+        ($($name:ident)*) => {
+            $(
+                #[test]
+                #[ignore = "takes long: just nightly"]
+                fn $name() {
+                    check(stringify!($name));
+                }
+            )*
+
+            #[test]
+            fn is_asked_of_every_world() {
+                let names = [$(stringify!($name)),*];
+                let worlds = WORLDS.iter().chain(&OTHERS).map(|world| world.name.replace('-', "_"));
+                assert_eq!(worlds.collect::<Vec<_>>(), names);
+            }
+        };
+    }
+
+    worlds! {
+        picture_lamp sky_alone within_glass bulb narrow_spot shapes leaves empty_sky
+        conductor crop glass lens lights mirror parallel around_longitude around_octahedron
+        red_light_blue_surfaces scale_tiny shading_normal touching
     }
 }
 
