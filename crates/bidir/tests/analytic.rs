@@ -4,10 +4,10 @@ mod common;
 
 use bidir::driver::Settings;
 use bidir::film::{Filter, FilterKind};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
-use bidir::path::{PathRoulette, PathSettings};
+use bidir::path::{MisCount, PathRoulette, PathSettings};
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::select::ShadowRays;
 use bidir::shape::{Disk, Orientation, Shape, Sphere};
@@ -245,6 +245,20 @@ fn rough_surfaces_lose_but_never_gain() {
             let mean = result.mean();
             assert!(mean < 1.0 && mean > 0.75, "{name}: {mean}");
         }
+    }
+}
+
+/// Few of many candidates are traced, so that all counts differ.
+#[test]
+fn counts_of_weights_keep_the_closed_sphere() {
+    let scene = closed_sphere();
+    for (name, mis_count) in MisCount::NAMES {
+        let mut settings = settings(IntegratorKind::Lvc, Some(8));
+        settings.shadow_rays = ShadowRays::Budget(2);
+        settings.lvc.candidates = CandidateCount::of(8);
+        settings.lvc.mis_count = mis_count;
+        let result = replicates(&scene, &settings, 1024);
+        check_expectation(name, &result, 1.0 - halved(9));
     }
 }
 

@@ -11,12 +11,12 @@ use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
+    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisCount,
+    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
 };
 use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
-use common::walks::{for_each_pair, for_some_pairs, some_proposals};
+use common::walks::{for_each_pair, for_some_pairs, some_inclusion, some_proposals};
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {
@@ -248,7 +248,7 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     } = context.connections;
     match (s, path.len() - s) {
         (_, 1) => 64.0 / samples_per_subpath,
-        (s, t) if s > 1 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
+        (s, t) if s > 0 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
         _ => 1.0,
     }
 }
@@ -302,7 +302,9 @@ fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
         "the weights of {} vertices sum to {sum}",
         path.len()
     );
-    if mis == MisHeuristic::Balance {
+    // What is correlated counts less than n_s.
+    let counts_samples = context.connections.mis_count != MisCount::Correlated;
+    if mis == MisHeuristic::Balance && counts_samples {
         // w_s ∝ n_s p_s and the value is f / (n_s p_s): their product is one constant.
         let constant = possible[0].2 * possible[0].1;
         for (s, w, value) in &possible {
@@ -355,10 +357,35 @@ fn proposals_are_one_function_of_the_path() {
             per_vertex: 0.7,
             proposals: Some(&proposals),
             samples_per_subpath: 4.0,
+            mis_count: MisCount::Expected,
         };
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
             let settings = settings(mis, LightPointChoice::Fresh);
             check_paths_with(&settings, &scene, connections);
+        }
+    }
+}
+
+/// The same whatever weights take for the number of samples.
+#[test]
+fn counts_are_one_function_of_the_path() {
+    for scene in [common::room(0.1), common::gallery(0.1)] {
+        let proposals = some_proposals(&scene);
+        let thinned = proposals.clone().counting_rays(&some_inclusion());
+        for (mis_count, proposals) in [
+            (MisCount::Correlated, &proposals),
+            (MisCount::Resampled, &thinned),
+        ] {
+            let connections = Connections {
+                per_vertex: 3.0,
+                proposals: Some(proposals),
+                samples_per_subpath: 2.0,
+                mis_count,
+            };
+            for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
+                let settings = settings(mis, LightPointChoice::Fresh);
+                check_paths_with(&settings, &scene, connections);
+            }
         }
     }
 }

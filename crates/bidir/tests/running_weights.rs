@@ -8,13 +8,13 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
+    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic,
     PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
     Vertex, sample_next_event,
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
-use common::walks::{for_some_pairs, some_proposals};
+use common::walks::{for_some_pairs, some_inclusion, some_proposals};
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
 const TOLERANCE: f32 = 1e-6;
@@ -179,14 +179,31 @@ fn check(scene: &Scene, pairs: u64) {
         per_vertex: 2.7,
         proposals: Some(&proposals),
         samples_per_subpath: 4.0,
+        mis_count: MisCount::Expected,
     };
     let uniform = Connections {
         proposals: None,
         ..shared
     };
+    let thinned = proposals.clone().counting_rays(&some_inclusion());
+    let resampled = Connections {
+        proposals: Some(&thinned),
+        mis_count: MisCount::Resampled,
+        ..shared
+    };
+    let correlated = Connections {
+        mis_count: MisCount::Correlated,
+        ..shared
+    };
     for settings in all_settings() {
         for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
-            for connections in [Connections::ONE_SUBPATH, uniform, shared] {
+            for connections in [
+                Connections::ONE_SUBPATH,
+                uniform,
+                shared,
+                resampled,
+                correlated,
+            ] {
                 let context = PathContext {
                     connections,
                     ..*context

@@ -19,6 +19,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
     lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
     lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
+    lvc.mis_count = args.mis_count.unwrap_or(lvc.mis_count);
     let path = &mut settings.path;
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
@@ -60,6 +61,7 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
             "--samples-per-subpath",
             estimator.samples_per_subpath.is_some() && !is_lvc,
         ),
+        ("--mis-count", estimator.mis_count.is_some() && !may_share),
         ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
         ("--mis", estimator.mis.is_some() && is_light),
     ];

@@ -189,10 +189,31 @@ PATHS = [
     ),
     (
         "weights that know the proposal the other way round",
-        "crates/bidir/src/path/connect.rs",
+        "crates/bidir/src/path/count.rs",
         "all.relative(z.cell, y.cell);",
         "all.relative(if s > t { z.cell } else { y.cell }, y.cell);",
         RUNNING,
+    ),
+    (
+        "next-event estimation counted by the cell of its lamp",
+        "crates/bidir/src/path/count.rs",
+        "all.next_events(y.cell)",
+        "all.next_events(if t > 2 { z.cell } else { y.cell })",
+        PATH,
+    ),
+    (
+        "correlation of the strategy at hand alone",
+        "crates/bidir/src/path/count.rs",
+        "MisCount::Correlated if is_shared =>",
+        "MisCount::Correlated if is_shared && j == self.light.len() =>",
+        PATH,
+    ),
+    (
+        "blocked connections counted as those that arrive",
+        "crates/bidir/src/path/proposals.rs",
+        "*arrived += u32::from(square.is_some());",
+        "*arrived += 1;",
+        unit("visibility_is_what_arrives"),
     ),
     (
         "light images of fewer subpaths not made up for",

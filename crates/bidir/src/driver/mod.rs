@@ -21,7 +21,7 @@ pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
 use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
-use crate::path::PathSettings;
+use crate::path::{MisCount, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use crate::select::ShadowRays;
@@ -51,7 +51,9 @@ pub struct Settings {
 impl Settings {
     /// True where the estimator learns about connections before the first pass.
     fn learns(&self) -> bool {
-        self.integrator == IntegratorKind::Lvc && self.lvc.proposal == ProposalKind::Learned
+        let learns =
+            self.lvc.proposal == ProposalKind::Learned || self.lvc.mis_count == MisCount::Resampled;
+        self.integrator == IntegratorKind::Lvc && learns
     }
 }
 

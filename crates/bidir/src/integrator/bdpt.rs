@@ -165,18 +165,19 @@ fn candidate(
 ) {
     if let Some(term) = connection(context, workspace, strategy) {
         let counted = workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
-        offer(context, sample, workspace, &counted, None);
+        offer(context, sample, workspace, &counted, 1.0, None);
     }
 }
 
 /// Offers a term for selection, of light vertex number `cached` of the light cache or of the sample's own
-/// subpath.
+/// subpath. It is compared by its luminance times `root_visibility`, the √V̂ of its shadow ray.
 #[inline]
 pub(super) fn offer(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
     counted: &Counted,
+    root_visibility: f32,
     cached: Option<u32>,
 ) {
     let whole = counted.whole();
@@ -185,7 +186,7 @@ pub(super) fn offer(
         let luminance = color.luminance(whole.value.map(f32::abs), &context.wavelengths);
         workspace
             .candidates
-            .push(Candidate::new(&whole, luminance, cached));
+            .push(Candidate::new(&whole, luminance * root_visibility, cached));
     }
 }
 

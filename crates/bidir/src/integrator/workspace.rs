@@ -202,20 +202,34 @@ impl Workspace {
         [light[light.len() - 1].segment_end(), y.segment_end()]
     }
 
-    /// What arrived by connections with vertices of the light cache: the cells of light and camera
-    /// vertex, and the value.
-    pub(crate) fn cached_connections(&self) -> impl Iterator<Item = (Cell, Cell, Spectrum)> {
-        let mut candidates = self.candidates.iter();
-        self.contributions.iter().filter_map(move |contribution| {
-            // Both are in the order of terms; hits, which have none, are before all of them.
-            let candidate = candidates
-                .clone()
-                .position(|candidate| candidate.term == contribution.term)?;
-            let candidate = candidates.nth(candidate)?;
-            let light = self.light_cache.get(candidate.cached? as usize).light;
-            let y = &self.camera.vertices[usize::from(candidate.strategy.t) - 1];
-            Some((light[light.len() - 1].cell, y.cell, contribution.value))
+    /// The connections with vertices of the light cache: the cells of light and camera vertex, and what
+    /// arrived, if anything.
+    pub(crate) fn cached_connections(
+        &self,
+    ) -> impl Iterator<Item = (Cell, Cell, Option<Spectrum>)> {
+        let mut contributions = self.contributions.iter().peekable();
+        self.candidates.iter().filter_map(move |candidate| {
+            // Both are in the order of terms; hits are no candidates.
+            while contributions.next_if(|c| c.term < candidate.term).is_some() {}
+            let arrived = contributions.next_if(|c| c.term == candidate.term);
+            let [light, camera] = self.cells_of(candidate)?;
+            Some((
+                light,
+                camera,
+                arrived.map(|contribution| contribution.value),
+            ))
         })
+    }
+
+    /// The cells of a candidate's vertices. None: its light vertex is not of the light cache.
+    pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
+        let light = self.light_cache.get(candidate.cached? as usize).light;
+        Some([light[light.len() - 1].cell, self.camera_cell(candidate)])
+    }
+
+    /// The cell of a candidate's camera vertex.
+    pub(crate) fn camera_cell(&self, candidate: &Candidate) -> Cell {
+        self.camera.vertices[usize::from(candidate.strategy.t) - 1].cell
     }
 
     /// Counts a term that is not zero; `link` is asked for the journal only.

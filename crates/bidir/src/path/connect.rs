@@ -1,11 +1,10 @@
 //! C = β_L · scatter(z) · G(z, y) · scatter(y) · β_C: what a connection of two subpaths is worth
-//! [Veach97, §10.2]; its weight; and n_j, how often each strategy has the chance.
+//! [Veach97, §10.2], and its weight.
 //!
 //! No ray is traced here: visibility is the caller's to ask for.
 
 use super::{
-    Cell, Connections, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment,
-    Vertex, mis_weight,
+    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Vertex, mis_weight,
 };
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightPoint, LightSample, Part};
@@ -74,7 +73,7 @@ impl<'a> JoinedPath<'a> {
 
     /// x_i.
     #[inline]
-    fn vertex(&self, i: usize) -> &'a Vertex {
+    pub(super) fn vertex(&self, i: usize) -> &'a Vertex {
         let s = self.light.len();
         if i < s {
             &self.light[i]
@@ -112,15 +111,11 @@ impl<'a> JoinedPath<'a> {
     #[inline]
     pub fn weight(&self, context: &PathContext<'_>, densities: &mut PathDensities) -> f32 {
         densities.gather(context, self);
-        let n = self.len();
         let s = match self.junction {
             Junction::Hit => 0,
             Junction::Connection => self.light.len(),
         };
-        let count = |j| match (j, n - j) {
-            (0, _) | (_, 0) => context.count_hits(n - j),
-            (s, t) => context.count(s, t, [self.vertex(s - 1), self.vertex(s)]),
-        };
+        let count = |j| self.count(context, densities, j);
         mis_weight(densities, count, context.settings.mis, s) as f32
     }
 }
@@ -183,35 +178,6 @@ fn by_power((light, prob): (usize, f32)) -> ChosenEmitter {
 }
 
 impl PathContext<'_> {
-    /// n_j: how many samples strategy (s, t) takes in a pass of a path that it makes by linking `z`,
-    /// its last light vertex, with `y`, its last camera vertex. Camera densities
-    /// count per pixel, so every strategy that begins at the camera takes one; the light image takes
-    /// one per light subpath. With [`count_hits`](Self::count_hits) this is the only place where
-    /// normalisation meets weights.
-    #[inline]
-    pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
-        match t {
-            _ if !self.takes(s, t) => 0.0,
-            1 => self.scene.film().light_paths() as f64 / self.connections.samples_per_subpath,
-            _ if s >= self.settings.light_point.first_walked() => {
-                let Connections {
-                    per_vertex,
-                    proposals,
-                    ..
-                } = self.connections;
-                let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
-                per_vertex * proposals.map_or(1.0, relative)
-            }
-            _ => 1.0,
-        }
-    }
-
-    /// The same for s = 0, which links nothing.
-    #[inline]
-    pub fn count_hits(&self, t: usize) -> f64 {
-        f64::from(self.takes(0, t))
-    }
-
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {

@@ -13,12 +13,21 @@
 //! n = (M / κ) (ε + (1 - ε) Γ(c | r) κ / κ_c),
 //!
 //! with M candidates for each camera vertex.
+//!
+//! **Visibility.** Of candidates with contributions C of which parts V arrive, the sum over chosen ones
+//! varies least where the probability to be chosen is ∝ √E[C² V] = C √V̂ for binary V: that is what
+//! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
+use super::MisCount;
 use super::cells::{Cell, Cells};
 
 /// ε: how often what was learnt is not asked. What training did not see costs no more than 1/ε times
 /// as much as without it.
 const UNIFORM_PART: f32 = 0.2;
+
+/// The least V̂: where all connections of training were blocked, others are chosen a quarter as often
+/// as if all had arrived.
+const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
 /// How light vertices of a cache are proposed to camera vertices.
 #[derive(Clone, Debug)]
@@ -28,6 +37,10 @@ pub struct LightProposals {
     cumulative: Vec<f32>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
+    /// For each cell of camera vertices, n of s = 1.
+    next_events: Vec<f32>,
+    /// For each pair √V̂.
+    root_visibility: Vec<f32>,
 }
 
 /// What training found of pairs of cells.
@@ -37,6 +50,17 @@ pub struct PairSums {
     pub light_vertices: Vec<f64>,
     /// Σ X², by the cell of camera vertices first. Unit: squared luminance, of any scale.
     pub squares: Vec<f64>,
+    /// Of how many connections it is known whether they arrived, and how many did.
+    pub arrived: Vec<[u32; 2]>,
+}
+
+/// The mean probability with which candidates are chosen to be traced.
+#[derive(Clone, Debug)]
+pub struct Inclusion {
+    /// For each pair of cells, by that of camera vertices first. Positive.
+    pub connections: Vec<f64>,
+    /// For each cell of camera vertices, of s = 1. Positive.
+    pub next_events: Vec<f64>,
 }
 
 impl PairSums {
@@ -45,7 +69,16 @@ impl PairSums {
         Self {
             light_vertices,
             squares: vec![0.0; Cells::COUNT * Cells::COUNT],
+            arrived: vec![[0; 2]; Cells::COUNT * Cells::COUNT],
         }
+    }
+
+    /// Adds a connection of pair number `pair`, by the square of what arrived. None: it was blocked.
+    pub(crate) fn add(&mut self, pair: usize, square: Option<f64>) {
+        let [traced, arrived] = &mut self.arrived[pair];
+        *traced += 1;
+        *arrived += u32::from(square.is_some());
+        self.squares[pair] += square.unwrap_or(0.0);
     }
 }
 
@@ -82,7 +115,19 @@ impl LightProposals {
             cells,
             cumulative,
             relative,
+            next_events: vec![1.0; Cells::COUNT],
+            root_visibility: sums.arrived.iter().map(root_visibility).collect(),
         }
+    }
+
+    /// The same where n counts traced rays alone.
+    pub fn counting_rays(mut self, inclusion: &Inclusion) -> Self {
+        let counts = self.relative.iter_mut().chain(&mut self.next_events);
+        let chosen = inclusion.connections.iter().chain(&inclusion.next_events);
+        for (count, &chosen) in counts.zip(chosen) {
+            *count = (f64::from(*count) * chosen) as f32;
+        }
+        self
     }
 
     /// The cells of vertices.
@@ -95,6 +140,18 @@ impl LightProposals {
     #[inline]
     pub(super) fn relative(&self, light: Cell, camera: Cell) -> f64 {
         f64::from(self.relative[Cells::pair(light, camera)])
+    }
+
+    /// n of s = 1 for a camera vertex in the cell `camera`.
+    #[inline]
+    pub(super) fn next_events(&self, camera: Cell) -> f64 {
+        f64::from(self.next_events[camera.index()])
+    }
+
+    /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
+    #[inline]
+    pub(crate) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
+        self.root_visibility[Cells::pair(light, camera)]
     }
 
     /// Draws a cell of light vertices for a camera vertex in the cell `camera`.
@@ -127,6 +184,13 @@ impl LightProposals {
     }
 }
 
+/// √V̂ where so many connections were traced and arrived. What training did not see counts as
+/// visible, and nothing as hidden for sure.
+fn root_visibility(&[traced, arrived]: &[u32; 2]) -> f32 {
+    let visible = f64::from(arrived + 1) / f64::from(traced + 1);
+    visible.max(LEAST_VISIBILITY).sqrt() as f32
+}
+
 /// Appends the sums of Γ(c | r) ∝ √(κ_c Σ X²), or of κ_c where nothing was found.
 fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
     let learnt = || kappa.iter().zip(squares).map(|(k, q)| (k * q).sqrt());
@@ -156,6 +220,8 @@ pub struct Connections<'a> {
     pub proposals: Option<&'a LightProposals>,
     /// How many samples there are for each light subpath.
     pub samples_per_subpath: f64,
+    /// What weights take for how many there are.
+    pub mis_count: MisCount,
 }
 
 impl Connections<'_> {
@@ -164,5 +230,48 @@ impl Connections<'_> {
         per_vertex: 1.0,
         proposals: None,
         samples_per_subpath: 1.0,
+        mis_count: MisCount::Expected,
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+
+    #[test]
+    fn visibility_is_what_arrives() {
+        let cells = Cells::new(&mut []);
+        let [y, seen, hidden, unknown] =
+            [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::Z].map(|n| cells.of(Vec3::ZERO, n));
+        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
+        for i in 0..99 {
+            sums.add(Cells::pair(seen, y), (i % 4 == 0).then_some(1.0));
+            sums.add(Cells::pair(hidden, y), None);
+        }
+        let proposals = LightProposals::new(cells, &sums);
+        let root = |light| f64::from(proposals.root_visibility(light, y));
+        assert!((root(seen) - libm::sqrt(0.26)).abs() < 1e-6);
+        assert!((root(hidden) - 0.25).abs() < 1e-6, "not hidden for sure");
+        assert!((root(unknown) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn traced_rays_are_a_part_of_the_samples() {
+        let cells = Cells::new(&mut []);
+        let sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
+        let all = LightProposals::new(cells, &sums);
+        let [z, y] = [3, 5].map(Cells::cell);
+        let mut inclusion = Inclusion {
+            connections: vec![1.0; Cells::COUNT * Cells::COUNT],
+            next_events: vec![1.0; Cells::COUNT],
+        };
+        inclusion.connections[Cells::pair(z, y)] = 0.25;
+        inclusion.next_events[y.index()] = 0.5;
+        let thinned = all.clone().counting_rays(&inclusion);
+        assert!((thinned.relative(z, y) - 0.25 * all.relative(z, y)).abs() < 1e-6);
+        assert!((thinned.relative(y, z) - all.relative(y, z)).abs() < 1e-12);
+        assert!((thinned.next_events(y) - 0.5).abs() < 1e-6);
+        assert!((thinned.next_events(z) - 1.0).abs() < 1e-12);
+    }
 }

@@ -32,7 +32,8 @@ use std::str::FromStr;
 pub struct Candidate {
     /// The weighted contribution if nothing blocks it.
     pub value: Spectrum,
-    /// Its luminance: what candidates are compared by. Positive.
+    /// What candidates are compared by: its luminance, times what is known of the root of the chance that
+    /// it arrives. Positive.
     pub score: f32,
     /// How it was made; s ≥ 1 and t ≥ 2.
     pub strategy: Strategy,
@@ -47,14 +48,13 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// A candidate for what is certain to be traced, which is not black and has the luminance
-    /// `luminance` without regard to signs.
+    /// A candidate for what is certain to be traced, which is not black and is compared by `score`.
     #[inline]
-    pub fn new(whole: &Contribution, luminance: f32, cached: Option<u32>) -> Self {
+    pub fn new(whole: &Contribution, score: f32, cached: Option<u32>) -> Self {
         Self {
             value: whole.value,
             // What underflows must keep a chance.
-            score: luminance.max(f32::MIN_POSITIVE),
+            score: score.max(f32::MIN_POSITIVE),
             strategy: whole.strategy,
             light: whole.light,
             weight: whole.weight,

@@ -1,7 +1,7 @@
 //! Pairs of subpaths, walked in a scene.
 
 use bidir::path::{
-    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath,
+    Cells, Connections, Inclusion, LightProposals, PairSums, PathContext, PathSettings, Subpath,
     camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
@@ -48,8 +48,18 @@ pub(crate) fn some_proposals(scene: &Scene) -> LightProposals {
     let sums = PairSums {
         light_vertices: numbers(Cells::COUNT).collect(),
         squares: numbers(Cells::COUNT * Cells::COUNT).collect(),
+        arrived: vec![[0; 2]; Cells::COUNT * Cells::COUNT],
     };
     LightProposals::new(Cells::new(&mut points), &sums)
+}
+
+/// Chances to be traced that are another for every pair of cells.
+pub(crate) fn some_inclusion() -> Inclusion {
+    let chance = |i: usize| ((1 + i.wrapping_mul(2_654_435_761) % 97) as f64) / 97.0;
+    Inclusion {
+        connections: (0..Cells::COUNT * Cells::COUNT).map(chance).collect(),
+        next_events: (0..Cells::COUNT).map(chance).collect(),
+    }
 }
 
 /// The same with the first `pairs` of them.

@@ -7,7 +7,9 @@ use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, na
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
 use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
-use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::path::{
+    LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
+};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
 use clap::{Args, ValueHint};
@@ -134,6 +136,14 @@ pub(crate) struct EstimatorArgs {
     /// 256 [default: 2].
     #[arg(long, value_name = "K")]
     pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
+    /// What weights take for the number of samples of a strategy whose light subpaths are shared (lvc)
+    /// [default: expected].
+    ///
+    /// expected: how often it makes the path. correlated: less, where connections have a camera
+    /// subpath in common that the camera rarely finds. resampled: how often it traces the path's shadow
+    /// ray, where not all are traced.
+    #[arg(long, value_name = "KIND", value_parser = named(MisCount::NAMES))]
+    pub(crate) mis_count: Option<MisCount>,
     /// How strategies that make the same path share it [default: balance].
     #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
     pub(crate) mis: Option<MisHeuristic>,
@@ -228,7 +238,9 @@ pub(crate) struct FilmArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::{IntegratorKind, LightChoiceKind, LightPointChoice, MisHeuristic, ProposalKind};
+    use super::{
+        IntegratorKind, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, ProposalKind,
+    };
     use crate::args::Cli;
     use crate::settings::name_of;
     use bidir::driver::Settings;
@@ -265,6 +277,10 @@ mod tests {
         check_default(
             "proposal",
             name_of(&ProposalKind::NAMES, settings.lvc.proposal),
+        );
+        check_default(
+            "mis-count",
+            name_of(&MisCount::NAMES, settings.lvc.mis_count),
         );
         check_default("strategies", &path.strategies);
         let help = help_of("path-roulette");

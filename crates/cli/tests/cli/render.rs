@@ -76,6 +76,8 @@ fn settings_change_the_image() {
         "--integrator auto",
         "--integrator lvc --proposal uniform",
         "--integrator lvc --samples-per-subpath 4",
+        "--integrator lvc --candidates 8 --mis-count correlated",
+        "--integrator lvc --shadow-rays budget:2 --mis-count resampled",
         "--mis uniform",
         "--max-depth 1",
         "--strategies all,-s0",

@@ -3,7 +3,7 @@
 use bidir::driver::Settings;
 use bidir::film::{Aov, StrategyImages};
 use bidir::integrator::{IntegratorKind, LvcSettings, ProposalKind};
-use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathSettings};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
 use serde_json::Value;
@@ -35,6 +35,8 @@ pub struct SettingsText {
     pub proposal: &'static str,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: u16,
+    /// What weights take for the number of samples of a strategy whose light subpaths are shared.
+    pub mis_count: &'static str,
     /// The random numbers.
     pub sampler: &'static str,
     /// Their seed.
@@ -87,6 +89,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             candidates: parse(flag("candidates")?)?,
             proposal: named(&ProposalKind::NAMES, flag("proposal")?)?,
             samples_per_subpath: parse(flag("samples-per-subpath")?)?,
+            mis_count: named(&MisCount::NAMES, flag("mis-count")?)?,
         },
         sampler: named(&SamplerKind::NAMES, flag("sampler")?)?,
         seed: parse(flag("seed")?)?,
@@ -157,6 +160,7 @@ impl From<&Settings> for SettingsText {
             candidates,
             proposal,
             samples_per_subpath,
+            mis_count,
         } = lvc;
         Self {
             integrator: name_of(&IntegratorKind::NAMES, *integrator),
@@ -170,6 +174,7 @@ impl From<&Settings> for SettingsText {
             candidates: candidates.get(),
             proposal: name_of(&ProposalKind::NAMES, *proposal),
             samples_per_subpath: samples_per_subpath.get(),
+            mis_count: name_of(&MisCount::NAMES, *mis_count),
             sampler: name_of(&SamplerKind::NAMES, *sampler),
             seed: *seed,
             aov: list(layers.aovs().iter().map(|aov| name_of(&Aov::NAMES, *aov))),

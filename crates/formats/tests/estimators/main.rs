@@ -10,8 +10,9 @@ mod matrix;
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
 
-use bidir::integrator::IntegratorKind;
-use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette};
+use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette};
+use bidir::select::ShadowRays;
 use bidir_formats::pbrt::Crop;
 use case::{Case, PIXELS, QUARTERS, open, open_part};
 use statistics::check_agree;
@@ -165,6 +166,33 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
                 settings.shadow_rays = rule.parse().expect("a rule");
             });
             check_agree(&format!("{rule}, {mis_name}"), &result, &reference, blocks);
+        }
+    }
+}
+
+/// Two of many candidates are traced: what counts as a sample depends on how weights count.
+#[test]
+fn weights_that_count_samples_in_other_ways() {
+    for (name, passes, efforts) in [
+        ("red-light-blue-surfaces", 768, [4, 1]),
+        ("bulb", 1024, [4, 2]),
+    ] {
+        let loaded = open(&format!("{name}.pbrt"));
+        let case = Case::new(&loaded, passes);
+        let [path, lvc] = efforts.map(|effort| case.with_effort(effort));
+        let reference = path.path();
+        for (count_name, mis_count) in MisCount::NAMES {
+            let result = lvc.render(IntegratorKind::Lvc, |settings| {
+                settings.shadow_rays = ShadowRays::Budget(2);
+                settings.lvc.candidates = CandidateCount::of(8);
+                settings.lvc.mis_count = mis_count;
+            });
+            check_agree(
+                &format!("{name}, {count_name}"),
+                &result,
+                &reference,
+                QUARTERS,
+            );
         }
     }
 }

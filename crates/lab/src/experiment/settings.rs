@@ -4,7 +4,9 @@
 use super::names::nearest;
 use bidir::driver::Settings;
 use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
-use bidir::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
+use bidir::path::{
+    LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
+};
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
 use formats::film::SettingsText;
@@ -25,6 +27,8 @@ pub struct Changes {
     pub proposal: Option<ProposalKind>,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: Option<SamplesPerSubpath>,
+    /// What weights take for the number of samples of a strategy whose light subpaths are shared.
+    pub mis_count: Option<MisCount>,
     /// How strategies share paths.
     pub mis: Option<MisHeuristic>,
     /// The strategies that take part.
@@ -43,12 +47,13 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 12] = [
+    pub const NAMES: [&'static str; 13] = [
         "integrator",
         "shadow-rays",
         "candidates",
         "proposal",
         "samples-per-subpath",
+        "mis-count",
         "mis",
         "strategies",
         "light-point",
@@ -68,6 +73,7 @@ impl Changes {
             "candidates" => self.candidates = Some(parsed(value)?),
             "samples-per-subpath" => self.samples_per_subpath = Some(parsed(value)?),
             "proposal" => self.proposal = Some(named(&ProposalKind::NAMES, value)?),
+            "mis-count" => self.mis_count = Some(named(&MisCount::NAMES, value)?),
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
             "light-point" => self.light_point = Some(named(&LightPointChoice::NAMES, value)?),
@@ -92,6 +98,7 @@ impl Changes {
             candidates: self.candidates.or(defaults.candidates),
             proposal: self.proposal.or(defaults.proposal),
             samples_per_subpath: self.samples_per_subpath.or(defaults.samples_per_subpath),
+            mis_count: self.mis_count.or(defaults.mis_count),
             mis: self.mis.or(defaults.mis),
             strategies: self.strategies.or_else(|| defaults.strategies.clone()),
             light_point: self.light_point.or(defaults.light_point),
@@ -110,6 +117,7 @@ impl Changes {
         lvc.candidates = self.candidates.unwrap_or(lvc.candidates);
         lvc.proposal = self.proposal.unwrap_or(lvc.proposal);
         lvc.samples_per_subpath = self.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
+        lvc.mis_count = self.mis_count.unwrap_or(lvc.mis_count);
         let path = &mut settings.path;
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);

@@ -6,21 +6,21 @@
 mod pilot;
 mod plan;
 mod probe;
+mod rays;
+mod survey;
 mod trial;
 
 pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{CandidateCount, Integrator, IntegratorKind, Workspace, connectable};
-use crate::math::Vec3;
-use crate::path::PathRoulette;
-use crate::path::{Cells, Connections, LightProposals, PairSums, PathContext};
+use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
+use crate::path::{Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
-use crate::spectrum::luminance;
 use crate::stats::RayCounts;
 use probe::Probe;
+use survey::Survey;
 
 /// What a short render before the first pass found: a pure function of scene and settings. Its
 /// samples have random numbers of their own and never enter the film.
@@ -39,9 +39,6 @@ pub struct Training {
     /// The rays it cost.
     pub rays: RayCounts,
 }
-
-/// Enough for the mean luminance to within a few percent in most scenes.
-const SAMPLES: u64 = 1 << 14;
 
 /// The distance between the pixels of successive samples: a prime above any number of pixels, so
 /// that they spread evenly.
@@ -82,11 +79,11 @@ impl Training {
     fn run(scene: &Scene, settings: &Settings) -> Self {
         let survey = Survey::run(scene, settings);
         let mut training = Self {
-            mean_luminance: (survey.luminance / SAMPLES as f64) as f32,
-            light_vertices: survey.light.len() as f64 / SAMPLES as f64,
+            mean_luminance: (survey.luminance / survey::SAMPLES as f64) as f32,
+            light_vertices: survey.light.len() as f64 / survey::SAMPLES as f64,
             proposals: None,
             plan: None,
-            samples: SAMPLES,
+            samples: survey::SAMPLES,
             rays: survey.rays,
         };
         if settings.learns() && training.light_vertices > 0.0 {
@@ -95,101 +92,58 @@ impl Training {
         training
     }
 
-    /// How many connections a camera vertex makes, of `candidates`.
-    pub(super) fn connections(&self, candidates: CandidateCount) -> Connections<'_> {
-        let candidates = f64::from(candidates.get());
+    /// How many connections a camera vertex makes, where each sample has a light subpath.
+    pub(super) fn connections(&self, settings: &LvcSettings) -> Connections<'_> {
         match self.light_vertices {
             0.0 => Connections::ONE_SUBPATH,
             vertices => Connections {
-                per_vertex: candidates / vertices,
+                per_vertex: f64::from(settings.candidates.get()) / vertices,
                 proposals: self.proposals.as_ref(),
                 samples_per_subpath: 1.0,
+                mis_count: settings.mis_count,
             },
         }
     }
 
-    /// Learns which light vertices to propose.
+    /// Learns which light vertices to propose, which of them are visible, and which are chosen.
     fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
         let (cells, mut sums) = survey.cells();
-        self.proposals = Some(LightProposals::new(cells.clone(), &sums));
-        let probe = Probe {
+        let mut proposals = LightProposals::new(cells.clone(), &sums);
+        if settings.lvc.proposal == ProposalKind::Learned {
+            let rays = pilot::run(&self.probe(scene, settings, &proposals), &mut sums);
+            self.count(pilot::SAMPLES, rays);
+            proposals = LightProposals::new(cells, &sums);
+        }
+        let some_are_traced = settings.shadow_rays != ShadowRays::All;
+        if settings.lvc.mis_count == MisCount::Resampled && some_are_traced {
+            let probe = self.probe(scene, settings, &proposals);
+            let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
+            self.count(rays::SAMPLES, rays);
+            proposals = proposals.counting_rays(&inclusion);
+        }
+        self.proposals = Some(proposals);
+    }
+
+    /// More samples, where `proposals` are all that is known.
+    fn probe<'a>(
+        &'a self,
+        scene: &'a Scene,
+        settings: &'a Settings,
+        proposals: &'a LightProposals,
+    ) -> Probe<'a> {
+        Probe {
             scene,
             settings,
-            connections: self.connections(settings.lvc.candidates),
-            first: SAMPLES,
-        };
-        let rays = pilot::run(&probe, &mut sums);
+            connections: Connections {
+                proposals: Some(proposals),
+                ..self.connections(&settings.lvc)
+            },
+            first: self.samples,
+        }
+    }
+
+    fn count(&mut self, samples: u64, rays: RayCounts) {
+        self.samples += samples;
         self.rays += rays;
-        self.samples += pilot::SAMPLES;
-        self.proposals = Some(LightProposals::new(cells, &sums));
-    }
-}
-
-/// What the samples of every connection found.
-#[derive(Default)]
-struct Survey {
-    /// The sum of luminances that samples add to the mean pixel.
-    luminance: f64,
-    /// The light vertices that can be connected: points and normals.
-    light: Vec<[Vec3; 2]>,
-    /// The camera vertices that can be, by their points.
-    camera: Vec<Vec3>,
-    rays: RayCounts,
-}
-
-impl Survey {
-    fn run(scene: &Scene, settings: &Settings) -> Self {
-        let integrator = IntegratorKind::Bdpt
-            .integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
-        let (mut survey, mut workspace) = (Self::default(), Workspace::default());
-        let probe = Probe {
-            scene,
-            settings,
-            connections: Connections::ONE_SUBPATH,
-            first: 0,
-        };
-        for number in 0..SAMPLES {
-            survey.sample(&probe, &*integrator, number, &mut workspace);
-        }
-        survey.rays = workspace.stats.rays;
-        survey
-    }
-
-    fn sample(
-        &mut self,
-        probe: &Probe<'_>,
-        integrator: &dyn Integrator,
-        number: u64,
-        workspace: &mut Workspace,
-    ) {
-        let (scene, sample) = (probe.scene, probe.sample(number));
-        let context = probe.context(&sample);
-        integrator.sample(&context, &sample, workspace);
-        let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
-        let splats = workspace.splats.iter();
-        let splats: f64 = splats.map(|splat| y(splat.contribution.value)).sum();
-        self.luminance += y(workspace.value) + splats / scene.film().crop.area() as f64;
-        self.keep_vertices(&context, workspace);
-    }
-
-    fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
-        let light = &workspace.light.vertices;
-        let connectable = connectable(context.settings.light_point, light);
-        self.light.extend(connectable.map(|i| light[i].place()));
-        let camera = workspace.camera.vertices.iter().skip(1);
-        let camera = camera.filter(|y| !y.is_delta());
-        self.camera.extend(camera.map(|y| y.point));
-    }
-
-    /// Cells that suit the vertices, with how many light vertices each has.
-    fn cells(&self) -> (Cells, PairSums) {
-        let light = self.light.iter().map(|[point, _]| *point);
-        let mut points: Vec<_> = light.chain(self.camera.iter().copied()).collect();
-        let cells = Cells::new(&mut points);
-        let mut light_vertices = vec![0.0; Cells::COUNT];
-        for &[point, n] in &self.light {
-            light_vertices[cells.of(point, n).index()] += 1.0 / SAMPLES as f64;
-        }
-        (cells, PairSums::uniform(light_vertices))
     }
 }

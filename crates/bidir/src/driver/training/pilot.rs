@@ -15,9 +15,9 @@ const CANDIDATES: CandidateCount = CandidateCount::of(16);
 /// The samples of all groups.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 
-/// A pair of cells, by number, and the square of a contribution.
+/// A pair of cells, by number, and the square of what arrived by a connection, if anything.
 #[derive(Default)]
-struct Found(Vec<(u32, f64)>);
+struct Found(Vec<(u32, Option<f64>)>);
 
 impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
@@ -25,14 +25,17 @@ impl Witness for Found {
     fn sample(&mut self, context: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
         let color = context.scene.color();
         let connections = workspace.cached_connections();
-        self.0.extend(connections.map(|(light, camera, value)| {
+        let square = |value| {
             let y = f64::from(luminance(color.to_rgb(value, &context.wavelengths)));
-            (Cells::pair(light, camera) as u32, y * y)
+            y * y
+        };
+        self.0.extend(connections.map(|(light, camera, arrived)| {
+            (Cells::pair(light, camera) as u32, arrived.map(square))
         }));
     }
 }
 
-/// Adds to `sums` what connections contribute. Returns the rays that it took.
+/// Adds to `sums` what connections contribute, and how many arrive. Returns the rays that it took.
 pub(super) fn run(probe: &Probe<'_>, sums: &mut PairSums) -> RayCounts {
     let groups = (0..GROUPS).into_par_iter();
     let found: Vec<_> = groups
@@ -48,7 +51,7 @@ pub(super) fn run(probe: &Probe<'_>, sums: &mut PairSums) -> RayCounts {
     // In the order of the groups, whichever threads had them.
     for (Found(found), of_group) in found {
         for (pair, square) in found {
-            sums.squares[pair as usize] += square;
+            sums.add(pair as usize, square);
         }
         rays += of_group;
     }

@@ -130,13 +130,22 @@ impl Lvc {
         let Some((term, ends)) = self.connection(context, workspace, t, draw) else {
             return;
         };
+        let light = workspace.light_cache.get(draw.entry).light;
+        let [z, y] = [
+            light[light.len() - 1].cell,
+            workspace.camera.vertices[t - 1].cell,
+        ];
+        let proposals = context.connections.proposals;
+        let root_visibility = proposals.map_or(1.0, |all| all.root_visibility(z, y));
         let counted = workspace.count(term, |_| Link::Connection(ends));
+        let cached = Some(draw.entry as u32);
         offer(
             context,
             sample,
             workspace,
             &counted,
-            Some(draw.entry as u32),
+            root_visibility,
+            cached,
         );
     }
 

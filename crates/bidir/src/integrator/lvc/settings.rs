@@ -1,5 +1,6 @@
 //! How a light vertex cache is made and used.
 
+use crate::path::MisCount;
 use std::fmt;
 use std::str::FromStr;
 
@@ -12,6 +13,8 @@ pub struct LvcSettings {
     pub proposal: ProposalKind,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: SamplesPerSubpath,
+    /// What weights take for the number of samples of a strategy.
+    pub mis_count: MisCount,
 }
 
 /// How vertices of the cache are proposed to camera vertices.

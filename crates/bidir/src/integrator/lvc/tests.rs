@@ -73,6 +73,7 @@ fn draws_have_the_probability_that_they_say() {
     let sums = PairSums {
         light_vertices: numbers(Cells::COUNT, 5).collect(),
         squares: numbers(Cells::COUNT * Cells::COUNT, 3).collect(),
+        arrived: vec![[0; 2]; Cells::COUNT * Cells::COUNT],
     };
     let uniform = PairSums::uniform(sums.light_vertices.clone());
     let [learned, uniform] = [sums, uniform].map(|sums| LightProposals::new(cells.clone(), &sums));

@@ -1,0 +1,107 @@
+//! The first samples: of the full estimator, which traces every connection. They tell how bright the
+//! image is, and where vertices are.
+
+use super::Settings;
+use super::probe::Probe;
+use crate::integrator::{CandidateCount, Integrator, IntegratorKind, Workspace, connectable};
+use crate::math::Vec3;
+use crate::path::{Cells, Connections, PairSums, PathContext};
+use crate::scene::Scene;
+use crate::select::ShadowRays;
+use crate::spectrum::luminance;
+use crate::stats::RayCounts;
+use rayon::prelude::*;
+
+/// Enough for the mean luminance to within a few percent in most scenes.
+pub(super) const SAMPLES: u64 = 1 << 14;
+/// Those that one thread takes together.
+const SHARE: u64 = 256;
+
+/// What the samples of every connection found.
+#[derive(Default)]
+pub(super) struct Survey {
+    /// The sum of luminances that samples add to the mean pixel.
+    pub(super) luminance: f64,
+    /// The light vertices that can be connected: points and normals.
+    pub(super) light: Vec<[Vec3; 2]>,
+    /// The camera vertices that can be, by their points.
+    camera: Vec<Vec3>,
+    pub(super) rays: RayCounts,
+}
+
+impl Survey {
+    pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
+        let integrator = IntegratorKind::Bdpt
+            .integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
+        let probe = Probe {
+            scene,
+            settings,
+            connections: Connections::ONE_SUBPATH,
+            first: 0,
+        };
+        let shares: Vec<_> = (0..SAMPLES / SHARE)
+            .into_par_iter()
+            .map_init(Workspace::default, |workspace, share| {
+                let mut survey = Self::default();
+                for number in share * SHARE..(share + 1) * SHARE {
+                    survey.sample(&probe, &*integrator, number, workspace);
+                }
+                survey.rays = std::mem::take(&mut workspace.stats).rays;
+                survey
+            })
+            .collect();
+        let mut all = Self::default();
+        // In the order of the samples, whichever threads had them.
+        for share in shares {
+            all += share;
+        }
+        all
+    }
+
+    fn sample(
+        &mut self,
+        probe: &Probe<'_>,
+        integrator: &dyn Integrator,
+        number: u64,
+        workspace: &mut Workspace,
+    ) {
+        let (scene, sample) = (probe.scene, probe.sample(number));
+        let context = probe.context(&sample);
+        integrator.sample(&context, &sample, workspace);
+        let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
+        let splats = workspace.splats.iter();
+        let splats: f64 = splats.map(|splat| y(splat.contribution.value)).sum();
+        self.luminance += y(workspace.value) + splats / scene.film().crop.area() as f64;
+        self.keep_vertices(&context, workspace);
+    }
+
+    fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
+        let light = &workspace.light.vertices;
+        let connectable = connectable(context.settings.light_point, light);
+        self.light.extend(connectable.map(|i| light[i].place()));
+        let camera = workspace.camera.vertices.iter().skip(1);
+        let camera = camera.filter(|y| !y.is_delta());
+        self.camera.extend(camera.map(|y| y.point));
+    }
+
+    /// Cells that suit the vertices, with how many light vertices each has.
+    pub(super) fn cells(&self) -> (Cells, PairSums) {
+        let light = self.light.iter().map(|[point, _]| *point);
+        let mut points: Vec<_> = light.chain(self.camera.iter().copied()).collect();
+        let cells = Cells::new(&mut points);
+        let mut light_vertices = vec![0.0; Cells::COUNT];
+        for &[point, n] in &self.light {
+            light_vertices[cells.of(point, n).index()] += 1.0 / SAMPLES as f64;
+        }
+        (cells, PairSums::uniform(light_vertices))
+    }
+}
+
+impl std::ops::AddAssign for Survey {
+    fn add_assign(&mut self, other: Self) {
+        self.luminance += other.luminance;
+        self.light.extend(other.light);
+        self.camera.extend(other.camera);
+        self.rays += other.rays;
+    }
+}
