@@ -21,6 +21,7 @@ pub(crate) struct Case<'a> {
     scene: &'a Scene,
     max_depth: u32,
     passes: u64,
+    seed: u64,
 }
 
 pub(crate) fn open(name: &str) -> Loaded {
@@ -45,6 +46,15 @@ impl<'a> Case<'a> {
             scene: &loaded.scene,
             max_depth: loaded.settings.max_depth,
             passes,
+            seed: 0,
+        }
+    }
+
+    /// The case with other random numbers, and four times as many passes.
+    pub(crate) fn again(self) -> Self {
+        Self {
+            seed: self.seed + 1,
+            ..self.with_effort(4)
         }
     }
 
@@ -69,6 +79,7 @@ impl<'a> Case<'a> {
         let mut settings = Settings {
             integrator,
             path,
+            seed: self.seed,
             ..Settings::default()
         };
         change(&mut settings);

@@ -26,7 +26,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Replicates of each estimator.
 const REPLICATES: usize = 32;
-/// The level of a whole comparison: the probability that equal estimators are called different.
+/// The level of a whole comparison, the probability that equal estimators are called different, where
+/// BIDIR_TEST_LEVEL does not set it.
 const LEVEL: f64 = 1e-3;
 /// The relative bias that every comparison must be able to see.
 pub(crate) const BIAS: f64 = 0.02;
@@ -41,7 +42,8 @@ pub(crate) struct Replicates {
     pictures: Vec<Vec<[f64; 3]>>,
 }
 
-/// Renders the replicates of an estimator, which share `passes`.
+/// Renders the replicates of an estimator, which share `passes`. Other seeds in `settings` give other
+/// replicates.
 pub(crate) fn replicates(scene: &Scene, settings: &Settings, passes: u64) -> Replicates {
     replicates_of(scene, settings, passes, |film| film.develop().pixels)
 }
@@ -78,7 +80,7 @@ pub(crate) fn replicates_of_each<const N: usize>(
     });
     for replicate in 0..REPLICATES as u64 {
         let settings = Settings {
-            seed: first_seed().wrapping_mul(1000) + replicate,
+            seed: (1_000_000 * settings.seed + first_seed().wrapping_mul(1000)) + replicate,
             sampler: SamplerKind::Independent,
             ..settings.clone()
         };
@@ -220,6 +222,11 @@ pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates, blocks: &[
     check_agree_to(name, a, b, blocks, BIAS);
 }
 
+/// True where two estimators look different at the level of one comparison.
+pub(crate) fn disagree(a: &Replicates, b: &Replicates, blocks: &[usize]) -> bool {
+    compare(a, b, blocks).p <= level()
+}
+
 /// As [`check_agree`], for another `bias` that must be seen.
 #[track_caller]
 pub(crate) fn check_agree_to(
@@ -230,7 +237,7 @@ pub(crate) fn check_agree_to(
     bias: f64,
 ) {
     let verdict = compare(a, b, blocks);
-    if verdict.p <= LEVEL {
+    if verdict.p <= level() {
         let maps = maps::write(name, a, b);
         panic!("{name}: {verdict:?}; {maps}");
     }
@@ -240,7 +247,7 @@ pub(crate) fn check_agree_to(
     }
     let biased = compare(&a.scaled(1.0 + bias), b, blocks);
     assert!(
-        biased.p < LEVEL,
+        biased.p < level(),
         "{name}: blind to a relative bias of {bias}: {biased:?}"
     );
 }
@@ -248,7 +255,7 @@ pub(crate) fn check_agree_to(
 /// The smallest relative bias, to a tenth of itself, that a comparison would see.
 fn smallest_seen(a: &Replicates, b: &Replicates, blocks: &[usize]) -> f64 {
     let mut bias = 1e-4;
-    while bias < 1.0 && compare(&a.scaled(1.0 + bias), b, blocks).p >= LEVEL {
+    while bias < 1.0 && compare(&a.scaled(1.0 + bias), b, blocks).p >= level() {
         bias *= 1.1;
     }
     bias
@@ -257,6 +264,12 @@ fn smallest_seen(a: &Replicates, b: &Replicates, blocks: &[usize]) -> f64 {
 /// How many times the usual passes tests render: the variable BIDIR_TEST_EFFORT, else 1.
 fn effort() -> u64 {
     variable("BIDIR_TEST_EFFORT").unwrap_or(1).max(1)
+}
+
+/// Where comparisons fail: the variable BIDIR_TEST_LEVEL, else [`LEVEL`].
+fn level() -> f64 {
+    let variable = std::env::var("BIDIR_TEST_LEVEL").ok();
+    variable.map_or(LEVEL, |text| text.parse().expect("a level is a number"))
 }
 
 /// Where the seeds of replicates begin: the variable BIDIR_TEST_SEED, else 0.
