@@ -354,7 +354,7 @@ fn proposals_are_one_function_of_the_path() {
     for scene in [common::room(0.1), common::gallery(0.1)] {
         let proposals = some_proposals(&scene);
         let connections = Connections {
-            per_vertex: 0.7,
+            per_vertex: [1.7, 0.4],
             proposals: Some(&proposals),
             samples_per_subpath: 4.0,
             mis_count: MisCount::Expected,
@@ -377,7 +377,7 @@ fn counts_are_one_function_of_the_path() {
             (MisCount::Resampled, &thinned),
         ] {
             let connections = Connections {
-                per_vertex: 3.0,
+                per_vertex: [3.0, 1.5],
                 proposals: Some(proposals),
                 samples_per_subpath: 2.0,
                 mis_count,

@@ -176,7 +176,7 @@ fn check(scene: &Scene, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
     let shared = Connections {
-        per_vertex: 2.7,
+        per_vertex: [2.7, 0.6],
         proposals: Some(&proposals),
         samples_per_subpath: 4.0,
         mis_count: MisCount::Expected,

@@ -169,7 +169,7 @@ PATHS = [
     (
         "candidates of a light cache not shared among each other",
         "crates/bidir/src/integrator/lvc/mod.rs",
-        "draw.share / f64::from(self.candidates.get());",
+        "draw.share / f64::from(self.candidates.at(t));",
         "draw.share;",
         analytic("a_closed_sphere"),
     ),
@@ -198,8 +198,15 @@ PATHS = [
         "next-event estimation counted by the cell of its lamp",
         "crates/bidir/src/path/count.rs",
         "all.next_events(y.cell)",
-        "all.next_events(if t > 2 { z.cell } else { y.cell })",
-        PATH,
+        "all.next_events(if t > 3 { z.cell } else { y.cell })",
+        RUNNING,
+    ),
+    (
+        "the first vertex's candidates counted for those behind it",
+        "crates/bidir/src/path/running.rs",
+        "share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));",
+        "share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));",
+        RUNNING,
     ),
     (
         "correlation of the strategy at hand alone",
@@ -225,7 +232,7 @@ PATHS = [
     (
         "shared light subpaths counted as one in sums",
         "crates/bidir/src/path/running.rs",
-        "let count = share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));",
+        "let count = share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));",
         "let count = 1.0;",
         RUNNING,
     ),

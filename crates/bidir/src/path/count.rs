@@ -62,7 +62,7 @@ impl PathContext<'_> {
             1 => self.scene.film().light_paths() as f64 / samples_per_subpath,
             _ if s >= self.settings.light_point.first_walked() => {
                 let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
-                per_vertex * proposals.map_or(1.0, relative)
+                per_vertex[usize::from(t > 2)] * proposals.map_or(1.0, relative)
             }
             _ => proposals.map_or(1.0, |all| all.next_events(y.cell)),
         }

@@ -12,7 +12,7 @@
 //!
 //! n = (M / κ) (ε + (1 - ε) Γ(c | r) κ / κ_c),
 //!
-//! with M candidates for each camera vertex.
+//! with M candidates for the camera vertex.
 //!
 //! **Visibility.** Of candidates with contributions C of which parts V arrive, the sum over chosen ones
 //! varies least where the probability to be chosen is ∝ √E[C² V] = C √V̂ for binary V: that is what
@@ -214,8 +214,9 @@ fn accumulate(kappa: &[f64], squares: &[f64], sums: &mut Vec<f32>) {
 /// How many connections camera vertices make.
 #[derive(Clone, Copy, Debug)]
 pub struct Connections<'a> {
-    /// On average, for each light vertex of a path.
-    pub per_vertex: f64,
+    /// On average, for each light vertex of a path: the first vertex of a camera subpath (t = 2), and
+    /// those behind it.
+    pub per_vertex: [f64; 2],
     /// How light vertices are chosen. None: each is as likely as others.
     pub proposals: Option<&'a LightProposals>,
     /// How many samples there are for each light subpath.
@@ -227,7 +228,7 @@ pub struct Connections<'a> {
 impl Connections<'_> {
     /// With every vertex of one light subpath.
     pub const ONE_SUBPATH: Self = Self {
-        per_vertex: 1.0,
+        per_vertex: [1.0; 2],
         proposals: None,
         samples_per_subpath: 1.0,
         mis_count: MisCount::Expected,

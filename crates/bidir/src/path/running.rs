@@ -117,7 +117,7 @@ impl RunningSums {
         self.light.push(sum);
         let densities = walked_densities(context, walk, FAR);
         for (i, [a, b]) in densities.take(walk.len() - 2).enumerate() {
-            let count = share(context.count(i + 1, 2, [&walk[i], &walk[i + 1]]));
+            let count = share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));
             let links = count * self.start.links(i + 1) * walk[i].links(&walk[i + 1]);
             sum = chain(links, share(self.start.down(i, a, b)), sum);
             self.light.push(sum);

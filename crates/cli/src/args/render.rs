@@ -122,9 +122,11 @@ pub(crate) struct EstimatorArgs {
     /// budget:K: at most K for each pair of subpaths.
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
-    /// How many vertices of shared light subpaths are weighed for each camera vertex (lvc), up to
-    /// 4096 [default: 2].
-    #[arg(long, value_name = "M")]
+    /// How many vertices of shared light subpaths are weighed for the first vertex of a camera subpath and
+    /// for each of those behind it (lvc), up to 4096 [default: 8,1].
+    ///
+    /// One number is for all vertices.
+    #[arg(long, value_name = "M[,N]")]
     pub(crate) candidates: Option<CandidateCount>,
     /// How these vertices are chosen (lvc) [default: learned].
     ///

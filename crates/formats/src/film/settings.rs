@@ -29,8 +29,9 @@ pub struct SettingsText {
     pub path_roulette: String,
     /// The most bounces. None: no limit.
     pub max_depth: Option<u32>,
-    /// The cached light vertices that are candidates for each camera vertex.
-    pub candidates: u16,
+    /// The cached light vertices that are candidates for the first vertex of a camera subpath and for those
+    /// behind it.
+    pub candidates: String,
     /// How they are chosen.
     pub proposal: &'static str,
     /// How many samples bring one light subpath to the cache.
@@ -171,7 +172,7 @@ impl From<&Settings> for SettingsText {
             light_choice: name_of(&LightChoiceKind::NAMES, *light_choice),
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
-            candidates: candidates.get(),
+            candidates: candidates.to_string(),
             proposal: name_of(&ProposalKind::NAMES, *proposal),
             samples_per_subpath: samples_per_subpath.get(),
             mis_count: name_of(&MisCount::NAMES, *mis_count),

@@ -97,7 +97,10 @@ impl Training {
         match self.light_vertices {
             0.0 => Connections::ONE_SUBPATH,
             vertices => Connections {
-                per_vertex: f64::from(settings.candidates.get()) / vertices,
+                per_vertex: settings
+                    .candidates
+                    .get()
+                    .map(|count| f64::from(count) / vertices),
                 proposals: self.proposals.as_ref(),
                 samples_per_subpath: 1.0,
                 mis_count: settings.mis_count,

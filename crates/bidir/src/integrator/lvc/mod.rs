@@ -39,7 +39,7 @@ pub(crate) fn group_size(pixels: u64) -> u64 {
 pub struct Lvc {
     /// Chooses the connections that are traced.
     pub selector: Box<dyn Selector>,
-    /// M: the vertices of the cache that are candidates for each camera vertex.
+    /// M: how many vertices of the cache are candidates for a camera vertex.
     pub candidates: CandidateCount,
 }
 
@@ -97,7 +97,6 @@ impl Lvc {
         workspace
             .next_events
             .resize(workspace.camera.vertices.len(), None);
-        let count = self.candidates.get();
         let proposals = context.connections.proposals;
         for t in 2..=workspace.camera.vertices.len() {
             if workspace.camera.vertices[t - 1].is_delta() {
@@ -107,6 +106,7 @@ impl Lvc {
             let at = Dimension::at(t - 1, Purpose::CachedVertex);
             let u = f64::from(sample.camera.get_1d(at));
             // One of each of as many parts of the cache.
+            let count = self.candidates.at(t);
             for m in 0..count {
                 let u = (f64::from(m) + u) / f64::from(count);
                 let y = &workspace.camera.vertices[t - 1];
@@ -174,7 +174,7 @@ impl Lvc {
         if contribution == Spectrum::ZERO {
             return None;
         }
-        let share = draw.share / f64::from(self.candidates.get());
+        let share = draw.share / f64::from(self.candidates.at(t));
         let term = Term {
             strategy: Strategy::new(s, t),
             light: light[0].light?,

@@ -33,33 +33,54 @@ impl ProposalKind {
         [("uniform", Self::Uniform), ("learned", Self::Learned)];
 }
 
-/// A number of candidates, from 1 to [`CandidateCount::MAX`].
+/// How many candidates the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
+/// first vertex of a subpath, which the pixel's noise depends on most, and those behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct CandidateCount(u16);
+pub struct CandidateCount {
+    first: u16,
+    deeper: u16,
+}
 
 impl CandidateCount {
     /// The most: candidates of a sample are in memory together, M for each of its camera vertices.
     pub const MAX: u16 = 4096;
 
-    /// `count`, brought into the range.
-    pub const fn of(count: u16) -> Self {
-        match count {
-            0 => Self(1),
-            1..=Self::MAX => Self(count),
-            _ => Self(Self::MAX),
+    /// `first` and `deeper`, brought into the range.
+    pub const fn new(first: u16, deeper: u16) -> Self {
+        Self {
+            first: Self::in_range(first),
+            deeper: Self::in_range(deeper),
         }
     }
 
-    /// M.
+    /// `count` for every vertex, brought into the range.
+    pub const fn of(count: u16) -> Self {
+        Self::new(count, count)
+    }
+
+    const fn in_range(count: u16) -> u16 {
+        match count {
+            0 => 1,
+            1..=Self::MAX => count,
+            _ => Self::MAX,
+        }
+    }
+
+    /// M of the last vertex of a camera subpath of `t` ≥ 2 vertices, the lens point among them.
     #[inline]
-    pub fn get(self) -> u16 {
-        self.0
+    pub fn at(self, t: usize) -> u16 {
+        if t == 2 { self.first } else { self.deeper }
+    }
+
+    /// M of the first vertex, and of those behind it.
+    pub fn get(self) -> [u16; 2] {
+        [self.first, self.deeper]
     }
 }
 
 impl Default for CandidateCount {
     fn default() -> Self {
-        Self::of(2)
+        Self::new(8, 1)
     }
 }
 
@@ -101,25 +122,23 @@ pub struct CountError {
     expected: &'static str,
 }
 
-/// The number in `text`, if it `is_valid`.
-fn read(
-    text: &str,
-    is_valid: impl Fn(&u16) -> bool,
-    expected: &'static str,
-) -> Result<u16, CountError> {
-    let count = text.parse().ok().filter(is_valid);
-    count.ok_or_else(|| CountError {
-        given: text.to_owned(),
-        expected,
-    })
-}
-
 impl FromStr for CandidateCount {
     type Err = CountError;
 
     fn from_str(text: &str) -> Result<Self, CountError> {
-        let is_valid = |count: &u16| (1..=Self::MAX).contains(count);
-        read(text, is_valid, "a whole number from 1 to 4096").map(Self)
+        let expected = "a whole number from 1 to 4096, or two of them as in `8,1`";
+        let count = |part: &str| {
+            let is_valid = |count: &u16| (1..=Self::MAX).contains(count);
+            part.parse().ok().filter(is_valid)
+        };
+        let (first, deeper) = text.split_once(',').unwrap_or((text, text));
+        match (count(first), count(deeper)) {
+            (Some(first), Some(deeper)) => Ok(Self::new(first, deeper)),
+            _ => Err(CountError {
+                given: text.to_owned(),
+                expected,
+            }),
+        }
     }
 }
 
@@ -128,13 +147,20 @@ impl FromStr for SamplesPerSubpath {
 
     fn from_str(text: &str) -> Result<Self, CountError> {
         let is_valid = |count: &u16| count.is_power_of_two() && *count <= Self::MAX;
-        read(text, is_valid, "a power of two from 1 to 256").map(Self)
+        let count = text.parse().ok().filter(is_valid);
+        count.map(Self).ok_or_else(|| CountError {
+            given: text.to_owned(),
+            expected: "a power of two from 1 to 256",
+        })
     }
 }
 
 impl fmt::Display for CandidateCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
+        match *self {
+            Self { first, deeper } if first == deeper => write!(f, "{first}"),
+            Self { first, deeper } => write!(f, "{first},{deeper}"),
+        }
     }
 }
 
@@ -149,7 +175,11 @@ mod tests {
     use super::*;
 
     #[track_caller]
-    fn check<T: FromStr<Err = CountError> + fmt::Display>(good: &[&str], bad: &[&str], most: u16) {
+    fn check<T: FromStr<Err = CountError> + fmt::Display>(
+        good: &[&str],
+        bad: &[&str],
+        range: &str,
+    ) {
         for text in good {
             assert_eq!(
                 text.parse::<T>().map(|count| count.to_string()).as_deref(),
@@ -158,15 +188,37 @@ mod tests {
         }
         for text in bad {
             let error = text.parse::<T>().map(|_| ()).unwrap_err().to_string();
-            assert!(error.ends_with(&format!("from 1 to {most}")), "{error}");
+            assert!(error.contains(range), "{error}");
         }
     }
 
     #[test]
     fn numbers_are_read_and_written() {
-        let bad = ["", "0", "-1", "4097", "99999999999", "x"];
-        check::<CandidateCount>(&["1", "3", "4096"], &bad, CandidateCount::MAX);
+        let bad = [
+            "",
+            "0",
+            "-1",
+            "4097",
+            "99999999999",
+            "x",
+            "1,",
+            ",1",
+            "8,0",
+            "8,1,1",
+            "8, 1",
+        ];
+        check::<CandidateCount>(&["1", "3", "4096", "8,1", "1,4096"], &bad, "from 1 to 4096");
         let bad = ["", "0", "-2", "3", "512", "65536", "x"];
-        check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, SamplesPerSubpath::MAX);
+        check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, "from 1 to 256");
+    }
+
+    #[test]
+    fn the_first_vertex_has_its_own_number() {
+        let counts = CandidateCount::new(7, 2);
+        assert_eq!([2, 3, 4, 60].map(|t| counts.at(t)), [7, 2, 2, 2]);
+        assert_eq!(
+            CandidateCount::new(0, u16::MAX).get(),
+            [1, CandidateCount::MAX]
+        );
     }
 }
