@@ -114,8 +114,8 @@ PATHS = [
     ),
     (
         "n_j of the light image is one",
-        "crates/bidir/src/path/connect.rs",
-        "1 => self.scene.film().light_paths() as f64 / self.connections.samples_per_subpath,",
+        "crates/bidir/src/path/count.rs",
+        "1 => self.scene.film().light_paths() as f64 / samples_per_subpath,",
         "1 => 1.0,",
         PATH,
     ),

@@ -72,6 +72,11 @@ impl Plan {
         }
     }
 
+    /// True where light subpaths are connected to the lens.
+    fn has_light_images(&self) -> bool {
+        self.integrator == IntegratorKind::Lvc
+    }
+
     /// True where it makes all light paths that the settings ask for, and misses none that another
     /// plan finds.
     fn is_possible(&self, scene: &Scene, settings: &Settings) -> bool {
@@ -82,7 +87,7 @@ impl Plan {
                 .collect::<Vec<BlindSpot>>()
         };
         let of_lvc = missing(IntegratorKind::Lvc);
-        self.integrator != IntegratorKind::Path
+        self.has_light_images()
             || settings.path.strategies.is_all()
                 && settings.path.light_point == LightPointChoice::Fresh
                 && missing(self.integrator)
@@ -143,19 +148,34 @@ pub(super) fn best(pixels: u64, tried: &[Tried]) -> Plan {
     best.map_or_else(Plan::default, |(plan, _)| plan)
 }
 
-/// The product of variance and cost of each, relative to those of others.
+/// The product of variance and cost of each, relative to those of others. Path tracing has at least the
+/// variance that the light images of others tell of.
 fn products(pixels: f64, tried: &[Tried]) -> Vec<f64> {
-    let mean = |i: usize| {
-        let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
-        means.sum::<f64>() / tried.len() as f64
-    };
-    let means: Vec<_> = (0..BLOCKS).map(mean).collect();
+    let means: Vec<_> = (0..BLOCKS).map(|i| mean(i, pixels, tried)).collect();
     let whole = means.iter().sum::<f64>() / BLOCKS as f64;
     let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
+    let sum = |variance: &dyn Fn(usize) -> f64| -> f64 {
+        let relative = |i: usize| variance(i) / (means[i] * means[i] + least);
+        (0..BLOCKS).map(relative).sum()
+    };
+    let hidden = |trial: &Trial| sum(&|i| trial.hidden_variance(i, pixels, means[i]));
+    let with_light = tried.iter().filter(|(plan, _)| plan.has_light_images());
+    let hidden: Vec<_> = with_light.map(|(_, trial)| hidden(trial)).collect();
+    let hidden = hidden.iter().sum::<f64>() / hidden.len().max(1) as f64;
     let product = |(plan, trial): &Tried| {
-        let relative = |i: usize| trial.variance(i, pixels) / (means[i] * means[i] + least);
-        let variance: f64 = (0..BLOCKS).map(relative).sum();
+        let found = sum(&|i| trial.variance(i, pixels));
+        let variance = if plan.has_light_images() {
+            found
+        } else {
+            found.max(hidden)
+        };
         variance * trial.cost(plan.integrator)
     };
     tried.iter().map(product).collect()
+}
+
+/// The mean of a pixel of block number `i`, by all plans.
+fn mean(i: usize, pixels: f64, tried: &[Tried]) -> f64 {
+    let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
+    means.sum::<f64>() / tried.len() as f64
 }
