@@ -36,6 +36,7 @@ fn records(place: &Workplace, folder: &str) -> Vec<Value> {
     for record in records.iter_mut() {
         let record = record.as_object_mut().unwrap();
         record.remove("seconds").unwrap();
+        record.remove("processor_seconds").unwrap();
         record.remove("efficiency_seconds").unwrap();
     }
     records.clone()
