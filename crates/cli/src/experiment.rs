@@ -47,7 +47,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     let sections = match task {
         // The claims of the paper have all its tables.
         Task::Paper(_) => Vec::new(),
-        Task::Beyond(_) => beyond::sections(results),
+        Task::Beyond(options) => beyond::sections(results, &options.amounts),
         Task::Described(_) => analysis::sections(results),
     };
     write_report(args, results, &sections)?;

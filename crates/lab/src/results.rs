@@ -145,6 +145,12 @@ pub struct Record {
     /// not grow with what else the machine does. Unit: seconds. None: the host cannot tell.
     #[serde(default)]
     pub processor_seconds: Option<f64>,
+    /// The part of `seconds` before the first pass: training. Unit: seconds. None: nobody measured it.
+    #[serde(default)]
+    pub training_seconds: Option<f64>,
+    /// The part of `processor_seconds` before the first pass. Unit: seconds. None: the host cannot tell.
+    #[serde(default)]
+    pub training_processor_seconds: Option<f64>,
     /// Rays by kind.
     pub rays: Rays,
     /// Connection rays that something blocked.

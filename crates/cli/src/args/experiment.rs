@@ -93,11 +93,13 @@ pub(crate) struct BeyondArgs {
     /// --quick, else twice the sides].
     #[arg(long, value_name = "WxH")]
     pub(crate) size: Option<Size>,
-    /// Equal time: seconds of training and rendering for each estimator [default: 60, --quick 2].
+    /// Equal time: seconds of training and rendering for each estimator [default: 60; --quick renders
+    /// 2, and weighs training as in 60].
     #[arg(long, value_name = "S", value_parser = positive_number)]
     pub(crate) seconds: Option<f64>,
     /// Equal rays: rays per pixel for each estimator and each idea, those of training included
-    /// [default: 500, --quick 100].
+    /// [default: 500; --quick renders 100, and weighs training as in 2000, as a whole run has four
+    /// times the pixels].
     #[arg(long, value_name = "N", value_parser = positive_number)]
     pub(crate) rays: Option<f64>,
     /// How many seeds: gains have intervals from 2 on [default: 10, --quick 3].

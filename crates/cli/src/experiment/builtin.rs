@@ -32,6 +32,11 @@ pub(super) fn beyond(args: &ExperimentArgs, threads: usize) -> beyond::Options {
             size: own.size.map(|size| size.0),
             seconds: own.seconds.unwrap_or(usual.seconds),
             rays: own.rays.unwrap_or(usual.rays),
+            // Whoever names a budget means it.
+            judged: beyond::Judged {
+                seconds: own.seconds.unwrap_or(usual.judged.seconds),
+                rays: own.rays.unwrap_or(usual.judged.rays),
+            },
             seeds: own.seeds.unwrap_or(usual.seeds),
             reference_spp: own.reference_spp.unwrap_or(usual.reference_spp),
             ..usual

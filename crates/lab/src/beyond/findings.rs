@@ -5,12 +5,12 @@
 //! chooses anything for it; what `lvc` reaches is told beside it.
 
 use super::measure::{Clock, Error, Measured, View};
-use super::plan::{Amounts, SCENES};
+use super::plan::{Amounts, Judged, SCENES};
 use super::targets::{BEHIND, TARGETS, Target};
 use super::variants::{AUTO, BASELINE, PATH, SHARED};
 use crate::paper::claims::{Expected, all, judge};
 use crate::results::{Claim, Results, Verdict};
-use crate::statistics::{Interval, RATIOS};
+use crate::statistics::Interval;
 
 #[cfg(test)]
 mod tests;
@@ -20,8 +20,12 @@ pub(super) const CONFIDENCE: f64 = 0.95;
 
 /// One for each target, and one for `auto` in each scene.
 pub(super) fn claims(results: &Results, amounts: &Amounts) -> Vec<Claim> {
-    let targets = TARGETS.iter().map(|target| of_target(results, target));
-    let auto = SCENES.iter().map(|scene| of_auto(results, scene.name));
+    let targets = TARGETS
+        .iter()
+        .map(|target| of_target(results, amounts, target));
+    let auto = SCENES
+        .iter()
+        .map(|scene| of_auto(results, amounts, scene.name));
     let claims = targets.chain(auto);
     claims
         .map(|claim| Claim {
@@ -33,42 +37,55 @@ pub(super) fn claims(results: &Results, amounts: &Amounts) -> Vec<Claim> {
 
 /// How sure everything is.
 fn method(results: &Results, amounts: &Amounts) -> String {
+    let Amounts { seeds, judged, .. } = amounts;
     let time = Clock::of(results).words();
     format!(
-        "{} seeds; {RATIOS} The confidence is 95 %, of all parts of a statement together. Time is {time}.",
-        amounts.seeds
+        "95 % intervals of ratios, paired by {seeds} seeds; time is {time}; training is weighed as in {} \
+         seconds or {} rays per pixel.",
+        judged.seconds, judged.rays
     )
 }
 
-/// What decides on a target: the gains of `auto`.
-pub(super) fn judged(results: &Results, target: &Target) -> (Option<Interval>, Verdict) {
-    let measured = measured(results, target.scene, target.view);
-    let gain = measured.gain([AUTO, target.over], Error::Pixels, CONFIDENCE);
-    (
-        gain,
-        aimed(judge(gain, Expected::Above(target.gain)), gain.is_some()),
-    )
-}
+/// Gains in a scene, which may not be there.
+#[derive(Clone, Copy)]
+pub(super) struct Gains<'a>(Option<Measured<'a>>);
 
-pub(super) fn measured<'a>(results: &'a Results, scene: &'a str, view: View) -> Measured<'a> {
-    Measured {
-        results,
-        scene,
-        view,
-        clock: Clock::of(results),
+impl<'a> Gains<'a> {
+    pub(super) fn new(results: &'a Results, judged: Judged, scene: &str, view: View) -> Self {
+        let mut scenes = results.scenes.iter();
+        let scene = scenes.find(|known| known.name == scene);
+        Self(scene.map(|scene| Measured {
+            results,
+            scene,
+            view,
+            clock: Clock::of(results),
+            judged,
+        }))
+    }
+
+    /// The gain of a method over another, with the confidence of a finding. None: it was not measured.
+    pub(super) fn of(self, pair: [&str; 2], error: Error) -> Option<Interval> {
+        self.0?.gain(pair, error, CONFIDENCE)
     }
 }
 
-fn of_target(results: &Results, target: &Target) -> Claim {
+/// Whether a target is met: what the gain of `auto` decides.
+pub(super) fn judged(results: &Results, amounts: &Amounts, target: &Target) -> Verdict {
+    let gains = Gains::new(results, amounts.judged, target.scene, target.view);
+    let gain = gains.of([AUTO, target.over], Error::Pixels);
+    aimed(judge(gain, Expected::Above(target.gain)), gain.is_some())
+}
+
+fn of_target(results: &Results, amounts: &Amounts, target: &Target) -> Claim {
     let Target {
         scene,
         over,
         view,
         gain,
     } = *target;
-    let (_, verdict) = judged(results, target);
-    let measured = measured(results, scene, view);
-    let reached = |method, error| words(measured.gain([method, over], error, CONFIDENCE));
+    let gains = Gains::new(results, amounts.judged, scene, view);
+    let reached = |method, error| words(gains.of([method, over], error));
+    let verdict = judged(results, amounts, target);
     let found = format!(
         "{AUTO}: {} by pixels, {} by blocks; {SHARED}: {} by pixels, {} by blocks.",
         reached(AUTO, Error::Pixels),
@@ -85,24 +102,26 @@ fn of_target(results: &Results, target: &Target) -> Claim {
 }
 
 /// What decides on `auto` in a scene: its gains over both that it is compared with.
-pub(super) fn judged_auto(results: &Results, scene: &str) -> ([Option<Interval>; 2], Verdict) {
-    let measured = measured(results, scene, View::EqualTime);
+pub(super) fn judged_auto(
+    results: &Results,
+    amounts: &Amounts,
+    scene: &str,
+) -> ([Option<Interval>; 2], Verdict) {
+    let Gains(measured) = Gains::new(results, amounts.judged, scene, View::EqualTime);
     // One of both intervals may fail in half as many cases.
     let confidence = 0.5 + 0.5 * CONFIDENCE;
-    let gains = [PATH, BASELINE].map(|over| measured.gain([AUTO, over], Error::Pixels, confidence));
+    let gains =
+        [PATH, BASELINE].map(|over| measured?.gain([AUTO, over], Error::Pixels, confidence));
     let verdicts = gains.map(|gain| judge(gain, Expected::Above(1.0 / BEHIND)));
     let is_measured = gains.iter().all(Option::is_some);
     (gains, aimed(all(verdicts), is_measured))
 }
 
-fn of_auto(results: &Results, scene: &str) -> Claim {
-    let (gains, verdict) = judged_auto(results, scene);
+fn of_auto(results: &Results, amounts: &Amounts, scene: &str) -> Claim {
+    let (gains, verdict) = judged_auto(results, amounts, scene);
     let [path, bdpt] = gains.map(words);
-    let measured = measured(results, scene, View::EqualTime);
-    let blocks = [PATH, BASELINE].map(|over| {
-        let gain = measured.gain([AUTO, over], Error::Blocks, CONFIDENCE);
-        words(gain)
-    });
+    let gains = Gains::new(results, amounts.judged, scene, View::EqualTime);
+    let blocks = [PATH, BASELINE].map(|over| words(gains.of([AUTO, over], Error::Blocks)));
     let found = format!(
         "{AUTO} gains {path} over {PATH} and {bdpt} over {BASELINE} by pixels, {} and {} by blocks.",
         blocks[0], blocks[1]
@@ -124,6 +143,10 @@ fn aimed(verdict: Verdict, is_measured: bool) -> Verdict {
 }
 
 fn claim(id: &str, claim: String, verdict: Verdict, found: String) -> Claim {
+    let found = match verdict {
+        Verdict::NotMeasured => "Not measured: it takes two seeds of both.".to_owned(),
+        _ => found,
+    };
     let words = id.split(|c: char| !c.is_ascii_alphanumeric());
     let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
     Claim {

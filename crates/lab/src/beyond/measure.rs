@@ -1,8 +1,8 @@
 //! Errors times costs, and by which factor one method has less of them.
 
-use super::budget_of;
+use super::{Judged, budget_of};
 use crate::experiment::analysis::records_of;
-use crate::results::{BudgetKind, Record, Results};
+use crate::results::{BudgetKind, Record, Results, SceneInfo};
 use crate::statistics::{Interval, ratio_interval};
 
 /// Which records are compared, by which cost.
@@ -38,16 +38,22 @@ impl View {
         match self {
             Self::EqualTime => "in equal time",
             Self::EqualRays => "at equal rays",
-            Self::TimeOfRays => "in time",
+            Self::TimeOfRays => "in time, at equal rays",
         }
     }
 
-    /// What a record cost. None: that is not known.
-    fn cost(self, record: &Record, clock: Clock) -> Option<f64> {
+    /// What a record cost, and the part of it that was training. None: that is not known.
+    fn cost(self, record: &Record, clock: Clock) -> Option<[f64; 2]> {
         match (self, clock) {
-            (Self::EqualRays, _) => Some(record.rays.total() as f64),
-            (_, Clock::Processors) => record.processor_seconds,
-            (_, Clock::Wall) => Some(record.seconds),
+            (Self::EqualRays, _) => {
+                let rays = record.rays;
+                Some([rays.total() as f64, rays.training as f64])
+            }
+            (_, Clock::Processors) => {
+                let training = record.training_processor_seconds?;
+                Some([record.processor_seconds?, training])
+            }
+            (_, Clock::Wall) => Some([record.seconds, record.training_seconds?]),
         }
     }
 }
@@ -74,7 +80,10 @@ impl Clock {
     /// The one that all records have.
     pub(super) fn of(results: &Results) -> Self {
         let mut records = results.records.iter();
-        if records.all(|record| record.processor_seconds.is_some()) {
+        let is_known = |record: &Record| {
+            record.processor_seconds.is_some() && record.training_processor_seconds.is_some()
+        };
+        if records.all(is_known) {
             Self::Processors
         } else {
             Self::Wall
@@ -95,23 +104,45 @@ impl Clock {
 #[derive(Clone, Copy)]
 pub(super) struct Measured<'a> {
     pub(super) results: &'a Results,
-    pub(super) scene: &'a str,
+    pub(super) scene: &'a SceneInfo,
     pub(super) view: View,
     pub(super) clock: Clock,
+    pub(super) judged: Judged,
 }
 
 impl<'a> Measured<'a> {
     /// The records of a method, by seed.
     pub(super) fn records(&self, method: &str) -> Vec<&'a Record> {
         match budget_of(self.results, self.view.budget()) {
-            Some(budget) => records_of(self.results, [self.scene, budget, method]),
+            Some(budget) => records_of(self.results, [&self.scene.name, budget, method]),
             None => Vec::new(),
         }
     }
 
-    /// Error · cost. None: one of them is not known.
-    pub(super) fn value(&self, record: &Record, error: Error) -> Option<f64> {
-        Some(record.metrics.get(error.metric())? * self.view.cost(record, self.clock)?)
+    /// Error · (c - T) · B / (B - T) of a render of cost c, whose training costs T. B is the budget that
+    /// is judged, and no less than c, which is more than T. None: one of them is not known.
+    fn value(&self, record: &Record, error: Error) -> Option<f64> {
+        let [cost, training] = self.view.cost(record, self.clock)?;
+        let budget = self.budget().max(cost);
+        let weight = budget / (budget - training);
+        Some(record.metrics.get(error.metric())? * (cost - training) * weight)
+    }
+
+    /// The budget that is judged, in the unit of the cost.
+    fn budget(&self) -> f64 {
+        let Judged { seconds, rays } = self.judged;
+        match (self.view, self.clock) {
+            (View::EqualRays, _) => {
+                rays * self
+                    .scene
+                    .size
+                    .map(|side| side as f64)
+                    .iter()
+                    .product::<f64>()
+            }
+            (_, Clock::Processors) => seconds * self.results.machine.threads.max(1) as f64,
+            (_, Clock::Wall) => seconds,
+        }
     }
 
     /// The gain of a method over another, over the seeds that both have. None: fewer than two have.

@@ -15,7 +15,13 @@
 //! # The measure
 //!
 //! The variance of an unbiased estimator falls as 1 / samples, so relMSE · cost tells how good it is
-//! whatever the budget. The *gain* of a method over another is the geometric mean over seeds of
+//! whatever the budget, but for training, which costs T however many samples follow. With the cost c of a
+//! render, its error under a budget B would be relMSE · (c - T) / (B - T), so that what is compared is
+//!
+//!   relMSE · (c - T) · B / (B - T),
+//!
+//! which is relMSE · c under the budget itself: a quick run weighs training as a whole one does
+//! ([`Judged`]). This is `relMSE · cost` in what follows. The *gain* of a method over another is the geometric mean over seeds of
 //!
 //!   (relMSE · cost of the other) / (relMSE · cost of the method),
 //!
@@ -37,7 +43,7 @@ mod targets;
 mod tests;
 mod variants;
 
-pub use plan::{Amounts, scene_names};
+pub use plan::{Amounts, Judged, scene_names};
 pub use tables::sections;
 
 use crate::experiment::{End, Event, ExperimentError, Observer, Outcome, Setup, write_results};

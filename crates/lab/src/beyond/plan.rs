@@ -17,14 +17,25 @@ pub struct Amounts {
     pub size: Option<[u32; 2]>,
     /// The factor by which sides are longer than those of a quick run, where each scene has its own.
     pub scale: u32,
-    /// Equal time. Unit: seconds, those of training included.
+    /// Equal time that is rendered. Unit: seconds, those of training included.
     pub seconds: f64,
-    /// Equal rays, those of training included. Unit: rays per pixel.
+    /// Equal rays that are rendered, those of training included. Unit: rays per pixel.
     pub rays: f64,
+    /// The budgets that training is weighed by: those of a whole run, which a quick one stands for.
+    pub judged: Judged,
     /// How many seeds there are, from 1 on.
     pub seeds: u64,
     /// Samples per pixel of references, of each of their two estimators.
     pub reference_spp: u64,
+}
+
+/// The budgets that training is a part of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judged {
+    /// Unit: seconds of the clock.
+    pub seconds: f64,
+    /// Unit: rays for each pixel of the images that are rendered.
+    pub rays: f64,
 }
 
 impl Amounts {
@@ -35,6 +46,10 @@ impl Amounts {
             scale: 2,
             seconds: 60.0,
             rays: 500.0,
+            judged: Judged {
+                seconds: 60.0,
+                rays: 500.0,
+            },
             seeds: 10,
             reference_spp: 4096,
         }
@@ -47,6 +62,11 @@ impl Amounts {
             scale: 1,
             seconds: 2.0,
             rays: 100.0,
+            // A whole run has four times the pixels.
+            judged: Judged {
+                seconds: 60.0,
+                rays: 2000.0,
+            },
             seeds: 3,
             reference_spp: 256,
         }

@@ -1,7 +1,8 @@
 //! The tables: all estimators, each idea, and what was found.
 
-use super::findings::{CONFIDENCE, judged, judged_auto, measured};
-use super::measure::{Error, Measured, View};
+use super::findings::{CONFIDENCE, Gains, judged, judged_auto};
+use super::measure::{Clock, Error, Measured, View};
+use super::plan::{Amounts, Judged};
 use super::targets::{TARGETS, Target};
 use super::variants::{self, AUTO, BASELINE, PATH, SHARED, Variant};
 use crate::experiment::analysis::Section;
@@ -9,11 +10,12 @@ use crate::results::{Cell, Record, Results, Table, Verdict};
 use crate::statistics::Interval;
 
 /// Estimators, ideas, findings.
-pub fn sections(results: &Results) -> Vec<Section> {
+pub fn sections(results: &Results, amounts: &Amounts) -> Vec<Section> {
+    let judged = amounts.judged;
     let views = [View::EqualTime, View::EqualRays];
     let mut all = vec![section(
         "Estimators",
-        views.map(|view| estimators(results, view)).into(),
+        views.map(|view| estimators(results, judged, view)).into(),
     )];
     for idea in variants::ideas() {
         let views = [
@@ -21,10 +23,13 @@ pub fn sections(results: &Results) -> Vec<Section> {
             (View::TimeOfRays, Error::Pixels),
             (View::EqualRays, Error::Blocks),
         ];
-        let tables = views.map(|(view, error)| of_idea(results, idea, view, error));
+        let tables = views.map(|(view, error)| of_idea(results, judged, idea, view, error));
         all.push(section(idea, tables.into()));
     }
-    all.push(section("Findings", vec![targets(results), auto(results)]));
+    all.push(section(
+        "Findings",
+        vec![targets(results, amounts), auto(results, amounts)],
+    ));
     all
 }
 
@@ -37,13 +42,14 @@ fn section(title: &str, tables: Vec<Table>) -> Section {
 }
 
 /// Every estimator in every scene.
-fn estimators(results: &Results, view: View) -> Table {
+fn estimators(results: &Results, judged: Judged, view: View) -> Table {
     let columns = [
         "scene",
         "method",
         "samples per pixel",
         "seconds",
         "processor seconds",
+        "of training",
         "relMSE · cost ↓",
         "over bdpt all ↑",
         "over path ↑",
@@ -52,7 +58,13 @@ fn estimators(results: &Results, view: View) -> Table {
     ];
     let scenes = results.scenes.iter();
     let rows = scenes.flat_map(|scene| {
-        let measured = measured(results, &scene.name, view);
+        let measured = Measured {
+            results,
+            scene,
+            view,
+            clock: Clock::of(results),
+            judged,
+        };
         let rendered = variants::estimators().filter(move |variant| {
             let is_itself = variant.rendered().name == variant.name;
             is_itself && !measured.records(variant.name).is_empty()
@@ -62,7 +74,7 @@ fn estimators(results: &Results, view: View) -> Table {
     Table {
         caption: format!(
             "Estimators {}: means over seeds; geometric means of relMSE · cost and gains, with 95 % \
-             intervals.",
+             intervals, training weighed as in a whole run.",
             view.words()
         ),
         columns: columns.map(str::to_owned).into(),
@@ -84,11 +96,12 @@ fn estimator(measured: &Measured<'_>, method: &str) -> Vec<Cell> {
         interval(measured.gain([method, over], error, CONFIDENCE))
     };
     vec![
-        text(measured.scene),
+        text(&measured.scene.name),
         text(method),
         mean(|record| record.spp as f64),
         mean(|record| record.seconds),
         mean(|record| record.processor_seconds.unwrap_or(f64::NAN)),
+        mean(|record| record.training_processor_seconds.unwrap_or(f64::NAN)),
         number(measured.mean(method, Error::Pixels)),
         gain(BASELINE, Error::Pixels),
         gain(PATH, Error::Pixels),
@@ -98,7 +111,7 @@ fn estimator(measured: &Measured<'_>, method: &str) -> Vec<Cell> {
 }
 
 /// What the variants of an idea gain over what they are variants of.
-fn of_idea(results: &Results, idea: &str, view: View, error: Error) -> Table {
+fn of_idea(results: &Results, judged: Judged, idea: &str, view: View, error: Error) -> Table {
     let scenes = || results.scenes.iter().map(|scene| &*scene.name);
     let row = |(variant, of): (&Variant, &str)| {
         let rendered = variant.rendered().name;
@@ -106,7 +119,7 @@ fn of_idea(results: &Results, idea: &str, view: View, error: Error) -> Table {
             if rendered == of {
                 return Cell::Number(1.0);
             }
-            interval(measured(results, scene, view).gain([rendered, of], error, CONFIDENCE))
+            interval(Gains::new(results, judged, scene, view).of([rendered, of], error))
         };
         let words = [variant.name, of].map(text);
         words.into_iter().chain(scenes().map(gain)).collect()
@@ -124,13 +137,12 @@ fn of_idea(results: &Results, idea: &str, view: View, error: Error) -> Table {
 }
 
 /// All targets, and whether they are met.
-fn targets(results: &Results) -> Table {
+fn targets(results: &Results, amounts: &Amounts) -> Table {
     let row = |target: &Target| {
-        let measured = measured(results, target.scene, target.view);
-        let gain =
-            |method, error| interval(measured.gain([method, target.over], error, CONFIDENCE));
+        let gains = Gains::new(results, amounts.judged, target.scene, target.view);
+        let gain = |method, error| interval(gains.of([method, target.over], error));
         vec![
-            text(verdict(judged(results, target).1)),
+            text(verdict(judged(results, amounts, target))),
             text(target.scene),
             text(target.view.words()),
             text(target.over),
@@ -163,12 +175,11 @@ fn targets(results: &Results) -> Table {
 }
 
 /// `auto` against the better of two, in every scene.
-fn auto(results: &Results) -> Table {
+fn auto(results: &Results, amounts: &Amounts) -> Table {
     let row = |scene: &str| {
-        let (gains, found) = judged_auto(results, scene);
-        let measured = measured(results, scene, View::EqualTime);
-        let blocks =
-            [PATH, BASELINE].map(|over| measured.gain([AUTO, over], Error::Blocks, CONFIDENCE));
+        let (gains, found) = judged_auto(results, amounts, scene);
+        let measured = Gains::new(results, amounts.judged, scene, View::EqualTime);
+        let blocks = [PATH, BASELINE].map(|over| measured.of([AUTO, over], Error::Blocks));
         let words = [verdict(found), scene].map(text);
         let gains = gains.into_iter().chain(blocks).map(interval);
         words.into_iter().chain(gains).collect()

@@ -28,6 +28,8 @@ pub(super) struct Rendered {
     picture: Picture,
     spp: u64,
     time: Moment,
+    /// The part of it before the first pass.
+    training: Moment,
     rays: Rays,
     connections_blocked: u64,
 }
@@ -44,8 +46,8 @@ impl Cell<'_> {
         let begin = Moment::now(observer);
         let mut session = self.stage.session(settings, threads)?;
         let mut time = Moment::now(observer).minus(begin);
-        let training = time.seconds;
-        while self.goes_on(&session, time.seconds, training) {
+        let training = time;
+        while self.goes_on(&session, time.seconds, training.seconds) {
             if observer.should_stop() {
                 return Ok(None);
             }
@@ -57,6 +59,7 @@ impl Cell<'_> {
             picture: session.film().develop(),
             spp: session.next_pass(),
             time,
+            training,
             rays: rays(&session),
             connections_blocked: session.stats().connections_blocked,
         }))
@@ -97,6 +100,8 @@ impl Cell<'_> {
             spp: rendered.spp,
             seconds: rendered.time.seconds,
             processor_seconds: rendered.time.processor_seconds,
+            training_seconds: Some(rendered.training.seconds),
+            training_processor_seconds: rendered.training.processor_seconds,
             rays: rendered.rays,
             connections_blocked: rendered.connections_blocked,
             metrics,

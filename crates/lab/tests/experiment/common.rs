@@ -168,7 +168,8 @@ pub(crate) fn without_times(records: &[Record]) -> Vec<Record> {
     let mut records = records.to_vec();
     for record in &mut records {
         (record.seconds, record.efficiency_seconds) = (0.0, 0.0);
-        record.processor_seconds = None;
+        (record.processor_seconds, record.training_seconds) = (None, None);
+        record.training_processor_seconds = None;
     }
     records
 }

@@ -23,6 +23,8 @@ fn every_cell_has_a_record() {
         // Begin, end and each of three passes take a tick.
         assert!((record.seconds - 4.0).abs() < 1e-9, "{record:?}");
         assert_eq!(record.processor_seconds, Some(8.0));
+        assert_eq!(record.training_seconds, Some(1.0));
+        assert_eq!(record.training_processor_seconds, Some(2.0));
         assert_eq!(record.image.is_some(), record.seed == 0);
         let images = record
             .image

@@ -1,8 +1,8 @@
 //! Findings on made-up records.
 
 use super::*;
+use crate::beyond::sections;
 use crate::beyond::tests::{check_shape, setup};
-use crate::beyond::{sections, variants};
 use crate::parts;
 use crate::results::{BudgetInfo, BudgetKind, MethodInfo, Rays, Record, SceneInfo};
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,53 +11,44 @@ use std::path::Path;
 /// Ten seeds of a scene: each method with relMSE · cost, times 1 ± `spread`, by pixels; by blocks it is
 /// the inverse. The clock of the wall tells nonsense.
 fn records(scene: &str, methods: &[(&str, f64)], spread: f64) -> Vec<Record> {
-    let kinds = ["time", "rays"];
-    let cells = kinds.into_iter().flat_map(|budget| {
-        let seeds = move |&(method, product): &(&'static str, f64)| {
-            (0..10).map(move |seed| (budget, method, product, seed))
-        };
-        known(methods)
-            .into_iter()
-            .flat_map(move |method| seeds(&method).collect::<Vec<_>>())
-    });
-    cells
-        .map(|(budget, method, product, seed)| {
-            let phase = (seed * 7 + method.len() as u64) % 11;
-            let product = product * (1.0 + spread * (phase as f64 / 5.0 - 1.0));
-            let cost = 1000 * (1 + seed);
-            let errors = [("relmse", product), ("relmse_block", 1.0 / product)];
-            let errors = errors.map(|(name, value)| (name.to_owned(), value / cost as f64));
-            Record {
-                scene: scene.to_owned(),
-                method: method.to_owned(),
-                budget: budget.to_owned(),
-                seed,
-                spp: 4,
-                seconds: (1.0 + seed as f64).powi(method.len() as i32),
-                processor_seconds: Some(cost as f64),
-                rays: Rays {
-                    camera: cost / 2,
-                    training: cost / 2,
-                    ..Rays::default()
-                },
-                connections_blocked: 0,
-                metrics: BTreeMap::from(errors),
-                efficiency_rays: 0.0,
-                efficiency_seconds: 0.0,
-                image: None,
+    let mut records = Vec::new();
+    for budget in ["time", "rays"] {
+        for (method, product) in methods {
+            for seed in 0..10 {
+                let phase = (seed * 7 + method.len() as u64) % 11;
+                let product = product * (1.0 + spread * (phase as f64 / 5.0 - 1.0));
+                records.push(record([scene, method, budget], product, seed));
             }
-        })
-        .collect()
+        }
+    }
+    records
 }
 
-/// The same methods under names that live as long as the program.
-fn known(methods: &[(&str, f64)]) -> Vec<(&'static str, f64)> {
-    let all = [BASELINE, PATH, SHARED, AUTO];
-    let find = |name: &str| all.into_iter().find(|known| *known == name).unwrap();
-    methods
-        .iter()
-        .map(|(name, product)| (find(name), *product))
-        .collect()
+fn record([scene, method, budget]: [&str; 3], product: f64, seed: u64) -> Record {
+    let cost = 1000 * (1 + seed);
+    let errors = [("relmse", product), ("relmse_block", 1.0 / product)];
+    let errors = errors.map(|(name, value)| (name.to_owned(), value / cost as f64));
+    Record {
+        scene: scene.to_owned(),
+        method: method.to_owned(),
+        budget: budget.to_owned(),
+        seed,
+        spp: 4,
+        seconds: (1 + seed * method.len() as u64) as f64,
+        processor_seconds: Some(cost as f64),
+        training_seconds: Some(0.0),
+        training_processor_seconds: Some(0.0),
+        rays: Rays {
+            camera: cost / 2,
+            light: cost / 2,
+            ..Rays::default()
+        },
+        connections_blocked: 0,
+        metrics: BTreeMap::from(errors),
+        efficiency_rays: 0.0,
+        efficiency_seconds: 0.0,
+        image: None,
+    }
 }
 
 fn results(scene: &str, records: Vec<Record>) -> Results {
@@ -104,7 +95,9 @@ fn check_targets(auto: f64, spread: f64, expected: [Verdict; 3]) {
     ];
     let results = results("apartment", records("apartment", &methods, spread));
     let targets = TARGETS.iter().filter(|target| target.scene == "apartment");
-    let verdicts: Vec<_> = targets.map(|target| judged(&results, target).1).collect();
+    let verdicts: Vec<_> = targets
+        .map(|target| judged(&results, &Amounts::full(), target))
+        .collect();
     assert_eq!(verdicts, expected);
 }
 
@@ -124,8 +117,8 @@ fn gains_are_those_of_processors_and_of_all_rays() {
     let methods = [(BASELINE, 100.0), (PATH, 50.0), (AUTO, 10.0)];
     let mut results = results("apartment", records("apartment", &methods, 0.0));
     let gain = |results: &Results, view, error| {
-        let measured = measured(results, "apartment", view);
-        measured.gain([AUTO, BASELINE], error, 0.95).unwrap().value
+        let gains = Gains::new(results, Amounts::full().judged, "apartment", view);
+        gains.of([AUTO, BASELINE], error).unwrap().value
     };
     for view in [View::EqualTime, View::EqualRays, View::TimeOfRays] {
         assert!((gain(&results, view, Error::Pixels) - 10.0).abs() < 1e-9);
@@ -143,11 +136,55 @@ fn gains_are_those_of_processors_and_of_all_rays() {
     );
 }
 
+/// Half of a render of cost 2000 was training. Under 10 000 that would be a tenth, and the error what
+/// 9000 give.
+#[test]
+fn training_is_weighed_as_in_the_budget_that_is_judged() {
+    let methods = [(BASELINE, 100.0), (AUTO, 100.0)];
+    let mut records = records("apartment", &methods, 0.0);
+    records.retain(|record| record.seed < 3);
+    for record in &mut records {
+        if record.method == AUTO {
+            let cost = 1000.0 * (1 + record.seed) as f64;
+            record.processor_seconds = Some(2.0 * cost);
+            record.training_processor_seconds = Some(cost);
+            record.rays.training = 1000 * (1 + record.seed);
+        }
+    }
+    let results = results("apartment", records);
+    let gain = |judged, view| {
+        let gains = Gains::new(&results, judged, "apartment", view);
+        gains.of([AUTO, BASELINE], Error::Pixels).unwrap().value
+    };
+    let expected = [1000.0, 2000.0, 3000.0].map(|training| (10_000.0 - training) / 10_000.0);
+    let expected = libm::cbrt(expected.iter().product::<f64>());
+    let judged = Judged {
+        seconds: 10_000.0,
+        rays: 10_000.0 / 48.0,
+    };
+    for view in [View::EqualTime, View::EqualRays] {
+        let gain = gain(judged, view);
+        assert!(
+            (gain - expected).abs() < 1e-9,
+            "{view:?}: {gain} {expected}"
+        );
+    }
+    // A budget that was overrun is what was rendered.
+    let overrun = Judged {
+        seconds: 1.0,
+        rays: 1.0,
+    };
+    assert!((gain(overrun, View::EqualTime) - 0.5).abs() < 1e-9);
+}
+
 #[track_caller]
 fn check_auto(auto: f64, expected: Verdict) {
     let methods = [(BASELINE, 100.0), (PATH, 50.0), (AUTO, auto)];
     let results = results("coffee", records("coffee", &methods, 0.01));
-    assert_eq!(judged_auto(&results, "coffee").1, expected);
+    assert_eq!(
+        judged_auto(&results, &Amounts::full(), "coffee").1,
+        expected
+    );
 }
 
 #[test]
@@ -170,7 +207,7 @@ fn what_was_not_rendered_is_not_measured() {
     let verdicts = claims.iter().map(|claim| claim.verdict);
     assert!(verdicts.eq([Verdict::NotMeasured; TARGETS.len() + SCENES.len()]));
     assert!(
-        claims[0].found.contains("not measured"),
+        claims[0].found.starts_with("Not measured"),
         "{}",
         claims[0].found
     );
@@ -178,7 +215,7 @@ fn what_was_not_rendered_is_not_measured() {
     assert_eq!(ids.len(), claims.len());
     results.records.clear();
     results.budgets.clear();
-    for table in sections(&results)
+    for table in sections(&results, &Amounts::quick())
         .iter()
         .flat_map(|section| &section.tables)
     {

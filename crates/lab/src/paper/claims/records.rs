@@ -187,6 +187,8 @@ pub(super) mod made {
             spp: 8,
             seconds: seconds * cost,
             processor_seconds: None,
+            training_seconds: None,
+            training_processor_seconds: None,
             rays: Rays {
                 camera: 1000 * (1 + seed),
                 ..Rays::default()
