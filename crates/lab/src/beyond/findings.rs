@@ -144,7 +144,9 @@ fn aimed(verdict: Verdict, is_measured: bool) -> Verdict {
 
 fn claim(id: &str, claim: String, verdict: Verdict, found: String) -> Claim {
     let found = match verdict {
-        Verdict::NotMeasured => "Not measured: it takes two seeds of both.".to_owned(),
+        Verdict::NotMeasured => {
+            "Not measured: it takes renders of both under two seeds.".to_owned()
+        }
         _ => found,
     };
     let words = id.split(|c: char| !c.is_ascii_alphanumeric());

@@ -21,6 +21,8 @@ pub(super) enum View {
 pub(super) enum Error {
     /// relMSE of pixels.
     Pixels,
+    /// relMSE of all pixels but the worst thousandth, which may be all that the first one tells of.
+    Trimmed,
     /// relMSE of means over blocks.
     Blocks,
 }
@@ -39,6 +41,15 @@ impl View {
             Self::EqualTime => "in equal time",
             Self::EqualRays => "at equal rays",
             Self::TimeOfRays => "in time, at equal rays",
+        }
+    }
+
+    /// The unit of the cost.
+    pub(super) fn unit(self, clock: Clock) -> &'static str {
+        match (self, clock) {
+            (Self::EqualRays, _) => "rays",
+            (_, Clock::Processors) => "processor seconds",
+            (_, Clock::Wall) => "seconds",
         }
     }
 
@@ -62,6 +73,7 @@ impl Error {
     fn metric(self) -> &'static str {
         match self {
             Self::Pixels => "relmse",
+            Self::Trimmed => "relmse_trim",
             Self::Blocks => "relmse_block",
         }
     }

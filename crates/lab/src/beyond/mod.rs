@@ -29,8 +29,8 @@
 //! of training included, at *equal rays*; and in *equal time* processor seconds of all threads, training
 //! included, as the clock of a busy machine tells more of its other work; seconds of the clock stand in
 //! for them where the host cannot tell. `relmse_block` in the place of relMSE is what is left where
-//! noise of single pixels averages out. Noise of the reference is in all errors, and brings gains
-//! nearer to 1.
+//! noise of single pixels averages out, and `relmse_trim` what a few pixels do not hide. Noise of the
+//! reference is in all errors, and brings gains nearer to 1.
 //!
 //! Ideas are rendered at equal rays alone, where processor seconds tell of equal time, too.
 
@@ -46,7 +46,9 @@ mod variants;
 pub use plan::{Amounts, Judged, scene_names};
 pub use tables::sections;
 
-use crate::experiment::{End, Event, ExperimentError, Observer, Outcome, Setup, write_results};
+use crate::experiment::{
+    BudgetSpec, End, Event, ExperimentError, Observer, Outcome, Setup, write_results,
+};
 use crate::results::{BudgetKind, Record, Results};
 use crate::{parts, reference, scenes};
 use plan::Place;
@@ -130,8 +132,8 @@ fn render(
             outcome => outcome?,
         };
         if let Some(part) = outcome.results {
-            let shown = format!("{} s", options.amounts.seconds);
-            let shows = |record: &Record| record.budget == shown;
+            let shown = BudgetSpec::new(BudgetKind::Seconds, options.amounts.seconds);
+            let shows = |record: &Record| record.budget == shown.name;
             all = parts::with(all, name, part, shows);
         }
         if outcome.end == End::Stopped {

@@ -53,6 +53,8 @@ fn estimators(results: &Results, judged: Judged, view: View) -> Table {
         "relMSE · cost ↓",
         "over bdpt all ↑",
         "over path ↑",
+        "over bdpt all, trimmed ↑",
+        "over path, trimmed ↑",
         "over bdpt all, blocks ↑",
         "over path, blocks ↑",
     ];
@@ -73,9 +75,11 @@ fn estimators(results: &Results, judged: Judged, view: View) -> Table {
     });
     Table {
         caption: format!(
-            "Estimators {}: means over seeds; geometric means of relMSE · cost and gains, with 95 % \
-             intervals, training weighed as in a whole run.",
-            view.words()
+            "Estimators {}: means over seeds; geometric means of relMSE · cost, in {}, and gains, with \
+             95 % intervals. Trimmed is without the worst 0.1 % of pixels; training is weighed as in a \
+             whole run.",
+            view.words(),
+            view.unit(Clock::of(results))
         ),
         columns: columns.map(str::to_owned).into(),
         rows: rows.collect(),
@@ -105,6 +109,8 @@ fn estimator(measured: &Measured<'_>, method: &str) -> Vec<Cell> {
         number(measured.mean(method, Error::Pixels)),
         gain(BASELINE, Error::Pixels),
         gain(PATH, Error::Pixels),
+        gain(BASELINE, Error::Trimmed),
+        gain(PATH, Error::Trimmed),
         gain(BASELINE, Error::Blocks),
         gain(PATH, Error::Blocks),
     ]
@@ -126,6 +132,7 @@ fn of_idea(results: &Results, judged: Judged, idea: &str, view: View, error: Err
     };
     let by = match error {
         Error::Pixels => "",
+        Error::Trimmed => ", without the worst 0.1 % of pixels",
         Error::Blocks => ", of means over blocks",
     };
     let heads = ["variant", "over"].into_iter().chain(scenes());

@@ -235,6 +235,25 @@ fn check_tables(results: &Results, amounts: &Amounts) {
 }
 
 #[test]
+fn a_scene_is_left_out_only_where_its_reference_is_contradicted() {
+    let of = |error| ExperimentError::Reference {
+        scene: "coffee".to_owned(),
+        error,
+    };
+    let folder = Path::new("reference").to_owned();
+    assert!(is_contradicted(&of(reference::Error::Disagree {
+        folder: folder.clone(),
+        p: 1e-6,
+    })));
+    let reason = "of another scene".to_owned();
+    assert!(!is_contradicted(&of(reference::Error::Refused {
+        folder,
+        reason
+    })));
+    assert!(!is_contradicted(&ExperimentError::NoScenes(String::new())));
+}
+
+#[test]
 fn without_any_scene_there_is_nothing_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let options = Options {

@@ -26,7 +26,11 @@ fn records(scene: &str, methods: &[(&str, f64)], spread: f64) -> Vec<Record> {
 
 fn record([scene, method, budget]: [&str; 3], product: f64, seed: u64) -> Record {
     let cost = 1000 * (1 + seed);
-    let errors = [("relmse", product), ("relmse_block", 1.0 / product)];
+    let errors = [
+        ("relmse", product),
+        ("relmse_trim", libm::sqrt(product)),
+        ("relmse_block", 1.0 / product),
+    ];
     let errors = errors.map(|(name, value)| (name.to_owned(), value / cost as f64));
     Record {
         scene: scene.to_owned(),
@@ -122,6 +126,7 @@ fn gains_are_those_of_processors_and_of_all_rays() {
     };
     for view in [View::EqualTime, View::EqualRays, View::TimeOfRays] {
         assert!((gain(&results, view, Error::Pixels) - 10.0).abs() < 1e-9);
+        assert!((gain(&results, view, Error::Trimmed) - libm::sqrt(10.0)).abs() < 1e-9);
         assert!((gain(&results, view, Error::Blocks) - 0.1).abs() < 1e-9);
     }
     // Without the clock of the processors that of the wall has to do.
