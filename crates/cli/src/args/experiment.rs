@@ -70,15 +70,15 @@ pub(crate) struct ExperimentArgs {
     /// `beyond`: 3 seeds of small images, 2 seconds, in twenty minutes instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,
-    /// What is rendered of `beyond`.
-    #[command(flatten)]
-    pub(crate) beyond: BeyondArgs,
     /// How fast it is.
     #[command(flatten)]
     pub(crate) threads: ThreadsArgs,
     /// Tell nothing but warnings and errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+    /// What is rendered of `beyond`; last, as its heading holds for all that follow.
+    #[command(flatten)]
+    pub(crate) beyond: BeyondArgs,
 }
 
 /// How much is rendered of `beyond`, instead of what `--quick` or its absence says.
