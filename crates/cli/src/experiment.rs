@@ -1,5 +1,6 @@
 //! `bidir experiment`: methods are compared, from a description to a report.
 
+mod builtin;
 mod claims;
 mod tables;
 mod watch;
@@ -12,45 +13,42 @@ use crate::reference;
 use crate::render::set_threads;
 use crate::scene_io;
 use crate::signals::Signals;
+use lab::beyond;
 use lab::experiment::{self, End, Experiment, ExperimentError, Outcome, Setup, Start, analysis};
-use lab::paper::{self, Effort, Options};
+use lab::paper;
 use lab::report::{self, ImageKind, Report, ReportImage, Sheet};
 use lab::results::{Machine, Results};
 use std::path::Path;
 use watch::Watch;
 
-/// The name of the experiment that the program brings.
-const PAPER: &str = "paper";
+/// What is run.
+enum Task {
+    /// The experiment of 1995.
+    Paper(paper::Options),
+    /// All estimators.
+    Beyond(beyond::Options),
+    /// That of a file.
+    Described(Experiment),
+}
 
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     set_threads(args.threads)?;
-    let is_paper = args.description == Path::new(PAPER);
-    let outcome = if is_paper {
-        let options = Options {
-            effort: if args.quick {
-                Effort::Quick
-            } else {
-                Effort::Full
-            },
-            threads: threads(args, 0),
-        };
-        let run = |setup: &Setup, watch: &mut Watch<'_>| paper::run(options, setup, watch);
-        execute(args, console, &signals, run)?
-    } else {
-        let experiment = read(args)?;
-        let run = |setup: &Setup, watch: &mut Watch<'_>| experiment::run(&experiment, setup, watch);
-        execute(args, console, &signals, run)?
-    };
+    let task = task(args)?;
+    let outcome = execute(args, console, &signals, |setup, watch| match &task {
+        Task::Paper(options) => paper::run(*options, setup, watch),
+        Task::Beyond(options) => beyond::run(options, setup, watch),
+        Task::Described(experiment) => experiment::run(experiment, setup, watch),
+    })?;
     let Some(results) = &outcome.results else {
         return Ok(stopped(args));
     };
-    // The claims of the paper have all its tables.
-    let sections = if is_paper {
-        Vec::new()
-    } else {
-        analysis::sections(results)
+    let sections = match task {
+        // The claims of the paper have all its tables.
+        Task::Paper(_) => Vec::new(),
+        Task::Beyond(options) => beyond::sections(results, &options.amounts),
+        Task::Described(_) => analysis::sections(results),
     };
     write_report(args, results, &sections)?;
     let mut found: Vec<_> = results.claims.iter().map(claims::text).collect();
@@ -65,6 +63,22 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
         say(format_args!("wrote {}", args.output.join(REPORT).display()));
     }
     Ok(Exit::Done)
+}
+
+/// What the command line asks for.
+fn task(args: &ExperimentArgs) -> Result<Task, Failure> {
+    if args.description == Path::new(builtin::BEYOND) {
+        return Ok(Task::Beyond(builtin::beyond(args, threads(args, 0))));
+    }
+    if let Some(flag) = args.beyond.given() {
+        let text = format!("{flag} is of `{}` alone", builtin::BEYOND);
+        let hint = "a description says such things itself";
+        return Err(Failure::new(Exit::Usage, text).with_hint(hint));
+    }
+    if args.description == Path::new(builtin::PAPER) {
+        return Ok(Task::Paper(builtin::paper(args, threads(args, 0))));
+    }
+    read(args).map(Task::Described)
 }
 
 /// Says how to go on.
@@ -184,15 +198,13 @@ fn write_report(
         tables.extend(section.tables.iter().cloned());
         plots.extend(section.plots.iter().cloned());
     }
-    let description = args.description.display();
-    let quick = if args.quick { " --quick" } else { "" };
     let page = report::html(&Report {
         results,
         tables: &tables,
         plots: &plots,
         images: &images(&args.output, results)?,
         sheets: &sheets(&args.output, results)?,
-        command: &format!("bidir experiment {description} -o FOLDER{quick}"),
+        command: &builtin::command(args),
     });
     scene_io::write_text(&args.output.join(REPORT), &page)
 }

@@ -1,5 +1,6 @@
 //! Experiments: images become numbers, and numbers get confidence.
 //!
+//! - [`beyond`]: what all estimators gain, and each idea behind them.
 //! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
@@ -15,13 +16,17 @@
 //! All but [`experiment`] and [`reference`](mod@reference) read no file and know no scene: who has images can
 //! ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
 
+pub mod beyond;
+mod blocks;
 pub mod experiment;
 pub mod flip;
 pub mod image;
 pub mod metric;
 pub mod paper;
+mod parts;
 pub mod pyramid;
 pub mod reference;
 pub mod report;
 pub mod results;
+mod scenes;
 pub mod statistics;

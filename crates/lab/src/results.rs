@@ -141,6 +141,16 @@ pub struct Record {
     pub spp: u64,
     /// Time of rendering and training. Unit: seconds.
     pub seconds: f64,
+    /// What all threads of the process took of the processors for it, as user and as system, which does
+    /// not grow with what else the machine does. Unit: seconds. None: the host cannot tell.
+    #[serde(default)]
+    pub processor_seconds: Option<f64>,
+    /// The part of `seconds` before the first pass: training. Unit: seconds. None: nobody measured it.
+    #[serde(default)]
+    pub training_seconds: Option<f64>,
+    /// The part of `processor_seconds` before the first pass. Unit: seconds. None: the host cannot tell.
+    #[serde(default)]
+    pub training_processor_seconds: Option<f64>,
     /// Rays by kind.
     pub rays: Rays,
     /// Connection rays that something blocked.
@@ -203,7 +213,7 @@ pub struct StrategyInfo {
     pub raw_dropped: u64,
 }
 
-/// Whether what others said is what was found.
+/// Whether what others said is what was found, or what was aimed at is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -213,6 +223,12 @@ pub enum Verdict {
     NotReproduced,
     /// Intervals overlap.
     Undecided,
+    /// What was aimed at is reached, and the interval leaves no doubt.
+    Met,
+    /// It is not reached, and the interval leaves no doubt.
+    NotMet,
+    /// Nothing was measured that could tell.
+    NotMeasured,
 }
 
 /// A statement, and what was found about it.

@@ -1,6 +1,8 @@
 //! The flags of `bidir experiment`.
 
 use super::ThreadsArgs;
+use super::values::{Size, positive_number};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -42,13 +44,17 @@ Examples:
   bidir experiment room.toml -o out/quick --quick
       small and coarse, to see whether it works
   bidir experiment paper --quick -o out/paper
-      the statements of the 1995 paper, each with a verdict")]
+      the statements of the 1995 paper, each with a verdict
+  bidir experiment beyond --quick -o out/beyond
+      all estimators and each idea behind them, against what is aimed at; BIDIR_SCENES names the folder
+      that has the scenes made by others in pbrt-v4/, which are left out without it")]
 #[command(mut_arg("threads", |threads| threads.help(
     "Threads of each render, instead of the description's [default: its own, or one per processor]"
 )))]
 pub(crate) struct ExperimentArgs {
     /// The description, a file of TOML; or `paper`, the experiment of Lafortune and Willems (1995) claim
-    /// by claim, which needs no file (one of that name is ./paper).
+    /// by claim, or `beyond`, all estimators in nine scenes: these need no file (one of that name is
+    /// ./paper).
     #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
     pub(crate) description: PathBuf,
     /// The folder of the results, which is made where it is not there.
@@ -60,7 +66,8 @@ pub(crate) struct ExperimentArgs {
     #[arg(long)]
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references. Of
-    /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours.
+    /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours. Of
+    /// `beyond`: 3 seeds of small images, 2 seconds, in twenty minutes instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,
     /// How fast it is.
@@ -69,4 +76,53 @@ pub(crate) struct ExperimentArgs {
     /// Tell nothing but warnings and errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
+    /// What is rendered of `beyond`; last, as its heading holds for all that follow.
+    #[command(flatten)]
+    pub(crate) beyond: BeyondArgs,
+}
+
+/// How much is rendered of `beyond`, instead of what `--quick` or its absence says.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Of `beyond` alone")]
+pub(crate) struct BeyondArgs {
+    /// These scenes, with commas between them [default: all].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    #[arg(value_parser = PossibleValuesParser::new(lab::beyond::scene_names()))]
+    pub(crate) scenes: Vec<String>,
+    /// Width and height of all images [default: 160x120 or as many pixels in the scene's shape with
+    /// --quick, else twice the sides].
+    #[arg(long, value_name = "WxH")]
+    pub(crate) size: Option<Size>,
+    /// Equal time: seconds of training and rendering for each estimator [default: 60; --quick renders
+    /// 2, and weighs training as in 60].
+    #[arg(long, value_name = "S", value_parser = positive_number)]
+    pub(crate) seconds: Option<f64>,
+    /// Equal rays: rays per pixel for each estimator and each idea, those of training included
+    /// [default: 500; --quick renders 100, and weighs training as in 2000, as a whole run has four
+    /// times the pixels].
+    #[arg(long, value_name = "N", value_parser = positive_number)]
+    pub(crate) rays: Option<f64>,
+    /// How many seeds: gains have intervals from 2 on [default: 10, --quick 3].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub(crate) seeds: Option<u64>,
+    /// Samples per pixel of references, of each of their two estimators [default: 4096, --quick 256].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
+    pub(crate) reference_spp: Option<u64>,
+}
+
+impl BeyondArgs {
+    /// The name of a flag that is given. None: none is.
+    pub(crate) fn given(&self) -> Option<&'static str> {
+        let flags = [
+            ("--scenes", !self.scenes.is_empty()),
+            ("--size", self.size.is_some()),
+            ("--seconds", self.seconds.is_some()),
+            ("--rays", self.rays.is_some()),
+            ("--seeds", self.seeds.is_some()),
+            ("--reference-spp", self.reference_spp.is_some()),
+        ];
+        flags
+            .into_iter()
+            .find_map(|(name, is_given)| is_given.then_some(name))
+    }
 }

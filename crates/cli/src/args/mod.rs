@@ -107,7 +107,8 @@ pub(crate) enum Command {
     ///
     /// Prints, over red, green and blue of all pixels: the root of the mean square error (rmse), the
     /// mean of (a-b)²/(b²+0.01) (relmse), both without the worst 0.1 % of pixels (`rmse_trim`,
-    /// `relmse_trim`), the mean of |a-b|/(|b|+0.01) (mape), the mean of A divided by the mean of B
+    /// `relmse_trim`), relmse of means over blocks of 16 x 16 pixels
+    /// (`relmse_block`), the mean of |a-b|/(|b|+0.01) (mape), the mean of A divided by the mean of B
     /// (`mean_ratio`), and whether both have the same size and the same bits (identical); with --flip,
     /// the mean difference that is seen (flip, `flip_hdr`).
     ///

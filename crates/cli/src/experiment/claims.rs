@@ -43,6 +43,9 @@ fn verdict(verdict: Verdict) -> &'static str {
         Verdict::Reproduced => "reproduced",
         Verdict::NotReproduced => "not reproduced",
         Verdict::Undecided => "undecided",
+        Verdict::Met => "met",
+        Verdict::NotMet => "not met",
+        Verdict::NotMeasured => "not measured",
     }
 }
 

@@ -132,6 +132,12 @@ impl Observer for Watch<'_> {
         self.start.elapsed().as_secs_f64()
     }
 
+    #[cfg(unix)]
+    fn processor_seconds(&self) -> Option<f64> {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+    }
+
     fn should_stop(&mut self) -> bool {
         let is_asked = self.signals.exit().is_some();
         if is_asked && !self.is_stop_told {

@@ -85,6 +85,7 @@ fn all_numbers_have_their_keys_and_flip_comes_when_asked_for() {
         "relmse",
         "rmse_trim",
         "relmse_trim",
+        "relmse_block",
         "mape",
         "mean_ratio",
     ];

@@ -36,6 +36,9 @@ fn records(place: &Workplace, folder: &str) -> Vec<Value> {
     for record in records.iter_mut() {
         let record = record.as_object_mut().unwrap();
         record.remove("seconds").unwrap();
+        record.remove("processor_seconds").unwrap();
+        record.remove("training_seconds").unwrap();
+        record.remove("training_processor_seconds").unwrap();
         record.remove("efficiency_seconds").unwrap();
     }
     records.clone()

@@ -52,7 +52,8 @@ fn every_flag_is_described() {
     );
     check_flags(
         "experiment",
-        "--help --no-color --output --quick --quiet --restart --threads --version",
+        "--help --no-color --output --quick --quiet --rays --reference-spp --restart --scenes --seconds --seeds --size \
+         --threads --version",
     );
     check_flags(
         "tonemap",

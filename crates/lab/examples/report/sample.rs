@@ -140,6 +140,9 @@ fn record([scene, method]: [&str; 2], spp: u64, seed: u64, error: f64) -> Record
         seed,
         spp,
         seconds: 0.02 * spp as f64,
+        processor_seconds: None,
+        training_seconds: None,
+        training_processor_seconds: None,
         rays: Rays {
             camera: 4 * rays,
             light: 4 * rays,

@@ -27,7 +27,9 @@ pub(super) struct Cell<'a> {
 pub(super) struct Rendered {
     picture: Picture,
     spp: u64,
-    seconds: f64,
+    time: Moment,
+    /// The part of it before the first pass.
+    training: Moment,
     rays: Rays,
     connections_blocked: u64,
 }
@@ -41,22 +43,23 @@ impl Cell<'_> {
     ) -> Result<Option<Rendered>, ExperimentError> {
         let mut settings = self.method.changes.apply(&self.stage.settings);
         settings.seed = self.seed;
-        let begin = observer.seconds();
+        let begin = Moment::now(observer);
         let mut session = self.stage.session(settings, threads)?;
-        let mut seconds = observer.seconds() - begin;
-        let training = seconds;
-        while self.goes_on(&session, seconds, training) {
+        let mut time = Moment::now(observer).minus(begin);
+        let training = time;
+        while self.goes_on(&session, time.seconds, training.seconds) {
             if observer.should_stop() {
                 return Ok(None);
             }
-            let begin = observer.seconds();
+            let begin = Moment::now(observer);
             session.step(&());
-            seconds += observer.seconds() - begin;
+            time = time.plus(Moment::now(observer).minus(begin));
         }
         Ok(Some(Rendered {
             picture: session.film().develop(),
             spp: session.next_pass(),
-            seconds,
+            time,
+            training,
             rays: rays(&session),
             connections_blocked: session.stats().connections_blocked,
         }))
@@ -95,12 +98,15 @@ impl Cell<'_> {
             budget: self.budget.name.clone(),
             seed: self.seed,
             spp: rendered.spp,
-            seconds: rendered.seconds,
+            seconds: rendered.time.seconds,
+            processor_seconds: rendered.time.processor_seconds,
+            training_seconds: Some(rendered.training.seconds),
+            training_processor_seconds: rendered.training.processor_seconds,
             rays: rendered.rays,
             connections_blocked: rendered.connections_blocked,
             metrics,
             efficiency_rays: efficiency(mse, rendered.rays.total() as f64),
-            efficiency_seconds: efficiency(mse, rendered.seconds),
+            efficiency_seconds: efficiency(mse, rendered.time.seconds),
             image: None,
         }
     }
@@ -117,6 +123,39 @@ impl Cell<'_> {
 impl Rendered {
     pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
         write_image(path, &pixels(&self.picture))
+    }
+}
+
+/// Time since any moment, by both clocks of the host. Unit: seconds.
+#[derive(Clone, Copy)]
+struct Moment {
+    seconds: f64,
+    /// Of all threads. None: the host cannot tell.
+    processor_seconds: Option<f64>,
+}
+
+impl Moment {
+    fn now(observer: &dyn Observer) -> Self {
+        Self {
+            seconds: observer.seconds(),
+            processor_seconds: observer.processor_seconds(),
+        }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        self.with(other, |a, b| a - b)
+    }
+
+    fn plus(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b)
+    }
+
+    fn with(self, other: Self, operation: fn(f64, f64) -> f64) -> Self {
+        let processors = self.processor_seconds.zip(other.processor_seconds);
+        Self {
+            seconds: operation(self.seconds, other.seconds),
+            processor_seconds: processors.map(|(a, b)| operation(a, b)),
+        }
     }
 }
 

@@ -79,6 +79,9 @@ pub enum ExperimentError {
         /// The method.
         method: String,
     },
+    /// None of the scenes that an experiment has is there.
+    #[error("there is no scene to render: {0}")]
+    NoScenes(String),
     /// A render cannot begin.
     #[error("scene `{scene}`: {error}")]
     Render {
@@ -111,6 +114,7 @@ impl ExperimentError {
                  `reference` one of other estimators, by `bidir reference --estimator … --against …`",
             ),
             Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
+            Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
             Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,
         }

@@ -151,10 +151,12 @@ pub struct BudgetSpec {
     pub kind: BudgetKind,
     /// How much of it: samples per pixel, rays per pixel, or seconds. Range: above 0.
     pub amount: f64,
+    /// The names of the methods that are rendered under it; empty: of all.
+    pub methods: Vec<String>,
 }
 
 impl BudgetSpec {
-    /// A budget with the name that tells it, such as `64 spp`.
+    /// A budget of all methods, with the name that tells it, such as `64 spp`.
     pub fn new(kind: BudgetKind, amount: f64) -> Self {
         let unit = match kind {
             BudgetKind::Samples => "spp",
@@ -165,14 +167,25 @@ impl BudgetSpec {
             name: format!("{amount} {unit}"),
             kind,
             amount,
+            methods: Vec::new(),
         }
+    }
+
+    /// True where the method is rendered under it.
+    pub fn is_of(&self, method: &MethodSpec) -> bool {
+        self.methods.is_empty() || self.methods.contains(&method.name)
     }
 }
 
 impl Experiment {
     /// How many renders there are, but those of references.
     pub fn cells(&self) -> usize {
-        self.seeds.count as usize * self.scenes.len() * self.budgets.len() * self.methods.len()
+        let methods = |budget: &BudgetSpec| {
+            let methods = self.methods.iter();
+            methods.filter(|method| budget.is_of(method)).count()
+        };
+        let pairs: usize = self.budgets.iter().map(methods).sum();
+        self.seeds.count as usize * self.scenes.len() * pairs
     }
 
     /// The same in little time, to see whether it works: at most three seeds, sizes of at most 64
@@ -195,7 +208,11 @@ impl Experiment {
         let budgets = self.budgets.iter().map(|budget| {
             let amount = budget.amount / 8.0;
             let is_whole = budget.kind == BudgetKind::Samples;
-            BudgetSpec::new(budget.kind, if is_whole { amount.ceil() } else { amount })
+            let amount = if is_whole { amount.ceil() } else { amount };
+            BudgetSpec {
+                methods: budget.methods.clone(),
+                ..BudgetSpec::new(budget.kind, amount)
+            }
         });
         let mut all: Vec<BudgetSpec> = Vec::new();
         for budget in budgets {

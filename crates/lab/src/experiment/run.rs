@@ -49,6 +49,12 @@ pub trait Observer: Send {
     /// The host's clock. Unit: seconds since any moment.
     fn seconds(&self) -> f64;
 
+    /// What all threads of the process have taken of the processors so far, as user and as system. Unit:
+    /// seconds. None: the host cannot tell.
+    fn processor_seconds(&self) -> Option<f64> {
+        None
+    }
+
     /// True to stop: asked before each pass. The running render is then forgotten.
     fn should_stop(&mut self) -> bool {
         false
@@ -218,7 +224,8 @@ impl Work<'_> {
             .flat_map(scenes)
             .flat_map(move |(seed, (stage, reference))| {
                 experiment.budgets.iter().flat_map(move |budget| {
-                    methods.iter().map(move |method| {
+                    let methods = methods.iter().filter(|method| budget.is_of(method));
+                    methods.map(move |method| {
                         let cell = Cell {
                             stage,
                             method,

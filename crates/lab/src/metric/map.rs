@@ -1,6 +1,7 @@
 //! The errors of all pixels, and pictures of them.
 
 use super::Kept;
+use crate::blocks::{Blocks, Tally};
 use crate::image::{Pair, Pixels};
 use formats::image::Encoding;
 
@@ -25,6 +26,32 @@ impl ErrorMap {
         Self {
             size: pair.size(),
             data: pixels.map(pixel).collect(),
+        }
+    }
+
+    /// The mean over channels of `error(image, reference)` of the means over blocks of `block` × `block`
+    /// pixels: every pixel has that of its block.
+    pub(super) fn of_blocks(
+        pair: &Pair<'_>,
+        block: usize,
+        error: impl Fn(f64, f64) -> f64,
+    ) -> Self {
+        let blocks = Blocks::new(pair.size(), block);
+        let image = blocks.sums(pair.image());
+        let reference = blocks.sums(pair.reference());
+        let of = |(a, b): (&[Tally], &[Tally])| {
+            let channels = a.iter().zip(b);
+            channels
+                .map(|(a, b)| error(a.mean(), b.mean()))
+                .sum::<f64>()
+                / 3.0
+        };
+        let errors = image.chunks(3).zip(reference.chunks(3)).map(of);
+        let errors: Vec<f64> = errors.collect();
+        let pixels = pair.image().data.len();
+        Self {
+            size: pair.size(),
+            data: (0..pixels).map(|pixel| errors[blocks.of(pixel)]).collect(),
         }
     }
 

@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | `rmse` | √mean_c (a - b)² | √mean_q e_q² |
 //! | `relmse` | mean_c (a - b)² / (b² + ε) | mean_q e_q |
+//! | `relmse_block` | mean_c (ā - b̄)² / (b̄² + ε), means ā, b̄ over the pixel's block | mean_q e_q |
 //! | `mape` | mean_c \|a - b\| / (\|b\| + ε) | mean_q e_q |
 //! | `flip`, `flip_hdr` | see [`crate::flip`] | mean_q e_q |
 //!
@@ -13,6 +14,11 @@
 //! ⌈0.001 n⌉ of the largest error of that metric are left out. A single very bright pixel decides a
 //! mean square; these tell what all the others are like. They are biased downwards, and stand beside
 //! the full numbers, never instead of them.
+//!
+//! `relmse_block` is the same number of the means over *blocks* of 16 × 16 pixels, counted from the top
+//! left; those at the right and lower border are smaller, and a block counts as often as it has pixels.
+//! Noise that differs from pixel to pixel averages out in it, and what neighbours have in common, as
+//! where they share light subpaths, stays.
 //!
 //! What is not finite makes every number that it enters not finite; it is the worst of errors, so
 //! that trimming leaves it out. A number over no pixels is NaN.
@@ -26,6 +32,8 @@ use crate::image::Pair;
 
 /// The ε of all relative metrics.
 const EPSILON: f64 = 0.01;
+/// The side of a block. Unit: pixels.
+const BLOCK: usize = 16;
 
 /// A way to tell how far an image is from its reference; 0 where they are equal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +46,8 @@ pub enum Metric {
     Relmse,
     /// The same without the worst pixels.
     RelmseTrimmed,
+    /// The mean relative square error of means over blocks of pixels.
+    RelmseBlock,
     /// The mean absolute relative error.
     Mape,
     /// What is seen on a screen that shows [0, 1].
@@ -55,11 +65,12 @@ enum Kept {
 
 impl Metric {
     /// Every metric with its name.
-    pub const NAMES: [(&'static str, Self); 7] = [
+    pub const NAMES: [(&'static str, Self); 8] = [
         ("rmse", Self::Rmse),
         ("relmse", Self::Relmse),
         ("rmse_trim", Self::RmseTrimmed),
         ("relmse_trim", Self::RelmseTrimmed),
+        ("relmse_block", Self::RelmseBlock),
         ("mape", Self::Mape),
         ("flip", Self::Flip),
         ("flip_hdr", Self::FlipHdr),
@@ -75,7 +86,8 @@ impl Metric {
         let of = |error: fn(f64, f64) -> f64| ErrorMap::of_channels(pair, error);
         match self {
             Self::Rmse | Self::RmseTrimmed => of(|a, b| (a - b) * (a - b)).map(f64::sqrt),
-            Self::Relmse | Self::RelmseTrimmed => of(|a, b| (a - b) * (a - b) / (b * b + EPSILON)),
+            Self::Relmse | Self::RelmseTrimmed => of(relative_square),
+            Self::RelmseBlock => ErrorMap::of_blocks(pair, BLOCK, relative_square),
             Self::Mape => of(|a, b| (a - b).abs() / (b.abs() + EPSILON)),
             Self::Flip => flip::ldr(pair, flip::PIXELS_PER_DEGREE),
             Self::FlipHdr => {
@@ -101,6 +113,11 @@ impl Metric {
     pub fn value(self, pair: &Pair<'_>) -> f64 {
         self.pool(&self.errors(pair))
     }
+}
+
+/// (a - b)² / (b² + ε).
+fn relative_square(a: f64, b: f64) -> f64 {
+    (a - b) * (a - b) / (b * b + EPSILON)
 }
 
 /// The mean of the image divided by the mean of the reference; 1 where both are black.
@@ -138,6 +155,29 @@ mod tests {
         check(mean_ratio(&pair), 2.0);
         let black = image(&[[0.0; 3]]);
         check(mean_ratio(&Pair::new(&black, &black).unwrap()), 1.0);
+    }
+
+    /// Blocks of 16 × 2 and of 1 × 2 pixels: what differs within a block averages out.
+    #[test]
+    fn blocks_see_what_pixels_have_in_common() {
+        let picture = |value: fn(usize) -> f32| Pixels {
+            size: [17, 2],
+            data: (0..34).map(|i| [value(i); 3]).collect(),
+        };
+        let b = picture(|_| 1.0);
+        let a = picture(|i| match i % 17 {
+            16 => 3.0,
+            x if x % 2 == 0 => 2.0,
+            _ => 0.0,
+        });
+        let pair = Pair::new(&a, &b).unwrap();
+        check(Metric::RelmseBlock.value(&pair), 2.0 * 4.0 / 1.01 / 34.0);
+        check(Metric::RelmseBlock.errors(&pair).data[33], 4.0 / 1.01);
+        check(Metric::RelmseBlock.errors(&pair).data[3], 0.0);
+        let a = picture(|_| 1.5);
+        let pair = Pair::new(&a, &b).unwrap();
+        check(Metric::RelmseBlock.value(&pair), 0.25 / 1.01);
+        check(Metric::Relmse.value(&pair), 0.25 / 1.01);
     }
 
     #[test]

@@ -33,15 +33,14 @@ pub mod contributions;
 pub mod depths;
 mod plans;
 mod room;
-mod scenes;
 #[cfg(test)]
 mod tests;
 
 use crate::experiment::{
-    Changes, End, Experiment, ExperimentError, Observer, Outcome, Setup, run as render,
-    write_results,
+    Changes, End, Experiment, ExperimentError, Observer, Outcome, Setup, write_results,
 };
-use crate::results::{Claim, FORMAT, Results};
+use crate::results::{Claim, Results};
+use crate::{parts, scenes};
 use bidir::driver::Settings;
 use contributions::Contributions;
 use depths::Depths;
@@ -133,12 +132,13 @@ impl Parts {
         observer: &mut dyn Observer,
     ) -> Result<Option<Self>> {
         let amounts = options.effort.amounts();
-        let mut part = |plan, name| {
+        let mut part = |plan, name| -> Result<Option<Results>> {
             let plan = Experiment {
                 threads: options.threads,
                 ..plan
             };
-            part(&plan, name, setup, observer)
+            let outcome = parts::run(&plan, name, setup, observer)?;
+            Ok(outcome.results.filter(|_| outcome.end == End::Complete))
         };
         let Some(table_1) = part(plans::table_1(&amounts, folder), "table-1")? else {
             return Ok(None);
@@ -187,21 +187,6 @@ impl Parts {
 /// The folder of the references of the sweep of triangles.
 const REFERENCES: &str = "complexity-references";
 
-/// Runs one of the experiments in a folder of its own. None: it was stopped.
-fn part(
-    experiment: &Experiment,
-    folder: &str,
-    setup: &Setup,
-    observer: &mut dyn Observer,
-) -> Result<Option<Results>> {
-    let setup = Setup {
-        folder: setup.folder.join(folder),
-        ..setup.clone()
-    };
-    let outcome = render(experiment, &setup, observer)?;
-    Ok(outcome.results.filter(|_| outcome.end == End::Complete))
-}
-
 /// Walks in closed rooms.
 fn section_3(walks: u64) -> Result<Vec<Claim>> {
     let confidence = claims::shared(ALBEDOS.len());
@@ -238,52 +223,19 @@ fn figure_2(folder: &Path) -> Result<Vec<Claim>> {
     Ok(claims)
 }
 
-/// One for all: images are found from the common folder.
+/// One for all.
 fn merge(parts: [(&str, Results); 3], claims: Vec<Claim>, setup: &Setup) -> Results {
-    let mut all = Results {
-        format: FORMAT,
-        title: "Reducing the number of shadow rays, 1995 and now".to_owned(),
-        description: "The statements of Lafortune and Willems (1995), each with what was found. \
-                      Strategies s >= 1 and t >= 2 take part, next-event estimation shares the light \
-                      subpath's point, walks end by roulette with the reflectivity."
-            .to_owned(),
-        program: setup.program.clone(),
-        machine: setup.machine.clone(),
-        scenes: Vec::new(),
-        methods: Vec::new(),
-        budgets: Vec::new(),
-        records: Vec::new(),
-        pyramids: Vec::new(),
-        claims,
-    };
-    for (folder, part) in parts {
-        let moved = |image: Option<String>| image.map(|image| format!("{folder}/{image}"));
-        all.machine.threads = part.machine.threads;
-        for mut scene in part.scenes {
-            scene.reference_image = moved(scene.reference_image);
-            all.scenes.push(scene);
-        }
-        for mut record in part.records {
-            // The sweeps have many images, of which none shows more than the first.
-            record.image = moved(record.image).filter(|_| folder == "table-1");
-            all.records.push(record);
-        }
-        for mut pyramid in part.pyramids {
-            for sheet in [&mut pyramid.weighted, &mut pyramid.raw] {
-                *sheet = format!("{folder}/{sheet}");
-            }
-            all.pyramids.push(pyramid);
-        }
-        for method in part.methods {
-            if all.methods.iter().all(|known| known.name != method.name) {
-                all.methods.push(method);
-            }
-        }
-        for budget in part.budgets {
-            if all.budgets.iter().all(|known| known.name != budget.name) {
-                all.budgets.push(budget);
-            }
-        }
-    }
-    all
+    let description = "The statements of Lafortune and Willems (1995), each with what was found. \
+                       Strategies s >= 1 and t >= 2 take part, next-event estimation shares the light \
+                       subpath's point, walks end by roulette with the reflectivity.";
+    let all = parts::empty(
+        "Reducing the number of shadow rays, 1995 and now",
+        description,
+        setup,
+    );
+    // The sweeps have many images, of which none shows more than the first.
+    let all = parts.into_iter().fold(all, |all, (folder, part)| {
+        parts::with(all, folder, part, |_| folder == "table-1")
+    });
+    Results { claims, ..all }
 }

@@ -1,13 +1,14 @@
 //! What is rendered: the three experiments, small and large.
 
 use super::room::{Lamp, Room};
-use super::{Effort, Result, scenes, setting};
+use super::{Effort, Result, setting};
 use crate::experiment::{
     BudgetSpec, Changes, Experiment, ExperimentError, MethodSpec, PyramidSpec, ReferenceSpec,
     SceneSpec, Seeds,
 };
 use crate::metric::Metric;
 use crate::results::{BudgetKind, Results};
+use crate::scenes;
 use std::path::{Path, PathBuf};
 
 /// Weights that need no densities.
@@ -139,17 +140,11 @@ fn method(weights: &str, rule: &str) -> MethodSpec {
 
 /// A scene whose reference is rendered.
 fn scene(name: &str, path: PathBuf, spp: u64) -> SceneSpec {
-    let file = path.file_name().unwrap_or_default();
-    SceneSpec {
-        name: name.to_owned(),
-        file: file.to_string_lossy().into_owned(),
-        path,
-        size: None,
-        reference: ReferenceSpec::Make {
-            spp,
-            changes: Box::new(reference_changes()),
-        },
-    }
+    let reference = ReferenceSpec::Make {
+        spp,
+        changes: Box::new(reference_changes()),
+    };
+    scenes::spec(name, path, reference)
 }
 
 /// What decides the expectation, and no more: references may be rendered in a better way.

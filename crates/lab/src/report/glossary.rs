@@ -49,6 +49,10 @@ fn meaning(metric: Metric) -> &'static str {
              very bright pixels are set aside. Biased downwards."
         }
         Metric::RelmseTrimmed => "relmse without the 0.1 % of pixels that have the largest error.",
+        Metric::RelmseBlock => {
+            "relmse of the means over blocks of 16 × 16 pixels: the error that is left where noise of \
+             single pixels averages out, such as that which neighbours share."
+        }
         Metric::Mape => {
             "Mean absolute relative error: the mean, over all pixels and channels, of \
              |image − reference| / (|reference| + 0.01)."
@@ -64,7 +68,7 @@ fn meaning(metric: Metric) -> &'static str {
     }
 }
 
-const WORDS: [(&str, &str); 11] = [
+const WORDS: [(&str, &str); 13] = [
     (
         "efficiency",
         "1 / (mean square error · cost), with the cost in rays or in seconds. Twice the efficiency \
@@ -80,6 +84,16 @@ const WORDS: [(&str, &str); 11] = [
     (
         "reproduced, not reproduced, undecided",
         "What is claimed is what was found, or is not, and the intervals leave no doubt; or they do.",
+    ),
+    (
+        "met, not met, not measured",
+        "What was aimed at is reached, or is not, and the interval leaves no doubt; or nothing was \
+         measured that could tell.",
+    ),
+    (
+        "processor seconds",
+        "What all threads took of the processors, as user and as system, training included: on a \
+         busy machine the same work takes more seconds, but hardly more of these.",
     ),
     (
         "reference",

@@ -56,23 +56,25 @@ pub(super) fn verdicts(claims: &[Claim]) -> Element {
 /// How many claims have which verdict.
 fn counts(claims: &[Claim]) -> String {
     let count = |(verdict, words): (Verdict, &str)| {
-        let count = claims
-            .iter()
-            .filter(|claim| claim.verdict == verdict)
-            .count();
-        format!("{count} {words}")
+        let of = claims.iter().filter(|claim| claim.verdict == verdict);
+        let count = of.count();
+        (count > 0).then(|| format!("{count} {words}"))
     };
     let verdicts = [
         (Verdict::Reproduced, "reproduced"),
         (Verdict::NotReproduced, "not reproduced"),
+        (Verdict::Met, "met"),
+        (Verdict::NotMet, "not met"),
         (Verdict::Undecided, "undecided"),
+        (Verdict::NotMeasured, "not measured"),
     ];
+    let counts: Vec<_> = verdicts.into_iter().filter_map(count).collect();
     let claims = if claims.len() == 1 {
         "1 claim".into()
     } else {
         format!("{} claims", claims.len())
     };
-    format!("{claims}: {}.", verdicts.map(count).join(", "))
+    format!("{claims}: {}.", counts.join(", "))
 }
 
 /// A verdict as a symbol and in words; the colour says it once more.
@@ -81,6 +83,9 @@ pub(super) fn badge(verdict: Verdict) -> Element {
         Verdict::Reproduced => ("verdict reproduced", "✔ reproduced"),
         Verdict::NotReproduced => ("verdict not-reproduced", "✘ not reproduced"),
         Verdict::Undecided => ("verdict undecided", "? undecided"),
+        Verdict::Met => ("verdict reproduced", "✔ met"),
+        Verdict::NotMet => ("verdict not-reproduced", "✘ not met"),
+        Verdict::NotMeasured => ("verdict undecided", "– not measured"),
     };
     element("span").class(class).text(words)
 }

@@ -9,7 +9,6 @@
 //! Random numbers are those of [`bidir::sampler`] with a fixed seed, so that the same numbers in give
 //! the same numbers out.
 
-mod blocks;
 mod bootstrap;
 mod interval;
 mod ratio;

@@ -15,9 +15,9 @@
 //! independent sampler are. The variance of few samples with heavy tails is too small where their
 //! mean is too small; then replicates are the better test.
 
-use super::blocks::{Blocks, Tally};
 use super::interval::mean_and_variance;
 use super::students_t;
+use crate::blocks::{Blocks, Tally};
 use crate::image::Pixels;
 use rayon::prelude::*;
 use statrs::distribution::ContinuousCDF;

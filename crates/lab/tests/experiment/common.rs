@@ -98,7 +98,8 @@ impl Workplace {
     }
 }
 
-/// Stops after a number of renders, and has a clock that is one tick further at every look.
+/// Stops after a number of renders, and has a clock that is one tick further at every look, and one of the
+/// processors that is two further.
 #[derive(Default)]
 pub(crate) struct Watch {
     pub(crate) renders: usize,
@@ -109,6 +110,7 @@ pub(crate) struct Watch {
     pub(crate) strategy_passes: usize,
     strategy_most: Option<usize>,
     looks: std::cell::Cell<u32>,
+    looks_at_processors: std::cell::Cell<u32>,
 }
 
 impl Watch {
@@ -144,6 +146,12 @@ impl Observer for Watch {
         f64::from(self.looks.get())
     }
 
+    fn processor_seconds(&self) -> Option<f64> {
+        let looks = &self.looks_at_processors;
+        looks.set(looks.get() + 1);
+        Some(2.0 * f64::from(looks.get()))
+    }
+
     fn should_stop(&mut self) -> bool {
         let is_beyond = |most: Option<usize>, done: usize| most.is_some_and(|most| done >= most);
         // A pass is told before it is asked whether to go on with it.
@@ -160,6 +168,8 @@ pub(crate) fn without_times(records: &[Record]) -> Vec<Record> {
     let mut records = records.to_vec();
     for record in &mut records {
         (record.seconds, record.efficiency_seconds) = (0.0, 0.0);
+        (record.processor_seconds, record.training_seconds) = (None, None);
+        record.training_processor_seconds = None;
     }
     records
 }

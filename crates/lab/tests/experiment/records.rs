@@ -1,5 +1,5 @@
 use crate::common::{DESCRIPTION, Watch, Workplace, without_times};
-use bidir_lab::experiment::{End, ExperimentError};
+use bidir_lab::experiment::{End, ExperimentError, Setup, Start, run};
 use bidir_lab::results::{Machine, Results};
 use std::fs;
 
@@ -22,6 +22,9 @@ fn every_cell_has_a_record() {
         assert!(record.metrics.contains_key("relmse_trim"));
         // Begin, end and each of three passes take a tick.
         assert!((record.seconds - 4.0).abs() < 1e-9, "{record:?}");
+        assert_eq!(record.processor_seconds, Some(8.0));
+        assert_eq!(record.training_seconds, Some(1.0));
+        assert_eq!(record.training_processor_seconds, Some(2.0));
         assert_eq!(record.image.is_some(), record.seed == 0);
         let images = record
             .image
@@ -35,6 +38,26 @@ fn every_cell_has_a_record() {
     assert_eq!(results.methods[1].settings["shadow-rays"], "per-pair");
     let text = fs::read_to_string(place.path("out/results.json")).unwrap();
     assert_eq!(serde_json::from_str::<Results>(&text).unwrap(), results);
+}
+
+#[test]
+fn a_budget_may_be_of_some_methods() {
+    let place = Workplace::new();
+    let text = with_budget("samples = 1") + "[[budget]]\nsamples = 2\n";
+    let mut experiment = place.read(&text).unwrap();
+    experiment.budgets[1].methods.push("one".to_owned());
+    assert_eq!(experiment.cells(), 6);
+    let setup = Setup {
+        folder: place.path("out"),
+        start: Start::Resume,
+        program: "test".to_owned(),
+        machine: Machine::default(),
+    };
+    let outcome = run(&experiment, &setup, &mut Watch::default()).unwrap();
+    let records = outcome.results.unwrap().records;
+    let of_two = records.iter().filter(|record| record.spp == 2);
+    assert!(of_two.map(|record| &*record.method).eq(["one", "one"]));
+    assert_eq!(records.len(), 6);
 }
 
 /// Wherever it is stopped, also during the reference.

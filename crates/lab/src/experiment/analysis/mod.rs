@@ -160,6 +160,17 @@ fn means<'a>(results: &'a Results, scene: &SceneInfo) -> Vec<Column<'a>> {
             Box::new(move |records| plain(&|record| record.seconds, records)),
         ),
     ];
+    if results
+        .records
+        .iter()
+        .any(|record| record.processor_seconds.is_some())
+    {
+        let of = |record: &Record| record.processor_seconds.unwrap_or(f64::NAN);
+        columns.push((
+            "processor seconds".to_owned(),
+            Box::new(move |records| plain(&of, records)),
+        ));
+    }
     for metric in metrics(results, scene) {
         let cell = move |records: &[&Record]| {
             let values = records

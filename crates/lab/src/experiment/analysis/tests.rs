@@ -13,6 +13,9 @@ fn record(method: &str, factor: f64, budget: f64, seed: u64) -> Record {
         seed,
         spp: budget as u64,
         seconds: 2.0,
+        processor_seconds: None,
+        training_seconds: None,
+        training_processor_seconds: None,
         rays: Rays {
             camera: if method == "first" { 500 } else { 1000 },
             ..Rays::default()

@@ -186,6 +186,9 @@ pub(super) mod made {
             seed,
             spp: 8,
             seconds: seconds * cost,
+            processor_seconds: None,
+            training_seconds: None,
+            training_processor_seconds: None,
             rays: Rays {
                 camera: 1000 * (1 + seed),
                 ..Rays::default()

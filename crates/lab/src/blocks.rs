@@ -4,28 +4,28 @@ use crate::image::Pixels;
 
 /// Images cut into squares; those at the right and lower border may be smaller.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Blocks {
+pub(crate) struct Blocks {
     size: [usize; 2],
     block: usize,
 }
 
 /// The values of a channel in a block, added up.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
-    pub(super) count: f64,
-    pub(super) sum: f64,
-    pub(super) squares: f64,
+pub(crate) struct Tally {
+    pub(crate) count: f64,
+    pub(crate) sum: f64,
+    pub(crate) squares: f64,
 }
 
 impl Tally {
-    pub(super) fn mean(self) -> f64 {
+    pub(crate) fn mean(self) -> f64 {
         self.sum / self.count
     }
 }
 
 impl Blocks {
     /// Blocks of `block` × `block` pixels, at least of one.
-    pub(super) fn new(size: [usize; 2], block: usize) -> Self {
+    pub(crate) fn new(size: [usize; 2], block: usize) -> Self {
         let largest = size[0].max(size[1]);
         let block = block.clamp(1, largest.max(1));
         Self { size, block }
@@ -36,13 +36,13 @@ impl Blocks {
     }
 
     /// The sums of every block, row by row. Shape: `blocks · 3`, channels side by side.
-    pub(super) fn sums(self, pixels: &Pixels) -> Vec<Tally> {
-        let [width, height] = self.size;
-        let mut sums = vec![Tally::default(); self.columns() * height.div_ceil(self.block) * 3];
+    pub(crate) fn sums(self, pixels: &Pixels) -> Vec<Tally> {
+        let rows = self.size[1].div_ceil(self.block);
+        let mut sums = vec![Tally::default(); self.columns() * rows * 3];
         for (i, pixel) in pixels.data.iter().enumerate() {
-            let (x, y) = (i % width / self.block, i / width / self.block);
+            let block = self.of(i);
             for (channel, &value) in pixel.iter().enumerate() {
-                let sum = &mut sums[(y * self.columns() + x) * 3 + channel];
+                let sum = &mut sums[block * 3 + channel];
                 let value = f64::from(value);
                 sum.count += 1.0;
                 sum.sum += value;
@@ -52,8 +52,14 @@ impl Blocks {
         sums
     }
 
+    /// The number of the block that a pixel is in, both row by row from the top left.
+    pub(crate) fn of(self, pixel: usize) -> usize {
+        let [x, y] = [pixel % self.size[0], pixel / self.size[0]];
+        y / self.block * self.columns() + x / self.block
+    }
+
     /// Left, top, right and bottom (exclusive) of the block that sum `index` is of. Unit: pixels.
-    pub(super) fn place(self, index: usize) -> [usize; 4] {
+    pub(crate) fn place(self, index: usize) -> [usize; 4] {
         let (x, y) = (index / 3 % self.columns(), index / 3 / self.columns());
         let [left, top] = [x * self.block, y * self.block];
         let right = (left + self.block).min(self.size[0]);

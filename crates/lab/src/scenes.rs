@@ -1,6 +1,9 @@
-//! The scenes of the experiment: those of the project, kept in the program, so that it alone is
-//! enough.
+//! Where the scenes of built-in experiments are.
+//!
+//! Those of the project are kept in the program, so that it alone is enough: [`unpack`] writes them
+//! into a folder. Those made by others lie in `pbrt-v4/` of a folder that somebody has.
 
+use crate::experiment::{ReferenceSpec, SceneSpec};
 use std::path::{Path, PathBuf};
 
 /// A file of `scenes/` with its bytes.
@@ -8,16 +11,17 @@ type File = (&'static str, &'static [u8]);
 
 macro_rules! files {
     ($($name:literal)*) => {
-        &[$(($name, include_bytes!(concat!("../../../../scenes/", $name)))),*]
+        &[$(($name, include_bytes!(concat!("../../../scenes/", $name)))),*]
     };
 }
 
-/// The three scenes, and all that they read.
+/// The scenes, and all that they read.
 #[rustfmt::skip]
 const FILES: &[File] = files![
     "room-direct.pbrt"
     "room-indirect.pbrt"
     "apartment.pbrt"
+    "apartment-dark.pbrt"
     "parts/apartment-rooms.pbrt"
     "parts/materials.pbrt"
     "parts/room-furniture.pbrt"
@@ -95,7 +99,7 @@ const FILES: &[File] = files![
 ];
 
 /// Writes the scenes into a folder, which is made where there is none.
-pub(super) fn unpack(folder: &Path) -> std::io::Result<()> {
+pub(crate) fn unpack(folder: &Path) -> std::io::Result<()> {
     for (name, bytes) in FILES {
         let path = folder.join(name);
         std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
@@ -109,8 +113,25 @@ pub(super) fn unpack(folder: &Path) -> std::io::Result<()> {
 }
 
 /// Where a scene is after [`unpack`].
-pub(super) fn path(folder: &Path, name: &str) -> PathBuf {
+pub(crate) fn path(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.pbrt"))
+}
+
+/// Where a scene made by others is, in the folder that has them.
+pub(crate) fn path_of_others(folder: &Path, name: &str) -> PathBuf {
+    path(&folder.join("pbrt-v4").join(name), name)
+}
+
+/// A scene of an experiment, whose images have the experiment's size.
+pub(crate) fn spec(name: &str, path: PathBuf, reference: ReferenceSpec) -> SceneSpec {
+    let file = path.file_name().unwrap_or_default();
+    SceneSpec {
+        name: name.to_owned(),
+        file: file.to_string_lossy().into_owned(),
+        path,
+        size: None,
+        reference,
+    }
 }
 
 #[cfg(test)]
@@ -123,7 +144,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         unpack(folder.path()).unwrap();
         unpack(folder.path()).unwrap();
-        for name in ["room-direct", "room-indirect", "apartment"] {
+        for name in [
+            "room-direct",
+            "room-indirect",
+            "apartment",
+            "apartment-dark",
+        ] {
             let options = LoadOptions {
                 resolution: Some([4, 3]),
                 ..LoadOptions::default()

@@ -1,0 +1,72 @@
+use crate::common::{Ran, Workplace};
+use serde_json::Value;
+
+/// All estimators and ideas in one scene, of few pixels and passes.
+const TINY: &str = "experiment beyond --quick --scenes room-direct,veach-ajar --size 8x6 --seconds 0.02 \
+                    --rays 20 --seeds 1 --reference-spp 16 --threads 2";
+
+#[test]
+fn beyond_judges_what_there_is_and_goes_on() {
+    let place = Workplace::new();
+    place
+        .run(&format!("{TINY} -o out"))
+        .expect(0)
+        .says("scene `veach-ajar` is left out: BIDIR_SCENES is not set")
+        .says("wrote out/report.html")
+        .prints("Estimators in equal time")
+        .prints("Shadow-ray selectors: gains at equal rays")
+        .prints("Targets: gains that were aimed at")
+        .prints("not measured  in-equal-time-veach-ajar-over-bdpt-all");
+    let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
+    let records = results["records"].as_array().unwrap();
+    for record in records {
+        assert!(record["metrics"]["relmse_block"].as_f64().unwrap() > 0.0);
+        if cfg!(unix) {
+            assert!(
+                record["processor_seconds"].as_f64().unwrap() > 0.0,
+                "{record}"
+            );
+        }
+    }
+    let page = place.read("out/report.html");
+    for part in [
+        "veach-ajar is left out",
+        "not measured",
+        "processor seconds",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(page.contains("--scenes room-direct,veach-ajar --size 8x6 --seconds 0.02"));
+    // Nothing is rendered twice: records are the same, times too.
+    let before = place.read("out/room-direct/records.ndjson");
+    place.run(&format!("{TINY} -o out")).expect(0);
+    assert_eq!(place.read("out/room-direct/records.ndjson"), before);
+    place
+        .run(&format!(
+            "{} -o out",
+            TINY.replace("--rays 20", "--rays 21")
+        ))
+        .expect(5)
+        .says("--restart");
+}
+
+#[test]
+fn what_is_wrong_with_flags_is_told() {
+    let place = Workplace::new();
+    let run = |arguments: &str| -> Ran { place.run(&format!("experiment {arguments} -o out")) };
+    run("beyond --scenes room-dirct")
+        .expect(2)
+        .says("room-direct");
+    run("beyond --seconds 0").expect(2).says("a number above 0");
+    run("beyond --seeds 0").expect(2).says("--seeds");
+    run("paper --seeds 3")
+        .expect(2)
+        .says("--seeds is of `beyond` alone");
+    run("test.toml --size 8x6")
+        .expect(2)
+        .says("--size is of `beyond` alone");
+    run("beyond --scenes coffee,living-room")
+        .expect(4)
+        .says("there is no scene to render: BIDIR_SCENES is not set")
+        .says("hint: BIDIR_SCENES names the folder that has pbrt-v4/");
+}
