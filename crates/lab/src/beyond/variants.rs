@@ -63,8 +63,9 @@ const fn variant(
 
 const PROPOSALS: &str = "Proposals, uniform or learnt";
 const SUBPATHS: &str = "Samples for each light subpath";
-const CANDIDATES: &str = "Candidates for each camera vertex";
+const CANDIDATES: &str = "Candidates for the first camera vertex and those behind it";
 const SELECTORS: &str = "Shadow-ray selectors";
+const COUNTS: &str = "What weights count as a sample";
 const LIGHTS: &str = "Choice of the light, by power instead of the tree";
 
 /// The variant whose many candidates selectors choose from.
@@ -90,6 +91,8 @@ const VARIANTS: &[Variant] = &[
     variant(CANDIDATES, SHARED, "lvc 1 candidate", &[("integrator", "lvc"), ("candidates", "1")]),
     variant(CANDIDATES, SHARED, "lvc 2 candidates", &[("integrator", "lvc"), ("candidates", "2")]),
     variant(CANDIDATES, SHARED, "lvc 4 candidates", &[("integrator", "lvc"), ("candidates", "4")]),
+    variant(CANDIDATES, SHARED, "lvc 4, then 1", &[("integrator", "lvc"), ("candidates", "4,1")]),
+    variant(CANDIDATES, SHARED, "lvc 8, then 1", &[("integrator", "lvc"), ("candidates", "8,1")]),
     variant(CANDIDATES, SHARED, MANY, &[("integrator", "lvc"), ("candidates", "8")]),
 
     variant(SELECTORS, BASELINE, "bdpt per-light-vertex", &[("integrator", "bdpt"), ("shadow-rays", "per-light-vertex")]),
@@ -102,6 +105,9 @@ const VARIANTS: &[Variant] = &[
     variant(SELECTORS, MANY, "lvc 8 ray-roulette", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "ray-roulette")]),
     variant(SELECTORS, MANY, "lvc 8 budget:1", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:1")]),
     variant(SELECTORS, MANY, "lvc 8 budget:2", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:2")]),
+
+    variant(COUNTS, MANY, "lvc 8 correlated", &[("integrator", "lvc"), ("candidates", "8"), ("mis-count", "correlated")]),
+    variant(COUNTS, "lvc 8 budget:2", "lvc 8 budget:2 resampled", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:2"), ("mis-count", "resampled")]),
 
     variant(LIGHTS, PATH, "path by power", &[("integrator", "path"), ("light-choice", "power")]),
     variant(LIGHTS, BASELINE, "bdpt all by power", &[("integrator", "bdpt"), ("shadow-rays", "all"), ("light-choice", "power")]),
