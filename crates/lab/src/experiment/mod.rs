@@ -44,6 +44,7 @@ mod error;
 mod identity;
 mod journal;
 mod names;
+mod page;
 mod pyramid;
 mod reader;
 mod reference;
@@ -52,6 +53,7 @@ mod settings;
 mod stage;
 
 pub use error::{ExperimentError, Fault};
+pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
 pub use settings::{Changes, texts};
 

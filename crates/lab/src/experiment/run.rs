@@ -10,7 +10,9 @@ use super::pyramid;
 use super::reference;
 use super::settings::texts;
 use super::stage::{Reference, Stage};
+
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
+use bidir::scene::Isa;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -166,6 +168,23 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
         end,
         results: Some(results),
     })
+}
+
+impl Machine {
+    /// This one; the number of threads is filled in by [`run`].
+    pub fn here() -> Self {
+        let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = processor.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            (name.trim() == "model name").then(|| value.trim().to_owned())
+        });
+        Self {
+            processor: model.unwrap_or_else(|| "unknown".to_owned()),
+            isa: Isa::detect().name().to_owned(),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            threads: 0,
+        }
+    }
 }
 
 /// What an experiment runs on.
