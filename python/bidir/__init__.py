@@ -13,8 +13,7 @@ The same scene, settings and seed give the same bits as ``bidir render``, whatev
 threads; films of either can be merged with those of the other.
 """
 
-from bidir._bidir import ESTIMATOR_VERSION
-from bidir._bidir import VERSION as __version__
+from bidir import _bidir
 from bidir.build import SceneBuilder
 from bidir.errors import (
     BidirError,
@@ -26,6 +25,7 @@ from bidir.errors import (
     RenderError,
     RenderInterruptedError,
     SceneError,
+    SceneWarning,
     SettingsError,
     UnsupportedError,
 )
@@ -63,6 +63,10 @@ from bidir.settings import (
     Selector,
 )
 
+ESTIMATOR_VERSION: int = _bidir.ESTIMATOR_VERSION
+"""Which estimates the package makes: films of different numbers are never added."""
+__version__: str = _bidir.VERSION
+
 __all__ = [
     "ESTIMATOR_VERSION",
     "LAYERS",
@@ -94,6 +98,7 @@ __all__ = [
     "Scene",
     "SceneBuilder",
     "SceneError",
+    "SceneWarning",
     "Selector",
     "Session",
     "SettingsError",

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, final
 
+__all__: list[str]
+
 VERSION: str
 ESTIMATOR_VERSION: int
 ISA: str
@@ -85,9 +87,7 @@ class Film:
 
 @final
 class Experiment:
-    def __new__(
-        cls, text: str, file: str, *, quick: bool, threads: int | None
-    ) -> Experiment: ...
+    def __new__(cls, text: str, file: str, *, quick: bool, threads: int | None) -> Experiment: ...
     @property
     def title(self) -> str: ...
     @property
@@ -96,9 +96,32 @@ class Experiment:
         self,
         folder: str,
         restart: bool,
+        machine: str | None,
         hear: Callable[[str, str, int, int], object] | None,
     ) -> tuple[str | None, str]: ...
+    def prepare(
+        self,
+        folder: str,
+        restart: bool,
+        machine: str,
+        hear: Callable[[str, str, int, int], object] | None,
+    ) -> Prepared | None: ...
 
+@final
+class Prepared:
+    @property
+    def scenes(self) -> list[tuple[str, Any, list[Any], list[int], bytes]]: ...
+    @property
+    def blocks(self) -> list[str]: ...
+    def add(self, done: Sequence[tuple[str, tuple[list[int], bytes] | None]]) -> None: ...
+
+def machine() -> str: ...
+def render_block(
+    experiment: Experiment,
+    block: str,
+    files: Sequence[tuple[list[str], bytes]],
+    reference: tuple[Sequence[int], bytes],
+) -> list[tuple[str, tuple[list[int], bytes] | None]]: ...
 def check_settings(settings: Mapping[str, str]) -> dict[str, str]: ...
 def encode_png(size: Sequence[int], data: bytes) -> bytes: ...
 def write_image(path: str, size: Sequence[int], data: bytes) -> None: ...

@@ -125,16 +125,14 @@ class SceneBuilder:
         """
         array = np.asarray(image, "<f4")
         is_color = array.ndim == 3 and array.shape[2] == 3
-        if not is_color and array.ndim != 2 or array.size == 0:
+        if array.size == 0 or not (is_color or array.ndim == 2):
             raise SettingsError(f"texture: the shape {array.shape} is no image's")
         name = self._name("texture")
         head = f"{'PF' if is_color else 'Pf'}\n{array.shape[1]} {array.shape[0]}\n-1.0\n"
         # The rows of the format go upwards.
         self._files[f"{name}.pfm"] = head.encode() + array[::-1].tobytes()
         kind = "spectrum" if is_color else "float"
-        self._world.append(
-            f'Texture "{name}" "{kind}" "imagemap" "string filename" "{name}.pfm"\n'
-        )
+        self._world.append(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{name}.pfm"\n')
         return Texture(name)
 
     def mesh(

@@ -21,6 +21,7 @@ __all__ = [
     "RenderError",
     "RenderInterruptedError",
     "SceneError",
+    "SceneWarning",
     "SettingsError",
     "UnsupportedError",
 ]
@@ -89,6 +90,10 @@ def _restore(kind: type[_PlacedError], message: str, place: dict[str, object]) -
 
 class SceneError(_PlacedError):
     """A scene's text breaks the grammar of its format, or means nothing valid."""
+
+
+class SceneWarning(UserWarning):
+    """Something in a scene is odd but no error, told as ``file:line:column: text``."""
 
 
 class UnsupportedError(SceneError):

@@ -169,7 +169,7 @@ class Experiment:
                 progress(f"{kind} {text}".strip(), done, of)
 
         Path(folder).mkdir(parents=True, exist_ok=True)
-        found, tables = self._native.run(os.fspath(folder), restart, hear)
+        found, tables = self._native.run(os.fspath(folder), restart, None, hear)
         if found is None:
             raise KeyboardInterrupt
         return Results(Path(folder), json.loads(found), tables)

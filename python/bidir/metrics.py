@@ -59,9 +59,7 @@ def error_map(name: str, image: ImageLike, reference: ImageLike) -> Array:
     return _array(_bidir.error_map(name, (width, height), a, b), height, width, 1)
 
 
-def compare(
-    image: ImageLike, reference: ImageLike, names: Iterable[str] | None = None
-) -> dict[str, float]:
+def compare(image: ImageLike, reference: ImageLike, names: Iterable[str] | None = None) -> dict[str, float]:
     """Return metrics by name: those of ``names``, or all but FLIP, which takes longer.
 
     Errors: as :func:`metric`.

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from bidir import _bidir
+from bidir.errors import SceneError, SceneWarning
 
 __all__ = ["Scene", "StrPath", "from_text", "load"]
 
@@ -118,14 +120,15 @@ def _unpack(name: str, source: Mapping[str, Any], digest: str) -> Scene:
     scene = Scene(name, source)
     if scene.digest != digest:
         # A file changed between reading and packing.
-        raise _bidir_error(f"{name}: a file of the scene changed after it was read")
+        raise SceneError(f"{name}: a file of the scene changed after it was read")
     return scene
 
 
-def _bidir_error(message: str) -> Exception:
-    from bidir.errors import SceneError
-
-    return SceneError(message)
+def _told(scene: Scene) -> Scene:
+    """Tell the warnings of a scene to who asked for it."""
+    for text in scene.warnings:
+        warnings.warn(text, SceneWarning, stacklevel=3)
+    return scene
 
 
 def _source(
@@ -152,10 +155,12 @@ def load(
         crop: Left, top, right, bottom of what is rendered, the last two exclusive. Unit: pixels.
         lenient: Let something simpler stand in for what is not supported, with a warning.
 
+    Warns: :class:`bidir.SceneWarning` of what is odd.
+
     Errors: :class:`bidir.SceneError` with file, line and column where the scene is wrong,
     :class:`bidir.UnsupportedError` where bidir lacks something, :class:`bidir.MissingFileError`.
     """
-    return Scene(path, _source(size, crop, lenient, []))
+    return _told(Scene(path, _source(size, crop, lenient, [])))
 
 
 def from_text(
@@ -182,4 +187,4 @@ def from_text(
     memory: list[MemoryFile] = [([os.fspath(name)], text.encode())]
     for file, data in (files or {}).items():
         memory.append(([os.fspath(folder / file)], bytes(data)))
-    return Scene(name, _source(size, crop, lenient, memory))
+    return _told(Scene(name, _source(size, crop, lenient, memory)))

@@ -343,9 +343,7 @@ class _Budget:
 class _Keeper:
     """Writes a film file now and then."""
 
-    def __init__(
-        self, session: Session, path: StrPath | None, every: float, limit: int | None
-    ) -> None:
+    def __init__(self, session: Session, path: StrPath | None, every: float, limit: int | None) -> None:
         self._session, self._every = session, every
         self._path = None if path is None else Path(path)
         self._written = clock.monotonic()

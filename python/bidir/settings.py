@@ -132,9 +132,7 @@ class Integrator:
     def flags(self) -> dict[str, str]:
         """Return the settings that are not None, as texts by the names of flags."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}
-        texts = {
-            name.replace("_", "-"): str(value) for name, value in own.items() if value is not None
-        }
+        texts = {name.replace("_", "-"): str(value) for name, value in own.items() if value is not None}
         return {"integrator": self.name, **texts}
 
 

@@ -1,6 +1,7 @@
 //! Experiments.
 
-use crate::error::of_experiment;
+use crate::cluster::Prepared;
+use crate::error::{of_experiment, raise};
 use crate::wait::{Stop, wait};
 use lab::experiment::{self, Event, Observer, Outcome, Setup, Start, analysis};
 use lab::results::{Machine, Results};
@@ -12,20 +13,31 @@ use std::time::Instant;
 /// A description that was read.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Experiment {
-    experiment: experiment::Experiment,
+    pub(crate) experiment: experiment::Experiment,
     file: PathBuf,
 }
 
 /// What happens, for Python: a kind, a text, how much is done, and of how much.
-type Told = (&'static str, String, u64, u64);
+pub(crate) type Heard = (&'static str, String, u64, u64);
 
 /// Passes on what happens.
-struct Reporter<'a> {
+pub(crate) struct Reporter<'a> {
     stop: &'a Stop,
-    sender: Sender<Told>,
+    sender: Sender<Heard>,
     begin: Instant,
     /// Renders that are done, and all.
     renders: (u64, u64),
+}
+
+impl<'a> Reporter<'a> {
+    pub(crate) fn new(stop: &'a Stop, sender: &Sender<Heard>) -> Self {
+        Self {
+            stop,
+            sender: sender.clone(),
+            begin: Instant::now(),
+            renders: (0, 0),
+        }
+    }
 }
 
 impl Observer for Reporter<'_> {
@@ -109,25 +121,13 @@ impl Experiment {
         py: Python<'_>,
         folder: PathBuf,
         restart: bool,
+        machine: Option<&str>,
         hear: Option<Py<PyAny>>,
     ) -> PyResult<(Option<String>, String)> {
-        let setup = Setup {
-            folder,
-            start: if restart { Start::Anew } else { Start::Resume },
-            program: formats::film::program(),
-            machine: Machine::here(),
-        };
-        let tell = |py: Python<'_>, told: Told| match &hear {
-            Some(hear) => hear.call1(py, told).map(drop),
-            None => Ok(()),
-        };
+        let setup = setup(py, folder, restart, machine)?;
+        let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
         let outcome = wait(py, tell, |stop, sender| {
-            let mut reporter = Reporter {
-                stop,
-                sender: sender.clone(),
-                begin: Instant::now(),
-                renders: (0, 0),
-            };
+            let mut reporter = Reporter::new(stop, sender);
             experiment::run(&self.experiment, &setup, &mut reporter)
         })?;
         let Outcome { results, .. } = outcome.map_err(|error| of_experiment(py, &error))?;
@@ -141,4 +141,42 @@ impl Experiment {
         let tables: Vec<_> = tables.map(lab::report::table_text).collect();
         Ok((json(results.as_ref()), tables.join("\n")))
     }
+
+    /// Makes everything but records. None: it was stopped.
+    fn prepare(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        restart: bool,
+        machine: &str,
+        hear: Option<Py<PyAny>>,
+    ) -> PyResult<Option<Prepared>> {
+        let setup = setup(py, folder, restart, Some(machine))?;
+        let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
+        let prepared = wait(py, tell, |stop, sender| {
+            let mut reporter = Reporter::new(stop, sender);
+            experiment::prepare(&self.experiment, &setup, &mut reporter)
+        })?;
+        let prepared = prepared.map_err(|error| of_experiment(py, &error))?;
+        Ok(prepared.map(Prepared))
+    }
+}
+
+fn tell(py: Python<'_>, hear: Option<&Py<PyAny>>, told: Heard) -> PyResult<()> {
+    hear.map_or(Ok(()), |hear| hear.call1(py, told).map(drop))
+}
+
+/// Where an experiment runs; `machine` is what `machine()` said there. None: it is this one.
+fn setup(py: Python<'_>, folder: PathBuf, restart: bool, machine: Option<&str>) -> PyResult<Setup> {
+    let machine = match machine {
+        Some(json) => serde_json::from_str(json)
+            .map_err(|error| raise(py, "ExperimentError", &format!("no machine: {error}")))?,
+        None => Machine::here(),
+    };
+    Ok(Setup {
+        folder,
+        start: if restart { Start::Anew } else { Start::Resume },
+        program: formats::film::program(),
+        machine,
+    })
 }

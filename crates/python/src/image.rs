@@ -10,7 +10,7 @@ use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
 /// Pixels of the given width and height, from numbers as bytes.
-fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<Pixels> {
+pub(crate) fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<Pixels> {
     let channel = |bytes: &[u8]| bytes.try_into().map_or(f32::NAN, f32::from_le_bytes);
     let pixel = |bytes: &[u8]| std::array::from_fn(|i| channel(&bytes[4 * i..4 * i + 4]));
     let is_whole = size[0].checked_mul(size[1]).and_then(|n| n.checked_mul(12));

@@ -11,6 +11,7 @@
     reason = "what Python passes is converted to values that the function owns"
 )]
 
+mod cluster;
 mod error;
 mod experiment;
 mod film;
@@ -25,6 +26,8 @@ use pyo3::prelude::*;
 /// The native half of `bidir`.
 #[pymodule]
 mod _bidir {
+    #[pymodule_export]
+    use super::cluster::{Prepared, machine, render_block};
     #[pymodule_export]
     use super::experiment::Experiment;
     #[pymodule_export]

@@ -26,7 +26,7 @@ pub(crate) struct Scene {
 }
 
 /// Names of one file, and its bytes.
-type MemoryFile = (Vec<PathBuf>, Vec<u8>);
+pub(crate) type MemoryFile = (Vec<PathBuf>, Vec<u8>);
 
 /// How a scene is read.
 #[derive(FromPyObject)]
@@ -48,7 +48,7 @@ pub(crate) struct Source {
     sealed: bool,
 }
 
-fn in_memory(files: Vec<MemoryFile>) -> InMemory {
+pub(crate) fn in_memory(files: Vec<MemoryFile>) -> InMemory {
     let mut memory = InMemory::new();
     for (names, bytes) in files {
         let bytes: Arc<[u8]> = bytes.into();

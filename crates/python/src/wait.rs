@@ -42,7 +42,7 @@ pub(crate) fn wait<T: Send, M: Send>(
             loop {
                 let heard = match receiver.recv_timeout(POLL) {
                     Ok(message) => Python::attach(|py| hear(py, message)),
-                    Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals()),
+                    Err(RecvTimeoutError::Timeout) => Python::attach(Python::check_signals),
                     // The worker is done, and its end of the channel is gone.
                     Err(RecvTimeoutError::Disconnected) => break,
                 };

@@ -7,9 +7,7 @@ one machine would give. docs/ray.md says how it works, and how it is used with K
 try:
     import ray as _ray  # noqa: F401
 except ImportError as error:
-    raise ImportError(
-        "bidir.ray needs Ray, which is not installed: pip install 'bidir[ray]'"
-    ) from error
+    raise ImportError("bidir.ray needs Ray, which is not installed: pip install 'bidir[ray]'") from error
 
 from bidir.ray._crew import ClusterError, NodeRefusedError, TaskFailedError
 from bidir.ray._render import render

@@ -20,7 +20,15 @@ from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 
 from bidir.errors import BidirError
 
-__all__ = ["ClusterError", "Crew", "Limits", "NodeRefusedError", "TaskFailedError", "Work", "Worker"]
+__all__ = [
+    "ClusterError",
+    "Crew",
+    "Limits",
+    "NodeRefusedError",
+    "TaskFailedError",
+    "Work",
+    "Worker",
+]
 
 logger = logging.getLogger("bidir.ray")
 
@@ -147,7 +155,7 @@ class Crew:
         if now - self._looked < self.LOOK_EVERY:
             return
         self._looked = now
-        alive = {node["NodeID"]: node for node in ray.nodes() if node["Alive"]}
+        alive = {node["NodeID"]: node for node in _nodes() if node["Alive"]}
         for identity in [known for known in self._workers if known not in alive]:
             self._lose(self._workers[identity], "the node died")
         for identity, node in alive.items():
@@ -170,11 +178,9 @@ class Crew:
 
     def _hire(self, node: str, host: str, cpus: int) -> None:
         affinity = NodeAffinitySchedulingStrategy(node, soft=False)
-        actor = (
+        actor: Any = (
             ray.remote(self._work.actor)
-            .options(
-                num_cpus=cpus, max_restarts=0, max_task_retries=0, scheduling_strategy=affinity
-            )
+            .options(num_cpus=cpus, max_restarts=0, max_task_retries=0, scheduling_strategy=affinity)
             .remote()
         )
         preparing = self._work.prepare(actor, cpus)
@@ -206,9 +212,9 @@ class Crew:
         ready, _ = ray.wait(references, num_returns=1, timeout=1.0)
         for reference in ready:
             # Losing a worker takes its other units away.
-            worker = owners.get(reference)
-            if worker is not None and self._workers.get(worker.node) is worker:
-                self._hear(worker, reference)
+            owner = owners.get(reference)
+            if owner is not None and self._workers.get(owner.node) is owner:
+                self._hear(owner, reference)
 
     def _hear(self, worker: Worker, reference: Any) -> None:
         try:
@@ -278,6 +284,11 @@ class Crew:
             self._refused[worker.node] = f"{self._cause} ({deaths} times)"
         # A fresh actor comes with the next look, at once.
         self._looked = 0.0
+
+
+def _nodes() -> list[dict[str, Any]]:
+    nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call]
+    return nodes
 
 
 def _first_line(error: BaseException) -> str:

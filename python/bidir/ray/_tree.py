@@ -60,7 +60,8 @@ class Tree:
             task = ray.remote(merged).options(
                 num_cpus=0, num_returns=2, max_retries=0, scheduling_strategy="SPREAD"
             )
-            told, film = task.remote(*[part.film for part in parts])
+            answer: Any = task.remote(*[part.film for part in parts])
+            told, film = answer
             self._merging[told] = (level + 1, parts, film)
 
     def pending(self) -> list[Any]:

@@ -38,6 +38,7 @@
 //! hours, all methods do. A seed is the same for all methods, whose records are paired by it.
 
 pub mod analysis;
+mod block;
 mod cell;
 mod description;
 mod error;
@@ -52,6 +53,7 @@ mod run;
 mod settings;
 mod stage;
 
+pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use error::{ExperimentError, Fault};
 pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
