@@ -20,7 +20,7 @@ from ray.cluster_utils import Cluster
 #: A node that is killed refuses connections, and is found dead within seconds. One that is only slow
 #: has minutes: a check may take half a minute, and six of them have to fail.
 HEALTH = {
-    "health_check_initial_delay_ms": 60_000,
+    "health_check_initial_delay_ms": 5_000,
     "health_check_period_ms": 1_000,
     "health_check_timeout_ms": 30_000,
     "health_check_failure_threshold": 6,

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,9 @@ pytestmark = pytest.mark.ray
 
 import bidir.ray  # noqa: E402
 from bidir.ray._crew import Limits  # noqa: E402
-from bidir.ray._render import Renderer  # noqa: E402
+from bidir.ray._render import Keeper, Renderer, RenderWork, versions  # noqa: E402
+from bidir.ray._tree import Tree  # noqa: E402
+from bidir.session import Reporter, Wanted  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(__file__))
 from ray_cluster import Journal, Nodes, slow, wait_for  # noqa: E402
@@ -48,36 +50,40 @@ def local(cornell: bidir.Scene) -> bidir.Film:
     return bidir.render(cornell, spp=SPP).film
 
 
-class Meanwhile:
-    """Does something when a render is in its middle."""
+class Rendering:
+    """A render in a thread, while this one kills and adds: nodes are those of the main thread."""
 
-    def __init__(self, when: Callable[[], bool], what: Callable[[], object]) -> None:
-        self.result: Any = None
-        self.error: BaseException | None = None
-        self._when, self._what = when, what
-        self._thread = threading.Thread(target=self._run)
+    def __init__(self, scene: bidir.Scene, journal: Journal, seconds: float = 0.1, **more: Any):
+        """Begin a render whose passes take so long at least, in tasks of about four."""
+        settings = {"spp": SPP, "task_seconds": 4 * seconds, "fan_in": 2, **more}
+        self._journal, self._result, self._error = journal, None, None
 
-    def _run(self) -> None:
-        try:
-            wait_for(self._when)
-            self.result = self._what()
-        except BaseException as error:
-            self.error = error
+        def run() -> None:
+            try:
+                actor = slow(journal, seconds)
+                self._result = bidir.ray.render(scene, _actor=actor, **settings).film
+            except BaseException as error:
+                self._error = error
 
-    def __enter__(self) -> Meanwhile:
+        self._thread = threading.Thread(target=run)
         self._thread.start()
-        return self
 
-    def __exit__(self, *_: object) -> None:
+    def wait_for(self, ranges: int) -> None:
+        """Wait until so many ranges were begun."""
+
+        def is_there() -> bool:
+            assert self._thread.is_alive(), f"the render ended too early: {self._error}"
+            return len(self._journal.entries()) >= ranges
+
+        wait_for(is_there)
+
+    def film(self) -> bidir.Film:
+        """Wait for the end."""
         self._thread.join()
-        if self.error is not None:
-            raise self.error
-
-
-def render(scene: bidir.Scene, journal: Journal, **settings: Any) -> bidir.Film:
-    """Render with passes that take a tenth of a second, in tasks of about four."""
-    settings = {"spp": SPP, "task_seconds": 0.4, "fan_in": 2, **settings}
-    return bidir.ray.render(scene, _actor=slow(journal), **settings).film
+        if self._error is not None:
+            raise self._error
+        assert self._result is not None
+        return self._result
 
 
 def check(film: bidir.Film, local: bidir.Film) -> None:
@@ -90,43 +96,40 @@ def check(film: bidir.Film, local: bidir.Film) -> None:
 def test_the_bits_are_those_of_one_machine(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     told: list[int] = []
     journal = Journal()
-    film = render(cornell, journal, progress=lambda done, of: told.append(done))
-    check(film, local)
+    check(Rendering(cornell, journal, progress=lambda done, of: told.append(done)).film(), local)
     assert told[-1] == SPP
     assert len({node for *_, node in journal.entries()}) == 3
 
 
 def test_a_killed_worker(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     journal = Journal()
-
-    def kill() -> int:
-        pid = journal.entries()[-1][2]
-        os.kill(pid, signal.SIGKILL)
-        return pid
-
-    with Meanwhile(lambda: len(journal.entries()) >= 5, kill) as killed:
-        check(render(cornell, journal), local)
-    # A fresh process took the place of the one that was killed, and its node rendered on.
-    dead = next(node for _, _, pid, node in journal.entries() if pid == killed.result)
-    assert len({pid for _, _, pid, node in journal.entries() if node == dead}) <= 2
-    begun = sum(end - begin for begin, end, _, _ in journal.entries())
-    assert begun > SPP
+    rendering = Rendering(cornell, journal)
+    rendering.wait_for(5)
+    _, _, pid, node = journal.entries()[-1]
+    os.kill(pid, signal.SIGKILL)
+    check(rendering.film(), local)
+    # What the process had begun was begun again, on its node or on another.
+    assert sum(end - begin for begin, end, _, _ in journal.entries()) > SPP
+    assert not nodes.has_lost_any()
+    assert node in {other for *_, other in journal.entries()}
 
 
 def test_a_killed_node(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     journal = Journal()
-    with Meanwhile(lambda: len(journal.entries()) >= 6, nodes.kill):
-        check(render(cornell, journal), local)
+    rendering = Rendering(cornell, journal)
+    rendering.wait_for(6)
+    nodes.kill()
+    check(rendering.film(), local)
 
 
 def test_an_added_node(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     nodes.kill()
     journal = Journal()
-    long_enough = slow(journal, 0.5)
-    with Meanwhile(lambda: len(journal.entries()) >= 2, nodes.add) as added:
-        film = bidir.ray.render(cornell, spp=SPP, task_seconds=1, fan_in=2, _actor=long_enough).film
-    check(film, local)
-    assert added.result in {node for *_, node in journal.entries()}
+    rendering = Rendering(cornell, journal, seconds=0.5)
+    rendering.wait_for(2)
+    added = nodes.add()
+    check(rendering.film(), local)
+    assert added in {node for *_, node in journal.entries()}
 
 
 DRIVER = """
@@ -163,8 +166,9 @@ def test_a_killed_driver(
     assert 0 < kept.spp < SPP
     again = Journal()
     told: list[int] = []
-    film = render(cornell, again, checkpoint=path, progress=lambda done, of: told.append(done))
-    check(film, local)
+    tell = told.append
+    rendering = Rendering(cornell, again, checkpoint=path, progress=lambda done, of: tell(done))
+    check(rendering.film(), local)
     assert bidir.Film.load(path) == local
     # What was kept is not rendered again.
     begun = {p for begin, end, _, _ in again.entries() for p in range(begin, end)}
@@ -201,30 +205,34 @@ def test_a_range_that_always_kills_its_worker(nodes: Nodes, cornell: bidir.Scene
         bidir.ray.render(cornell, spp=12, task_seconds=0.05, limits=limits, _actor=failing("exit"))
 
 
-def preparing(told: dict[str, Any]) -> type[Renderer]:
-    """Return an actor that tells something else of itself."""
-
-    class Preparing(Renderer):
+def test_nodes_of_another_version_are_refused(nodes: Nodes, cornell: bidir.Scene) -> None:
+    class Old(Renderer):
         def prepare(self, *arguments: Any) -> dict[str, Any]:
-            return {**super().prepare(*arguments), **told}
+            return {**super().prepare(*arguments), "version": "0.0.1"}
 
-    return Preparing
+    with pytest.raises(bidir.ray.NodeRefusedError, match=r"its version of bidir is 0\.0\.1"):
+        bidir.ray.render(cornell, spp=4, _actor=Old)
 
 
 @pytest.mark.parametrize(
     ("told", "words"),
     [
-        ({"version": "0.0.1"}, "its version of bidir is 0.0.1"),
+        ({}, None),
+        ({"estimator version": 1}, "its estimator version of bidir is 1, here it is"),
         ({"architecture": "pdp11"}, "its architecture of bidir is pdp11"),
         ({"scene": "0123456789abcdef"}, "it reads another scene: 0123456789ab"),
+        ({"identity": "b"}, "its films are of another render"),
     ],
-    ids=["version", "architecture", "scene"],
 )
-def test_nodes_that_differ_are_refused(
-    nodes: Nodes, cornell: bidir.Scene, told: dict[str, Any], words: str
+def test_what_nodes_must_have_in_common(
+    nodes: Nodes, cornell: bidir.Scene, told: dict[str, Any], words: str | None
 ) -> None:
-    with pytest.raises(bidir.ray.NodeRefusedError, match=words):
-        bidir.ray.render(cornell, spp=4, _actor=preparing(told))
+    keeper = Keeper(None, 0, 1, cornell.digest)
+    work = RenderWork(cornell, Wanted(), None, range(1), 1, Tree(2), keeper, Reporter(None, 1))
+    usual = {**versions(), "scene": cornell.digest, "identity": "a"}
+    assert work.check(usual) is None
+    reason = work.check({**usual, **told})
+    assert (reason is None) if words is None else (words in str(reason))
 
 
 def test_a_scene_on_shared_storage(nodes: Nodes, tmp_path: Path) -> None:

@@ -112,11 +112,10 @@ class RenderWork:
         scene: Scene,
         wanted: Wanted,
         shipped: Any,
-        *,
         passes: range,
         task_seconds: float,
         tree: Tree,
-        keeper: _Keeper,
+        keeper: Keeper,
         reporter: Reporter,
         actor: type = Renderer,
     ) -> None:
@@ -207,7 +206,7 @@ class RenderWork:
         self._reporter.advance(-sum(map(len, lost)))
 
 
-class _Keeper:
+class Keeper:
     """The film of the driver, and its file."""
 
     def __init__(self, path: Path | None, every: float, spp: int, digest: str) -> None:
@@ -297,7 +296,7 @@ def render(
     if passes < 1 or task_seconds <= 0 or fan_in < 2:
         raise SettingsError("spp is from 1 on, task_seconds above 0, and fan_in from 2 on")
     path = None if checkpoint is None else Path(checkpoint)
-    keeper = _Keeper(path, checkpoint_every, passes, scene.digest)
+    keeper = Keeper(path, checkpoint_every, passes, scene.digest)
     done = keeper.film.spp if keeper.film else 0
     disconnect = connected(address)
     try:
@@ -306,12 +305,12 @@ def render(
                 scene,
                 wish,
                 _shipped(scene, ship),
-                passes=range(passes),
-                task_seconds=task_seconds,
-                tree=Tree(fan_in),
-                keeper=keeper,
-                reporter=reporter,
-                actor=_actor,
+                range(passes),
+                task_seconds,
+                Tree(fan_in),
+                keeper,
+                reporter,
+                _actor,
             )
             Crew(work, limits or Limits()).run()
     except KeyboardInterrupt as error:
