@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -254,3 +255,38 @@ def test_checkpoints_of_other_renders_are_refused(nodes: Nodes, cornell: bidir.S
         bidir.ray.render(cornell, spp=4, checkpoint=path)
     with pytest.raises(bidir.FilmError, match="beyond the 1"):
         bidir.ray.render(cornell, bidir.Path(), spp=1, checkpoint=path)
+
+
+@pytest.mark.filterwarnings("ignore:.*noise of the reference")
+def test_an_experiment_has_the_records_of_one_machine(nodes: Nodes, tmp_path: Path, scenes: Path) -> None:
+    experiment = bidir.Experiment.of(
+        scenes={"cornell": scenes / "cornell.pbrt"},
+        methods={"all": bidir.Bdpt(), "one": bidir.Bdpt(shadow_rays=bidir.PerPair())},
+        budgets=[{"samples": 2}],
+        seeds=4,
+        size=(8, 8),
+        reference_spp=32,
+        threads=1,
+    )
+
+    def records(results: bidir.Results) -> list[dict[str, Any]]:
+        return [{k: v for k, v in r.items() if "seconds" not in k} for r in results.records]
+
+    told: list[tuple[str, int, int]] = []
+    with contextlib.suppress(RuntimeError):
+        # A driver that stops has kept what was done before.
+        bidir.ray.experiment(experiment, tmp_path / "ray", progress=stopping(4))
+    results = bidir.ray.experiment(experiment, tmp_path / "ray", progress=lambda *a: told.append(a))
+    assert [done for what, done, _ in told if "seed" in what] == [6, 8]
+    assert records(results) == records(experiment.run(tmp_path / "local"))
+    assert (tmp_path / "ray" / "report.html").exists()
+
+
+def stopping(at: int) -> Any:
+    """Return a function that is told of progress, and raises where so much is done."""
+
+    def tell(what: str, done: int, of: int) -> None:
+        if "seed" in what and done >= at:
+            raise RuntimeError("enough")
+
+    return tell

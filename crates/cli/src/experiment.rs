@@ -1,6 +1,7 @@
 //! `bidir experiment`: methods are compared, from a description to a report.
 
 mod claims;
+mod cluster;
 mod watch;
 
 use crate::args::ExperimentArgs;
@@ -26,6 +27,9 @@ const PAPER: &str = "paper";
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
+    if let Some(address) = &args.ray {
+        return cluster::run(args, address, &signals);
+    }
     set_threads(args.threads)?;
     let is_paper = args.description == Path::new(PAPER);
     let outcome = if is_paper {

@@ -102,7 +102,7 @@ mod tests {
     use crate::scene::{LoadOptions, Loaded, load, load_from};
 
     const SCENE: &str = "WorldBegin\n\
-        Include \"part.pbrt\" Include \"./part.pbrt\"\n\
+        Include \"part.pbrt\" Include \"sub/../part.pbrt\"\n\
         Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n\
         Material \"diffuse\" \"texture reflectance\" \"t\"\n\
         Shape \"plymesh\" \"string filename\" \"m.ply\"\n";
@@ -141,6 +141,7 @@ mod tests {
         for (name, bytes) in contents() {
             std::fs::write(folder.path().join(name), bytes).unwrap();
         }
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
         let scene = folder.path().join("s.pbrt");
         let options = LoadOptions::default();
         let there = load(&scene, &options).unwrap();

@@ -155,13 +155,12 @@ class Crew:
         if now - self._looked < self.LOOK_EVERY:
             return
         self._looked = now
-        alive = {node["NodeID"]: node for node in _nodes() if node["Alive"]}
+        alive = {node: (host, cpus) for node, host, cpus in alive_nodes()}
         for identity in [known for known in self._workers if known not in alive]:
             self._lose(self._workers[identity], "the node died")
-        for identity, node in alive.items():
-            cpus = int(node["Resources"].get("CPU", 0))
-            if cpus and identity not in self._workers and identity not in self._refused:
-                self._hire(identity, node["NodeManagerHostname"], cpus)
+        for identity, (host, cpus) in alive.items():
+            if identity not in self._workers and identity not in self._refused:
+                self._hire(identity, host, cpus)
         self._check_hope(now)
 
     def _check_hope(self, now: float) -> None:
@@ -286,9 +285,12 @@ class Crew:
         self._looked = 0.0
 
 
-def _nodes() -> list[dict[str, Any]]:
+def alive_nodes() -> list[tuple[str, str, int]]:
+    """Return name, host and number of processors of all nodes that have such and are alive."""
     nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call]
-    return nodes
+    alive = [node for node in nodes if node["Alive"]]
+    found = [(n["NodeID"], n["NodeManagerHostname"], int(n["Resources"].get("CPU", 0))) for n in alive]
+    return [(node, host, cpus) for node, host, cpus in found if cpus > 0]
 
 
 def _first_line(error: BaseException) -> str:

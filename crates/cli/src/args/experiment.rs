@@ -63,6 +63,10 @@ pub(crate) struct ExperimentArgs {
     /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours.
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Run on the nodes of a Ray cluster, each with all of its threads: `auto` finds the one that runs
+    /// here, `local` starts one on this machine, HOST:PORT is another. Needs the Python package.
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "threads")]
+    pub(crate) ray: Option<String>,
     /// How fast it is.
     #[command(flatten)]
     pub(crate) threads: ThreadsArgs,
