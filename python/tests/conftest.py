@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import bidir
 import pytest
+
+import bidir
 
 SCENES = Path(__file__).parents[2] / "scenes"
 

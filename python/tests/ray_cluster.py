@@ -14,8 +14,9 @@ os.environ.setdefault("RAY_AUTH_MODE", "disabled")
 os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
 
 import ray
-from bidir.ray._render import Renderer
 from ray.cluster_utils import Cluster
+
+from bidir.ray._render import Renderer
 
 #: A node that is killed refuses connections, and is found dead within seconds. One that is only slow
 #: has minutes: a check may take half a minute, and six of them have to fail.

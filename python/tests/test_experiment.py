@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import bidir
 import pytest
+
+import bidir
 
 
 @pytest.fixture(scope="module")

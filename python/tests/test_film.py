@@ -5,9 +5,10 @@ from __future__ import annotations
 import pickle
 from pathlib import Path
 
-import bidir
 import numpy as np
 import pytest
+
+import bidir
 
 
 @pytest.fixture(scope="module")

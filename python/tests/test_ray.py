@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import bidir
 import pytest
+
+import bidir
 
 pytest.importorskip("ray", reason="ray is not installed: pip install 'bidir[ray]'")
 pytestmark = pytest.mark.ray

@@ -11,9 +11,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-import bidir
 import numpy as np
 import pytest
+
+import bidir
 
 
 def test_images_are_arrays(cornell: bidir.Scene) -> None:

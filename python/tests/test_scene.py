@@ -5,9 +5,10 @@ from __future__ import annotations
 import pickle
 from pathlib import Path
 
-import bidir
 import numpy as np
 import pytest
+
+import bidir
 
 SKY = 'WorldBegin\nLightSource "infinite"\n'
 QUAD = ([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], [[0, 3, 2, 1]])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import bidir
 import pytest
+
+import bidir
 
 
 def test_settings_are_those_of_the_flags() -> None:

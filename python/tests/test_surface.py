@@ -10,8 +10,9 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-import bidir
 import pytest
+
+import bidir
 from bidir import _bidir
 
 PACKAGE = Path(bidir.__file__).parent

@@ -9,8 +9,8 @@ try:
 except ImportError as error:
     raise ImportError("bidir.ray needs Ray, which is not installed: pip install 'bidir[ray]'") from error
 
-from bidir.ray._crew import ClusterError, NodeRefusedError, TaskFailedError
+from bidir.ray._crew import ClusterError, Limits, NodeRefusedError, TaskFailedError
 from bidir.ray._experiment import experiment
 from bidir.ray._render import render
 
-__all__ = ["ClusterError", "NodeRefusedError", "TaskFailedError", "experiment", "render"]
+__all__ = ["ClusterError", "Limits", "NodeRefusedError", "TaskFailedError", "experiment", "render"]
