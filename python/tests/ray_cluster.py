@@ -100,11 +100,15 @@ def wait_for(what: Callable[[], bool], seconds: float = 120) -> None:
 
 
 class Journal:
-    """What actors did: a file for each range that was begun."""
+    """What actors did: a file for each range that was begun; and a gate that holds them."""
 
     def __init__(self) -> None:
         """Begin an empty journal."""
         self.folder = Path(tempfile.mkdtemp(prefix="bidir-test-"))
+
+    def open_gate(self) -> None:
+        """Let actors begin ranges of the second half."""
+        (self.folder / "open").touch()
 
     def entries(self) -> list[tuple[int, int, int, str]]:
         """Return begin, end, process and node of all ranges, in the order of their beginning."""
@@ -113,8 +117,12 @@ class Journal:
         return [(int(a), int(b), int(pid), node) for a, b, pid, node, _ in parts]
 
 
-def slow(journal: Journal, seconds: float = 0.1) -> type[Renderer]:
-    """Return an actor whose passes take so long at least, and are written down."""
+def slow(journal: Journal, seconds: float = 0.1, gate: int = 24) -> type[Renderer]:
+    """Return an actor whose passes take so long at least, and are written down.
+
+    From pass ``gate`` on it waits until the journal's gate is open, so that what happens in the middle
+    of a render does so on machines of any speed.
+    """
     folder = str(journal.folder)
 
     class Slow(Renderer):
@@ -122,6 +130,8 @@ def slow(journal: Journal, seconds: float = 0.1) -> type[Renderer]:
             node = ray.get_runtime_context().get_node_id()
             name = f"{begin}_{end}_{os.getpid()}_{node}_{time.monotonic_ns()}.range"
             (Path(folder) / name).touch()
+            while begin >= gate and not (Path(folder) / "open").exists():
+                time.sleep(0.05)
             time.sleep(seconds * (end - begin))
             told, film = super().render(begin, end)
             return {**told, "seconds": told["seconds"] + seconds * (end - begin)}, film

@@ -80,7 +80,7 @@ class Rendering:
         wait_for(is_there)
 
     def film(self) -> bidir.Film:
-        """Wait for the end."""
+        """Wait for the end; the gate of the journal is open."""
         self._thread.join()
         if self._error is not None:
             raise self._error
@@ -98,6 +98,7 @@ def check(film: bidir.Film, local: bidir.Film) -> None:
 def test_the_bits_are_those_of_one_machine(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     told: list[int] = []
     journal = Journal()
+    journal.open_gate()
     check(Rendering(cornell, journal, progress=lambda done, of: told.append(done)).film(), local)
     assert told[-1] == SPP
     assert len({node for *_, node in journal.entries()}) == 3
@@ -109,6 +110,7 @@ def test_a_killed_worker(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) 
     rendering.wait_for(5)
     _, _, pid, node = journal.entries()[-1]
     os.kill(pid, signal.SIGKILL)
+    journal.open_gate()
     check(rendering.film(), local)
     # What the process had begun was begun again, on its node or on another.
     assert sum(end - begin for begin, end, _, _ in journal.entries()) > SPP
@@ -121,17 +123,19 @@ def test_a_killed_node(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) ->
     rendering = Rendering(cornell, journal)
     rendering.wait_for(6)
     nodes.kill()
+    journal.open_gate()
     check(rendering.film(), local)
 
 
 def test_an_added_node(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     nodes.kill()
     journal = Journal()
-    rendering = Rendering(cornell, journal, seconds=0.5)
+    rendering = Rendering(cornell, journal)
     rendering.wait_for(2)
     added = nodes.add()
+    wait_for(lambda: added in {node for *_, node in journal.entries()})
+    journal.open_gate()
     check(rendering.film(), local)
-    assert added in {node for *_, node in journal.entries()}
 
 
 DRIVER = """
@@ -169,6 +173,7 @@ def test_a_killed_driver(
     again = Journal()
     told: list[int] = []
     tell = told.append
+    again.open_gate()
     rendering = Rendering(cornell, again, checkpoint=path, progress=lambda done, of: tell(done))
     check(rendering.film(), local)
     assert bidir.Film.load(path) == local

@@ -218,10 +218,12 @@ class Crew:
     def _hear(self, worker: Worker, reference: Any) -> None:
         try:
             told = ray.get(reference)
-        except RayTaskError as error:
-            self._fail(worker, reference, error)
         except RayError as error:
-            self._lose(worker, _first_line(error))
+            # What an actor needs may be lost on its way to it, which is no fault of the work.
+            if isinstance(error, RayTaskError) and not isinstance(error.cause, RayError):
+                self._fail(worker, reference, error)
+            else:
+                self._lose(worker, first_line(error))
         else:
             self._answer(worker, reference, told)
 
@@ -239,7 +241,7 @@ class Crew:
     def _fail(self, worker: Worker, reference: Any, error: RayTaskError) -> None:
         """Handle an error that the work raised."""
         cause = error.cause if isinstance(error.cause, Exception) else error
-        text = f"{type(cause).__name__.removeprefix('RayTaskError')}: {_first_line(cause)}"
+        text = f"{type(cause).__name__.removeprefix('RayTaskError')}: {first_line(cause)}"
         if reference == worker.preparing:
             self._refuse(worker, text)
             return
@@ -293,7 +295,7 @@ def alive_nodes() -> list[tuple[str, str, int]]:
     return [(node, host, cpus) for node, host, cpus in found if cpus > 0]
 
 
-def _first_line(error: BaseException) -> str:
+def first_line(error: BaseException) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return lines[0] if lines else type(error).__name__
 

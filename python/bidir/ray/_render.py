@@ -17,7 +17,7 @@ from bidir import _bidir
 from bidir.errors import FilmError, RenderInterruptedError, SettingsError
 from bidir.film import Film
 from bidir.image import Image
-from bidir.ray._crew import ClusterError, Crew, Limits, Worker, connected, logger
+from bidir.ray._crew import ClusterError, Crew, Limits, Worker, connected, first_line, logger
 from bidir.ray._tree import Part, Tree
 from bidir.scene import Scene, StrPath, load
 from bidir.session import Progress, Reporter, Session, Wanted, wanted
@@ -188,7 +188,8 @@ class RenderWork:
         try:
             data = ray.get(part.film)
         except RayError as error:
-            logger.warning("a film was lost before it was fetched: %s", error)
+            self._tree.cause = first_line(error)
+            logger.warning("a film was lost before it was fetched: %s", self._tree.cause)
             self._lose(part.ranges)
             return
         self._losses = 0
@@ -201,7 +202,8 @@ class RenderWork:
             return
         self._losses += 1
         if self._losses > Limits.losses:
-            raise ClusterError("films are lost again and again before the driver has them")
+            message = "films are lost again and again before the driver has them"
+            raise ClusterError(f"{message}, the last time: {self._tree.cause}")
         self._todo.give_back(lost)
         self._reporter.advance(-sum(map(len, lost)))
 

@@ -14,6 +14,7 @@ import ray
 from ray.exceptions import RayError
 
 from bidir.film import Film
+from bidir.ray._crew import first_line
 
 __all__ = ["Part", "Tree"]
 
@@ -68,6 +69,9 @@ class Tree:
         """Return the references of merges that run."""
         return list(self._merging)
 
+    #: Why films were lost, the last time.
+    cause = ""
+
     def settle(self) -> list[range]:
         """Take films that were merged; return the passes of those that were lost on the way."""
         lost: list[range] = []
@@ -80,7 +84,8 @@ class Tree:
             try:
                 ray.get(told)
             except RayError as error:
-                logger.warning("films were lost before they were merged: %s", error)
+                self.cause = first_line(error)
+                logger.warning("films were lost before they were merged: %s", self.cause)
                 lost.extend(ranges)
             else:
                 self.add(Part(film, ranges), level)
