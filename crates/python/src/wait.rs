@@ -42,7 +42,7 @@ pub(crate) fn wait<T: Send, M: Send>(
             loop {
                 let heard = match receiver.recv_timeout(POLL) {
                     Ok(message) => Python::attach(|py| hear(py, message)),
-                    Err(RecvTimeoutError::Timeout) => Python::attach(Python::check_signals),
+                    Err(RecvTimeoutError::Timeout) => Python::attach(check_signals),
                     // The worker is done, and its end of the channel is gone.
                     Err(RecvTimeoutError::Disconnected) => break,
                 };
@@ -62,6 +62,11 @@ pub(crate) fn wait<T: Send, M: Send>(
             Err(pyo3::exceptions::PyRuntimeError::new_err(message))
         }
     }
+}
+
+/// Raises what a signal asks for; on other threads than the interpreter's it does nothing.
+fn check_signals(py: Python<'_>) -> PyResult<()> {
+    py.check_signals()
 }
 
 /// The same for work that tells nothing meanwhile.
