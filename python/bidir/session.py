@@ -31,9 +31,11 @@ class ProgressBar(Protocol):
 
     def update(self, n: int) -> Any:
         """Tell that ``n`` passes more are done."""
+        ...
 
     def close(self) -> Any:
         """Tell that nothing more comes."""
+        ...
 
 
 #: Who is told of progress: a bar, a class of bars such as ``tqdm``, which is called with ``total`` and
@@ -58,7 +60,7 @@ class Reporter(AbstractContextManager["Reporter"]):
             self._bar.total = total
             if done:
                 self._bar.update(done)
-        elif progress is not None:
+        elif callable(progress):
             self._call = progress
 
     def advance(self, passes: int) -> None:

@@ -90,30 +90,39 @@ class Work(Protocol):
 
     def prepare(self, actor: Any, cpus: int) -> Any:
         """Make an actor ready; return the reference of what it tells of itself."""
+        ...
 
     def check(self, told: dict[str, Any]) -> str | None:
         """Say why an actor that told this cannot take part. None: it can."""
+        ...
 
     def next(self, worker: Worker, workers: int) -> Hashable | None:
         """Return what a worker shall do next. None: nothing, for now."""
+        ...
 
     def submit(self, worker: Worker, unit: Any) -> tuple[Any, Any]:
         """Begin a unit; return the references of what is told of it, and of what it gives."""
+        ...
 
     def done(self, worker: Worker, unit: Any, told: dict[str, Any], result: Any) -> None:
         """Take what a unit gave."""
+        ...
 
     def again(self, unit: Any) -> None:
         """Take back a unit that was not done."""
+        ...
 
     def name(self, unit: Any) -> str:
         """Say what a unit is, for people."""
+        ...
 
     def pending(self) -> list[Any]:
         """Return references of other tasks of the work that run."""
+        ...
 
     def turn(self) -> bool:
         """Do what there is to do between units. False: everything is done."""
+        ...
 
 
 class Crew:
@@ -217,7 +226,7 @@ class Crew:
 
     def _hear(self, worker: Worker, reference: Any) -> None:
         try:
-            told = ray.get(reference)
+            told: Any = ray.get(reference)
         except RayError as error:
             # What an actor needs may be lost on its way to it, which is no fault of the work.
             if isinstance(error, RayTaskError) and not isinstance(error.cause, RayError):

@@ -94,7 +94,7 @@ class ExperimentWork:
 
     def done(self, worker: Worker, unit: str, told: dict[str, Any], result: Any) -> None:
         try:
-            records = ray.get(result)
+            records: Any = ray.get(result)
         except RayError as error:
             self._lose(unit, error)
             return

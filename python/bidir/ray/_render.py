@@ -186,7 +186,7 @@ class RenderWork:
 
     def _fetch(self, part: Part) -> None:
         try:
-            data = ray.get(part.film)
+            data: Any = ray.get(part.film)
         except RayError as error:
             self._tree.cause = first_line(error)
             logger.warning("a film was lost before it was fetched: %s", self._tree.cause)
