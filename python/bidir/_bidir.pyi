@@ -3,7 +3,27 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, final
 
-__all__: list[str]
+__all__ = [
+    "ESTIMATOR_VERSION",
+    "ISA",
+    "LAYERS",
+    "METRICS",
+    "VERSION",
+    "Experiment",
+    "Film",
+    "Prepared",
+    "Scene",
+    "Session",
+    "check_settings",
+    "encode_png",
+    "error_map",
+    "machine",
+    "metric",
+    "read_image",
+    "read_layers",
+    "render_block",
+    "write_image",
+]
 
 VERSION: str
 ESTIMATOR_VERSION: int
