@@ -32,8 +32,15 @@ pub(super) fn run(
         (args.restart, "--restart"),
         (args.quiet, "--quiet"),
     ];
-    command.args(flags.iter().filter(|(is_set, _)| *is_set).map(|(_, name)| name));
-    let child = command.spawn().map_err(|error| missing(&python, &error.to_string()))?;
+    command.args(
+        flags
+            .iter()
+            .filter(|(is_set, _)| *is_set)
+            .map(|(_, name)| name),
+    );
+    let child = command
+        .spawn()
+        .map_err(|error| missing(&python, &error.to_string()))?;
     wait(child, signals)
 }
 
@@ -58,8 +65,12 @@ fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
 /// Fails where the interpreter or the package is not there.
 fn check(python: &str) -> Result<(), Failure> {
     let mut command = Command::new(python);
-    command.args(["-c", "import bidir.ray"]).stdin(Stdio::null());
-    let output = command.output().map_err(|error| missing(python, &error.to_string()))?;
+    command
+        .args(["-c", "import bidir.ray"])
+        .stdin(Stdio::null());
+    let output = command
+        .output()
+        .map_err(|error| missing(python, &error.to_string()))?;
     if output.status.success() {
         return Ok(());
     }

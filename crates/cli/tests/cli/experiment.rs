@@ -213,13 +213,18 @@ fn a_cluster_needs_the_python_package() {
 fn a_cluster_s_program_is_called_as_it_should_be() {
     let place = Workplace::new();
     let python = |name: &str, script: &str| {
-        use std::os::unix::fs::PermissionsExt;
         let path = place.path(name);
-        std::fs::write(&path, script).unwrap();
-        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+        // Written by another process: a program that is open for writing here cannot be started.
+        let write = "printf '%s' \"$1\" > \"$2\" && chmod +x \"$2\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", write, "sh", script]).arg(&path);
+        assert!(shell.status().unwrap().success());
         path
     };
-    let without = python("without", "#!/bin/sh\necho 'No module named bidir' >&2\nexit 1\n");
+    let without = python(
+        "without",
+        "#!/bin/sh\necho 'No module named bidir' >&2\nexit 1\n",
+    );
     let run = |python: &std::path::Path| {
         let command = "experiment a.toml -o out --ray host:1 --quick";
         Ran::of(place.command(command).env("BIDIR_PYTHON", python))
