@@ -60,6 +60,10 @@ bench-scaling *FLAGS:
     cargo build --release
     python3 tools/bench_scaling {{FLAGS}}
 
+# What a render over Ray costs beside the same without, in time and memory; needs the Python package.
+bench-ray *FLAGS:
+    python3 tools/bench_ray {{FLAGS}}
+
 # The same work in Mitsuba and LuxCore: installs them beside the build (1.2 GB) where they are absent.
 bench-peers *FLAGS:
     cargo build --release

@@ -84,6 +84,13 @@ impl Exit {
         }
     }
 
+    /// What the code of another program means, if it has the same ones.
+    pub(crate) fn of_code(code: Option<i32>) -> Self {
+        let mut all = Self::ALL.into_iter().map(|(exit, _)| exit);
+        let found = all.find(|exit| Some(i32::from(exit.code())) == code);
+        found.unwrap_or(Self::RenderFailed)
+    }
+
     /// The section of the help text.
     pub(crate) fn help() -> String {
         let mut text = String::from("Exit codes:\n");

@@ -2,7 +2,7 @@
 
 mod builtin;
 mod claims;
-mod tables;
+mod cluster;
 mod watch;
 
 use crate::args::ExperimentArgs;
@@ -14,10 +14,12 @@ use crate::render::set_threads;
 use crate::scene_io;
 use crate::signals::Signals;
 use lab::beyond;
-use lab::experiment::{self, End, Experiment, ExperimentError, Outcome, Setup, Start, analysis};
+use lab::experiment::{
+    self, End, Experiment, ExperimentError, Outcome, PAGE, Setup, Start, analysis, write_page,
+};
 use lab::paper;
-use lab::report::{self, ImageKind, Report, ReportImage, Sheet};
-use lab::results::{Machine, Results};
+use lab::report::table_text;
+use lab::results::Machine;
 use std::path::Path;
 use watch::Watch;
 
@@ -34,6 +36,9 @@ enum Task {
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
+    if let Some(address) = &args.ray {
+        return cluster::run(args, address, &signals);
+    }
     set_threads(args.threads)?;
     let task = task(args)?;
     let outcome = execute(args, console, &signals, |setup, watch| match &task {
@@ -50,17 +55,17 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
         Task::Beyond(options) => beyond::sections(results, &options.amounts),
         Task::Described(_) => analysis::sections(results),
     };
-    write_report(args, results, &sections)?;
+    write_page(&args.output, results, &sections, &builtin::command(args)).map_err(failure)?;
     let mut found: Vec<_> = results.claims.iter().map(claims::text).collect();
     let of_sections = sections.iter().flat_map(|section| &section.tables);
-    found.extend(of_sections.map(tables::text));
+    found.extend(of_sections.map(table_text));
     found.extend(claims::summary(&results.claims));
     print(&found.join("\n"))?;
     if outcome.end == End::Stopped {
         return Ok(stopped(args));
     }
     if !args.quiet {
-        say(format_args!("wrote {}", args.output.join(REPORT).display()));
+        say(format_args!("wrote {}", args.output.join(PAGE).display()));
     }
     Ok(Exit::Done)
 }
@@ -132,8 +137,8 @@ fn execute(
         } else {
             Start::Resume
         },
-        program: concat!("bidir ", env!("CARGO_PKG_VERSION")).to_owned(),
-        machine: machine(),
+        program: formats::film::program(),
+        machine: Machine::here(),
     };
     let wanted = if args.quiet {
         Display::Silent
@@ -144,20 +149,6 @@ fn execute(
     let outcome = run(&setup, &mut watch);
     watch.finish();
     outcome.map_err(failure)
-}
-
-fn machine() -> Machine {
-    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = processor.lines().find_map(|line| {
-        let (name, value) = line.split_once(':')?;
-        (name.trim() == "model name").then(|| value.trim().to_owned())
-    });
-    Machine {
-        processor: model.unwrap_or_else(|| "unknown".to_owned()),
-        isa: accel::Isa::detect().name().to_owned(),
-        system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-        ..Machine::default()
-    }
 }
 
 /// What an error is to the shell.
@@ -182,73 +173,4 @@ fn failure(error: ExperimentError) -> Failure {
         (Some(hint), _) => Failure::new(exit, text).with_hint(hint),
         (None, _) => Failure::new(exit, text),
     }
-}
-
-/// The name of the page for people.
-const REPORT: &str = "report.html";
-
-/// Writes the page for people.
-fn write_report(
-    args: &ExperimentArgs,
-    results: &Results,
-    sections: &[analysis::Section],
-) -> Result<(), Failure> {
-    let (mut tables, mut plots) = (Vec::new(), Vec::new());
-    for section in sections {
-        tables.extend(section.tables.iter().cloned());
-        plots.extend(section.plots.iter().cloned());
-    }
-    let page = report::html(&Report {
-        results,
-        tables: &tables,
-        plots: &plots,
-        images: &images(&args.output, results)?,
-        sheets: &sheets(&args.output, results)?,
-        command: &builtin::command(args),
-    });
-    scene_io::write_text(&args.output.join(REPORT), &page)
-}
-
-/// The contact sheets of strategies.
-fn sheets(folder: &Path, results: &Results) -> Result<Vec<Sheet>, Failure> {
-    let names = results.pyramids.iter();
-    let names = names.flat_map(|pyramid| [&pyramid.weighted, &pyramid.raw]);
-    let read = |name: &String| {
-        let path = folder.join(name);
-        let png = std::fs::read(&path).map_err(|error| Failure::io(&path, "read", &error))?;
-        let name = name.clone();
-        Ok(Sheet { name, png })
-    };
-    names.map(read).collect()
-}
-
-/// The images of the first seed, and the references that they are compared with.
-fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>, Failure> {
-    let has_image = |scene: &str| {
-        let mut records = results.records.iter();
-        records.any(|record| record.scene == scene && record.image.is_some())
-    };
-    let scenes = results.scenes.iter().filter(|scene| has_image(&scene.name));
-    let references = scenes.filter_map(|scene| {
-        let image = scene.reference_image.as_ref()?;
-        Some((&scene.name, ImageKind::Reference, image))
-    });
-    let renders = results.records.iter().filter_map(|record| {
-        let kind = ImageKind::Render {
-            method: record.method.clone(),
-            budget: record.budget.clone(),
-        };
-        Some((&record.scene, kind, record.image.as_ref()?))
-    });
-    let all = references.chain(renders).map(|(scene, kind, image)| {
-        Ok(ReportImage {
-            scene: scene.clone(),
-            kind,
-            pixels: scene_io::read_image(&folder.join(image))?,
-            flip: None,
-        })
-    });
-    let mut images = all.collect::<Result<Vec<_>, Failure>>()?;
-    report::add_flip(&mut images);
-    Ok(images)
 }

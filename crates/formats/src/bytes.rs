@@ -29,11 +29,24 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     {
         return Err(Error::new(ErrorKind::Io, "cannot read: a device").in_file(path));
     }
-    if path.extension().is_some_and(|extension| extension == "gz") {
+    if is_packed(path) {
         read_to_limit(MultiGzDecoder::new(BufReader::new(file)), path, limit)
     } else {
         read_to_limit(file, path, limit)
     }
+}
+
+/// The same as [`read`] of a file that has the bytes `stored`.
+pub(crate) fn unpack(stored: &[u8], path: &Path, limit: u64) -> Result<Vec<u8>> {
+    if is_packed(path) {
+        read_to_limit(MultiGzDecoder::new(stored), path, limit)
+    } else {
+        read_to_limit(stored, path, limit)
+    }
+}
+
+fn is_packed(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "gz")
 }
 
 #[cfg(unix)]

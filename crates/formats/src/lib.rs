@@ -5,6 +5,7 @@
 
 mod bytes;
 mod error;
+mod files;
 mod source;
 mod spectra;
 

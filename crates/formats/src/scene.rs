@@ -1,5 +1,6 @@
 //! Scenes of any format: which one a file has, its name says.
 
+pub use crate::files::{Files, InMemory};
 pub use crate::pbrt::{Crop, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary};
 
 use crate::error::Result;
@@ -9,9 +10,14 @@ use std::path::Path;
 /// Reads a scene with all that it refers to: glTF 2.0 where the name ends in `.gltf` or `.glb`, else
 /// pbrt-v4; `-` is standard input.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
+    load_from(path, options, &Files::default())
+}
+
+/// The same as [`load`], with files from where `files` says.
+pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     if gltf::is_gltf(path) {
-        gltf::load(path, options)
+        gltf::load_from(path, options, files)
     } else {
-        pbrt::load(path, options)
+        pbrt::load_from(path, options, files)
     }
 }

@@ -15,7 +15,7 @@ mod training;
 mod variance;
 
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
-pub use session::Session;
+pub use session::{SceneHandle, Session};
 pub use training::{Plan, Training};
 pub use variance::StrategyMoments;
 

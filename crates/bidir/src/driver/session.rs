@@ -15,11 +15,45 @@ use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
-use std::sync::Mutex;
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Pixels are handed to threads in runs of this length.
 const RUN: u64 = 256;
+
+/// The scene of a session: borrowed, or kept alive by it, for hosts whose objects borrow nothing.
+#[derive(Clone)]
+pub enum SceneHandle<'a> {
+    /// Somebody else keeps it.
+    Borrowed(&'a Scene),
+    /// The session has a share in it.
+    Shared(Arc<Scene>),
+}
+
+impl<'a> From<&'a Scene> for SceneHandle<'a> {
+    fn from(scene: &'a Scene) -> Self {
+        Self::Borrowed(scene)
+    }
+}
+
+impl From<Arc<Scene>> for SceneHandle<'_> {
+    fn from(scene: Arc<Scene>) -> Self {
+        Self::Shared(scene)
+    }
+}
+
+impl Deref for SceneHandle<'_> {
+    type Target = Scene;
+
+    #[inline]
+    fn deref(&self) -> &Scene {
+        match self {
+            Self::Borrowed(scene) => scene,
+            Self::Shared(scene) => scene,
+        }
+    }
+}
 
 /// A render that goes pass by pass.
 ///
@@ -60,7 +94,7 @@ const RUN: u64 = 256;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Session<'a> {
-    scene: &'a Scene,
+    scene: SceneHandle<'a>,
     settings: Settings,
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
@@ -80,16 +114,17 @@ impl<'a> Session<'a> {
     ///
     /// Errors: the film needs more memory than `resources` allow, or no thread can be started.
     pub fn new(
-        scene: &'a Scene,
+        scene: impl Into<SceneHandle<'a>>,
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
+        let scene = scene.into();
         let layers = settings.layers.clone();
         let film = Film::with_layers(scene.film().clone(), layers, resources.film_memory)?;
         let buffer = PassBuffer::new(scene.film(), film.layers());
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
-        let (settings, training) = pool.install(|| prepare(scene, settings));
+        let (settings, training) = pool.install(|| prepare(&scene, settings));
         let rule = selector(&settings, training.as_ref());
         let integrator = settings
             .integrator
@@ -212,7 +247,7 @@ impl<'a> Session<'a> {
     }
 
     fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(self.scene, &self.settings, self.connections(), sample)
+        path_context(&self.scene, &self.settings, self.connections(), sample)
     }
 
     /// How many connections a camera vertex makes.
@@ -288,8 +323,8 @@ impl<'a> Session<'a> {
     }
 
     /// What is rendered.
-    pub fn scene(&self) -> &'a Scene {
-        self.scene
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// How it is rendered, with everything decided that was left open.
@@ -321,6 +356,14 @@ impl<'a> Session<'a> {
     /// The number of threads.
     pub fn threads(&self) -> usize {
         self.workspaces.len()
+    }
+
+    /// The film with what was counted for it; the session goes on with an empty one, and knows no
+    /// longer which passes were rendered.
+    pub fn take_film(&mut self) -> (Film, Stats) {
+        let empty = self.film.emptied();
+        let film = std::mem::replace(&mut self.film, empty);
+        (film, std::mem::take(&mut self.stats))
     }
 
     /// The film, without the session.

@@ -122,6 +122,17 @@ impl Film {
         })
     }
 
+    /// A film without passes, of the same geometry and layers.
+    #[must_use]
+    pub fn emptied(&self) -> Self {
+        Self {
+            settings: self.settings.clone(),
+            layers: self.layers.clone(),
+            passes: PassSet::default(),
+            sums: vec![0; self.sums.len()],
+        }
+    }
+
     /// What a film costs, the running pass included. Unit: bytes.
     pub fn memory(settings: &FilmSettings, layers: &Layers) -> u64 {
         let of_pixel = layers.sums() * size_of::<i128>() + PassBuffer::bytes_per_pixel(layers);

@@ -70,6 +70,10 @@ pub(crate) struct ExperimentArgs {
     /// `beyond`: 3 seeds of small images, 2 seconds, in twenty minutes instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,
+    /// Run on the nodes of a Ray cluster, each with all of its threads: `auto` finds the one that runs
+    /// here, `local` starts one on this machine, HOST:PORT is another. Needs the Python package.
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "threads")]
+    pub(crate) ray: Option<String>,
     /// How fast it is.
     #[command(flatten)]
     pub(crate) threads: ThreadsArgs,

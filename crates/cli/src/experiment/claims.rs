@@ -1,6 +1,6 @@
 //! Claims as text: verdicts, what was found, tables, and histograms as bars.
 
-use super::tables;
+use lab::report::table_text;
 use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
 
 /// A claim with its figures. Curves have their numbers in tables, so only histograms are drawn.
@@ -14,7 +14,7 @@ pub(super) fn text(claim: &Claim) -> String {
         claim.found,
         claim.method
     );
-    let figures = claim.tables.iter().map(tables::text);
+    let figures = claim.tables.iter().map(table_text);
     let plots = claim.plots.iter();
     let histograms = plots.filter(|plot| plot.kind == PlotKind::Histogram);
     for figure in figures.chain(histograms.map(histogram)) {
@@ -35,7 +35,7 @@ pub(super) fn summary(claims: &[Claim]) -> Option<String> {
         columns: ["verdict", "id", "claim"].map(str::to_owned).into(),
         rows: claims.iter().map(row).collect(),
     };
-    (!claims.is_empty()).then(|| tables::text(&table))
+    (!claims.is_empty()).then(|| table_text(&table))
 }
 
 fn verdict(verdict: Verdict) -> &'static str {
@@ -74,7 +74,7 @@ fn histogram(plot: &Plot) -> String {
         std::iter::once(Cell::Number(edge)).chain(bars).collect()
     };
     let names = plot.series.iter().map(|series| series.name.clone());
-    tables::text(&Table {
+    table_text(&Table {
         caption: plot.caption.clone(),
         columns: std::iter::once(plot.x.label.clone()).chain(names).collect(),
         rows: edges.into_iter().map(row).collect(),

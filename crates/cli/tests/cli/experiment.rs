@@ -197,3 +197,52 @@ fn another_experiment_needs_to_begin_anew() {
         .says("1 threads, here 2 threads")
         .says("--threads");
 }
+
+#[test]
+fn a_cluster_needs_the_python_package() {
+    let place = Workplace::new();
+    place
+        .run("experiment paper -o out --ray local")
+        .expect(2)
+        .says("--ray takes a description");
+    place
+        .run("experiment a.toml -o out --ray local --threads 2")
+        .expect(2)
+        .says("cannot be used with");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_cluster_s_program_is_called_as_it_should_be() {
+    let place = Workplace::new();
+    let python = |name: &str, script: &str| {
+        let path = place.path(name);
+        // Written by another process: a program that is open for writing here cannot be started.
+        let write = "printf '%s' \"$1\" > \"$2\" && chmod +x \"$2\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", write, "sh", script]).arg(&path);
+        assert!(shell.status().unwrap().success());
+        path
+    };
+    let without = python(
+        "without",
+        "#!/bin/sh\necho 'No module named bidir' >&2\nexit 1\n",
+    );
+    let run = |python: &std::path::Path| {
+        let command = "experiment a.toml -o out --ray host:1 --quick";
+        Ran::of(place.command(command).env("BIDIR_PYTHON", python))
+    };
+    run(&without)
+        .expect(4)
+        .says("No module named bidir")
+        .says("pip install '.[ray]'");
+    run(std::path::Path::new("no-such-python")).expect(4);
+    // What the package ends with is what the command ends with.
+    let with = python(
+        "with",
+        "#!/bin/sh\n[ \"$1\" = -c ] && exit 0\necho \"$@\" >&2\nexit 75\n",
+    );
+    run(&with)
+        .expect(75)
+        .says("-m bidir.ray experiment a.toml --output out --address host:1 --quick");
+}

@@ -92,7 +92,8 @@ pub fn read(path: &Path) -> Result<FilmFile> {
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 
-fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
+/// The bytes of a film file; see [`write`].
+pub fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
     let json = header.of(film).to_json();
     let numbers = film.layers().sums();
     let mut bytes = Vec::with_capacity(PREAMBLE + json.len() + 7 * film.sums().len());

@@ -1,8 +1,8 @@
 //! What a glTF file is made of: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
 
 use super::place::{GltfFault, Place};
-use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
+use crate::files::Files;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
@@ -23,8 +23,8 @@ pub(super) struct Container {
 }
 
 /// Reads a `.gltf` or `.glb`; which of them it is, its first bytes say.
-pub(super) fn read(path: &Path) -> Result<Container> {
-    let bytes = bytes::read(path, LARGEST_FILE)?;
+pub(super) fn read(path: &Path, files: &Files) -> Result<Container> {
+    let bytes = files.read(path, LARGEST_FILE)?;
     let container = if bytes.starts_with(MAGIC) {
         chunks(&bytes)
     } else {
@@ -88,18 +88,32 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
     Ok(Container { json, binary })
 }
 
-/// Reads what `uri`, found at `place`, stands for; files are looked for in `folder`.
-pub(super) fn resource(folder: &Path, uri: &str, place: &Place) -> Result<Vec<u8>, GltfFault> {
+/// What a URI stands for.
+pub(super) struct Resource {
+    pub(super) bytes: Vec<u8>,
+    /// The file that they are of. None: they stand in the URI.
+    pub(super) file: Option<PathBuf>,
+}
+
+/// Reads what `uri`, found at `place`, stands for; relative names are of files in `folder`.
+pub(super) fn resource(
+    (folder, files): (&Path, &Files),
+    uri: &str,
+    place: &Place,
+) -> Result<Resource, GltfFault> {
     if let Some(data) = uri.strip_prefix("data:") {
-        return data_uri(data, place);
+        let bytes = data_uri(data, place)?;
+        return Ok(Resource { bytes, file: None });
     }
     if uri.split_once("://").is_some() {
         let fault = place.fault(ErrorKind::Unsupported, "a resource of a network");
         return Err(fault.with_hint("save it beside the file"));
     }
     let path = folder.join(file_of(uri));
-    let bytes = bytes::read(&path, LARGEST_FILE);
-    bytes.map_err(|error| GltfFault::from_error(place, &error))
+    let read = files.read(&path, LARGEST_FILE);
+    let bytes = read.map_err(|error| GltfFault::from_error(place, &error))?;
+    let file = Some(path);
+    Ok(Resource { bytes, file })
 }
 
 fn data_uri(data: &str, place: &Place) -> Result<Vec<u8>, GltfFault> {

@@ -1,9 +1,10 @@
 //! A glTF file with the bytes it refers to, and what building of it knows throughout.
 
-use super::container::{self, Container};
+use super::container::{self, Container, Resource};
 use super::json::Root;
 use super::place::{GltfFault, Place, describe};
 use crate::error::{Error, ErrorKind, Result};
+use crate::files::Files;
 use crate::pbrt::{Content, DigestBuilder, LoadOptions};
 use crate::source::{Fault, FileId, SourceMap, Span};
 use std::collections::BTreeSet;
@@ -32,8 +33,10 @@ pub(super) const EXTENSIONS: [&str; 16] = [
 /// A file that was read, with its buffers.
 pub(super) struct Document {
     pub(super) root: Root,
-    /// Where files are looked for.
+    /// The folder that files are named from.
     pub(super) folder: PathBuf,
+    /// Where they are looked for.
+    files: Files,
     buffers: Vec<Vec<u8>>,
 }
 
@@ -54,12 +57,18 @@ pub(super) struct Context<'a> {
     /// The messages of those warnings that tell of stand-ins.
     refused: BTreeSet<String>,
     pub(super) digest: DigestBuilder,
+    /// The names of the files that were read.
+    pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Context<'a> {
     /// Reads the container at `path`.
-    pub(super) fn open(path: &Path, options: &'a LoadOptions) -> Result<(Self, Option<Vec<u8>>)> {
-        let Container { json, binary } = container::read(path)?;
+    pub(super) fn open(
+        path: &Path,
+        options: &'a LoadOptions,
+        files: &Files,
+    ) -> Result<(Self, Option<Vec<u8>>)> {
+        let Container { json, binary } = container::read(path, files)?;
         let mut digest = DigestBuilder::new();
         digest.add(Content::Text, json.as_bytes());
         if let Some(binary) = &binary {
@@ -80,6 +89,7 @@ impl<'a> Context<'a> {
             warnings: Vec::new(),
             refused: BTreeSet::new(),
             digest,
+            files: vec![path.to_owned()],
         };
         Ok((context, binary))
     }
@@ -180,13 +190,15 @@ impl Document {
     pub(super) fn new(
         context: &mut Context<'_>,
         root: Root,
-        (folder, binary): (&Path, Option<Vec<u8>>),
+        (folder, files): (&Path, &Files),
+        binary: Option<Vec<u8>>,
     ) -> Result<Self, GltfFault> {
         check_version(&root)?;
         check_extensions(context, &root)?;
         let mut document = Self {
             root,
             folder: folder.to_owned(),
+            files: files.clone(),
             buffers: Vec::new(),
         };
         let mut binary = binary;
@@ -195,6 +207,11 @@ impl Document {
             document.buffers.push(buffer);
         }
         Ok(document)
+    }
+
+    /// Reads what `uri`, found at `place`, stands for.
+    pub(super) fn resource(&self, uri: &str, place: &Place) -> Result<Resource, GltfFault> {
+        container::resource((&self.folder, &self.files), uri, place)
     }
 
     fn read_buffer(
@@ -206,11 +223,12 @@ impl Document {
         let buffer = &self.root.buffers[index];
         let place = Place::of("buffers", index);
         let mut bytes = if let Some(uri) = &buffer.uri {
-            let bytes = container::resource(&self.folder, uri, &place.key("uri"))?;
-            if !uri.starts_with("data:") {
-                context.digest.add(Content::Mesh, &bytes);
+            let resource = self.resource(uri, &place.key("uri"))?;
+            if let Some(file) = resource.file {
+                context.digest.add(Content::Mesh, &resource.bytes);
+                context.files.push(file);
             }
-            bytes
+            resource.bytes
         } else {
             let missing = || place.scene("it has no uri, and the file no binary chunk for it");
             binary.take().filter(|_| index == 0).ok_or_else(missing)?

@@ -28,6 +28,7 @@ mod tests;
 
 use crate::error::{ErrorKind, Result};
 use crate::file::folder_of;
+use crate::files::Files;
 use crate::pbrt::{LoadOptions, Loaded, SceneSettings, Summary};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
@@ -70,9 +71,14 @@ pub fn is_gltf(path: &Path) -> bool {
 
 /// Reads a file with all that it refers to.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
-    let (mut context, binary) = Context::open(path, options)?;
+    load_from(path, options, &Files::default())
+}
+
+/// The same as [`load`], with files from where `files` says.
+pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
+    let (mut context, binary) = Context::open(path, options, files)?;
     let root = context.parse()?;
-    let built = Document::new(&mut context, root, (folder_of(path), binary))
+    let built = Document::new(&mut context, root, (folder_of(path), files), binary)
         .and_then(|document| Assembly::build(&mut context, &document));
     let (scene, summary) = built.map_err(|fault| context.error(fault))?;
     Ok(Loaded {
@@ -82,6 +88,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
         refused: context.told_refusals(),
         summary,
         digest: context.digest.finish(),
+        files: context.files,
     })
 }
 

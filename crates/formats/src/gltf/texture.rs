@@ -1,6 +1,6 @@
 //! Images and how materials look them up.
 
-use super::container;
+use super::container::Resource;
 use super::document::{Context, Document};
 use super::json::{Sampler, TextureInfo};
 use super::mesh::UvMap;
@@ -142,10 +142,11 @@ impl Textures {
         let is_known = self.last.as_ref().is_some_and(|(known, _)| *known == key);
         if !is_known {
             let place = Place::of("images", source);
-            let (bytes, is_beside) = bytes(document, source, &place)?;
-            if is_beside && !self.told.contains(&source) {
+            let Resource { bytes, file } = resource(document, source, &place)?;
+            if let Some(file) = file.filter(|_| !self.told.contains(&source)) {
                 self.told.push(source);
                 context.digest.add(Content::Image, &bytes);
+                context.files.push(file);
             }
             let format = format_of(&bytes, &place)?;
             let data = image::decode_stored(format, &bytes, encoding);
@@ -202,17 +203,15 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
     Ok((source, known.clone()))
 }
 
-/// The bytes of an image, and whether they are in no buffer.
-fn bytes(document: &Document, source: usize, place: &Place) -> Result<(Vec<u8>, bool), GltfFault> {
+/// The bytes of an image.
+fn resource(document: &Document, source: usize, place: &Place) -> Result<Resource, GltfFault> {
     let image = &document.root.images[source];
     match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => {
-            let bytes = container::resource(&document.folder, uri, &place.key("uri"))?;
-            Ok((bytes, !uri.starts_with("data:")))
-        }
+        (Some(uri), _) => document.resource(uri, &place.key("uri")),
         (None, Some(view)) => {
             let (bytes, _) = document.view(view, &place.key("bufferView"))?;
-            Ok((bytes.to_vec(), false))
+            let bytes = bytes.to_vec();
+            Ok(Resource { bytes, file: None })
         }
         (None, None) => Err(place.scene("it has neither `uri` nor `bufferView`")),
     }

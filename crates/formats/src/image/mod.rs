@@ -26,7 +26,7 @@ use catch::catch_silently;
 use std::path::Path;
 
 /// Bytes of a file.
-const LARGEST_FILE: u64 = 1 << 33;
+pub(crate) const LARGEST_FILE: u64 = 1 << 33;
 /// Numbers of an image: 2 GiB.
 const MOST_NUMBERS: u64 = 1 << 29;
 
@@ -91,24 +91,19 @@ impl Format {
 
 /// Reads an image; `encoding` is what a PNG file holds, sRGB where there is none.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
-    read_inspected(path, encoding, |_| ())
+    let format = named_format(path)?;
+    let bytes = bytes::read(path, LARGEST_FILE)?;
+    decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
 }
 
-/// The same as [`read`], with a look at the bytes.
-pub(crate) fn read_inspected(
-    path: &Path,
-    encoding: Option<Encoding>,
-    inspect: impl FnOnce(&[u8]),
-) -> Result<ImageData> {
-    let Some(format) = Format::of(path) else {
+/// The format that the name of an image says, which is one that is read.
+pub(crate) fn named_format(path: &Path) -> Result<Format> {
+    Format::of(path).ok_or_else(|| {
         let error = Error::new(ErrorKind::Unsupported, "an image format that is not read");
-        return Err(error
+        error
             .with_hint("write it as exr, hdr, pfm, png, jpg or tga")
-            .in_file(path));
-    };
-    let bytes = bytes::read(path, LARGEST_FILE)?;
-    inspect(&bytes);
-    decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
+            .in_file(path)
+    })
 }
 
 /// Decodes an image in memory; see [`read`].

@@ -26,11 +26,11 @@ mod v3;
 mod tests;
 
 pub(crate) use build::LARGEST_SIDE;
-pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load};
+pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load, load_from};
 pub use digest::SceneDigest;
 pub(crate) use digest::{Content, DigestBuilder};
 pub use parameters::{Parameter, ParameterList, ParameterType, Values};
-pub use parser::{parse_file, parse_text};
+pub use parser::{parse_file, parse_file_from, parse_text};
 pub use scene::{
     CameraDescription, ColorSpace, Entity, FilmDescription, InstanceDescription, LightDescription,
     MaterialDescription, MediumDescription, MediumInterface, MediumReference, ObjectDescription,

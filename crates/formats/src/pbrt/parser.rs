@@ -9,6 +9,7 @@ use super::state::{OpenBlock, Opener, Scope};
 use super::v3;
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Place, Result};
+use crate::files::Files;
 use crate::source::{Fault, FileId, Span, line_and_column};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -25,22 +26,29 @@ const LONGEST_TEXT: u64 = u32::MAX as u64;
 
 /// Parses a scene file; `-` is standard input.
 pub fn parse_file(path: &Path) -> Result<SceneDescription> {
-    let text = decode(path, bytes::read_or_stdin(path, LONGEST_TEXT)?)?;
+    parse_file_from(path, &Files::default())
+}
+
+/// The same as [`parse_file`], with files from where `files` says.
+pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
+    let text = decode(path, files.read_or_stdin(path, LONGEST_TEXT)?)?;
     let folder = if path.as_os_str() == bytes::STDIN {
         None
     } else {
         path.parent()
     };
-    parse(path, text, folder.unwrap_or(Path::new("")))
+    let parser = Parser::new(folder.unwrap_or(Path::new("")), files.clone());
+    parse(parser, path, text)
 }
 
 /// Parses a scene that is already in memory; files are looked for in the working directory.
 pub fn parse_text(name: &str, text: &str) -> Result<SceneDescription> {
-    parse(Path::new(name), text.to_owned(), Path::new(""))
+    let parser = Parser::new(Path::new(""), Files::default());
+    parse(parser, Path::new(name), text.to_owned())
 }
 
-fn parse(name: &Path, text: String, folder: &Path) -> Result<SceneDescription> {
-    let mut parser = Parser::new(folder);
+fn parse(mut parser: Parser, name: &Path, text: String) -> Result<SceneDescription> {
+    parser.scene.texts.push(name.to_owned());
     let file = parser.scene.sources.add(name, text)?;
     match parser.top(name, file) {
         Ok(()) => Ok(parser.scene),
@@ -91,7 +99,7 @@ pub(super) struct Parser {
 }
 
 impl Parser {
-    fn new(folder: &Path) -> Self {
+    fn new(folder: &Path, files: Files) -> Self {
         let default_material = MaterialDescription {
             name: None,
             entity: None,
@@ -100,6 +108,7 @@ impl Parser {
         let folder = folder.to_owned();
         Self {
             scene: SceneDescription {
+                files,
                 folder,
                 materials,
                 ..SceneDescription::default()
@@ -230,7 +239,10 @@ impl Parser {
 
     fn load(&mut self, path: &Path) -> Result<FileId> {
         // One file has many names.
-        let key = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let key = self.scene.files.identity(path);
+        if !self.scene.texts.iter().any(|known| known == path) {
+            self.scene.texts.push(path.to_owned());
+        }
         if let Some(&file) = self.texts.get(&key) {
             let length = self.scene.sources.text(file).len() as u64;
             let left = self.repeats_left.checked_sub(length);
@@ -240,7 +252,7 @@ impl Parser {
             })?;
             return Ok(file);
         }
-        let text = decode(path, bytes::read(path, LONGEST_TEXT)?)?;
+        let text = decode(path, self.scene.files.read(path, LONGEST_TEXT)?)?;
         let file = self.scene.sources.add(path, text)?;
         self.texts.insert(key, file);
         Ok(file)
@@ -292,7 +304,7 @@ impl SceneDescription {
     pub fn resolve(&self, name: &str) -> PathBuf {
         let beside = self.folder.join(name);
         let here = Path::new(name);
-        if !beside.exists() && here.exists() {
+        if !self.files.exists(&beside) && self.files.exists(here) {
             here.to_owned()
         } else {
             beside

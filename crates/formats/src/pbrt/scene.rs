@@ -2,6 +2,7 @@
 
 use super::parameters::{Parameter, ParameterList};
 use super::transform::Transforms;
+use crate::files::Files;
 use crate::source::{SourceMap, Span};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,6 +15,10 @@ use std::sync::Arc;
 pub struct SceneDescription {
     /// The texts that spans point into.
     pub sources: SourceMap,
+    /// Where files are looked for.
+    pub files: Files,
+    /// The files that the texts are of, by each name that they were asked for.
+    pub texts: Vec<PathBuf>,
     /// The folder that relative file names are taken from: that of the top-level file.
     pub folder: PathBuf,
     /// The camera. None: where the file has no such directive; so below.

@@ -18,7 +18,7 @@ use header::{Element, Header, PropertyKind};
 use std::path::Path;
 
 /// Bytes of a file after unpacking.
-const LARGEST: u64 = 1 << 34;
+pub(crate) const LARGEST: u64 = 1 << 34;
 
 /// A mesh of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,13 +61,7 @@ impl Broken {
 
 /// Reads the mesh of a file; `.gz` is unpacked.
 pub fn read(path: &Path) -> Result<PlyMesh> {
-    read_inspected(path, |_| ())
-}
-
-/// The same as [`read`], with a look at the unpacked bytes.
-pub(crate) fn read_inspected(path: &Path, inspect: impl FnOnce(&[u8])) -> Result<PlyMesh> {
     let bytes = bytes::read(path, LARGEST)?;
-    inspect(&bytes);
     parse(&bytes).map_err(|error| error.in_file(path))
 }
 

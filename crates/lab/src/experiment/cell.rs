@@ -111,6 +111,14 @@ impl Cell<'_> {
         }
     }
 
+    /// Whether `record` is of this render.
+    pub(super) fn is_of(&self, record: &Record) -> bool {
+        record.seed == self.seed
+            && record.scene == self.stage.spec.name
+            && record.method == self.method.name
+            && record.budget == self.budget.name
+    }
+
     /// The name of its image, relative to the folder of the results.
     pub(super) fn image(&self) -> String {
         let names = [&self.stage.spec.name, &self.budget.name, &self.method.name];
@@ -121,6 +129,10 @@ impl Cell<'_> {
 }
 
 impl Rendered {
+    pub(super) fn pixels(&self) -> Pixels {
+        pixels(&self.picture)
+    }
+
     pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
         write_image(path, &pixels(&self.picture))
     }

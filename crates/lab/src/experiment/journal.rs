@@ -4,6 +4,7 @@
 //! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole.
 
 use super::error::ExperimentError;
+use super::run::{Setup, Start};
 use crate::results::{Machine, Pyramid, Record};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -131,6 +132,14 @@ impl Journal {
         Ok(journal)
     }
 
+    /// The journal of a run that begins.
+    pub(super) fn start(setup: &Setup, owner: &Owner) -> Result<Self, ExperimentError> {
+        match setup.start {
+            Start::Resume => Self::open(&setup.folder, owner),
+            Start::Anew => Self::begin(&setup.folder, owner),
+        }
+    }
+
     /// Adds a record.
     pub(super) fn add(&mut self, record: Record) -> Result<(), ExperimentError> {
         self.text += &line(&record);
@@ -159,13 +168,19 @@ impl Journal {
         &self.pyramids
     }
 
-    pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {
-        self.records.iter().any(|record| {
-            record.seed == cell.seed
-                && record.scene == cell.stage.spec.name
-                && record.method == cell.method.name
-                && record.budget == cell.budget.name
+    /// Whether there is a record of the same render.
+    pub(super) fn has_like(&self, record: &Record) -> bool {
+        self.records.iter().any(|other| {
+            let key = |record: &Record| {
+                let names = [&record.scene, &record.method, &record.budget].map(String::clone);
+                (record.seed, names)
+            };
+            key(other) == key(record)
         })
+    }
+
+    pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {
+        self.records.iter().any(|record| cell.is_of(record))
     }
 }
 

@@ -38,12 +38,14 @@
 //! hours, all methods do. A seed is the same for all methods, whose records are paired by it.
 
 pub mod analysis;
+mod block;
 mod cell;
 mod description;
 mod error;
 mod identity;
 mod journal;
 mod names;
+mod page;
 mod pyramid;
 mod reader;
 mod reference;
@@ -51,7 +53,9 @@ mod run;
 mod settings;
 mod stage;
 
+pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use error::{ExperimentError, Fault};
+pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
 pub use settings::{Changes, texts};
 

@@ -10,7 +10,10 @@ use super::pyramid;
 use super::reference;
 use super::settings::texts;
 use super::stage::{Reference, Stage};
+
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
+use bidir::scene::Isa;
+use formats::scene::Files;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -115,30 +118,8 @@ pub struct Outcome {
 
 /// Runs what no record has yet, and writes `results.json`.
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
-    for folder in ["", "images", "references"] {
-        let path = setup.folder.join(folder);
-        std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
-    }
-    let stages = experiment
-        .scenes
-        .iter()
-        .map(|spec| Stage::load(experiment, spec));
-    let stages = stages.collect::<Result<Vec<_>>>()?;
-    for warning in stages.iter().flat_map(|stage| &stage.warnings) {
-        observer.tell(Event::Warning(warning));
-    }
-    pyramid::check(experiment, &stages)?;
-    let given = stages.iter().map(reference::given);
-    let given = given.collect::<Result<Vec<_>>>()?;
-    let owner = Owner {
-        experiment: identity(experiment, &stages, &given),
-        program: setup.program.clone(),
-        machine: machine(experiment, setup),
-    };
-    let mut journal = match setup.start {
-        Start::Resume => Journal::open(&setup.folder, &owner)?,
-        Start::Anew => Journal::begin(&setup.folder, &owner)?,
-    };
+    let (stages, given, owner) = begin(experiment, setup, observer)?;
+    let mut journal = Journal::start(setup, &owner)?;
     let mut references = Vec::new();
     for (stage, given) in stages.iter().zip(given) {
         match reference::obtain(stage, given, setup, experiment.threads, observer)? {
@@ -174,6 +155,56 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     })
 }
 
+/// What there is of an experiment before anything is rendered: its scenes, the references that are
+/// there, and whose records are made.
+pub(super) type Begun<'a> = (Vec<Stage<'a>>, Vec<Option<Reference>>, Owner);
+
+/// Makes the folders, reads the scenes and the references that are there.
+pub(super) fn begin<'a>(
+    experiment: &'a Experiment,
+    setup: &Setup,
+    observer: &mut dyn Observer,
+) -> Result<Begun<'a>> {
+    for folder in ["", "images", "references"] {
+        let path = setup.folder.join(folder);
+        std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
+    }
+    let stages = experiment
+        .scenes
+        .iter()
+        .map(|spec| Stage::load(experiment, spec, &Files::default()));
+    let stages = stages.collect::<Result<Vec<_>>>()?;
+    for warning in stages.iter().flat_map(|stage| &stage.warnings) {
+        observer.tell(Event::Warning(warning));
+    }
+    pyramid::check(experiment, &stages)?;
+    let given = stages.iter().map(reference::given);
+    let given = given.collect::<Result<Vec<_>>>()?;
+    let owner = Owner {
+        experiment: identity(experiment, &stages, &given),
+        program: setup.program.clone(),
+        machine: machine(experiment, setup),
+    };
+    Ok((stages, given, owner))
+}
+
+impl Machine {
+    /// This one; the number of threads is filled in by [`run`].
+    pub fn here() -> Self {
+        let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = processor.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            (name.trim() == "model name").then(|| value.trim().to_owned())
+        });
+        Self {
+            processor: model.unwrap_or_else(|| "unknown".to_owned()),
+            isa: Isa::detect().name().to_owned(),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            threads: 0,
+        }
+    }
+}
+
 /// What an experiment runs on.
 fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
     Machine {
@@ -194,17 +225,17 @@ fn json(results: &Results) -> String {
 }
 
 /// What is rendered and compared.
-struct Work<'a> {
-    experiment: &'a Experiment,
-    setup: &'a Setup,
-    stages: &'a [Stage<'a>],
+pub(super) struct Work<'a> {
+    pub(super) experiment: &'a Experiment,
+    pub(super) setup: &'a Setup,
+    pub(super) stages: &'a [Stage<'a>],
     /// One for each stage.
-    references: &'a [Reference],
+    pub(super) references: &'a [Reference],
 }
 
 impl Work<'_> {
     /// All renders in their order, each with its reference.
-    fn cells(&self) -> impl Iterator<Item = (Cell<'_>, &Reference)> {
+    pub(super) fn cells(&self) -> impl Iterator<Item = (Cell<'_>, &Reference)> {
         let Self {
             experiment,
             stages,
@@ -287,10 +318,19 @@ impl Work<'_> {
                 .collect(),
             methods: self.methods(),
             budgets: budgets.collect(),
-            records: records.to_vec(),
+            records: self.ordered(records),
             pyramids: Vec::new(),
             claims: Vec::new(),
         }
+    }
+
+    /// The records in the order of the renders, in which other machines may not have made them.
+    fn ordered(&self, records: &[Record]) -> Vec<Record> {
+        let record = |(cell, _): (Cell<'_>, _)| {
+            let mut records = records.iter();
+            records.find(|record| cell.is_of(record)).cloned()
+        };
+        self.cells().filter_map(record).collect()
     }
 
     /// The methods with their settings; where those are the scenes', which differ, they say so.

@@ -6,7 +6,8 @@ use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::scene::Scene;
-use formats::scene::LoadOptions;
+use formats::scene::{Files, LoadOptions};
+use std::path::PathBuf;
 
 /// A scene with what its file says.
 pub(super) struct Stage<'a> {
@@ -17,6 +18,8 @@ pub(super) struct Stage<'a> {
     pub(super) digest: String,
     /// What is odd in the file but no error.
     pub(super) warnings: Vec<String>,
+    /// All files that were read.
+    pub(super) files: Vec<PathBuf>,
 }
 
 /// What the images of a scene are compared with.
@@ -35,12 +38,13 @@ impl<'a> Stage<'a> {
     pub(super) fn load(
         experiment: &Experiment,
         spec: &'a SceneSpec,
+        files: &Files,
     ) -> Result<Self, ExperimentError> {
         let options = LoadOptions {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
         };
-        let loaded = formats::scene::load(&spec.path, &options)?;
+        let loaded = formats::scene::load_from(&spec.path, &options, files)?;
         let mut settings = Settings {
             integrator: loaded.settings.integrator,
             sampler: loaded.settings.sampler,
@@ -54,6 +58,7 @@ impl<'a> Stage<'a> {
             settings,
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
+            files: loaded.files,
         })
     }
 

@@ -39,9 +39,11 @@ mod strategies;
 mod table;
 #[cfg(test)]
 mod tests;
+mod text;
 mod viewer;
 
 pub use flip::add_flip;
+pub use text::table_text;
 
 use crate::image::Pixels;
 use crate::metric::ErrorMap;

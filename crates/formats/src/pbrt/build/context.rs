@@ -1,8 +1,7 @@
 //! What building knows throughout: the description, what the caller wants, warnings, what was read.
 
 use super::LoadOptions;
-use crate::bytes;
-use crate::error::ErrorKind;
+use crate::error::{Error, ErrorKind};
 use crate::image::{self, Encoding, ImageData};
 use crate::pbrt::digest::{Content, DigestBuilder};
 use crate::pbrt::scene::{SceneDescription, Warning, warn};
@@ -10,7 +9,7 @@ use crate::ply::{self, PlyMesh};
 use crate::source::{Fault, Span};
 use crate::spectra::Spectrum;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Whether something simpler may replace what is not supported yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +27,8 @@ pub(super) struct Context<'a> {
     pub(super) refused: BTreeSet<String>,
     /// Of the texts and of every file that was read since.
     pub(super) digest: DigestBuilder,
+    /// Their names.
+    pub(super) files: Vec<PathBuf>,
 }
 
 impl<'a> Context<'a> {
@@ -48,13 +49,15 @@ impl<'a> Context<'a> {
             warnings: description.warnings.clone(),
             refused: BTreeSet::new(),
             digest,
+            files: description.texts.clone(),
         }
     }
 
     /// Reads a mesh, which `span` names.
     pub(super) fn read_mesh(&mut self, path: &Path, span: Span) -> Result<PlyMesh, Fault> {
-        let inspect = |bytes: &[u8]| self.digest.add(Content::Mesh, bytes);
-        ply::read_inspected(path, inspect).map_err(|error| Fault::from_error(span, &error))
+        let bytes = self.read(path, ply::LARGEST, Content::Mesh, span)?;
+        let parsed = ply::parse(&bytes).map_err(|error| error.in_file(path));
+        parsed.map_err(|error| Fault::from_error(span, &error))
     }
 
     /// Reads an image, which `span` names.
@@ -64,16 +67,32 @@ impl<'a> Context<'a> {
         encoding: Option<Encoding>,
         span: Span,
     ) -> Result<ImageData, Fault> {
-        let inspect = |bytes: &[u8]| self.digest.add(Content::Image, bytes);
-        image::read_inspected(path, encoding, inspect)
-            .map_err(|error| Fault::from_error(span, &error))
+        let refuse = |error: Error| Fault::from_error(span, &error);
+        let format = image::named_format(path).map_err(refuse)?;
+        let bytes = self.read(path, image::LARGEST_FILE, Content::Image, span)?;
+        let decoded = image::decode(format, &bytes, encoding);
+        decoded.map_err(|error| refuse(error.in_file(path)))
+    }
+
+    /// Reads a file of the scene.
+    fn read(
+        &mut self,
+        path: &Path,
+        limit: u64,
+        content: Content,
+        span: Span,
+    ) -> Result<Vec<u8>, Fault> {
+        let read = self.description.files.read(path, limit);
+        let bytes = read.map_err(|error| Fault::from_error(span, &error))?;
+        self.digest.add(content, &bytes);
+        self.files.push(path.to_owned());
+        Ok(bytes)
     }
 
     /// Reads a spectrum, which `span` names.
     pub(super) fn read_spectrum(&mut self, path: &Path, span: Span) -> Result<Spectrum, Fault> {
         const LONGEST: u64 = 1 << 24;
-        let bytes = bytes::read(path, LONGEST).map_err(|error| Fault::from_error(span, &error))?;
-        self.digest.add(Content::Spectrum, &bytes);
+        let bytes = self.read(path, LONGEST, Content::Spectrum, span)?;
         let refuse = |message: String| {
             let message = format!("{}: {message}", path.display());
             Fault::scene(span, message)

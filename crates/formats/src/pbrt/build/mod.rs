@@ -36,6 +36,7 @@ pub use settings::SceneSettings;
 use super::digest::SceneDigest;
 use super::scene::{SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
+use crate::files::Files;
 use crate::source::{Fault, SourceMap, Span};
 use bidir::math::Vec3;
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
@@ -47,7 +48,7 @@ use glam::DAffine3;
 use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use texture::Textures;
 
 /// What a caller may want otherwise than the file.
@@ -92,6 +93,8 @@ pub struct Loaded {
     pub summary: Summary,
     /// Which scene it is.
     pub digest: SceneDigest,
+    /// Every file that was read, by each name that it was asked for; the scene file is the first.
+    pub files: Vec<PathBuf>,
 }
 
 /// What a scene is made of.
@@ -115,7 +118,12 @@ pub struct Summary {
 
 /// Reads a scene file with all that it refers to; `-` is standard input.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
-    build(&super::parse_file(path)?, options)
+    load_from(path, options, &Files::default())
+}
+
+/// The same as [`load`], with files from where `files` says.
+pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
+    build(&super::parse_file_from(path, files)?, options)
 }
 
 /// Builds a described scene: reads its meshes and images, and checks everything.
@@ -141,6 +149,7 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
         refused: refused.map(text).collect(),
         summary,
         digest: context.digest.finish(),
+        files: context.files,
     })
 }
 

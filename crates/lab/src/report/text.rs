@@ -1,9 +1,9 @@
 //! Tables as text.
 
-use lab::results::{Cell, Table};
+use crate::results::{Cell, Table};
 
 /// A table with its caption, in columns.
-pub(super) fn text(table: &Table) -> String {
+pub fn table_text(table: &Table) -> String {
     let head = table.columns.clone();
     let rows = table.rows.iter().map(|row| row.iter().map(cell).collect());
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
@@ -87,6 +87,6 @@ mod tests {
                         method         rmse\n\
                         a longer name  2\n\
                         b              1.50 [1.25, 1.75]\n";
-        assert_eq!(text(&table), expected);
+        assert_eq!(table_text(&table), expected);
     }
 }

@@ -1,0 +1,90 @@
+//! `bidir experiment --ray`: the Python package runs the experiment on a cluster.
+
+use super::builtin;
+use crate::args::ExperimentArgs;
+use crate::exit::{Exit, Failure};
+use crate::signals::Signals;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+/// How often it is asked whether the other program has ended.
+const POLL: Duration = Duration::from_millis(100);
+
+/// Runs the experiment on the cluster at `address`, and ends as that does.
+pub(super) fn run(
+    args: &ExperimentArgs,
+    address: &str,
+    signals: &Signals,
+) -> Result<Exit, Failure> {
+    for name in [builtin::PAPER, builtin::BEYOND] {
+        if args.description == Path::new(name) {
+            let message = format!("`{name}` runs on one machine: --ray takes a description");
+            return Err(Failure::usage(message));
+        }
+    }
+    let python = std::env::var("BIDIR_PYTHON").unwrap_or_else(|_| "python3".into());
+    check(&python)?;
+    let mut command = Command::new(&python);
+    command.args(["-m", "bidir.ray", "experiment"]);
+    command.arg(&args.description);
+    command.arg("--output").arg(&args.output);
+    command.args(["--address", address]);
+    let flags = [
+        (args.quick, "--quick"),
+        (args.restart, "--restart"),
+        (args.quiet, "--quiet"),
+    ];
+    command.args(
+        flags
+            .iter()
+            .filter(|(is_set, _)| *is_set)
+            .map(|(_, name)| name),
+    );
+    let child = command
+        .spawn()
+        .map_err(|error| missing(&python, &error.to_string()))?;
+    wait(child, signals)
+}
+
+/// Waits until the other program has ended. Ctrl-C reaches it as it reaches this one.
+fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
+    loop {
+        let status = child.try_wait();
+        let status = status.map_err(|error| missing("python3", &error.to_string()))?;
+        if let Some(status) = status {
+            return Ok(Exit::of_code(status.code()));
+        }
+        if signals.exit() == Some(Exit::Terminated) {
+            // Records are replaced as a whole: nothing is lost but the renders that run.
+            let _ = child.kill();
+            let _ = child.wait();
+            return Ok(Exit::Checkpoint);
+        }
+        std::thread::sleep(POLL);
+    }
+}
+
+/// Fails where the interpreter or the package is not there.
+fn check(python: &str) -> Result<(), Failure> {
+    let mut command = Command::new(python);
+    command
+        .args(["-c", "import bidir.ray"])
+        .stdin(Stdio::null());
+    let output = command
+        .output()
+        .map_err(|error| missing(python, &error.to_string()))?;
+    if output.status.success() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&output.stderr);
+    let last = said.trim().lines().next_back().unwrap_or("it fails");
+    Err(missing(python, last))
+}
+
+fn missing(python: &str, why: &str) -> Failure {
+    let message = format!("--ray needs the Python package bidir with Ray: {python}: {why}");
+    let hint = "`pip install '.[ray]'` in the repository installs it; BIDIR_PYTHON names the \
+                interpreter that has it";
+    Failure::new(Exit::InputOutput, message).with_hint(hint)
+}

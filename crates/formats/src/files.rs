@@ -1,0 +1,189 @@
+//! Where the files of a scene come from: the disk, or memory.
+
+use crate::bytes;
+use crate::error::{Error, ErrorKind, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The contents of files by the names that they are asked for.
+pub type InMemory = BTreeMap<PathBuf, Arc<[u8]>>;
+
+/// Where files are looked for. The default is the disk.
+///
+/// A scene whose files are all here is the same wherever it is read: so scenes are sent to other
+/// machines. Names that share one [`Arc`] are names of one file. Bytes are as on the disk: those of
+/// a name that ends in `.gz` are packed.
+///
+/// ```
+/// use bidir_formats::scene::{Files, LoadOptions, load_from};
+/// use std::path::{Path, PathBuf};
+/// use std::sync::Arc;
+///
+/// let text = "WorldBegin LightSource \"infinite\"";
+/// let name = PathBuf::from("sky.pbrt");
+/// let files = Files::only([(name, Arc::from(text.as_bytes()))].into());
+/// let loaded = load_from(Path::new("sky.pbrt"), &LoadOptions::default(), &files)?;
+/// assert_eq!(loaded.files, [PathBuf::from("sky.pbrt")]);
+/// # Ok::<(), bidir_formats::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Files {
+    memory: Arc<InMemory>,
+    others: Others,
+}
+
+/// What becomes of names that are not in memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Others {
+    #[default]
+    OnDisk,
+    Missing,
+}
+
+impl Files {
+    /// These files, and no others.
+    pub fn only(memory: InMemory) -> Self {
+        Self {
+            memory: Arc::new(memory),
+            others: Others::Missing,
+        }
+    }
+
+    /// These files, and where a name is none of theirs, the disk.
+    pub fn over_disk(memory: InMemory) -> Self {
+        Self {
+            memory: Arc::new(memory),
+            others: Others::OnDisk,
+        }
+    }
+
+    /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
+    pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        match (self.memory.get(path), self.others) {
+            (Some(stored), _) => bytes::unpack(stored, path, limit),
+            (None, Others::OnDisk) => bytes::read(path, limit),
+            (None, Others::Missing) => {
+                let error = Error::new(ErrorKind::MissingFile, "cannot open: no such file");
+                Err(error.in_file(path))
+            }
+        }
+    }
+
+    /// The same as [`read`](Self::read), where `-` is standard input unless it is in memory.
+    pub(crate) fn read_or_stdin(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+        let is_stdin = path.as_os_str() == bytes::STDIN && self.others == Others::OnDisk;
+        if is_stdin && !self.memory.contains_key(path) {
+            return bytes::read_or_stdin(path, limit);
+        }
+        self.read(path, limit)
+    }
+
+    /// Is there such a file?
+    pub(crate) fn exists(&self, path: &Path) -> bool {
+        let is_on_disk = || self.others == Others::OnDisk && path.exists();
+        self.memory.contains_key(path) || is_on_disk()
+    }
+
+    /// The name that stands for all names of one file.
+    pub(crate) fn identity(&self, path: &Path) -> PathBuf {
+        let Some(stored) = self.memory.get(path) else {
+            return path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        };
+        let mut names = self.memory.iter();
+        let first = names.find(|(_, other)| Arc::ptr_eq(stored, other));
+        first.map_or(path, |(name, _)| name).to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{LoadOptions, Loaded, load, load_from};
+
+    const SCENE: &str = "WorldBegin\n\
+        Include \"part.pbrt\" Include \"sub/../part.pbrt\"\n\
+        Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n\
+        Material \"diffuse\" \"texture reflectance\" \"t\"\n\
+        Shape \"plymesh\" \"string filename\" \"m.ply\"\n";
+    const PART: &str = "LightSource \"point\"\n";
+    const MESH: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n\
+        property float y\nproperty float z\nelement face 1\n\
+        property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+    fn contents() -> [(&'static str, Vec<u8>); 4] {
+        let mut image = b"PF\n1 1\n-1.0\n".to_vec();
+        image.extend([0.5f32; 3].iter().flat_map(|channel| channel.to_le_bytes()));
+        [
+            ("s.pbrt", SCENE.into()),
+            ("part.pbrt", PART.into()),
+            ("m.ply", MESH.into()),
+            ("t.pfm", image),
+        ]
+    }
+
+    fn in_memory(folder: &Path, loaded: &Loaded) -> InMemory {
+        let mut memory = InMemory::new();
+        for (name, bytes) in contents() {
+            let bytes: Arc<[u8]> = bytes.into();
+            let is_this = |path: &&PathBuf| path.ends_with(name);
+            for path in loaded.files.iter().filter(is_this) {
+                memory.insert(path.clone(), Arc::clone(&bytes));
+            }
+            assert!(memory.contains_key(&folder.join(name)), "{name}");
+        }
+        memory
+    }
+
+    #[test]
+    fn a_scene_is_the_same_from_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, bytes) in contents() {
+            std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        std::fs::create_dir(folder.path().join("sub")).unwrap();
+        let scene = folder.path().join("s.pbrt");
+        let options = LoadOptions::default();
+        let there = load(&scene, &options).unwrap();
+        // Each file under every name that it was asked for by.
+        assert_eq!(there.files.len(), 5, "{:?}", there.files);
+        let memory = in_memory(folder.path(), &there);
+        drop(folder);
+        let here = load_from(&scene, &options, &Files::only(memory.clone())).unwrap();
+        assert_eq!((here.digest, &here.files), (there.digest, &there.files));
+        let mut others = memory.clone();
+        others.retain(|path, _| !path.ends_with("m.ply"));
+        let error = load_from(&scene, &options, &Files::only(others)).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::MissingFile);
+        assert_eq!((error.line(), error.column()), (Some(5), Some(35)));
+        // Another byte is another scene.
+        let mut changed = memory;
+        let part = PART.replace("point", "infinite");
+        let part: Arc<[u8]> = part.into_bytes().into();
+        let parts = changed
+            .iter_mut()
+            .filter(|(path, _)| path.ends_with("part.pbrt"));
+        parts.for_each(|(_, bytes)| *bytes = Arc::clone(&part));
+        let other = load_from(&scene, &options, &Files::only(changed)).unwrap();
+        assert_ne!(other.digest, there.digest);
+    }
+
+    #[test]
+    fn what_is_in_memory_comes_first_and_the_disk_second() {
+        let folder = tempfile::tempdir().unwrap();
+        let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
+        for path in [&a, &b] {
+            std::fs::write(path, b"disk").unwrap();
+        }
+        let memory: InMemory = [(a.clone(), Arc::from(&b"memory"[..]))].into();
+        let both = Files::over_disk(memory.clone());
+        assert_eq!(both.read(&a, 9).unwrap(), b"memory");
+        assert_eq!(both.read(&b, 9).unwrap(), b"disk");
+        assert_eq!(both.read(&a, 3).unwrap_err().kind(), ErrorKind::Limit);
+        let only = Files::only(memory);
+        assert!(both.exists(&b) && only.exists(&a) && !only.exists(&b));
+        assert_eq!(only.read(&b, 9).unwrap_err().kind(), ErrorKind::MissingFile);
+        let stdin = only.read_or_stdin(Path::new("-"), 9).unwrap_err();
+        assert_eq!(stdin.kind(), ErrorKind::MissingFile);
+    }
+}

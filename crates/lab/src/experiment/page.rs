@@ -1,0 +1,83 @@
+//! The page for people, of what lies in the folder of the results.
+
+use super::analysis::Section;
+use super::error::ExperimentError;
+use crate::image::Pixels;
+use crate::report::{self, ImageKind, Report, ReportImage, Sheet};
+use crate::results::Results;
+use std::path::Path;
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The name of the page for people.
+pub const PAGE: &str = "report.html";
+
+/// Writes [`PAGE`] into the folder of the results; `command` makes the experiment again.
+///
+/// Errors: an image that the results name cannot be read, or the page not be written.
+pub fn write_page(
+    folder: &Path,
+    results: &Results,
+    sections: &[Section],
+    command: &str,
+) -> Result<()> {
+    let (mut tables, mut plots) = (Vec::new(), Vec::new());
+    for section in sections {
+        tables.extend(section.tables.iter().cloned());
+        plots.extend(section.plots.iter().cloned());
+    }
+    let page = report::html(&Report {
+        results,
+        tables: &tables,
+        plots: &plots,
+        images: &images(folder, results)?,
+        sheets: &sheets(folder, results)?,
+        command,
+    });
+    Ok(formats::file::replace(&folder.join(PAGE), page.as_bytes())?)
+}
+
+/// The contact sheets of strategies.
+fn sheets(folder: &Path, results: &Results) -> Result<Vec<Sheet>> {
+    let names = results.pyramids.iter();
+    let names = names.flat_map(|pyramid| [&pyramid.weighted, &pyramid.raw]);
+    let read = |name: &String| {
+        let path = folder.join(name);
+        let png = std::fs::read(&path).map_err(|error| ExperimentError::Folder { path, error })?;
+        let name = name.clone();
+        Ok(Sheet { name, png })
+    };
+    names.map(read).collect()
+}
+
+/// The images of the first seed, and the references that they are compared with.
+fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>> {
+    let has_image = |scene: &str| {
+        let mut records = results.records.iter();
+        records.any(|record| record.scene == scene && record.image.is_some())
+    };
+    let scenes = results.scenes.iter().filter(|scene| has_image(&scene.name));
+    let references = scenes.filter_map(|scene| {
+        let image = scene.reference_image.as_ref()?;
+        Some((&scene.name, ImageKind::Reference, image))
+    });
+    let renders = results.records.iter().filter_map(|record| {
+        let kind = ImageKind::Render {
+            method: record.method.clone(),
+            budget: record.budget.clone(),
+        };
+        Some((&record.scene, kind, record.image.as_ref()?))
+    });
+    let all = references.chain(renders).map(|(scene, kind, image)| {
+        let image = formats::image::read(&folder.join(image), None)?;
+        Ok(ReportImage {
+            scene: scene.clone(),
+            kind,
+            pixels: Pixels::from(&image),
+            flip: None,
+        })
+    });
+    let mut images = all.collect::<Result<Vec<_>>>()?;
+    report::add_flip(&mut images);
+    Ok(images)
+}

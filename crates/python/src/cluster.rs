@@ -1,0 +1,121 @@
+//! Experiments on several machines: what the driver asks for, and what a node does.
+
+use crate::error::{of_experiment, raise};
+use crate::experiment::{Experiment, Heard, Reporter};
+use crate::film::bytes;
+use crate::image::pixels;
+use crate::scene::{MemoryFile, in_memory};
+use crate::wait::wait;
+use formats::scene::Files;
+use lab::experiment::{self, Block, Done, PreparedScene};
+use lab::results::Machine;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::path::PathBuf;
+
+/// What times depend on, as JSON.
+#[pyfunction]
+pub(crate) fn machine() -> String {
+    serde_json::to_string(&Machine::here()).unwrap_or_default()
+}
+
+/// An experiment that has its references.
+#[pyclass(frozen, module = "bidir._bidir")]
+pub(crate) struct Prepared(pub(crate) experiment::Prepared);
+
+/// A scene: name, file, all files, width and height and pixels of the reference.
+type SceneTuple<'py> = (
+    String,
+    PathBuf,
+    Vec<PathBuf>,
+    [usize; 2],
+    Bound<'py, PyBytes>,
+);
+/// A record as JSON, and the pixels of its image.
+type DoneTuple<'py> = (String, Option<([usize; 2], Bound<'py, PyBytes>)>);
+
+fn wrong(py: Python<'_>, error: &serde_json::Error) -> PyErr {
+    raise(
+        py,
+        "ExperimentError",
+        &format!("no part of an experiment: {error}"),
+    )
+}
+
+#[pymethods]
+impl Prepared {
+    /// The scenes.
+    #[getter]
+    fn scenes<'py>(&self, py: Python<'py>) -> PyResult<Vec<SceneTuple<'py>>> {
+        let tuple = |scene: &PreparedScene| {
+            let PreparedScene {
+                name,
+                path,
+                files,
+                reference,
+            } = scene;
+            let data = bytes(py, reference.data.as_flattened())?;
+            Ok((
+                name.clone(),
+                path.clone(),
+                files.clone(),
+                reference.size,
+                data,
+            ))
+        };
+        self.0.scenes.iter().map(tuple).collect()
+    }
+
+    /// What has no record yet, as JSON.
+    #[getter]
+    fn blocks(&self) -> Vec<String> {
+        let blocks = self.0.blocks.iter();
+        blocks
+            .filter_map(|block| serde_json::to_string(block).ok())
+            .collect()
+    }
+
+    /// Adds what `render_block` gave.
+    fn add(&self, py: Python<'_>, done: Vec<DoneTuple<'_>>) -> PyResult<()> {
+        let read = |(record, image): DoneTuple<'_>| {
+            let image = image.map(|(size, data)| pixels(py, size, data.as_bytes()));
+            Ok(Done {
+                record: serde_json::from_str(&record).map_err(|error| wrong(py, &error))?,
+                image: image.transpose()?,
+            })
+        };
+        let done = done.into_iter().map(read).collect::<PyResult<Vec<_>>>()?;
+        let added = py.detach(|| self.0.add(done));
+        added.map_err(|error| of_experiment(py, &error))
+    }
+}
+
+/// Renders a block, given as JSON, of a scene with these files and this reference.
+#[pyfunction]
+pub(crate) fn render_block<'py>(
+    py: Python<'py>,
+    experiment: &Experiment,
+    block: &str,
+    files: Vec<MemoryFile>,
+    reference: ([usize; 2], Vec<u8>),
+) -> PyResult<Vec<DoneTuple<'py>>> {
+    let block: Block = serde_json::from_str(block).map_err(|error| wrong(py, &error))?;
+    let reference = pixels(py, reference.0, &reference.1)?;
+    let files = Files::only(in_memory(files));
+    let silent = |_: Python<'_>, _: Heard| Ok(());
+    let done = wait(py, silent, |stop, sender| {
+        let mut reporter = Reporter::new(stop, sender);
+        let from = (&files, &reference);
+        experiment::render_block(&experiment.experiment, &block, from, &mut reporter)
+    })?;
+    let done = done.map_err(|error| of_experiment(py, &error))?;
+    let tuple = |Done { record, image }| {
+        let record = serde_json::to_string(&record).map_err(|error| wrong(py, &error))?;
+        let image = match image {
+            Some(image) => Some((image.size, bytes(py, image.data.as_flattened())?)),
+            None => None,
+        };
+        Ok((record, image))
+    };
+    done.unwrap_or_default().into_iter().map(tuple).collect()
+}

@@ -1,0 +1,91 @@
+//! Errors as exceptions: the classes are those of `bidir.errors`.
+
+use formats::ErrorKind;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::Path;
+
+/// An exception of `bidir.errors` with a message, and with attributes that are told by name.
+fn exception(py: Python<'_>, class: &str, message: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
+    let made = py
+        .import("bidir.errors")
+        .and_then(|module| module.getattr(class))
+        .and_then(|class| class.call((message,), Some(attributes)));
+    made.map_or_else(|error| error, PyErr::from_value)
+}
+
+/// An exception of `bidir.errors` that has a message alone.
+pub(crate) fn raise(py: Python<'_>, class: &str, message: &str) -> PyErr {
+    exception(py, class, message, &PyDict::new(py))
+}
+
+/// Where something is wrong, and what to do about it.
+struct Details<'a> {
+    message: &'a str,
+    hint: Option<&'a str>,
+    file: Option<&'a Path>,
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+fn detailed(py: Python<'_>, class: &str, text: &str, details: &Details<'_>) -> PyErr {
+    let attributes = PyDict::new(py);
+    let file = details.file.map(|file| file.display().to_string());
+    let set = attributes
+        .set_item("reason", details.message)
+        .and_then(|()| attributes.set_item("hint", details.hint))
+        .and_then(|()| attributes.set_item("file", file))
+        .and_then(|()| attributes.set_item("line", details.line))
+        .and_then(|()| attributes.set_item("column", details.column));
+    match set {
+        Ok(()) => exception(py, class, text, &attributes),
+        Err(error) => error,
+    }
+}
+
+/// What a file of a scene, an image or a film file is refused for.
+pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
+    let class = match error.kind() {
+        ErrorKind::Unsupported => "UnsupportedError",
+        ErrorKind::Options => "SettingsError",
+        // What a scene names at a place is a matter of the scene.
+        _ if error.line().is_some() => "SceneError",
+        ErrorKind::Syntax | ErrorKind::Scene | ErrorKind::Limit => "SceneError",
+        ErrorKind::Data => "DataError",
+        ErrorKind::MissingFile => "MissingFileError",
+        ErrorKind::Io => "FileError",
+    };
+    let details = Details {
+        message: error.message(),
+        hint: error.hint(),
+        file: error.file(),
+        line: error.line(),
+        column: error.column(),
+    };
+    detailed(py, class, &error.to_string(), &details)
+}
+
+/// What keeps an experiment from its results.
+pub(crate) fn of_experiment(py: Python<'_>, error: &lab::experiment::ExperimentError) -> PyErr {
+    use lab::experiment::ExperimentError;
+    if let ExperimentError::File(error) = error {
+        return of_file(py, error);
+    }
+    let fault = match error {
+        ExperimentError::Description(fault) => Some(fault),
+        _ => None,
+    };
+    let message = error.to_string();
+    let text = match error.hint() {
+        Some(hint) => format!("{message}; {hint}"),
+        None => message.clone(),
+    };
+    let details = Details {
+        message: fault.map_or(&message, |fault| &fault.message),
+        hint: error.hint(),
+        file: fault.map(|fault| fault.file.as_path()),
+        line: fault.map(|fault| fault.line),
+        column: fault.map(|fault| fault.column),
+    };
+    detailed(py, "ExperimentError", &text, &details)
+}

@@ -1,0 +1,218 @@
+//! Films: exact sums, and pictures made of them.
+
+use crate::error::{of_file, raise};
+use bidir::film::{LayerImage, PassSet, Picture};
+use formats::film::{FilmFile, FilmHeader, counts_by_name, decode, encode, metadata, read, write};
+use formats::image::{ExrImage, ExrLayer, Format, write_exr, write_png};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// The exact sums of some passes of a render, with whose they are.
+#[pyclass(frozen, module = "bidir._bidir")]
+pub(crate) struct Film(FilmFile);
+
+/// Ranges of passes, each with its exclusive end.
+pub(crate) fn ranges(passes: &PassSet) -> Vec<(u64, u64)> {
+    let ranges = passes.ranges().iter();
+    ranges.map(|range| (range.start, range.end)).collect()
+}
+
+/// Numbers as bytes.
+pub(crate) fn bytes<'py>(py: Python<'py>, numbers: &[f32]) -> PyResult<Bound<'py, PyBytes>> {
+    PyBytes::new_with(py, size_of_val(numbers), |bytes| {
+        for (to, number) in bytes.chunks_exact_mut(4).zip(numbers) {
+            to.copy_from_slice(&number.to_le_bytes());
+        }
+        Ok(())
+    })
+}
+
+/// An image beside the picture: its name, the channels' names, their numbers side by side.
+type Layer<'py> = (String, Vec<&'static str>, Bound<'py, PyBytes>);
+
+/// Width and height, the picture, the variance, and the images beside it.
+type Developed<'py> = (
+    [usize; 2],
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+    Vec<Layer<'py>>,
+);
+
+impl Film {
+    pub(crate) fn new(header: FilmHeader, film: bidir::film::Film) -> Self {
+        let header = header.of(&film);
+        Self(FilmFile { header, film })
+    }
+
+    pub(crate) fn file(&self) -> &FilmFile {
+        &self.0
+    }
+}
+
+#[pymethods]
+impl Film {
+    /// Reads a film file.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let file = py.detach(|| read(&path));
+        file.map(Self).map_err(|error| of_file(py, &error))
+    }
+
+    /// Reads the bytes of a film file.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+        let file = py.detach(|| decode(data));
+        file.map(Self).map_err(|error| of_file(py, &error))
+    }
+
+    /// The bytes of a film file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let encoded = py.detach(|| encode(&self.0.header, &self.0.film));
+        PyBytes::new(py, &encoded)
+    }
+
+    /// Writes a film file.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let written = py.detach(|| write(&path, &self.0.header, &self.0.film));
+        written.map_err(|error| of_file(py, &error))
+    }
+
+    /// The film of both.
+    fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        let merged = py.detach(|| {
+            let (a, b) = (&self.0, &other.0);
+            if let Some(difference) = a.header.difference(&b.header) {
+                return Err(format!("films of different renders: {difference}"));
+            }
+            let mut film = a.film.clone();
+            film.merge(&b.film).map_err(|error| error.to_string())?;
+            Ok(Self::new(a.header.joined(&b.header), film))
+        });
+        merged.map_err(|message| raise(py, "FilmError", &message))
+    }
+
+    /// Whether both have the same passes of the same render, bit for bit.
+    fn equals(&self, py: Python<'_>, other: &Self) -> bool {
+        let (a, b) = (&self.0, &other.0);
+        a.header.identity == b.header.identity && py.detach(|| a.film == b.film)
+    }
+
+    /// The picture and the images beside it.
+    fn develop<'py>(&self, py: Python<'py>) -> PyResult<Developed<'py>> {
+        let film = &self.0.film;
+        let (picture, layers) = py.detach(|| (film.develop(), film.develop_layers()));
+        let layers = layers.into_iter().map(|layer| {
+            let data = bytes(py, &layer.data)?;
+            Ok((layer.name, layer.channels.to_vec(), data))
+        });
+        Ok((
+            [picture.width, picture.height],
+            bytes(py, picture.pixels.as_flattened())?,
+            bytes(py, picture.variance.as_flattened())?,
+            layers.collect::<PyResult<_>>()?,
+        ))
+    }
+
+    /// Writes the picture: with its layers and attributes to EXR, alone to PNG.
+    fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let film = &self.0.film;
+        let written = match Format::of(&path) {
+            Some(Format::Exr) => py.detach(|| {
+                let (picture, layers) = (film.develop(), film.develop_layers());
+                self.write_exr(&path, &picture, &layers)
+            }),
+            Some(Format::Png) => py.detach(|| {
+                let picture = film.develop();
+                let size = [picture.width as u32, picture.height as u32];
+                write_png(&path, size, &picture.pixels)
+            }),
+            _ => {
+                let message = format!("{}: end the name with .exr or .png", path.display());
+                return Err(raise(py, "SettingsError", &message));
+            }
+        };
+        written.map_err(|error| of_file(py, &error))
+    }
+
+    /// The passes, each range with its exclusive end.
+    #[getter]
+    fn passes(&self) -> Vec<(u64, u64)> {
+        ranges(self.0.film.passes())
+    }
+
+    /// The hash of everything that the bits depend on but the passes.
+    #[getter]
+    fn identity(&self) -> &str {
+        &self.0.header.identity
+    }
+
+    /// What the identity is made of, by name.
+    #[getter]
+    fn settings(&self) -> BTreeMap<String, String> {
+        self.0.header.settings.clone()
+    }
+
+    /// The name of the scene file.
+    #[getter]
+    fn scene(&self) -> String {
+        self.0.header.scene_name()
+    }
+
+    /// How the number of passes was decided.
+    #[getter]
+    fn stopping(&self) -> &'static str {
+        self.0.header.stopping.name()
+    }
+
+    /// The time that rendering took.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.0.header.seconds
+    }
+
+    /// What was counted, by name.
+    #[getter]
+    fn counts(&self) -> BTreeMap<String, u64> {
+        let counts = counts_by_name(&self.0.header).into_iter();
+        let counts = counts.filter_map(|(name, count)| Some((name, count.parse().ok()?)));
+        counts.collect()
+    }
+
+    /// The relative error of the picture.
+    #[getter]
+    fn noise(&self, py: Python<'_>) -> f64 {
+        py.detach(|| self.0.film.develop().relative_error())
+    }
+}
+
+impl Film {
+    fn write_exr(
+        &self,
+        path: &std::path::Path,
+        picture: &Picture,
+        layers: &[LayerImage],
+    ) -> formats::Result<()> {
+        let settings = self.0.film.settings();
+        let (min, max) = (settings.crop.min, settings.crop.max);
+        let own = ExrLayer {
+            name: "",
+            channels: &["R", "G", "B"],
+            data: picture.pixels.as_flattened(),
+        };
+        let others = layers.iter().map(|layer| ExrLayer {
+            name: &layer.name,
+            channels: layer.channels,
+            data: &layer.data,
+        });
+        let all: Vec<_> = std::iter::once(own).chain(others).collect();
+        let image = ExrImage {
+            resolution: settings.resolution.map(|side| side as usize),
+            crop: [min[0], min[1], max[0], max[1]].map(|edge| edge as usize),
+            layers: &all,
+            metadata: &metadata(&self.0.header),
+        };
+        write_exr(path, &image)
+    }
+}

@@ -1,0 +1,141 @@
+//! Images as arrays: files, the screen, and metrics.
+
+use crate::error::{of_file, raise};
+use crate::film::bytes;
+use formats::image::{self, ExrImage, ExrLayer, Format, write_exr, write_png};
+use lab::image::{Pair, Pixels};
+use lab::metric::Metric;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::path::PathBuf;
+
+/// Pixels of the given width and height, from numbers as bytes.
+pub(crate) fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<Pixels> {
+    let channel = |bytes: &[u8]| bytes.try_into().map_or(f32::NAN, f32::from_le_bytes);
+    let pixel = |bytes: &[u8]| std::array::from_fn(|i| channel(&bytes[4 * i..4 * i + 4]));
+    let is_whole = size[0].checked_mul(size[1]).and_then(|n| n.checked_mul(12));
+    if is_whole != Some(data.len()) {
+        let message = "an image has not as many numbers as pixels of three channels";
+        return Err(raise(py, "SettingsError", message));
+    }
+    Ok(Pixels {
+        size,
+        data: data.chunks_exact(12).map(pixel).collect(),
+    })
+}
+
+/// The bytes of a PNG; values are linear, and clipped to what a screen shows.
+#[pyfunction]
+pub(crate) fn encode_png<'py>(
+    py: Python<'py>,
+    size: [usize; 2],
+    data: &[u8],
+) -> PyResult<Bound<'py, PyBytes>> {
+    let pixels = pixels(py, size, data)?;
+    let encoded = py.detach(|| image::encode_png(size.map(|side| side as u32), &pixels.data));
+    let encoded = encoded.map_err(|error| of_file(py, &error))?;
+    Ok(PyBytes::new(py, &encoded))
+}
+
+/// Writes pixels to EXR as they are, or to PNG as a screen shows them.
+#[pyfunction]
+pub(crate) fn write_image(
+    py: Python<'_>,
+    path: PathBuf,
+    size: [usize; 2],
+    data: &[u8],
+) -> PyResult<()> {
+    let pixels = pixels(py, size, data)?;
+    let written = match Format::of(&path) {
+        Some(Format::Exr) => py.detach(|| {
+            let layer = ExrLayer {
+                name: "",
+                channels: &["R", "G", "B"],
+                data: pixels.data.as_flattened(),
+            };
+            let image = ExrImage {
+                resolution: size,
+                crop: [0, 0, size[0], size[1]],
+                layers: &[layer],
+                metadata: &[],
+            };
+            write_exr(&path, &image)
+        }),
+        Some(Format::Png) => {
+            py.detach(|| write_png(&path, size.map(|side| side as u32), &pixels.data))
+        }
+        _ => {
+            let message = format!("{}: end the name with .exr or .png", path.display());
+            return Err(raise(py, "SettingsError", &message));
+        }
+    };
+    written.map_err(|error| of_file(py, &error))
+}
+
+/// Width, height and pixels of an image file.
+#[pyfunction]
+pub(crate) fn read_image(
+    py: Python<'_>,
+    path: PathBuf,
+) -> PyResult<([usize; 2], Bound<'_, PyBytes>)> {
+    let read = py.detach(|| image::read(&path, None).map(|image| Pixels::from(&image)));
+    let read = read.map_err(|error| of_file(py, &error))?;
+    Ok((read.size, bytes(py, read.data.as_flattened())?))
+}
+
+/// The channels of an EXR by name.
+type Channels<'py> = Vec<(String, Bound<'py, PyBytes>)>;
+
+/// Width, height and all channels of an EXR.
+#[pyfunction]
+pub(crate) fn read_layers(py: Python<'_>, path: PathBuf) -> PyResult<([usize; 2], Channels<'_>)> {
+    let layers = py.detach(|| image::read_layers(&path));
+    let layers = layers.map_err(|error| of_file(py, &error))?;
+    let channels = layers.names().map(|name| {
+        let data = layers.channel(&name).unwrap_or_default();
+        Ok((name, bytes(py, &data)?))
+    });
+    Ok((layers.size(), channels.collect::<PyResult<_>>()?))
+}
+
+fn named(py: Python<'_>, name: &str) -> PyResult<Metric> {
+    let found = Metric::NAMES.iter().find(|(known, _)| *known == name);
+    found.map(|(_, metric)| *metric).ok_or_else(|| {
+        let names = Metric::NAMES.map(|(name, _)| name).join(", ");
+        let message = format!("there is no metric `{name}`; there are {names}");
+        raise(py, "SettingsError", &message)
+    })
+}
+
+/// How far an image is from a reference of the same size.
+#[pyfunction]
+pub(crate) fn metric(
+    py: Python<'_>,
+    name: &str,
+    size: [usize; 2],
+    a: &[u8],
+    b: &[u8],
+) -> PyResult<f64> {
+    let metric = named(py, name)?;
+    let (a, b) = (pixels(py, size, a)?, pixels(py, size, b)?);
+    Ok(py.detach(|| Pair::new(&a, &b).map_or(f64::NAN, |pair| metric.value(&pair))))
+}
+
+/// The error of every pixel.
+#[pyfunction]
+pub(crate) fn error_map<'py>(
+    py: Python<'py>,
+    name: &str,
+    size: [usize; 2],
+    a: &[u8],
+    b: &[u8],
+) -> PyResult<Bound<'py, PyBytes>> {
+    let metric = named(py, name)?;
+    let (a, b) = (pixels(py, size, a)?, pixels(py, size, b)?);
+    let errors = py.detach(|| {
+        let pair = Pair::new(&a, &b)?;
+        let errors = metric.errors(&pair).data;
+        Some(errors.iter().map(|&error| error as f32).collect::<Vec<_>>())
+    });
+    bytes(py, &errors.unwrap_or_default())
+}

@@ -1,0 +1,55 @@
+//! What the Python package `bidir` calls: glue, and no more.
+//!
+//! - Nothing here is for users: `python/bidir` has the classes with their documentation, and
+//!   `python/bidir/_bidir.pyi` the types of what is here.
+//! - Arrays pass as bytes, 32-bit little-endian numbers row by row; numpy is Python's business.
+//! - Whatever takes long lets other Python threads run, and asks for signals meanwhile ([`wait`]).
+//! - Exceptions are the classes of `bidir.errors` ([`error`]).
+
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "what Python passes is converted to values that the function owns"
+)]
+
+mod cluster;
+mod error;
+mod experiment;
+mod film;
+mod image;
+mod scene;
+mod session;
+mod settings;
+mod wait;
+
+use pyo3::prelude::*;
+
+/// The native half of `bidir`.
+#[pymodule]
+mod _bidir {
+    #[pymodule_export]
+    use super::cluster::{Prepared, machine, render_block};
+    #[pymodule_export]
+    use super::experiment::Experiment;
+    #[pymodule_export]
+    use super::film::Film;
+    #[pymodule_export]
+    use super::image::{encode_png, error_map, metric, read_image, read_layers, write_image};
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::session::Session;
+    #[pymodule_export]
+    use super::settings::check_settings;
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
+        module.add("ESTIMATOR_VERSION", bidir::ESTIMATOR_VERSION)?;
+        module.add("ISA", bidir::scene::Isa::detect().name())?;
+        let metrics = lab::metric::Metric::NAMES.map(|(name, _)| name);
+        module.add("METRICS", metrics.to_vec())?;
+        let layers = bidir::film::Aov::NAMES.map(|(name, _)| name);
+        module.add("LAYERS", layers.to_vec())
+    }
+}

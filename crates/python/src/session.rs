@@ -1,0 +1,215 @@
+//! Renders that go pass by pass.
+
+use crate::error::raise;
+use crate::film::Film;
+use crate::scene::Scene;
+use crate::settings::{Wanted, resolve};
+use crate::wait::{Stop, wait_silently};
+use bidir::driver::{self, Progress, Resources};
+use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
+use pyo3::prelude::*;
+use serde_json::Value;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A render that goes pass by pass.
+#[pyclass(frozen, module = "bidir._bidir")]
+pub(crate) struct Session {
+    /// Threads of Python take turns.
+    state: Mutex<State>,
+    threads: usize,
+}
+
+struct State {
+    session: driver::Session<'static>,
+    /// That of an empty film.
+    header: FilmHeader,
+    /// That of the films that were gone on from.
+    earlier: Option<FilmHeader>,
+    /// What rendering took since the film was taken.
+    time: Duration,
+    /// Whether the rays of training are in a film that was taken.
+    is_training_told: bool,
+}
+
+/// Stops a pass where the interpreter asks for it, and is its clock.
+struct Watcher<'a> {
+    stop: &'a Stop,
+    begin: Instant,
+}
+
+impl Progress for Watcher<'_> {
+    fn advance(&self, _samples: u64) {}
+
+    fn should_stop(&self) -> bool {
+        self.stop.is_set()
+    }
+
+    fn nanoseconds(&self) -> u64 {
+        self.begin.elapsed().as_nanos() as u64
+    }
+}
+
+impl State {
+    /// The header of what is there; time and counts are those of all runs.
+    fn header(&self) -> FilmHeader {
+        let mut now = of_run(&self.header, &self.session, self.time);
+        if self.is_training_told
+            && let Some(training) = now.counts.pointer_mut("/rays/training")
+        {
+            *training = Value::from(0);
+        }
+        let all = match &self.earlier {
+            Some(earlier) => now.joined(earlier),
+            None => now,
+        };
+        all.of(self.session.film())
+    }
+}
+
+impl Session {
+    /// The state, when no other thread of Python has it; others run while this one waits.
+    fn with<T: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut State) -> T + Send) -> T {
+        py.detach(|| f(&mut self.lock()))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        // A pass that failed left no trace.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Session {
+    /// A session that has rendered nothing; `wanted` is as `bidir.Session` makes it.
+    #[new]
+    fn new(py: Python<'_>, scene: &Scene, wanted: Wanted, threads: usize) -> PyResult<Self> {
+        let settings = resolve(py, &wanted, &scene.settings)?;
+        let resources = Resources {
+            threads,
+            ..Resources::default()
+        };
+        let begin = Instant::now();
+        let (shared, own) = (scene.shared.clone(), settings.clone());
+        let session = wait_silently(py, |_| driver::Session::new(shared, own, &resources))?;
+        let session = session.map_err(|error| raise(py, "RenderError", &error.to_string()))?;
+        let identity = SceneIdentity {
+            name: &scene.name,
+            digest: &scene.digest,
+            film: scene.shared.film(),
+        };
+        let header = identity.header(&settings, session.training());
+        Ok(Self {
+            threads: session.threads(),
+            state: Mutex::new(State {
+                header,
+                session,
+                earlier: None,
+                time: begin.elapsed(),
+                is_training_told: false,
+            }),
+        })
+    }
+
+    /// Renders the next pass. A signal gives it up, and it is forgotten.
+    fn step(&self, py: Python<'_>) -> PyResult<()> {
+        wait_silently(py, |stop| {
+            let mut state = self.lock();
+            let begin = Instant::now();
+            let watcher = Watcher { stop, begin };
+            state.session.step(&watcher);
+            state.time += begin.elapsed();
+        })
+    }
+
+    /// Leaves the passes before `first` to others.
+    fn start_at(&self, py: Python<'_>, first: u64) {
+        self.with(py, |state| state.session.start_at(first));
+    }
+
+    /// Goes on from a film of the same render.
+    fn add_film(&self, py: Python<'_>, film: &Film) -> PyResult<()> {
+        let added = self.with(py, |state| {
+            let FilmFile { header, film } = film.file();
+            if let Some(difference) = state.header.difference(header) {
+                return Err(format!("the film of another render: {difference}"));
+            }
+            let added = state.session.add_film(film.clone());
+            added.map_err(|error| error.to_string())?;
+            let earlier = state.earlier.take();
+            state.earlier = Some(earlier.map_or(header.clone(), |other| other.joined(header)));
+            Ok(())
+        });
+        added.map_err(|message| raise(py, "FilmError", &message))
+    }
+
+    /// A copy of the film, with how its number of passes was decided.
+    fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
+        let stopping = stopping_of(py, stopping)?;
+        Ok(self.with(py, |state| {
+            let header = FilmHeader {
+                stopping,
+                ..state.header()
+            };
+            Film::new(header, state.session.film().clone())
+        }))
+    }
+
+    /// The film; the session goes on with an empty one.
+    fn take_film(&self, py: Python<'_>) -> Film {
+        self.with(py, |state| {
+            let header = state.header();
+            let (film, _) = state.session.take_film();
+            (state.earlier, state.time) = (None, Duration::ZERO);
+            state.is_training_told = true;
+            Film::new(header, film)
+        })
+    }
+
+    /// The pass that `step` renders.
+    #[getter]
+    fn next_pass(&self, py: Python<'_>) -> u64 {
+        self.with(py, |state| state.session.next_pass())
+    }
+
+    /// The passes that are rendered, each range with its exclusive end.
+    #[getter]
+    fn passes(&self, py: Python<'_>) -> Vec<(u64, u64)> {
+        self.with(py, |state| {
+            crate::film::ranges(state.session.film().passes())
+        })
+    }
+
+    /// The relative error of the picture.
+    #[getter]
+    fn noise(&self, py: Python<'_>) -> f64 {
+        self.with(py, |state| state.session.film().develop().relative_error())
+    }
+
+    /// The number of threads.
+    #[getter]
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// Every setting of the estimator, by name, with what was left open decided.
+    #[getter]
+    fn settings(&self, py: Python<'_>) -> crate::settings::Texts {
+        self.with(py, |state| lab::experiment::texts(state.session.settings()))
+    }
+
+    /// The hash of everything that the bits depend on but the passes.
+    #[getter]
+    fn identity(&self, py: Python<'_>) -> String {
+        self.with(py, |state| state.header.identity.clone())
+    }
+}
+
+fn stopping_of(py: Python<'_>, name: &str) -> PyResult<Stopping> {
+    let all = [Stopping::Fixed, Stopping::Time, Stopping::Noise];
+    let found = all.into_iter().find(|stopping| stopping.name() == name);
+    found.ok_or_else(|| {
+        let message = format!("there is no way to stop `{name}`");
+        raise(py, "SettingsError", &message)
+    })
+}

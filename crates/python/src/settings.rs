@@ -1,0 +1,87 @@
+//! Settings by their names: those of the flags of `bidir render`.
+
+use crate::error::raise;
+use bidir::driver::Settings;
+use bidir::film::{Aov, Layers};
+use formats::scene::SceneSettings;
+use lab::experiment::Changes;
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+
+/// Settings that differ from the scene's, as texts.
+pub(crate) type Texts = BTreeMap<String, String>;
+
+/// What the file of a scene says, over the defaults.
+pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
+    let mut settings = Settings {
+        integrator: scene.integrator,
+        sampler: scene.sampler,
+        seed: scene.seed.unwrap_or_default(),
+        layers: Layers::new(&scene.aovs, &[], 0),
+        ..Settings::default()
+    };
+    settings.path.max_depth = Some(scene.max_depth);
+    settings.path.roulette = settings.integrator.roulette();
+    settings
+}
+
+/// What a caller wants of a render.
+#[derive(FromPyObject)]
+pub(crate) struct Wanted {
+    /// Of the estimator, by name.
+    #[pyo3(item)]
+    settings: Texts,
+    /// The seed. None: the scene's.
+    #[pyo3(item)]
+    seed: Option<u64>,
+    /// Names of images beside the picture.
+    #[pyo3(item)]
+    layers: Vec<String>,
+    /// The light groups that have images.
+    #[pyo3(item)]
+    light_groups: Vec<String>,
+    /// The most vertices of paths whose strategies have images.
+    #[pyo3(item)]
+    strategy_layers: usize,
+}
+
+/// The settings of a render of a scene whose own are `scene`.
+///
+/// Errors: a name or value that is not known, as `SettingsError`.
+pub(crate) fn resolve(py: Python<'_>, wanted: &Wanted, scene: &Settings) -> PyResult<Settings> {
+    let mut settings = changes(py, &wanted.settings)?.apply(scene);
+    settings.seed = wanted.seed.unwrap_or(settings.seed);
+    let mut aovs = scene.layers.aovs().to_vec();
+    for name in &wanted.layers {
+        let known = Aov::NAMES.iter().find(|(known, _)| known == name);
+        let (_, aov) = known.ok_or_else(|| {
+            let names = Aov::NAMES.map(|(name, _)| name).join(", ");
+            let message = format!("there is no layer `{name}`; there are {names}");
+            raise(py, "SettingsError", &message)
+        })?;
+        aovs.push(*aov);
+    }
+    settings.layers = Layers::new(&aovs, &wanted.light_groups, wanted.strategy_layers);
+    Ok(settings)
+}
+
+/// The changes that texts tell.
+fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Changes> {
+    let mut changes = Changes::default();
+    for (name, value) in texts {
+        changes.set(name, value).map_err(|error| {
+            let message = format!("{}: {error}", name.replace('-', "_"));
+            raise(py, "SettingsError", &message)
+        })?;
+    }
+    Ok(changes)
+}
+
+/// Fails where a setting has a value that is not known; returns all of them as they are understood.
+#[pyfunction]
+pub(crate) fn check_settings(py: Python<'_>, settings: Texts) -> PyResult<Texts> {
+    let changes = changes(py, &settings)?;
+    let mut all = lab::experiment::texts(&changes.apply(&Settings::default()));
+    all.retain(|name, _| settings.contains_key(name));
+    Ok(all)
+}

@@ -1,0 +1,148 @@
+"""Films: the exact sums of a render, to keep, to merge and to develop."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from functools import reduce
+from typing import TYPE_CHECKING
+
+from bidir import _bidir
+from bidir.errors import FilmError
+from bidir.scene import StrPath
+
+if TYPE_CHECKING:
+    from bidir.image import Image
+
+__all__ = ["Film"]
+
+
+class Film:
+    """The exact sums of some passes of a render, with whose they are; immutable.
+
+    A pass is one sample of every pixel. Sums are integers, so that films of different passes of one
+    render can be merged in any order, and are then the film of one render, bit for bit. ``a == b`` is
+    that comparison: the same render, the same passes, the same bits. Films can be pickled.
+    """
+
+    def __init__(self, native: _bidir.Film) -> None:
+        """Wrap what the native half made; use :meth:`load` or :attr:`bidir.Image.film`."""
+        self._native = native
+
+    @classmethod
+    def load(cls, path: StrPath) -> Film:
+        """Read a film file, as ``bidir render --checkpoint`` and :meth:`save` write them.
+
+        Errors: :class:`bidir.MissingFileError`, :class:`bidir.DataError` where it is damaged.
+        """
+        return cls(_bidir.Film.load(os.fspath(path)))
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Film:
+        """Read the bytes of a film file; errors are those of :meth:`load`."""
+        return cls(_bidir.Film.from_bytes(data))
+
+    @staticmethod
+    def merge(*films: Film | Iterable[Film]) -> Film:
+        """Add films of different passes of one render; in any order, the sum is the same.
+
+        Errors: :class:`bidir.FilmError` where there is none, where they are of different renders, or
+        where two have the same passes.
+        """
+        all_films: list[Film] = []
+        for film in films:
+            all_films.extend([film] if isinstance(film, Film) else film)
+        if not all_films:
+            raise FilmError("there is no film to merge")
+        return reduce(lambda a, b: Film(a._native.merged(b._native)), all_films)
+
+    def save(self, path: StrPath) -> None:
+        """Write a film file; the name stands for the whole of it or for what was there before.
+
+        Errors: :class:`bidir.FileError`.
+        """
+        self._native.save(os.fspath(path))
+
+    def to_bytes(self) -> bytes:
+        """Return the bytes of a film file."""
+        return self._native.to_bytes()
+
+    def develop(self) -> Image:
+        """Return the picture of all passes."""
+        from bidir.image import Image
+
+        return Image(self)
+
+    @property
+    def passes(self) -> list[range]:
+        """The passes, as ranges that do not touch, in ascending order."""
+        return [range(begin, end) for begin, end in self._native.passes]
+
+    @property
+    def spp(self) -> int:
+        """The number of passes: samples per pixel."""
+        return sum(map(len, self.passes))
+
+    def missing(self, passes: range) -> list[range]:
+        """Return which of ``passes`` are not here, as ranges in ascending order."""
+        gaps = []
+        begin = passes.start
+        for here in self.passes:
+            if begin < min(here.start, passes.stop):
+                gaps.append(range(begin, min(here.start, passes.stop)))
+            begin = max(begin, here.stop)
+        if begin < passes.stop:
+            gaps.append(range(begin, passes.stop))
+        return gaps
+
+    @property
+    def identity(self) -> str:
+        """A hash of all that the bits depend on but the passes: films of one identity are mergeable."""
+        return self._native.identity
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """What the identity is made of: every setting, the scene's digest, versions, by name."""
+        return self._native.settings
+
+    @property
+    def scene(self) -> str:
+        """The name of the scene file, without folders."""
+        return self._native.scene
+
+    @property
+    def stopping(self) -> str:
+        """How the number of passes was decided: ``fixed``, by ``time`` or by ``noise``."""
+        return self._native.stopping
+
+    @property
+    def seconds(self) -> float:
+        """The time that rendering took, all parts added. Unit: seconds."""
+        return self._native.seconds
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """What was counted: ``samples``, ``rays.total``, ``candidates``, ``dropped`` and more."""
+        return self._native.counts
+
+    @property
+    def noise(self) -> float:
+        """The error of the picture relative to its mean, as the variances of pixels tell it."""
+        return self._native.noise
+
+    def __eq__(self, other: object) -> bool:
+        """Tell whether both are of the same passes of the same render, bit for bit."""
+        if not isinstance(other, Film):
+            return NotImplemented
+        return self._native.equals(other._native)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle the bytes of the film file."""
+        return (Film.from_bytes, (self.to_bytes(),))
+
+    def __repr__(self) -> str:
+        """Tell the scene, the passes and the beginning of the identity."""
+        passes = ", ".join(f"{part.start}..{part.stop}" for part in self.passes) or "none"
+        return f"<bidir.Film {self.scene!r} passes {passes} {self.identity[:12]}>"

@@ -1,0 +1,320 @@
+"""One actor on every node, which does units of work with all threads of the node.
+
+What goes wrong is of two kinds. An error that a unit raises is the *work's*: the unit is tried again,
+and after a few times it is told with its name. The death of a process or of a node, or an object that
+is lost, is the *cluster's*: the unit goes to another worker, a node gets a fresh actor, and only what
+happens again and again is told, with its cause.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import ray
+from ray.exceptions import RayError, RayTaskError
+from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
+
+from bidir.errors import BidirError
+
+__all__ = [
+    "ClusterError",
+    "Crew",
+    "Limits",
+    "NodeRefusedError",
+    "TaskFailedError",
+    "Work",
+    "Worker",
+]
+
+logger = logging.getLogger("bidir.ray")
+
+
+class ClusterError(BidirError, RuntimeError):
+    """The cluster has no node that can work, or loses what it works on again and again."""
+
+
+class NodeRefusedError(ClusterError):
+    """Every node is refused, such as for another version of bidir."""
+
+
+class TaskFailedError(BidirError, RuntimeError):
+    """A part of the work fails however often it is tried; the text names it, and why."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How often something is tried."""
+
+    #: How often a unit may raise an error.
+    errors: int = 3
+    #: How often a unit may be lost with its worker.
+    losses: int = 9
+    #: How often the actor of a node may die without having done anything.
+    deaths: int = 4
+    #: How long to wait for a node that can work. Unit: seconds.
+    patience: float = 300.0
+    #: Units that wait or run on a worker.
+    in_flight: int = 2
+
+
+@dataclass(eq=False)
+class Worker:
+    """The actor of a node."""
+
+    node: str
+    host: str
+    cpus: int
+    actor: Any
+    #: What `prepare` returns; None while it runs.
+    preparing: Any
+    #: What runs or waits, by the reference of its answer.
+    units: dict[Any, Any] = field(default_factory=dict)
+    #: What the work remembers of this worker.
+    notes: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether it can be given units."""
+        return self.preparing is None
+
+
+class Work(Protocol):
+    """What a crew does."""
+
+    #: The class of the actors.
+    actor: type
+
+    def prepare(self, actor: Any, cpus: int) -> Any:
+        """Make an actor ready; return the reference of what it tells of itself."""
+        ...
+
+    def check(self, told: dict[str, Any]) -> str | None:
+        """Say why an actor that told this cannot take part. None: it can."""
+        ...
+
+    def next(self, worker: Worker, workers: int) -> Hashable | None:
+        """Return what a worker shall do next. None: nothing, for now."""
+        ...
+
+    def submit(self, worker: Worker, unit: Any) -> tuple[Any, Any]:
+        """Begin a unit; return the references of what is told of it, and of what it gives."""
+        ...
+
+    def done(self, worker: Worker, unit: Any, told: dict[str, Any], result: Any) -> None:
+        """Take what a unit gave."""
+        ...
+
+    def again(self, unit: Any) -> None:
+        """Take back a unit that was not done."""
+        ...
+
+    def name(self, unit: Any) -> str:
+        """Say what a unit is, for people."""
+        ...
+
+    def pending(self) -> list[Any]:
+        """Return references of other tasks of the work that run."""
+        ...
+
+    def turn(self) -> bool:
+        """Do what there is to do between units. False: everything is done."""
+        ...
+
+
+class Crew:
+    """Gives the units of a :class:`Work` to workers until all is done."""
+
+    #: How often nodes are looked for. Unit: seconds.
+    LOOK_EVERY = 2.0
+
+    def __init__(self, work: Work, limits: Limits) -> None:
+        """Begin without workers."""
+        self._work, self._limits = work, limits
+        self._workers: dict[str, Worker] = {}
+        self._results: dict[Any, Any] = {}
+        self._refused: dict[str, str] = {}
+        self._deaths: dict[str, int] = {}
+        self._errors: dict[Any, int] = {}
+        self._losses: dict[Any, int] = {}
+        self._looked = self._worked = 0.0
+        self._cause = ""
+
+    def run(self) -> None:
+        """Do all of the work.
+
+        Errors: :class:`TaskFailedError`, :class:`NodeRefusedError`, :class:`ClusterError`.
+        """
+        self._worked = time.monotonic()
+        try:
+            while self._work.turn():
+                self._look()
+                self._assign()
+                self._wait()
+        finally:
+            for worker in self._workers.values():
+                ray.kill(worker.actor)
+
+    def _look(self) -> None:
+        """Give every node that is there and has none an actor."""
+        now = time.monotonic()
+        if now - self._looked < self.LOOK_EVERY:
+            return
+        self._looked = now
+        alive = {node: (host, cpus) for node, host, cpus in alive_nodes()}
+        for identity in [known for known in self._workers if known not in alive]:
+            self._lose(self._workers[identity], "the node died")
+        for identity, (host, cpus) in alive.items():
+            if identity not in self._workers and identity not in self._refused:
+                self._hire(identity, host, cpus)
+        self._check_hope(now)
+
+    def _check_hope(self, now: float) -> None:
+        """Give up where no node can work."""
+        if self._workers:
+            self._worked = now
+        elif self._refused:
+            reasons = "; ".join(self._refused.values())
+            raise NodeRefusedError(f"no node of the cluster can take part: {reasons}")
+        elif now - self._worked > self._limits.patience:
+            cause = f"; the last one: {self._cause}" if self._cause else ""
+            message = f"no node was there to work for {self._limits.patience:.0f} s{cause}"
+            raise ClusterError(message)
+
+    def _hire(self, node: str, host: str, cpus: int) -> None:
+        affinity = NodeAffinitySchedulingStrategy(node, soft=False)
+        actor: Any = (
+            ray.remote(self._work.actor)
+            .options(num_cpus=cpus, max_restarts=0, max_task_retries=0, scheduling_strategy=affinity)
+            .remote()
+        )
+        preparing = self._work.prepare(actor, cpus)
+        self._workers[node] = Worker(node, host, cpus, actor, preparing)
+
+    def _assign(self) -> None:
+        ready = [worker for worker in self._workers.values() if worker.is_ready]
+        # The first of all come first, so that no worker gets two where another has none.
+        for round_ in range(self._limits.in_flight):
+            for worker in ready:
+                if len(worker.units) > round_:
+                    continue
+                unit = self._work.next(worker, len(ready))
+                if unit is None:
+                    continue
+                told, result = self._work.submit(worker, unit)
+                worker.units[told] = unit
+                self._results[told] = result
+
+    def _wait(self) -> None:
+        owners = {}
+        for worker in self._workers.values():
+            references = worker.units if worker.is_ready else [worker.preparing]
+            owners.update(dict.fromkeys(references, worker))
+        references = [*owners, *self._work.pending()]
+        if not references:
+            time.sleep(0.2)
+            return
+        ready, _ = ray.wait(references, num_returns=1, timeout=1.0)
+        for reference in ready:
+            # Losing a worker takes its other units away.
+            owner = owners.get(reference)
+            if owner is not None and self._workers.get(owner.node) is owner:
+                self._hear(owner, reference)
+
+    def _hear(self, worker: Worker, reference: Any) -> None:
+        try:
+            told: Any = ray.get(reference)
+        except RayError as error:
+            # What an actor needs may be lost on its way to it, which is no fault of the work.
+            if isinstance(error, RayTaskError) and not isinstance(error.cause, RayError):
+                self._fail(worker, reference, error)
+            else:
+                self._lose(worker, first_line(error))
+        else:
+            self._answer(worker, reference, told)
+
+    def _answer(self, worker: Worker, reference: Any, told: dict[str, Any]) -> None:
+        if reference != worker.preparing:
+            self._deaths[worker.node] = 0
+            unit = worker.units.pop(reference)
+            self._work.done(worker, unit, told, self._results.pop(reference))
+            return
+        worker.preparing = None
+        reason = self._work.check(told)
+        if reason is not None:
+            self._refuse(worker, reason)
+
+    def _fail(self, worker: Worker, reference: Any, error: RayTaskError) -> None:
+        """Handle an error that the work raised."""
+        cause = error.cause if isinstance(error.cause, Exception) else error
+        text = f"{type(cause).__name__.removeprefix('RayTaskError')}: {first_line(cause)}"
+        if reference == worker.preparing:
+            self._refuse(worker, text)
+            return
+        unit = worker.units.pop(reference)
+        self._results.pop(reference)
+        times = self._errors[unit] = self._errors.get(unit, 0) + 1
+        name = self._work.name(unit)
+        if times >= self._limits.errors:
+            message = f"{name} failed {times} times, the last time on {worker.host}: {text}"
+            raise TaskFailedError(message) from cause
+        logger.warning("%s failed on %s, and is tried again: %s", name, worker.host, text)
+        self._work.again(unit)
+
+    def _refuse(self, worker: Worker, reason: str) -> None:
+        """Leave a node out."""
+        logger.warning("the node %s is left out: %s", worker.host, reason)
+        self._refused[worker.node] = f"{worker.host}: {reason}"
+        self._dismiss(worker)
+
+    def _dismiss(self, worker: Worker) -> list[Any]:
+        """Forget a worker; return what it had to do."""
+        del self._workers[worker.node]
+        ray.kill(worker.actor)
+        for reference in worker.units:
+            self._results.pop(reference, None)
+        return list(worker.units.values())
+
+    def _lose(self, worker: Worker, cause: str) -> None:
+        """Handle the death of a worker: what it had to do goes to others."""
+        logger.warning("the worker on %s is lost: %s", worker.host, cause)
+        self._cause = f"{worker.host}: {cause}"
+        units = self._dismiss(worker)
+        for unit in units:
+            times = self._losses[unit] = self._losses.get(unit, 0) + 1
+            if times >= self._limits.losses:
+                name = self._work.name(unit)
+                raise TaskFailedError(f"{name} lost its worker {times} times: {self._cause}")
+            self._work.again(unit)
+        deaths = self._deaths[worker.node] = self._deaths.get(worker.node, 0) + 1
+        if deaths >= self._limits.deaths:
+            self._refused[worker.node] = f"{self._cause} ({deaths} times)"
+        # A fresh actor comes with the next look, at once.
+        self._looked = 0.0
+
+
+def alive_nodes() -> list[tuple[str, str, int]]:
+    """Return name, host and number of processors of all nodes that have such and are alive."""
+    nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call]
+    alive = [node for node in nodes if node["Alive"]]
+    found = [(n["NodeID"], n["NodeManagerHostname"], int(n["Resources"].get("CPU", 0))) for n in alive]
+    return [(node, host, cpus) for node, host, cpus in found if cpus > 0]
+
+
+def first_line(error: BaseException) -> str:
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return lines[0] if lines else type(error).__name__
+
+
+def connected(address: str | None) -> Callable[[], None]:
+    """Connect with a cluster unless this process is; return what ends a connection made here."""
+    if ray.is_initialized():
+        return lambda: None
+    if address == "local":
+        ray.init(address="local", include_dashboard=False, log_to_driver=False)
+    else:
+        ray.init(address=address, log_to_driver=False)
+    return ray.shutdown

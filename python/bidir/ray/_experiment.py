@@ -1,0 +1,236 @@
+"""An experiment over the nodes of a cluster: each renders all methods of a scene, budget and seed."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import ray
+from ray.exceptions import RayError
+from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
+
+from bidir import _bidir
+from bidir.experiment import Experiment, Results
+from bidir.ray._crew import ClusterError, Crew, Limits, Worker, alive_nodes, connected, logger
+from bidir.ray._render import versions
+from bidir.scene import StrPath, load
+
+__all__ = ["Bench", "experiment"]
+
+#: A file by its names, with its bytes.
+MemoryFile = tuple[list[str], bytes]
+
+
+def machine(cpus: int) -> str:
+    """Return what the times of a node depend on; runs on the node."""
+    return json.dumps({**json.loads(_bidir.machine()), "threads": cpus}, sort_keys=True)
+
+
+class Bench:
+    """What runs on a node: it renders blocks of an experiment."""
+
+    def prepare(self, description: dict[str, Any], cpus: int) -> dict[str, Any]:
+        """Read the description; tell what this node is."""
+        self.experiment = _bidir.Experiment(**description)
+        return {**versions(), "machine": machine(cpus)}
+
+    def render(
+        self, block: str, files: list[MemoryFile], reference: tuple[list[int], bytes]
+    ) -> tuple[dict[str, Any], Any]:
+        """Render a block; return its records with the images that are kept."""
+        return {}, _bidir.render_block(self.experiment, block, files, reference)
+
+
+class ExperimentWork:
+    """The work of a :class:`bidir.ray._crew.Crew`: units are blocks, as JSON."""
+
+    def __init__(
+        self,
+        prepared: _bidir.Prepared,
+        description: dict[str, Any],
+        machine: str,
+        tell: Callable[[str, str], None],
+        actor: type = Bench,
+    ) -> None:
+        self.actor = actor
+        self._prepared, self._description, self._machine = prepared, description, machine
+        self._tell = tell
+        self._todo = list(reversed(prepared.blocks))
+        self._running = 0
+        self._losses = 0
+        self._scenes: dict[str, tuple[Any, Any]] = {}
+        for name, path, files, size, pixels in prepared.scenes:
+            self._scenes[name] = (
+                ray.put(_packed(os.fspath(path), files)),
+                ray.put((size, pixels)),
+            )
+
+    def prepare(self, actor: Any, cpus: int) -> Any:
+        return actor.prepare.remote(self._description, cpus)
+
+    def check(self, told: dict[str, Any]) -> str | None:
+        for name, here in versions().items():
+            if told[name] != here:
+                return f"its {name} of bidir is {told[name]}, here it is {here}"
+        if told["machine"] != self._machine:
+            return f"it is another machine, whose times cannot be compared: {told['machine']}"
+        return None
+
+    def next(self, worker: Worker, workers: int) -> str | None:
+        if not self._todo:
+            return None
+        self._running += 1
+        return self._todo.pop()
+
+    def submit(self, worker: Worker, unit: str) -> tuple[Any, Any]:
+        files, reference = self._scenes[json.loads(unit)["scene"]]
+        told, done = worker.actor.render.options(num_returns=2).remote(unit, files, reference)
+        return told, done
+
+    def done(self, worker: Worker, unit: str, told: dict[str, Any], result: Any) -> None:
+        try:
+            records: Any = ray.get(result)
+        except RayError as error:
+            self._lose(unit, error)
+            return
+        self._running -= 1
+        self._prepared.add(records)
+        self._tell(unit, self.name(unit))
+
+    def _lose(self, unit: str, error: RayError) -> None:
+        """Render a block again whose records were lost on their way."""
+        logger.warning("%s: the records were lost: %s", self.name(unit), error)
+        self._losses += 1
+        if self._losses > Limits.losses:
+            raise ClusterError("records are lost again and again before the driver has them")
+        self.again(unit)
+
+    def again(self, unit: str) -> None:
+        self._running -= 1
+        self._todo.append(unit)
+
+    def name(self, unit: str) -> str:
+        block = json.loads(unit)
+        return f"{block['scene']}, {block['budget']}, seed {block['seed']}"
+
+    def pending(self) -> list[Any]:
+        return []
+
+    def turn(self) -> bool:
+        return bool(self._todo) or self._running > 0
+
+
+def _packed(path: str, files: list[Any]) -> list[MemoryFile]:
+    """Return the files of a scene by their names."""
+    # `load` tells warnings that the experiment has told already.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        _, source = load(path).packed()
+    names = {name for known, _ in source["memory"] for name in known}
+    missing = {os.fspath(file) for file in files} - names
+    if missing:
+        raise ClusterError(f"{path}: a file of the scene changed after it was read")
+    memory: list[MemoryFile] = source["memory"]
+    return memory
+
+
+def _fleet() -> tuple[str, int]:
+    """Return the machine that most nodes are, and its number of processors.
+
+    Errors: :class:`bidir.ray.ClusterError` where no node has processors.
+    """
+    asked = []
+    for node, _, cpus in alive_nodes():
+        affinity = NodeAffinitySchedulingStrategy(node, soft=False)
+        task: Any = ray.remote(machine).options(num_cpus=0, scheduling_strategy=affinity)
+        asked.append(task.remote(cpus))
+    if not asked:
+        raise ClusterError("no node of the cluster has processors")
+    most, _ = Counter(ray.get(asked)).most_common(1)[0]
+    return most, json.loads(most)["threads"]
+
+
+def experiment(
+    experiment: Experiment | StrPath,
+    folder: StrPath,
+    *,
+    address: str | None = None,
+    quick: bool = False,
+    restart: bool = False,
+    progress: Callable[[str, int, int], object] | None = None,
+    limits: Limits | None = None,
+    _actor: type = Bench,
+) -> Results:
+    """Run an experiment on the nodes of a cluster; records are those of one machine, but for times.
+
+    All methods of a scene, a budget and a seed are rendered on one node, with all of its threads, and
+    all nodes that take part are alike: so times can be compared. This process makes references that
+    are not there yet, and keeps all results; when it dies, the same call goes on.
+
+    Args:
+        experiment: The experiment, or the file of its description.
+        folder: Where results go.
+        address: Of the cluster, as for :func:`render`.
+        quick: As for :class:`bidir.Experiment`, where a file is given.
+        restart: Forget records that are there; references stay.
+        progress: A function of what was rendered, how many renders are done, and of how many.
+        limits: How often what fails is tried.
+
+    Errors: :class:`bidir.ExperimentError`, those of :func:`bidir.load`; :class:`TaskFailedError` names
+    what fails however often it is tried; :class:`NodeRefusedError`, :class:`ClusterError`.
+    """
+    given = experiment
+    if not isinstance(given, Experiment):
+        given = Experiment.load(given, quick=quick)
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    disconnect = connected(address)
+    try:
+        kind, cpus = _fleet()
+        described = Experiment(given.text, file=given.file, quick=given.quick, threads=cpus)
+        prepared = described._native.prepare(os.fspath(folder), restart, kind, _hearing(progress))
+        if prepared is None:
+            raise KeyboardInterrupt
+        of = described.cells
+        methods = {block: len(json.loads(block)["methods"]) for block in prepared.blocks}
+        done = of - sum(methods.values())
+
+        def tell(block: str, name: str) -> None:
+            nonlocal done
+            done += methods[block]
+            if progress is not None:
+                progress(name, done, of)
+
+        description = {
+            "text": described.text,
+            "file": described.file,
+            "quick": described.quick,
+            "threads": cpus,
+        }
+        work = ExperimentWork(prepared, description, kind, tell, _actor)
+        Crew(work, limits or Limits(in_flight=1)).run()
+        # Everything has its record by now: this writes the results.
+        found, tables = described._native.run(os.fspath(folder), False, kind, None)
+    finally:
+        disconnect()
+    if found is None:
+        raise KeyboardInterrupt
+    return Results(Path(folder), json.loads(found), tables)
+
+
+def _hearing(
+    progress: Callable[[str, int, int], object] | None,
+) -> Callable[[str, str, int, int], object]:
+    """Return who is told what happens before records are made."""
+
+    def hear(kind: str, text: str, done: int, of: int) -> None:
+        if kind == "warning":
+            warnings.warn(text, stacklevel=4)
+        elif progress is not None and kind != "render":
+            progress(f"{kind} {text}".strip(), done, of)
+
+    return hear

@@ -1,0 +1,373 @@
+"""Renders: all at once, or pass by pass."""
+
+from __future__ import annotations
+
+import os
+import time as clock
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol, TypeAlias
+
+from bidir import _bidir
+from bidir.errors import FilmError, RenderInterruptedError, SettingsError
+from bidir.film import Film
+from bidir.image import Image
+from bidir.scene import Scene, StrPath, load
+from bidir.settings import Integrator
+
+__all__ = ["LAYERS", "Progress", "ProgressBar", "Session", "Wanted", "render"]
+
+#: The names of the images that a film can keep beside the picture.
+LAYERS: tuple[str, ...] = tuple(_bidir.LAYERS)
+
+
+class ProgressBar(Protocol):
+    """What a progress bar has to have: that of ``tqdm`` is one."""
+
+    total: Any
+
+    def update(self, n: int) -> Any:
+        """Tell that ``n`` passes more are done."""
+        ...
+
+    def close(self) -> Any:
+        """Tell that nothing more comes."""
+        ...
+
+
+#: Who is told of progress: a bar, a class of bars such as ``tqdm``, which is called with ``total`` and
+#: ``unit``, or a function of the passes that are done and of all, None where there is no limit.
+Progress: TypeAlias = ProgressBar | Callable[[int, int | None], object] | type
+
+
+class Reporter(AbstractContextManager["Reporter"]):
+    """Tells a :data:`Progress` what is done."""
+
+    def __init__(self, progress: Progress | None, total: int | None, done: int = 0) -> None:
+        """Begin where ``done`` of ``total`` passes are there."""
+        self._total = total
+        self._done = done
+        self._own = isinstance(progress, type)
+        self._call: Callable[[int, int | None], object] | None = None
+        self._bar: Any = None
+        if isinstance(progress, type):
+            self._bar = progress(total=total, unit="pass", initial=done)
+        elif progress is not None and hasattr(progress, "update"):
+            self._bar = progress
+            self._bar.total = total
+            if done:
+                self._bar.update(done)
+        elif callable(progress):
+            self._call = progress
+
+    def advance(self, passes: int) -> None:
+        """Tell that so many passes more are done."""
+        self._done += passes
+        if self._bar is not None:
+            self._bar.update(passes)
+        if self._call is not None:
+            self._call(self._done, self._total)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close a bar that was made here."""
+        if self._own and self._bar is not None:
+            self._bar.close()
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is rendered of a scene, beside the passes: what the bits of a film depend on."""
+
+    #: The estimator; None is the scene's.
+    integrator: Integrator | None = None
+    #: The seed; None is the scene's, or 0.
+    seed: int | None = None
+    #: Names of :data:`LAYERS`.
+    layers: tuple[str, ...] = ()
+    #: Whether every group of lights has an image.
+    light_groups: bool = False
+    #: The most vertices of paths whose strategies have images.
+    strategy_layers: int = 0
+
+    def native(self, scene: Scene) -> dict[str, Any]:
+        """Return the same as the native half takes it.
+
+        Errors: :class:`bidir.SettingsError` where a number is none that can be meant.
+        """
+        if self.seed is not None and not 0 <= self.seed < 1 << 64:
+            raise SettingsError(f"seed: {self.seed} is not from 0 to 2**64 - 1")
+        if not 0 <= self.strategy_layers <= 32:
+            raise SettingsError(f"strategy_layers: {self.strategy_layers} is not from 0 to 32")
+        layers = LAYERS if "all" in self.layers else self.layers
+        return {
+            "settings": self.integrator.flags() if self.integrator else {},
+            "seed": self.seed,
+            "layers": list(layers),
+            "light_groups": scene.light_groups if self.light_groups else [],
+            "strategy_layers": self.strategy_layers,
+        }
+
+
+def wanted(
+    integrator: Integrator | None,
+    seed: int | None,
+    layers: Iterable[str],
+    light_groups: bool,
+    strategy_layers: int,
+) -> Wanted:
+    """Return the same as a value."""
+    if isinstance(layers, str):
+        layers = layers.split(",")
+    return Wanted(integrator, seed, tuple(layers), light_groups, strategy_layers)
+
+
+class Session:
+    """A render that goes pass by pass.
+
+    Other threads of Python run while a pass is rendered. Ctrl-C gives the running pass up, and the
+    session goes on from there as if it had never begun.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | StrPath,
+        integrator: Integrator | None = None,
+        *,
+        seed: int | None = None,
+        layers: Iterable[str] = (),
+        light_groups: bool = False,
+        strategy_layers: int = 0,
+        threads: int = 0,
+    ) -> None:
+        """Begin a render; nothing is rendered yet but what an estimator learns before.
+
+        Args:
+            scene: The scene, or its file.
+            integrator: The estimator; None is the scene's.
+            seed: Other seeds give unrelated noise; None is the scene's, or 0.
+            layers: Images beside the picture: names of :data:`bidir.LAYERS`, or ``all``.
+            light_groups: Keep an image of each group of lights.
+            strategy_layers: Keep images of strategies, of paths of at most so many vertices.
+            threads: 0 is one per processor; changes speed, never a bit.
+
+        Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, those of :func:`bidir.load`.
+        """
+        self.scene = scene if isinstance(scene, Scene) else load(scene)
+        self.wanted = wanted(integrator, seed, layers, light_groups, strategy_layers)
+        native = self.wanted.native(self.scene)
+        if threads < 0:
+            raise SettingsError(f"threads: {threads} is below 0")
+        self._native = _bidir.Session(self.scene._native, native, threads)
+        self._stopping = "fixed"
+
+    def step(self, passes: int = 1) -> None:
+        """Render the next passes: one sample of every pixel each.
+
+        Errors: :class:`KeyboardInterrupt`; finished passes are kept.
+        """
+        for _ in range(passes):
+            self._native.step()
+
+    def start_at(self, first: int) -> None:
+        """Leave the passes before ``first`` to others."""
+        self._native.start_at(first)
+
+    def snapshot(self) -> Image:
+        """Return the picture of what is rendered so far."""
+        return Image(self.film())
+
+    def film(self) -> Film:
+        """Return the exact sums of what is rendered so far."""
+        return Film(self._native.film(self._stopping))
+
+    def take_film(self) -> Film:
+        """Return the same, and go on with an empty film: for ranges of passes, one after another."""
+        return Film(self._native.take_film())
+
+    def checkpoint(self, path: StrPath) -> None:
+        """Write a film file to go on from.
+
+        Errors: :class:`bidir.FileError`; what was there before is then still there.
+        """
+        self.film().save(path)
+
+    def resume(self, film: Film | StrPath) -> None:
+        """Go on from a film of the same render; its passes are not rendered again.
+
+        Errors: :class:`bidir.FilmError` where it is of another render or has passes that are here;
+        those of :meth:`bidir.Film.load`.
+        """
+        film = film if isinstance(film, Film) else Film.load(film)
+        self._native.add_film(film._native)
+
+    @property
+    def next_pass(self) -> int:
+        """The pass that :meth:`step` renders, counted from 0."""
+        return self._native.next_pass
+
+    @property
+    def passes(self) -> list[range]:
+        """The passes that are rendered."""
+        return [range(begin, end) for begin, end in self._native.passes]
+
+    @property
+    def noise(self) -> float:
+        """The error of the picture relative to its mean, as the variances of pixels tell it."""
+        return self._native.noise
+
+    @property
+    def threads(self) -> int:
+        """The number of threads."""
+        return self._native.threads
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """Every setting of the estimator, with what was left open decided."""
+        return self._native.settings
+
+    @property
+    def identity(self) -> str:
+        """The :attr:`bidir.Film.identity` of the films of this session."""
+        return self._native.identity
+
+    def __repr__(self) -> str:
+        """Tell the scene and how many passes are rendered."""
+        return f"<bidir.Session {self.scene.name!r}, {sum(map(len, self.passes))} passes>"
+
+
+def render(
+    scene: Scene | StrPath,
+    integrator: Integrator | None = None,
+    *,
+    spp: int | None = None,
+    time: float | None = None,
+    noise: float | None = None,
+    seed: int | None = None,
+    layers: Iterable[str] = (),
+    light_groups: bool = False,
+    strategy_layers: int = 0,
+    threads: int = 0,
+    progress: Progress | None = None,
+    checkpoint: StrPath | None = None,
+    checkpoint_every: float = 300.0,
+) -> Image:
+    """Render a scene.
+
+    Args:
+        scene: The scene, or its file.
+        integrator: The estimator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
+        spp: Samples per pixel; None is the scene's, or no limit where ``time`` or ``noise`` is given.
+        time: End before this time is over, but after a pass. Unit: seconds.
+        noise: End when the error relative to the mean of the image is as small as this.
+        seed, layers, light_groups, strategy_layers, threads: As for :class:`Session`.
+        progress: Is told of every pass: ``tqdm``, a bar, or a function of done and all.
+        checkpoint: A film file to go on from where it is there, and to write now and then.
+        checkpoint_every: How often. Unit: seconds.
+
+    Errors: those of :class:`Session`; :class:`bidir.RenderInterruptedError` on Ctrl-C, with the picture
+    of the finished passes as ``image``, which are in ``checkpoint``, too;
+    :class:`bidir.FilmError` where ``checkpoint`` is of another render.
+    """
+    session = Session(
+        scene,
+        integrator,
+        seed=seed,
+        layers=layers,
+        light_groups=light_groups,
+        strategy_layers=strategy_layers,
+        threads=threads,
+    )
+    open_end = time is not None or noise is not None
+    limit = spp if spp is not None else None if open_end else session.scene.spp
+    if limit is not None and limit < 1:
+        raise SettingsError(f"spp: {limit} is below 1")
+    budget = _Budget(limit, time, noise)
+    keeper = _Keeper(session, checkpoint, checkpoint_every, limit)
+    with Reporter(progress, limit, session.next_pass) as reporter:
+        try:
+            while budget.allows(session):
+                session.step()
+                reporter.advance(1)
+                keeper.now_and_then()
+        except KeyboardInterrupt as error:
+            session._stopping = "time"
+            keeper.save()
+            image = session.snapshot() if session.passes else None
+            done = session.next_pass
+            raise RenderInterruptedError(f"stopped after {done} passes", image) from error
+    session._stopping = budget.stopping
+    keeper.save()
+    return session.snapshot()
+
+
+class _Budget:
+    """Whether another pass is rendered; there is always a first."""
+
+    def __init__(self, spp: int | None, time: float | None, noise: float | None) -> None:
+        self._spp, self._time, self._noise = spp, time, noise
+        self._begin = clock.monotonic()
+        self._rendered = 0
+        self._looked_at = 0
+        self.stopping = "fixed"
+
+    def allows(self, session: Session) -> bool:
+        passes = session.next_pass
+        if self._spp is not None and passes >= self._spp:
+            return False
+        if self._is_over(passes):
+            self.stopping = "time"
+            return False
+        # Developing a film costs time: the noise is looked at after an eighth more passes each.
+        if self._noise is not None and passes >= max(2, self._looked_at * 9 // 8):
+            self._looked_at = passes
+            if session.noise <= self._noise:
+                self.stopping = "noise"
+                return False
+        self._rendered += 1
+        return True
+
+    def _is_over(self, passes: int) -> bool:
+        if self._time is None or passes == 0:
+            return False
+        elapsed = clock.monotonic() - self._begin
+        # A pass is expected to take as long as those before.
+        return elapsed + elapsed / max(self._rendered, 1) > self._time
+
+
+class _Keeper:
+    """Writes a film file now and then."""
+
+    def __init__(self, session: Session, path: StrPath | None, every: float, limit: int | None) -> None:
+        self._session, self._every = session, every
+        self._path = None if path is None else Path(path)
+        self._written = clock.monotonic()
+        self._kept = 0
+        if self._path is not None and self._path.exists():
+            film = Film.load(self._path)
+            beyond = [part for part in film.passes if limit is not None and part.stop > limit]
+            if beyond:
+                message = f"{os.fspath(self._path)}: it has passes beyond the {limit} asked for"
+                raise FilmError(message)
+            try:
+                session.resume(film)
+            except FilmError as error:
+                raise FilmError(f"{os.fspath(self._path)}: {error}") from error
+            self._kept = film.spp
+
+    def now_and_then(self) -> None:
+        if clock.monotonic() - self._written >= self._every:
+            self.save()
+
+    def save(self) -> None:
+        passes = sum(map(len, self._session.passes))
+        if self._path is not None and passes > self._kept:
+            self._session.checkpoint(self._path)
+            self._written, self._kept = clock.monotonic(), passes

@@ -1,0 +1,92 @@
+"""Estimators and rules as values."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+import bidir
+
+
+def test_settings_are_those_of_the_flags() -> None:
+    lvc = bidir.Lvc(
+        shadow_rays=bidir.Budget(3),
+        candidates=(8, 2),
+        proposal="uniform",
+        samples_per_subpath=8,
+        mis_count="resampled",
+        mis="power",
+        strategies="all,-s0",
+        light_point="shared",
+        light_choice="power",
+        path_roulette="throughput:3",
+        max_depth=0,
+        sampler="independent",
+    )
+    assert lvc.flags() == {
+        "integrator": "lvc",
+        "shadow-rays": "budget:3",
+        "candidates": "8,2",
+        "proposal": "uniform",
+        "samples-per-subpath": "8",
+        "mis-count": "resampled",
+        "mis": "power",
+        "strategies": "all,-s0",
+        "light-point": "shared",
+        "light-choice": "power",
+        "path-roulette": "throughput:3",
+        "max-depth": "0",
+        "sampler": "independent",
+    }
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        bidir.All(),
+        bidir.PerLightVertex(),
+        bidir.PerCameraVertex(),
+        bidir.PerPair(),
+        bidir.RayRoulette(0.25),
+        bidir.Budget(2),
+    ],
+    ids=str,
+)
+def test_rules_reach_the_render(cornell: bidir.Scene, rule: bidir.Selector) -> None:
+    session = bidir.Session(cornell, bidir.Bdpt(shadow_rays=rule))
+    assert session.settings["shadow-rays"] == str(rule)
+    session.step()
+    assert session.film() == bidir.render(cornell, bidir.Bdpt(shadow_rays=str(rule)), spp=1).film
+
+
+def test_auto_decides(cornell: bidir.Scene) -> None:
+    assert bidir.Session(cornell, bidir.Auto()).settings["integrator"] in {"path", "lvc"}
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"mis": "balence"}, "mis: there is no `balence`: did you mean `balance`"),
+        ({"shadow_rays": "budget:0"}, "shadow_rays: `budget:0` is no choice"),
+        ({"strategies": "s"}, "strategies"),
+        ({"max_depth": -1}, "max_depth: expected a whole number"),
+    ],
+)
+def test_wrong_values_are_refused(settings: dict[str, object], words: str) -> None:
+    with pytest.raises(bidir.SettingsError, match=words):
+        bidir.Bdpt(**settings)  # type: ignore[arg-type]
+
+
+def test_estimators_are_values() -> None:
+    bdpt = bidir.Bdpt(shadow_rays=bidir.PerPair())
+    assert bdpt == bidir.Bdpt(shadow_rays=bidir.PerPair())
+    assert bdpt != dataclasses.replace(bdpt, max_depth=3)
+    assert len({bdpt, bidir.Bdpt(), bidir.Lvc()}) == 3
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        bdpt.max_depth = 4  # type: ignore[misc]
+
+
+def test_layers_that_are_not_known(cornell: bidir.Scene) -> None:
+    with pytest.raises(bidir.SettingsError, match="there is no layer `albeda`"):
+        bidir.render(cornell, spp=1, layers=["albeda"])
