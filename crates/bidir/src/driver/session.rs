@@ -258,7 +258,7 @@ impl<'a> Session<'a> {
                 let subpaths = pixels.div_ceil(self.samples_per_subpath());
                 Connections {
                     samples_per_subpath: pixels as f64 / subpaths as f64,
-                    ..training.connections(&self.settings.lvc)
+                    ..training.connections(self.settings.lvc)
                 }
             }
             _ => Connections::ONE_SUBPATH,

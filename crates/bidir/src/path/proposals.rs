@@ -116,11 +116,12 @@ impl LightProposals {
             cumulative,
             relative,
             next_events: vec![1.0; Cells::COUNT],
-            root_visibility: sums.arrived.iter().map(root_visibility).collect(),
+            root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
         }
     }
 
     /// The same where n counts traced rays alone.
+    #[must_use]
     pub fn counting_rays(mut self, inclusion: &Inclusion) -> Self {
         let counts = self.relative.iter_mut().chain(&mut self.next_events);
         let chosen = inclusion.connections.iter().chain(&inclusion.next_events);
@@ -186,7 +187,7 @@ impl LightProposals {
 
 /// √V̂ where so many connections were traced and arrived. What training did not see counts as
 /// visible, and nothing as hidden for sure.
-fn root_visibility(&[traced, arrived]: &[u32; 2]) -> f32 {
+fn root_visibility([traced, arrived]: [u32; 2]) -> f32 {
     let visible = f64::from(arrived + 1) / f64::from(traced + 1);
     visible.max(LEAST_VISIBILITY).sqrt() as f32
 }

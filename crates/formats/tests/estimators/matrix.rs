@@ -143,7 +143,7 @@ impl World {
         let render = |case: Case<'_>| {
             let case = case.with_effort(entrant.effort);
             case.render(entrant.integrator, |settings| {
-                settings.shadow_rays = entrant.rays
+                settings.shadow_rays = entrant.rays;
             })
         };
         let result = render(case);

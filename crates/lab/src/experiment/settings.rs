@@ -175,8 +175,19 @@ mod tests {
     fn settings_are_read_as_they_are_written() {
         let mut changes = Changes::default();
         let values = [
-            "light", "per-pair", "9", "uniform", "4", "uniform", "all,-s0", "shared", "power",
-            "off", "sobol", "7",
+            "light",
+            "per-pair",
+            "9,2",
+            "uniform",
+            "4",
+            "correlated",
+            "uniform",
+            "all,-s0",
+            "shared",
+            "power",
+            "off",
+            "sobol",
+            "7",
         ];
         for (name, value) in Changes::NAMES.into_iter().zip(values) {
             changes.set(name, value).unwrap();

@@ -93,7 +93,7 @@ impl Training {
     }
 
     /// How many connections a camera vertex makes, where each sample has a light subpath.
-    pub(super) fn connections(&self, settings: &LvcSettings) -> Connections<'_> {
+    pub(super) fn connections(&self, settings: LvcSettings) -> Connections<'_> {
         match self.light_vertices {
             0.0 => Connections::ONE_SUBPATH,
             vertices => Connections {
@@ -139,7 +139,7 @@ impl Training {
             settings,
             connections: Connections {
                 proposals: Some(proposals),
-                ..self.connections(&settings.lvc)
+                ..self.connections(settings.lvc)
             },
             first: self.samples,
         }

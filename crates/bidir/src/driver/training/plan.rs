@@ -66,7 +66,7 @@ impl Plan {
         match self.integrator {
             IntegratorKind::Lvc => Connections {
                 samples_per_subpath: f64::from(self.samples_per_subpath.get()),
-                ..training.connections(&settings.lvc)
+                ..training.connections(settings.lvc)
             },
             _ => Connections::ONE_SUBPATH,
         }

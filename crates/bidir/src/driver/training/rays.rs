@@ -48,15 +48,12 @@ impl Witness for Found<'_> {
     fn sample(&mut self, _: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
         let probs = self.selector.probabilities(&workspace.candidates);
         for (candidate, prob) in workspace.candidates.iter().zip(probs) {
-            match workspace.cells_of(candidate) {
-                Some([light, camera]) => {
-                    let pair = Cells::pair(light, camera) as u32;
-                    self.connections.push((pair, prob));
-                }
-                None => {
-                    let camera = workspace.camera_cell(candidate).index() as u32;
-                    self.next_events.push((camera, prob));
-                }
+            if let Some([light, camera]) = workspace.cells_of(candidate) {
+                let pair = Cells::pair(light, camera) as u32;
+                self.connections.push((pair, prob));
+            } else {
+                let camera = workspace.camera_cell(candidate).index() as u32;
+                self.next_events.push((camera, prob));
             }
         }
     }
