@@ -3,8 +3,8 @@
 //! - Nothing here is for users: `python/bidir` has the classes with their documentation, and
 //!   `python/bidir/_bidir.pyi` the types of what is here.
 //! - Arrays pass as bytes, 32-bit little-endian numbers row by row; numpy is Python's business.
-//! - Whatever takes long lets other Python threads run, and asks for signals meanwhile ([`wait`]).
-//! - Exceptions are the classes of `bidir.errors` ([`error`]).
+//! - Whatever takes long lets other Python threads run, and asks for signals meanwhile (`wait`).
+//! - Exceptions are the classes of `bidir.errors` (`error`).
 
 #![expect(
     clippy::needless_pass_by_value,
