@@ -92,7 +92,7 @@ pub fn read(path: &Path) -> Result<FilmFile> {
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 
-/// The bytes of a film file; see [`write`].
+/// The bytes of a film file; see [`write()`].
 pub fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
     let json = header.of(film).to_json();
     let numbers = film.layers().sums();
