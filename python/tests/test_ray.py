@@ -98,10 +98,11 @@ def check(film: bidir.Film, local: bidir.Film) -> None:
 def test_the_bits_are_those_of_one_machine(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
     told: list[int] = []
     journal = Journal()
+    rendering = Rendering(cornell, journal, progress=lambda done, of: told.append(done))
+    wait_for(lambda: len({node for *_, node in journal.entries()}) == 3)
     journal.open_gate()
-    check(Rendering(cornell, journal, progress=lambda done, of: told.append(done)).film(), local)
+    check(rendering.film(), local)
     assert told[-1] == SPP
-    assert len({node for *_, node in journal.entries()}) == 3
 
 
 def test_a_killed_worker(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) -> None:
