@@ -52,7 +52,7 @@ fn every_flag_is_described() {
     );
     check_flags(
         "experiment",
-        "--help --no-color --output --quick --quiet --rays --reference-spp --restart --scenes --seconds --seeds --size \
+        "--help --no-color --output --quick --quiet --ray --rays --reference-spp --restart --scenes --seconds --seeds --size \
          --threads --version",
     );
     check_flags(

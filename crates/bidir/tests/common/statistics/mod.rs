@@ -80,7 +80,8 @@ pub(crate) fn replicates_of_each<const N: usize>(
     });
     for replicate in 0..REPLICATES as u64 {
         let settings = Settings {
-            seed: (1_000_000 * settings.seed + first_seed().wrapping_mul(1000)) + replicate,
+            seed: (settings.seed.wrapping_mul(1000).wrapping_add(first_seed())).wrapping_mul(1000)
+                + replicate,
             sampler: SamplerKind::Independent,
             ..settings.clone()
         };
