@@ -209,6 +209,13 @@ PATHS = [
         RUNNING,
     ),
     (
+        "light images that tell of themselves alone",
+        "crates/bidir/src/driver/training/trial.rs",
+        "self.hidden += value * value / (w * (1.0 - w));",
+        "self.hidden += value * value / w;",
+        unit("light_images_tell"),
+    ),
+    (
         "correlation of the strategy at hand alone",
         "crates/bidir/src/path/count.rs",
         "MisCount::Correlated if is_shared =>",

@@ -70,7 +70,7 @@ impl Training {
             training.rays += trial.stats.rays;
             training.samples += trial.stats.samples;
         }
-        let plan = plan::best(scene.film().crop.area(), &tried);
+        let plan = plan::best(scene.film().crop.area(), settings.path.mis, &tried);
         training.plan = Some(plan);
         (plan, training)
     }

@@ -8,7 +8,7 @@ use super::probe::Probe;
 use super::trial::{BLOCKS, Trial};
 use super::{Settings, Training};
 use crate::integrator::{BlindSpot, IntegratorKind, SamplesPerSubpath, blind_spots};
-use crate::path::{Connections, LightPointChoice, PathRoulette};
+use crate::path::{Connections, LightPointChoice, MisHeuristic, PathRoulette};
 use crate::scene::Scene;
 use std::fmt;
 
@@ -140,9 +140,9 @@ pub(super) fn try_all(
     possible.map(attempt).collect()
 }
 
-/// The best of the plans that were tried on a film of `pixels`.
-pub(super) fn best(pixels: u64, tried: &[Tried]) -> Plan {
-    let products = products(pixels as f64, tried);
+/// The best of the plans that were tried, under a heuristic, on a film of `pixels`.
+pub(super) fn best(pixels: u64, mis: MisHeuristic, tried: &[Tried]) -> Plan {
+    let products = products(pixels as f64, mis, tried);
     let plans = tried.iter().map(|(plan, _)| *plan).zip(products);
     let best = plans.min_by(|a, b| a.1.total_cmp(&b.1));
     best.map_or_else(Plan::default, |(plan, _)| plan)
@@ -150,7 +150,7 @@ pub(super) fn best(pixels: u64, tried: &[Tried]) -> Plan {
 
 /// The product of variance and cost of each, relative to those of others. Path tracing has at least the
 /// variance that the light images of others tell of.
-fn products(pixels: f64, tried: &[Tried]) -> Vec<f64> {
+fn products(pixels: f64, mis: MisHeuristic, tried: &[Tried]) -> Vec<f64> {
     let means: Vec<_> = (0..BLOCKS).map(|i| mean(i, pixels, tried)).collect();
     let whole = means.iter().sum::<f64>() / BLOCKS as f64;
     let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
@@ -159,7 +159,8 @@ fn products(pixels: f64, tried: &[Tried]) -> Vec<f64> {
         (0..BLOCKS).map(relative).sum()
     };
     let hidden = |trial: &Trial| sum(&|i| trial.hidden_variance(i, pixels, means[i]));
-    let with_light = tried.iter().filter(|(plan, _)| plan.has_light_images());
+    let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
+    let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
     let hidden: Vec<_> = with_light.map(|(_, trial)| hidden(trial)).collect();
     let hidden = hidden.iter().sum::<f64>() / hidden.len().max(1) as f64;
     let product = |(plan, trial): &Tried| {

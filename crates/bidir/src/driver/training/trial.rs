@@ -16,8 +16,8 @@
 //!
 //! (1 / B) ∫ f² / q ≥ (1 / B) ∫ f² w / (P p (1 - w)) = Σ v² / (w (1 - w)) / (n P B)
 //!
-//! with the sum over the light images of n samples that landed in the block. This holds under the
-//! balance heuristic.
+//! with the sum over the light images of n samples that landed in the block. Other heuristics than the
+//! balance heuristic do not tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
 //! every run. They fit the times of ten scenes to 6 % (docs/performance.md).
@@ -62,6 +62,18 @@ struct Block {
     hidden: f64,
 }
 
+impl Block {
+    /// Adds a light image of which its strategy has the share `weight`, by the balance heuristic.
+    fn add_splat(&mut self, value: f64, weight: f64) {
+        self.splats += value;
+        self.splat_squares += value * value;
+        let w = weight.min(MOST_WEIGHT);
+        if w > 0.0 {
+            self.hidden += value * value / (w * (1.0 - w));
+        }
+    }
+}
+
 /// What the samples of a plan found.
 pub(super) struct Trial {
     blocks: Vec<Block>,
@@ -100,10 +112,7 @@ impl Witness for Trial {
             };
             let value = y(context, splat.contribution.value) * f64::from(weight);
             let block = &mut self.blocks[block(&film.crop, index as u64)];
-            block.splats += value;
-            block.splat_squares += value * value;
-            let w = f64::from(splat.contribution.weight).min(MOST_WEIGHT);
-            block.hidden += value * value / (w * (1.0 - w));
+            block.add_splat(value, f64::from(splat.contribution.weight));
         }
     }
 
@@ -210,6 +219,38 @@ impl std::ops::AddAssign<&Self> for Trial {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Three paths of known contribution, and densities of both ways to make them: what light images
+    /// tell is Σ f² / q.
+    #[test]
+    fn light_images_tell_of_the_second_moment_of_path_tracing() {
+        let pixels = BLOCKS as f64;
+        let paths = [(3.0, 0.25, 1e-4), (1.0, 0.5, 0.3), (2.0, 0.125, 0.02)];
+        let mut trial = Trial::default();
+        let n = 800.0;
+        trial.stats.samples = 800;
+        for (f, p, q) in paths {
+            let w = pixels * p / (pixels * p + q);
+            for _ in 0..(n * p) as u32 {
+                trial.blocks[7].add_splat(w * f / p, w);
+            }
+        }
+        let exact: f64 = paths.iter().map(|(f, _, q)| f * f / q).sum();
+        let told = trial.hidden_variance(7, pixels, 0.0);
+        // Of the first path 1 - w is less than what weights can tell.
+        let least: f64 = paths[1..].iter().map(|(f, _, q)| f * f / q).sum();
+        assert!(told > least && told < exact, "{least} {told} {exact}");
+        trial.blocks[7].add_splat(0.0, 0.0);
+        assert!((trial.hidden_variance(7, pixels, 0.0) - told).abs() < 1e-9);
+        let told_of = |(f, p, q): (f64, f64, f64)| {
+            let w = pixels * p / (pixels * p + q);
+            let known = w.min(MOST_WEIGHT);
+            f * f * w * w / (pixels * p * known * (1.0 - known))
+        };
+        let expected: f64 = paths.into_iter().map(told_of).sum();
+        assert!((told / expected - 1.0).abs() < 1e-9, "{told} {expected}");
+        assert!(trial.hidden_variance(7, pixels, 1e9) <= 0.0);
+    }
 
     #[test]
     fn blocks_divide_the_crop() {
