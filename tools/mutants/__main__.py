@@ -2,6 +2,7 @@
 
     python3 tools/mutants                 all of them; exits with 1 if one survives
     python3 tools/mutants --only TEXT     those whose name or test contains TEXT
+    python3 tools/mutants --share 1/4     the second of four shares of them
     python3 tools/mutants --list          names, files and tests
     python3 tools/mutants --check         only that every fault still applies to the sources
 
@@ -140,6 +141,14 @@ def run_mutant(mutation):
     return ("SURVIVED", "") if code == 0 else ("killed", "")
 
 
+def share(text):
+    """The shares `I/N` of a list: every N-th entry, from number I on."""
+    found = re.fullmatch(r"(\d+)/(\d+)", text)
+    if not found or not int(found[1]) < int(found[2]):
+        raise argparse.ArgumentTypeError("`%s` is no share such as 1/4, from 0/4 to 3/4" % text)
+    return slice(int(found[1]), None, int(found[2]))
+
+
 def describe(test):
     return " ".join(part for part in test if part)
 
@@ -149,10 +158,12 @@ def main():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", metavar="TEXT", default="")
+    parser.add_argument("--share", metavar="I/N", type=share, default=slice(None))
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--check", action="store_true")
     arguments = parser.parse_args()
     mutations = [m for m in MUTATIONS if arguments.only in m[0] + " " + describe(m[4])]
+    mutations = mutations[arguments.share]
     if not mutations:
         sys.exit("no mutant has a name or a test with `%s`" % arguments.only)
     if arguments.list:

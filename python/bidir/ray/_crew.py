@@ -87,6 +87,8 @@ class Work(Protocol):
 
     #: The class of the actors.
     actor: type
+    #: How many units an actor may be told to begin before it has ended one.
+    concurrency: int
 
     def prepare(self, actor: Any, cpus: int) -> Any:
         """Make an actor ready; return the reference of what it tells of itself."""
@@ -186,11 +188,14 @@ class Crew:
 
     def _hire(self, node: str, host: str, cpus: int) -> None:
         affinity = NodeAffinitySchedulingStrategy(node, soft=False)
-        actor: Any = (
-            ray.remote(self._work.actor)
-            .options(num_cpus=cpus, max_restarts=0, max_task_retries=0, scheduling_strategy=affinity)
-            .remote()
-        )
+        options = {
+            "num_cpus": cpus,
+            "max_restarts": 0,
+            "max_task_retries": 0,
+            "max_concurrency": self._work.concurrency,
+            "scheduling_strategy": affinity,
+        }
+        actor: Any = ray.remote(self._work.actor).options(**options).remote()
         preparing = self._work.prepare(actor, cpus)
         self._workers[node] = Worker(node, host, cpus, actor, preparing)
 

@@ -49,6 +49,9 @@ class Bench:
 class ExperimentWork:
     """The work of a :class:`bidir.ray._crew.Crew`: units are blocks, as JSON."""
 
+    #: Times are compared: nothing runs beside a block.
+    concurrency = 1
+
     def __init__(
         self,
         prepared: _bidir.Prepared,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import platform
 import socket
+import threading
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -38,6 +39,10 @@ def versions() -> dict[str, Any]:
 class Renderer:
     """What runs on a node: it reads the scene once, and renders ranges of passes."""
 
+    def __init__(self) -> None:
+        """Begin without a scene."""
+        self._turn = threading.Lock()
+
     def prepare(
         self, scene: Scene | tuple[str, dict[str, Any]], wanted: Wanted, threads: int
     ) -> dict[str, Any]:
@@ -62,15 +67,19 @@ class Renderer:
         }
 
     def render(self, begin: int, end: int) -> tuple[dict[str, Any], bytes]:
-        """Render the passes from ``begin`` to ``end``, which is exclusive; return their film."""
-        started = time.monotonic()
-        self.session.start_at(begin)
-        try:
-            self.session.step(end - begin)
-        finally:
-            # A range that failed leaves nothing to the next one.
-            film = self.session.take_film()
-        seconds = time.monotonic() - started
+        """Render the passes from ``begin`` to ``end``, which is exclusive; return their film.
+
+        One range renders at a time, with all threads; while its film is packed, the next one does.
+        """
+        with self._turn:
+            started = time.monotonic()
+            self.session.start_at(begin)
+            try:
+                self.session.step(end - begin)
+            finally:
+                # A range that failed leaves nothing to the next one.
+                film = self.session.take_film()
+            seconds = time.monotonic() - started
         return {"seconds": seconds, "passes": film.spp}, film.to_bytes()
 
 
@@ -106,6 +115,9 @@ class _Ranges:
 
 class RenderWork:
     """The work of a :class:`bidir.ray._crew.Crew`: units are ranges of passes."""
+
+    #: One renders, one is packed.
+    concurrency = 2
 
     def __init__(
         self,

@@ -74,13 +74,10 @@ pub fn prepare(
 ) -> Result<Option<Prepared>> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
     let mut journal = Journal::start(setup, &owner)?;
-    let mut references = Vec::new();
-    for (stage, given) in stages.iter().zip(given) {
-        match reference::obtain(stage, given, setup, experiment.threads, observer)? {
-            Some(reference) => references.push(reference),
-            None => return Ok(None),
-        }
-    }
+    let threads = experiment.threads;
+    let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
+        return Ok(None);
+    };
     if pyramid::complete(experiment, &stages, setup, &mut journal, observer)? == End::Stopped {
         return Ok(None);
     }

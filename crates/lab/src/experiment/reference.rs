@@ -37,12 +37,27 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
     }
 }
 
+/// The references of all stages; `given` are those that lie elsewhere. None: the observer stopped it.
+///
+/// Errors: as [`obtain`].
+pub(super) fn obtain_all(
+    stages: &[Stage<'_>],
+    given: Vec<Option<Reference>>,
+    setup: &Setup,
+    threads: usize,
+    observer: &mut dyn Observer,
+) -> Result<Option<Vec<Reference>>> {
+    let stages = stages.iter().zip(given);
+    let references = stages.map(|(stage, given)| obtain(stage, given, setup, threads, observer));
+    references.collect()
+}
+
 /// The reference of a scene: the [`given`] one, whose picture is copied into the folder of the results,
 /// or else it is made. None: the observer stopped that.
 ///
 /// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
 /// it.
-pub(super) fn obtain(
+fn obtain(
     stage: &Stage<'_>,
     given: Option<Reference>,
     setup: &Setup,

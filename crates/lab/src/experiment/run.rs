@@ -120,18 +120,13 @@ pub struct Outcome {
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
     let mut journal = Journal::start(setup, &owner)?;
-    let mut references = Vec::new();
-    for (stage, given) in stages.iter().zip(given) {
-        match reference::obtain(stage, given, setup, experiment.threads, observer)? {
-            Some(reference) => references.push(reference),
-            None => {
-                return Ok(Outcome {
-                    end: End::Stopped,
-                    results: None,
-                });
-            }
-        }
-    }
+    let threads = experiment.threads;
+    let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
+        return Ok(Outcome {
+            end: End::Stopped,
+            results: None,
+        });
+    };
     let work = Work {
         experiment,
         setup,
