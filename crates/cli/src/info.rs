@@ -127,6 +127,24 @@ impl Info {
 
     /// One line for each thing.
     fn text(&self) -> String {
+        let mut text = String::new();
+        for (name, value) in self.lines() {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{name:<12} {value}");
+        }
+        self.tell_blind_spots(&mut text);
+        for refused in &self.refused {
+            let _ = writeln!(text, "refused      {refused}");
+        }
+        let is_ignored = |warning: &&String| !self.refused.contains(warning);
+        for ignored in self.warnings.iter().filter(is_ignored) {
+            let _ = writeln!(text, "note         {ignored}");
+        }
+        text
+    }
+
+    /// What there is, each with its name.
+    fn lines(&self) -> [(&'static str, String); 16] {
         let film = &self.film;
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
         let settings = &self.settings;
@@ -134,7 +152,7 @@ impl Info {
             None => "no limit".to_owned(),
             Some(depth) => format!("at most {depth} bounces"),
         };
-        let lines = [
+        [
             ("scene", self.scene.clone()),
             (
                 "film",
@@ -166,21 +184,7 @@ impl Info {
                 "BVH memory",
                 format!("{} ({})", bytes(self.bvh_bytes as u64), self.isa),
             ),
-        ];
-        let mut text = String::new();
-        for (name, value) in lines {
-            // Writing to a string cannot fail.
-            let _ = writeln!(text, "{name:<12} {value}");
-        }
-        self.tell_blind_spots(&mut text);
-        for refused in &self.refused {
-            let _ = writeln!(text, "refused      {refused}");
-        }
-        let is_ignored = |warning: &&String| !self.refused.contains(warning);
-        for ignored in self.warnings.iter().filter(is_ignored) {
-            let _ = writeln!(text, "note         {ignored}");
-        }
-        text
+        ]
     }
 
     /// A line for what each estimator does not see, the scene's own first.

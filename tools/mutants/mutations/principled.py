@@ -60,7 +60,7 @@ PRINCIPLED = [
     ),
     (
         "mirrored nodes keep their winding",
-        "crates/formats/src/gltf/mesh.rs",
+        "crates/formats/src/gltf/mesh/placing.rs",
         "let orientation = if is_mirrored {",
         "let orientation = if !is_mirrored && is_mirrored {",
         gltf("mirrored_nodes_turn_the_winding"),

@@ -3,6 +3,9 @@
 //! trace. No clock is looked at but the host's, where it gives one.
 
 mod group;
+mod handle;
+
+pub use handle::SceneHandle;
 
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
@@ -15,45 +18,11 @@ use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
-use std::ops::Deref;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
 
 /// Pixels are handed to threads in runs of this length.
 const RUN: u64 = 256;
-
-/// The scene of a session: borrowed, or kept alive by it, for hosts whose objects borrow nothing.
-#[derive(Clone)]
-pub enum SceneHandle<'a> {
-    /// Somebody else keeps it.
-    Borrowed(&'a Scene),
-    /// The session has a share in it.
-    Shared(Arc<Scene>),
-}
-
-impl<'a> From<&'a Scene> for SceneHandle<'a> {
-    fn from(scene: &'a Scene) -> Self {
-        Self::Borrowed(scene)
-    }
-}
-
-impl From<Arc<Scene>> for SceneHandle<'_> {
-    fn from(scene: Arc<Scene>) -> Self {
-        Self::Shared(scene)
-    }
-}
-
-impl Deref for SceneHandle<'_> {
-    type Target = Scene;
-
-    #[inline]
-    fn deref(&self) -> &Scene {
-        match self {
-            Self::Borrowed(scene) => scene,
-            Self::Shared(scene) => scene,
-        }
-    }
-}
 
 /// A render that goes pass by pass.
 ///

@@ -44,17 +44,7 @@ fn build(
         .key("KHR_lights_punctual")
         .key("lights")
         .index(index);
-    let intensity = described.intensity.unwrap_or(1.0);
-    let power = described
-        .color
-        .unwrap_or([1.0; 3])
-        .map(|channel| channel * intensity);
-    if power
-        .iter()
-        .any(|channel| !channel.is_finite() || *channel < 0.0)
-    {
-        return Err(place.scene(format!("the intensity {power:?} is no light")));
-    }
+    let power = power(described, &place)?;
     if described.range.is_some() {
         context.warn(
             &place,
@@ -84,6 +74,18 @@ fn build(
             Err(fault.with_nearest(other, ["directional", "point", "spot"]))
         }
     }
+}
+
+/// The intensity or irradiance in each channel.
+fn power(described: &Described, place: &Place) -> Result<[f32; 3], GltfFault> {
+    let intensity = described.intensity.unwrap_or(1.0);
+    let color = described.color.unwrap_or([1.0; 3]);
+    let power = color.map(|channel| channel * intensity);
+    let is_light = |channel: &f32| channel.is_finite() && *channel >= 0.0;
+    if power.iter().all(is_light) {
+        return Ok(power);
+    }
+    Err(place.scene(format!("the intensity {power:?} is no light")))
 }
 
 fn spot(

@@ -1,16 +1,14 @@
-//! Primitives of meshes: their attributes, made into triangles and put into place.
+//! Primitives of meshes: their attributes, made into triangles.
+
+mod places;
+mod placing;
+
+pub(super) use places::{joints, places};
 
 use super::document::{Context, Document};
-use super::json::{Node, Primitive};
+use super::json::Primitive;
 use super::place::{GltfFault, Place};
-use crate::error::ErrorKind;
-use bidir::math::{Vec2, Vec3};
-use bidir::shape::{Mesh, Orientation};
-use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
-
-/// The farthest that anything is from the origin: squares of distances stay finite below it.
-const FARTHEST: f64 = 1e12;
+use bidir::math::Vec2;
 
 /// A primitive in the space of its mesh, with default morph weights applied.
 #[derive(Clone, Debug, Default)]
@@ -216,119 +214,6 @@ impl Surface {
         }
         Ok(())
     }
-
-    /// The mesh where `world_from_mesh` puts it. Errors: it reaches too far.
-    pub(super) fn place(
-        &self,
-        world_from_mesh: &DAffine3,
-        uv: &UvMap,
-        place: &Place,
-    ) -> Result<Mesh, GltfFault> {
-        let normal_matrix = normal_matrix(world_from_mesh);
-        let positions = self.positions.iter();
-        let positions = positions.map(|&p| world_from_mesh.transform_point3(vector(p)));
-        let normals = self.normals.iter().map(|&n| normal_matrix * vector(n));
-        let tangents = self.tangents.iter();
-        let tangents = tangents.map(|&t| world_from_mesh.transform_vector3(vector(t)));
-        let is_mirrored = world_from_mesh.matrix3.determinant() < 0.0;
-        let orientation = if is_mirrored {
-            Orientation::Reversed
-        } else {
-            Orientation::Natural
-        };
-        self.mesh((positions, normals, tangents), (orientation, uv), place)
-    }
-
-    /// The mesh as its joints move it, each by a map from the mesh to the world.
-    pub(super) fn skinned(
-        &self,
-        joints: &[DAffine3],
-        uv: &UvMap,
-        place: &Place,
-    ) -> Result<Mesh, GltfFault> {
-        let mut maps = Vec::with_capacity(self.joints.len());
-        for vertex in &self.joints {
-            maps.push(blend(vertex, joints).ok_or_else(|| {
-                place.scene(format!(
-                    "a vertex names a joint that its skin has not: it has {}",
-                    joints.len()
-                ))
-            })?);
-        }
-        let positions = self.positions.iter().zip(&maps);
-        let positions = positions.map(|(&p, map)| map.transform_point3(vector(p)));
-        let normals = self.normals.iter().zip(&maps);
-        let normals = normals.map(|(&n, map)| normal_matrix(map) * vector(n));
-        let tangents = self.tangents.iter().zip(&maps);
-        let tangents = tangents.map(|(&t, map)| map.transform_vector3(vector(t)));
-        let vertices = (positions, normals, tangents);
-        self.mesh(vertices, (Orientation::Natural, uv), place)
-    }
-
-    fn mesh(
-        &self,
-        (positions, normals, tangents): (
-            impl Iterator<Item = DVec3>,
-            impl Iterator<Item = DVec3>,
-            impl Iterator<Item = DVec3>,
-        ),
-        (orientation, uv): (Orientation, &UvMap),
-        place: &Place,
-    ) -> Result<Mesh, GltfFault> {
-        let mut placed = Vec::with_capacity(self.positions.len());
-        for position in positions {
-            let is_near = position.abs().max_element() <= FARTHEST;
-            if !is_near {
-                let message = format!("a coordinate is beyond {FARTHEST:e}");
-                return Err(place.fault(ErrorKind::Limit, message));
-            }
-            placed.push(position.as_vec3());
-        }
-        let uvs = self.uvs[uv.set.min(1)].iter();
-        Ok(Mesh {
-            positions: placed,
-            normals: normals.map(unit).collect(),
-            tangents: tangents.map(unit).collect(),
-            uvs: uvs.map(|&at| uv.apply(at)).collect(),
-            triangles: self.triangles.clone(),
-            orientation,
-        })
-    }
-}
-
-fn vector(v: [f32; 3]) -> DVec3 {
-    DVec3::from(v.map(f64::from))
-}
-
-fn unit(v: DVec3) -> Vec3 {
-    v.normalize_or_zero().as_vec3()
-}
-
-/// What normals are mapped by, up to scale: the matrix of cofactors, which is there for flat maps too.
-fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
-    let m = map.matrix3;
-    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
-    glam::DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
-}
-
-/// The weighted mean of joints' maps. None: there is no such joint.
-fn blend(vertex: &[(u32, f32); 4], joints: &[DAffine3]) -> Option<DAffine3> {
-    let total: f64 = vertex.iter().map(|&(_, weight)| f64::from(weight)).sum();
-    if total <= 0.0 {
-        return joints.first().copied();
-    }
-    let mut sum = [0.0; 12];
-    for &(joint, weight) in vertex {
-        if weight == 0.0 {
-            continue;
-        }
-        let map = joints.get(joint as usize)?.to_cols_array();
-        for (sum, value) in sum.iter_mut().zip(map) {
-            *sum += value * f64::from(weight) / total;
-        }
-    }
-    Some(DAffine3::from_cols_array(&sum))
 }
 
 /// The triangles of a primitive, from triangles, strips or fans.
@@ -366,86 +251,4 @@ fn triangles(
             return Err(place.key("mode").scene(message));
         }
     })
-}
-
-/// The maps of a node's skin from the mesh to the world, by joint.
-pub(super) fn joints(
-    document: &Document,
-    world_from_node: &[Option<DAffine3>],
-    skin: usize,
-    user: &Place,
-) -> Result<Vec<DAffine3>, GltfFault> {
-    let Some(of_skin) = document.root.skins.get(skin) else {
-        let count = document.root.skins.len();
-        return Err(user.scene(format!("there is no skin {skin}: the file has {count}")));
-    };
-    let place = Place::of("skins", skin);
-    let inverse = match of_skin.inverse_bind_matrices {
-        Some(index) => {
-            let place = place.key("inverseBindMatrices");
-            let matrices = document.finite_vectors::<16>(index, &place)?;
-            if matrices.len() < of_skin.joints.len() {
-                return Err(place.scene("there are fewer matrices than joints"));
-            }
-            let affine = |matrix: [f32; 16]| {
-                DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
-            };
-            matrices.into_iter().map(affine).collect()
-        }
-        None => vec![DAffine3::IDENTITY; of_skin.joints.len()],
-    };
-    let place = place.key("joints");
-    let of_joint = |(i, &joint): (usize, &usize)| {
-        let world_from_joint = world_from_node.get(joint).copied().flatten();
-        let missing = || {
-            place
-                .index(i)
-                .scene(format!("node {joint} is not in the scene"))
-        };
-        Ok(world_from_joint.ok_or_else(missing)? * inverse[i])
-    };
-    of_skin.joints.iter().enumerate().map(of_joint).collect()
-}
-
-/// The places of a mesh in its node: one, or those that EXT_mesh_gpu_instancing names.
-pub(super) fn places(
-    document: &Document,
-    node: &Node,
-    place: &Place,
-) -> Result<Vec<DAffine3>, GltfFault> {
-    let Some(instancing) = &node.extensions.instancing else {
-        return Ok(vec![DAffine3::IDENTITY]);
-    };
-    let place = place
-        .key("extensions")
-        .key("EXT_mesh_gpu_instancing")
-        .key("attributes");
-    let attributes: &BTreeMap<String, usize> = &instancing.attributes;
-    let find = |name: &str| attributes.get(name).map(|&index| (index, place.key(name)));
-    let translations =
-        find("TRANSLATION").map(|(index, place)| document.finite_vectors::<3>(index, &place));
-    let rotations =
-        find("ROTATION").map(|(index, place)| document.finite_vectors::<4>(index, &place));
-    let scales = find("SCALE").map(|(index, place)| document.finite_vectors::<3>(index, &place));
-    let (translations, rotations, scales) = (
-        translations.transpose()?,
-        rotations.transpose()?,
-        scales.transpose()?,
-    );
-    let counts = [
-        translations.as_ref().map(Vec::len),
-        rotations.as_ref().map(Vec::len),
-        scales.as_ref().map(Vec::len),
-    ];
-    let count = counts.into_iter().flatten().max().unwrap_or(1);
-    if counts.into_iter().flatten().any(|other| other != count) {
-        return Err(place.scene("the attributes have different counts"));
-    }
-    let at = |i: usize| {
-        let of =
-            |values: &Option<Vec<[f32; 3]>>| values.as_ref().map(|values| values[i].map(f64::from));
-        let rotation = rotations.as_ref().map(|values| values[i].map(f64::from));
-        super::node::from_parts(of(&translations), rotation, of(&scales))
-    };
-    Ok((0..count).map(at).collect())
 }

@@ -254,17 +254,7 @@ impl<'a> Assembly<'a> {
         destination: Destination<'_>,
     ) -> Result<(), Fault> {
         let span = shape.entity.span;
-        if shape.transforms.is_animated() {
-            context.unsupported(span, "a moving shape", "its first place stands in")?;
-        }
-        if let Some(medium) = shape
-            .medium
-            .inside
-            .as_ref()
-            .or(shape.medium.outside.as_ref())
-        {
-            context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
-        }
+        refuse_motion_and_media(context, shape)?;
         let Some((geometry, alpha)) = Geometry::read(context, &mut self.textures, shape)? else {
             return Ok(());
         };
@@ -293,18 +283,29 @@ impl<'a> Assembly<'a> {
             }
             Destination::Object(object) => {
                 let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
-                let [low, high] = shape::bounds(&shape);
-                self.object_corners = [
-                    self.object_corners[0].min(low),
-                    self.object_corners[1].max(high),
-                ];
-                self.summary.shapes += 1;
-                let number = self.builder.object_shape(object, shape, material);
-                self.shape_spans.push(span);
-                self.cover(number, alpha.as_ref());
+                self.add_to_object(object, shape, material, alpha.as_ref(), span);
             }
         }
         Ok(())
+    }
+
+    fn add_to_object(
+        &mut self,
+        object: ObjectId,
+        shape: Shape,
+        material: MaterialId,
+        alpha: Option<&FloatTexture>,
+        span: Span,
+    ) {
+        let [low, high] = shape::bounds(&shape);
+        self.object_corners = [
+            self.object_corners[0].min(low),
+            self.object_corners[1].max(high),
+        ];
+        self.summary.shapes += 1;
+        let number = self.builder.object_shape(object, shape, material);
+        self.shape_spans.push(span);
+        self.cover(number, alpha);
     }
 
     /// Lets only a part of the shapes from number `first` on be there.
@@ -359,6 +360,22 @@ fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
         .chain(of_objects)
         .map(|shape| shape.material)
         .collect()
+}
+
+/// Refuses what a shape has and the renderer has not.
+fn refuse_motion_and_media(
+    context: &mut Context<'_>,
+    shape: &ShapeDescription,
+) -> Result<(), Fault> {
+    if shape.transforms.is_animated() {
+        let span = shape.entity.span;
+        context.unsupported(span, "a moving shape", "its first place stands in")?;
+    }
+    let medium = &shape.medium;
+    if let Some(medium) = medium.inside.as_ref().or(medium.outside.as_ref()) {
+        context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
+    }
+    Ok(())
 }
 
 /// The shape in the space of `place`.

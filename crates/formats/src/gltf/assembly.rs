@@ -1,0 +1,331 @@
+//! From the structures of a file to a scene.
+
+use super::document::{Context, Document};
+use super::material::{Built, Materials};
+use super::mesh::Surface;
+use super::node::Nodes;
+use super::place::{GltfFault, Place};
+use super::{light, mesh, view};
+use crate::error::ErrorKind;
+use crate::pbrt::Summary;
+use bidir::light::{InfiniteLight, Light};
+use bidir::math::Vec3;
+use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
+use bidir::shape::{Mesh, Shape};
+use glam::DAffine3;
+use std::collections::BTreeMap;
+
+/// The most places of shared meshes.
+const MOST_INSTANCES: usize = 1 << 24;
+
+/// A scene in the making.
+pub(super) struct Assembly<'a> {
+    document: &'a Document,
+    nodes: Nodes,
+    builder: SceneBuilder,
+    materials: Materials,
+    /// The places of the shapes in the file, in the order of addition; of instances likewise.
+    shape_places: Vec<Place>,
+    instance_places: Vec<Place>,
+    /// Of a box around all shapes.
+    corners: [Vec3; 2],
+    most_primitives: u64,
+    summary: Summary,
+}
+
+/// A mesh of the file where a scene has it.
+struct MeshUse<'a> {
+    /// The places in the world.
+    places: Vec<DAffine3>,
+    /// Its node, and where that is named.
+    node: (usize, Place),
+    weights: &'a [f32],
+}
+
+/// What makes two uses of a mesh the same: the mesh, and weights of morph targets.
+type MeshKey = (usize, Vec<u32>);
+
+impl<'a> Assembly<'a> {
+    pub(super) fn build(
+        context: &mut Context<'_>,
+        document: &'a Document,
+    ) -> Result<(Scene, Summary), GltfFault> {
+        let nodes = Nodes::of(document)?;
+        let view = view::find(context, document, &nodes)?;
+        let film = view.film(context)?;
+        let resolution = film.resolution;
+        let mut builder = SceneBuilder::new(film);
+        if let Some(isa) = context.options.isa {
+            builder.isa(isa);
+        }
+        let mut assembly = Self {
+            document,
+            nodes,
+            builder,
+            materials: Materials::default(),
+            shape_places: Vec::new(),
+            instance_places: Vec::new(),
+            corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
+            most_primitives: context.options.most_primitives(),
+            summary: Summary::default(),
+        };
+        if !document.root.animations.is_empty() {
+            let place = Place::TOP.key("animations");
+            context.warn(
+                &place,
+                "animations have no effect: all stands as the nodes say",
+            );
+        }
+        assembly.add_meshes(context)?;
+        assembly.add_lights(context)?;
+        assembly.summary.materials = assembly.materials.count();
+        assembly.summary.textures = document.root.textures.len();
+        let camera = view.camera(resolution, assembly.corners)?;
+        let Self {
+            mut builder,
+            shape_places,
+            instance_places,
+            summary,
+            ..
+        } = assembly;
+        builder.camera(camera);
+        let scene = builder.build();
+        let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
+        Ok((scene, summary))
+    }
+
+    /// Adds all meshes: those with joints where these put them, all others by their uses.
+    fn add_meshes(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
+        let document = self.document;
+        let mut uses: BTreeMap<MeshKey, MeshUse<'a>> = BTreeMap::new();
+        let mut order = Vec::new();
+        for index in self.nodes.order.clone() {
+            let node = &document.root.nodes[index];
+            let Some(mesh) = node.mesh else { continue };
+            let place = Place::of("nodes", index);
+            let Some(described) = document.root.meshes.get(mesh) else {
+                let count = document.root.meshes.len();
+                return Err(place
+                    .key("mesh")
+                    .scene(format!("there is no mesh {mesh}: the file has {count}")));
+            };
+            let weights = node.weights.as_ref().unwrap_or(&described.weights);
+            if let Some(skin) = node.skin {
+                self.add_skinned(context, (mesh, skin, &place), weights)?;
+                continue;
+            }
+            let key = (
+                mesh,
+                weights.iter().map(|weight| weight.to_bits()).collect(),
+            );
+            let places = self.world_places(context, index, &place)?;
+            let of_mesh = uses.entry(key.clone()).or_insert_with(|| {
+                order.push(key);
+                MeshUse {
+                    places: Vec::new(),
+                    node: (index, place),
+                    weights,
+                }
+            });
+            of_mesh.places.extend(places);
+        }
+        for key in order {
+            self.add_mesh(context, key.0, &uses[&key])?;
+        }
+        Ok(())
+    }
+
+    /// Where a node has its mesh, but for places that leave nothing of it.
+    fn world_places(
+        &self,
+        context: &mut Context<'_>,
+        index: usize,
+        place: &Place,
+    ) -> Result<Vec<DAffine3>, GltfFault> {
+        let world_from_node = self.nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
+        let mut places: Vec<_> = local.into_iter().map(|map| world_from_node * map).collect();
+        let count = places.len();
+        places.retain(|map| map.matrix3.determinant() != 0.0);
+        if places.len() < count {
+            context.warn(place, "a mesh scaled to nothing is left out");
+        }
+        Ok(places)
+    }
+
+    /// Adds a mesh at all its places: as an object where there are several.
+    fn add_mesh(
+        &mut self,
+        context: &mut Context<'_>,
+        mesh: usize,
+        of_mesh: &MeshUse<'_>,
+    ) -> Result<(), GltfFault> {
+        let mut object = None;
+        let is_shared = of_mesh.places.len() > 1;
+        for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
+            if is_shared && material.emission.is_none() {
+                let object = *object.get_or_insert_with(|| self.builder.object());
+                let shape = surface.place(&DAffine3::IDENTITY, &material.uv, &place)?;
+                self.add_to_object(object, shape, &material, &of_mesh.places, &place)?;
+                continue;
+            }
+            for map in &of_mesh.places {
+                let shape = surface.place(map, &material.uv, &place)?;
+                self.add_to_world(shape, &material, &place)?;
+            }
+        }
+        let Some(object) = object else {
+            return Ok(());
+        };
+        self.summary.instances += of_mesh.places.len();
+        if self.summary.instances > MOST_INSTANCES {
+            let message = format!("the scene has more than {MOST_INSTANCES} places of meshes");
+            return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
+        }
+        for map in &of_mesh.places {
+            self.builder.instance(object, *map);
+            self.instance_places.push(of_mesh.node.1.clone());
+        }
+        Ok(())
+    }
+
+    /// The primitives of a mesh that have triangles, each with its material.
+    fn surfaces(
+        &mut self,
+        context: &mut Context<'_>,
+        mesh: usize,
+        weights: &[f32],
+    ) -> Result<Vec<(Surface, Built, Place)>, GltfFault> {
+        let mut surfaces = Vec::new();
+        let primitives = &self.document.root.meshes[mesh].primitives;
+        for (i, primitive) in primitives.iter().enumerate() {
+            let place = Place::of("meshes", mesh).key("primitives").index(i);
+            let read = Surface::read(context, self.document, (primitive, &place), weights)?;
+            let Some(surface) = read else { continue };
+            let user = (primitive.material, &place);
+            let tools = (&mut *context, &mut self.builder);
+            let material = self
+                .materials
+                .get(tools, self.document, user, surface.color)?;
+            surfaces.push((surface, material, place));
+        }
+        Ok(surfaces)
+    }
+
+    fn add_skinned(
+        &mut self,
+        context: &mut Context<'_>,
+        (mesh, skin, place): (usize, usize, &Place),
+        weights: &[f32],
+    ) -> Result<(), GltfFault> {
+        let place = place.key("skin");
+        let world_from_node = &self.nodes.world_from_node;
+        let joints = mesh::joints(self.document, world_from_node, skin, &place)?;
+        for (surface, material, place) in self.surfaces(context, mesh, weights)? {
+            let shape = if surface.joints.is_empty() {
+                surface.place(&DAffine3::IDENTITY, &material.uv, &place)?
+            } else {
+                surface.skinned(&joints, &material.uv, &place)?
+            };
+            self.add_to_world(shape, &material, &place)?;
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
+        self.summary.shapes += 1;
+        self.summary.primitives += shape.triangles.len() as u64;
+        let most = self.most_primitives;
+        if self.summary.primitives <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} triangles");
+        Err(place.fault(ErrorKind::Limit, message))
+    }
+
+    fn add_to_world(
+        &mut self,
+        shape: Mesh,
+        material: &Built,
+        place: &Place,
+    ) -> Result<(), GltfFault> {
+        self.count(&shape, place)?;
+        self.include(&shape, &DAffine3::IDENTITY);
+        self.summary.area_lights += usize::from(material.emission.is_some());
+        let shape = Shape::Mesh(shape);
+        let number = self
+            .builder
+            .shape(shape, material.id, material.emission.clone());
+        self.shape_places.push(place.clone());
+        if let Some(coverage) = &material.coverage {
+            self.builder.coverage(number, coverage.clone());
+        }
+        Ok(())
+    }
+
+    fn add_to_object(
+        &mut self,
+        object: ObjectId,
+        shape: Mesh,
+        material: &Built,
+        places: &[DAffine3],
+        place: &Place,
+    ) -> Result<(), GltfFault> {
+        self.count(&shape, place)?;
+        for map in places {
+            self.include(&shape, map);
+        }
+        let number = self
+            .builder
+            .object_shape(object, Shape::Mesh(shape), material.id);
+        self.shape_places.push(place.clone());
+        if let Some(coverage) = &material.coverage {
+            self.builder.coverage(number, coverage.clone());
+        }
+        Ok(())
+    }
+
+    /// Widens the box around everything.
+    fn include(&mut self, shape: &Mesh, map: &DAffine3) {
+        let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let own = shape
+            .positions
+            .iter()
+            .fold(nowhere, |[low, high], &p| [low.min(p), high.max(p)]);
+        for i in 0..8_usize {
+            let corner = Vec3::from_array(std::array::from_fn(|axis| own[i >> axis & 1][axis]));
+            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
+            if corner.is_finite() {
+                self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
+            }
+        }
+    }
+
+    /// Adds the lights that are no shapes; an even surrounding where there is no light at all.
+    fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
+        let mut lights = light::all(context, self.document, &self.nodes)?;
+        if lights.is_empty() && self.summary.area_lights == 0 {
+            let message = "the scene has no light: an even surrounding of radiance 1 lights it";
+            context.warn(&Place::TOP, message);
+            lights.push(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        }
+        self.summary.other_lights = lights.len();
+        for light in lights {
+            self.builder.light(light);
+        }
+        Ok(())
+    }
+}
+
+/// Says where in the file the builder's error is.
+fn scene_fault(error: &SceneError, shapes: &[Place], instances: &[Place]) -> GltfFault {
+    let place = match error {
+        SceneError::Instance { instance } => instances.get(*instance),
+        error => error.shape().and_then(|shape| shapes.get(shape)),
+    };
+    let kind = match error {
+        SceneError::Intersector(_) => ErrorKind::Limit,
+        _ => ErrorKind::Scene,
+    };
+    place.unwrap_or(&Place::TOP).fault(kind, error.to_string())
+}

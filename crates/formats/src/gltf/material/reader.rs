@@ -1,0 +1,299 @@
+//! One material of a file.
+
+use crate::gltf::document::{Context, Document};
+use crate::gltf::json::{Material as Described, TextureInfo};
+use crate::gltf::mesh::UvMap;
+use crate::gltf::place::{GltfFault, Place};
+use crate::gltf::texture::{Change, Lookup, Part, Textures};
+use crate::image::Encoding;
+use bidir::bsdf::Wall;
+use bidir::light::EmissionSides;
+use bidir::material::{
+    Anisotropy, Bitangent, Material, NormalMap, PrincipledMaterial, Relief, ScaledColor,
+    ScaledFloat,
+};
+use bidir::math::{Vec2, sin_cos};
+use bidir::scene::Emission;
+use bidir::spectrum::Rgb;
+use bidir::texture::{ColorTexture, FloatTexture};
+use std::sync::Arc;
+
+/// A material that is being read.
+pub(super) struct Reader<'a, 'b> {
+    pub(super) context: &'a mut Context<'b>,
+    pub(super) document: &'a Document,
+    pub(super) textures: &'a mut Textures,
+    pub(super) described: &'a Described,
+    pub(super) place: Place,
+    pub(super) baked: UvMap,
+}
+
+impl Reader<'_, '_> {
+    /// A colour in sRGB.
+    fn color(&mut self, factor: Rgb, info: Option<&TextureInfo>) -> Result<ScaledColor, GltfFault> {
+        let texture = info
+            .map(|info| self.image(info, Encoding::Srgb))
+            .transpose()?;
+        Ok(ScaledColor { factor, texture })
+    }
+
+    fn image(&mut self, info: &TextureInfo, encoding: Encoding) -> Result<ColorTexture, GltfFault> {
+        let lookup = Lookup {
+            info,
+            place: &self.place,
+            baked: self.baked,
+        };
+        self.textures
+            .color(self.context, self.document, lookup, encoding)
+    }
+
+    /// A number in one channel.
+    fn number(
+        &mut self,
+        factor: f32,
+        info: Option<&TextureInfo>,
+        part: Part,
+    ) -> Result<ScaledFloat, GltfFault> {
+        let texture = info
+            .map(|info| self.channel(info, part, Change::Keep))
+            .transpose()?;
+        Ok(ScaledFloat { factor, texture })
+    }
+
+    fn channel(
+        &mut self,
+        info: &TextureInfo,
+        part: Part,
+        change: Change,
+    ) -> Result<FloatTexture, GltfFault> {
+        let lookup = Lookup {
+            info,
+            place: &self.place,
+            baked: self.baked,
+        };
+        self.textures
+            .number(self.context, self.document, lookup, (part, change))
+    }
+
+    /// The material, under its relief where it has one.
+    pub(super) fn material(&mut self, color: [f32; 4]) -> Result<Material, GltfFault> {
+        let material = Material::Principled(Arc::new(self.principled(color)?));
+        let Some(info) = &self.described.normal_texture else {
+            return Ok(material);
+        };
+        Ok(material.embossed(Relief::NormalMap(NormalMap {
+            texture: self.image(info, Encoding::Linear)?,
+            scale: info.scale.unwrap_or(1.0),
+            bitangent: Bitangent::AlongV,
+        })))
+    }
+
+    fn principled(&mut self, color: [f32; 4]) -> Result<PrincipledMaterial, GltfFault> {
+        let pbr = &self.described.pbr_metallic_roughness;
+        let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
+        let factor = [r * color[0], g * color[1], b * color[2]];
+        let rough_metal = pbr.metallic_roughness_texture.as_ref();
+        let mut material = PrincipledMaterial {
+            color: self.color(factor, pbr.base_color_texture.as_ref())?,
+            metallic: self.number(pbr.metallic_factor.unwrap_or(1.0), rough_metal, Part::Blue)?,
+            roughness: self.number(
+                pbr.roughness_factor.unwrap_or(1.0),
+                rough_metal,
+                Part::Green,
+            )?,
+            ..PrincipledMaterial::default()
+        };
+        self.read_dielectric(&mut material)?;
+        self.read_transmission(&mut material)?;
+        self.read_layers(&mut material)?;
+        self.tell_departures();
+        Ok(material)
+    }
+
+    /// Index, reflectance and grain.
+    fn read_dielectric(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
+        let extensions = &self.described.extensions;
+        if let Some(ior) = &extensions.ior {
+            let ior = ior.ior.unwrap_or(1.5);
+            if !(ior == 0.0 || (1.0..=100.0).contains(&ior)) {
+                let message = format!("the index of refraction {ior} is neither 0 nor at least 1");
+                return Err(self
+                    .place
+                    .key("extensions")
+                    .key("KHR_materials_ior")
+                    .scene(message));
+            }
+            material.ior = ior;
+        }
+        if let Some(specular) = &extensions.specular {
+            let factor = specular.specular_factor.unwrap_or(1.0);
+            let texture = specular.specular_texture.as_ref();
+            material.specular = self.number(factor, texture, Part::Alpha)?;
+            let color = specular.specular_color_factor.unwrap_or([1.0; 3]);
+            let texture = specular.specular_color_texture.as_ref();
+            material.specular_color = self.color(color, texture)?;
+        }
+        if let Some(anisotropy) = &extensions.anisotropy {
+            let texture = anisotropy.anisotropy_texture.as_ref();
+            let texture = texture.map(|info| self.image(info, Encoding::Linear));
+            let (sin, cos) = sin_cos(anisotropy.anisotropy_rotation);
+            material.anisotropy = Anisotropy {
+                strength: anisotropy.anisotropy_strength.clamp(0.0, 1.0),
+                direction: Vec2::new(cos, sin),
+                texture: texture.transpose()?,
+            };
+        }
+        Ok(())
+    }
+
+    fn read_transmission(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
+        let extensions = &self.described.extensions;
+        if let Some(transmission) = &extensions.transmission {
+            let texture = transmission.transmission_texture.as_ref();
+            let factor = transmission.transmission_factor;
+            material.transmission = self.number(factor, texture, Part::Red)?;
+        }
+        if let Some(diffuse) = &extensions.diffuse_transmission {
+            let factor = diffuse.diffuse_transmission_factor;
+            let texture = diffuse.diffuse_transmission_texture.as_ref();
+            material.diffuse_transmission = self.number(factor, texture, Part::Alpha)?;
+            let color = diffuse
+                .diffuse_transmission_color_factor
+                .unwrap_or([1.0; 3]);
+            let texture = diffuse.diffuse_transmission_color_texture.as_ref();
+            material.diffuse_transmission_color = self.color(color, texture)?;
+        }
+        if let Some(volume) = extensions
+            .volume
+            .as_ref()
+            .filter(|volume| volume.thickness_factor > 0.0)
+        {
+            material.wall = Wall::Solid;
+            let color = volume.attenuation_color.unwrap_or([1.0; 3]);
+            let is_finite = volume.attenuation_distance.is_some_and(f32::is_finite);
+            if is_finite && color.iter().any(|&channel| channel < 1.0) {
+                let message = "what a volume absorbs is left out: the inside is clear";
+                self.context.warn(&self.place, message);
+            }
+        }
+        Ok(())
+    }
+
+    /// Coat and sheen.
+    fn read_layers(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
+        let extensions = &self.described.extensions;
+        if let Some(coat) = &extensions.clearcoat {
+            let texture = coat.clearcoat_texture.as_ref();
+            material.coat = self.number(coat.clearcoat_factor, texture, Part::Red)?;
+            let factor = coat.clearcoat_roughness_factor;
+            let texture = coat.clearcoat_roughness_texture.as_ref();
+            material.coat_roughness = self.number(factor, texture, Part::Green)?;
+            if coat.clearcoat_normal_texture.is_some() {
+                let message = "a clear coat has the normals of what it covers, not its own";
+                self.context.warn(&self.place, message);
+            }
+        }
+        if let Some(sheen) = &extensions.sheen {
+            let texture = sheen.sheen_color_texture.as_ref();
+            material.sheen = self.color(sheen.sheen_color_factor, texture)?;
+            let texture = sheen.sheen_roughness_texture.as_ref();
+            material.sheen_roughness =
+                self.number(sheen.sheen_roughness_factor, texture, Part::Alpha)?;
+        }
+        Ok(())
+    }
+
+    /// What the material has and the renderer has not, though the format lets it be left out.
+    fn tell_departures(&mut self) {
+        let extensions = &self.described.extensions;
+        let departures = [
+            (
+                extensions.unlit.is_some(),
+                "a surface without lighting is lit as any other",
+            ),
+            (
+                extensions.dispersion.is_some(),
+                "glass bends all colours alike: no dispersion",
+            ),
+            (
+                extensions.iridescence.is_some(),
+                "iridescence has no effect",
+            ),
+        ];
+        for (is_there, message) in departures {
+            if is_there {
+                self.context.warn(&self.place, message);
+            }
+        }
+    }
+
+    pub(super) fn emission(&mut self) -> Result<Option<Emission>, GltfFault> {
+        let strength = self.described.extensions.emissive_strength.as_ref();
+        let strength = strength
+            .and_then(|strength| strength.emissive_strength)
+            .unwrap_or(1.0);
+        let factor = self.described.emissive_factor.unwrap_or_default();
+        let radiance = factor.map(|channel| channel * strength);
+        if radiance
+            .iter()
+            .any(|channel| !channel.is_finite() || *channel < 0.0)
+        {
+            let message = format!("the emission {radiance:?} is no light");
+            return Err(self.place.key("emissiveFactor").scene(message));
+        }
+        if radiance.iter().all(|&channel| channel <= 0.0) {
+            return Ok(None);
+        }
+        let pattern = self.described.emissive_texture.as_ref();
+        let pattern = pattern.map(|info| self.image(info, Encoding::Srgb));
+        let pattern = pattern.transpose()?;
+        // Lamps cost time even where they are dark: what is black all over is none.
+        if pattern.as_ref().is_some_and(is_black) {
+            return Ok(None);
+        }
+        let sides = if self.described.double_sided {
+            EmissionSides::Both
+        } else {
+            EmissionSides::Front
+        };
+        Ok(Some(Emission {
+            radiance,
+            pattern,
+            sides,
+        }))
+    }
+
+    /// How much of the surface is there, with vertices of alpha `vertex`.
+    pub(super) fn coverage(&mut self, vertex: f32) -> Result<Option<FloatTexture>, GltfFault> {
+        let pbr = &self.described.pbr_metallic_roughness;
+        let factor = pbr.base_color_factor.map_or(1.0, |color| color[3]) * vertex;
+        let change = match self.described.alpha_mode.as_deref() {
+            None | Some("OPAQUE") => return Ok(None),
+            Some("BLEND") => Change::Scale(factor),
+            Some("MASK") => Change::Cut {
+                factor,
+                cutoff: self.described.alpha_cutoff.unwrap_or(0.5),
+            },
+            Some(other) => {
+                let fault = self
+                    .place
+                    .key("alphaMode")
+                    .scene(format!("unknown alpha mode `{other}`"));
+                return Err(fault.with_nearest(other, ["OPAQUE", "MASK", "BLEND"]));
+            }
+        };
+        match &pbr.base_color_texture {
+            None => Ok(Some(FloatTexture::Constant(change.apply(1.0)))),
+            Some(info) => self.channel(info, Part::Alpha, change).map(Some),
+        }
+    }
+}
+
+/// True for an image of black texels.
+fn is_black(texture: &ColorTexture) -> bool {
+    let ColorTexture::Image(map) = texture else {
+        return false;
+    };
+    let mut channels = map.image.texels().iter().flatten();
+    channels.all(|&channel| channel <= 0.0)
+}

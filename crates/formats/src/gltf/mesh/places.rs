@@ -1,0 +1,90 @@
+//! Where meshes go: the maps of joints, and the places that a node's instancing names.
+
+use crate::gltf::document::Document;
+use crate::gltf::json::Node;
+use crate::gltf::node::from_parts;
+use crate::gltf::place::{GltfFault, Place};
+use glam::DAffine3;
+use std::collections::BTreeMap;
+
+/// The maps of a node's skin from the mesh to the world, by joint.
+pub(in crate::gltf) fn joints(
+    document: &Document,
+    world_from_node: &[Option<DAffine3>],
+    skin: usize,
+    user: &Place,
+) -> Result<Vec<DAffine3>, GltfFault> {
+    let Some(of_skin) = document.root.skins.get(skin) else {
+        let count = document.root.skins.len();
+        return Err(user.scene(format!("there is no skin {skin}: the file has {count}")));
+    };
+    let place = Place::of("skins", skin);
+    let inverse = match of_skin.inverse_bind_matrices {
+        Some(index) => {
+            let place = place.key("inverseBindMatrices");
+            let matrices = document.finite_vectors::<16>(index, &place)?;
+            if matrices.len() < of_skin.joints.len() {
+                return Err(place.scene("there are fewer matrices than joints"));
+            }
+            let affine = |matrix: [f32; 16]| {
+                DAffine3::from_mat4(glam::DMat4::from_cols_array(&matrix.map(f64::from)))
+            };
+            matrices.into_iter().map(affine).collect()
+        }
+        None => vec![DAffine3::IDENTITY; of_skin.joints.len()],
+    };
+    let place = place.key("joints");
+    let of_joint = |(i, &joint): (usize, &usize)| {
+        let world_from_joint = world_from_node.get(joint).copied().flatten();
+        let missing = || {
+            place
+                .index(i)
+                .scene(format!("node {joint} is not in the scene"))
+        };
+        Ok(world_from_joint.ok_or_else(missing)? * inverse[i])
+    };
+    of_skin.joints.iter().enumerate().map(of_joint).collect()
+}
+
+/// The places of a mesh in its node: one, or those that EXT_mesh_gpu_instancing names.
+pub(in crate::gltf) fn places(
+    document: &Document,
+    node: &Node,
+    place: &Place,
+) -> Result<Vec<DAffine3>, GltfFault> {
+    let Some(instancing) = &node.extensions.instancing else {
+        return Ok(vec![DAffine3::IDENTITY]);
+    };
+    let place = place
+        .key("extensions")
+        .key("EXT_mesh_gpu_instancing")
+        .key("attributes");
+    let attributes: &BTreeMap<String, usize> = &instancing.attributes;
+    let find = |name: &str| attributes.get(name).map(|&index| (index, place.key(name)));
+    let translations =
+        find("TRANSLATION").map(|(index, place)| document.finite_vectors::<3>(index, &place));
+    let rotations =
+        find("ROTATION").map(|(index, place)| document.finite_vectors::<4>(index, &place));
+    let scales = find("SCALE").map(|(index, place)| document.finite_vectors::<3>(index, &place));
+    let (translations, rotations, scales) = (
+        translations.transpose()?,
+        rotations.transpose()?,
+        scales.transpose()?,
+    );
+    let counts = [
+        translations.as_ref().map(Vec::len),
+        rotations.as_ref().map(Vec::len),
+        scales.as_ref().map(Vec::len),
+    ];
+    let count = counts.into_iter().flatten().max().unwrap_or(1);
+    if counts.into_iter().flatten().any(|other| other != count) {
+        return Err(place.scene("the attributes have different counts"));
+    }
+    let at = |i: usize| {
+        let of =
+            |values: &Option<Vec<[f32; 3]>>| values.as_ref().map(|values| values[i].map(f64::from));
+        let rotation = rotations.as_ref().map(|values| values[i].map(f64::from));
+        from_parts(of(&translations), rotation, of(&scales))
+    };
+    Ok((0..count).map(at).collect())
+}

@@ -1,0 +1,126 @@
+//! Surfaces put into place: whole, or as joints move their vertices.
+
+use super::{Surface, UvMap};
+use crate::error::ErrorKind;
+use crate::gltf::place::{GltfFault, Place};
+use bidir::math::Vec3;
+use bidir::shape::{Mesh, Orientation};
+use glam::{DAffine3, DVec3};
+
+/// The farthest that anything is from the origin: squares of distances stay finite below it.
+const FARTHEST: f64 = 1e12;
+
+impl Surface {
+    /// The mesh where `world_from_mesh` puts it. Errors: it reaches too far.
+    pub(in crate::gltf) fn place(
+        &self,
+        world_from_mesh: &DAffine3,
+        uv: &UvMap,
+        place: &Place,
+    ) -> Result<Mesh, GltfFault> {
+        let normal_matrix = normal_matrix(world_from_mesh);
+        let positions = self.positions.iter();
+        let positions = positions.map(|&p| world_from_mesh.transform_point3(vector(p)));
+        let normals = self.normals.iter().map(|&n| normal_matrix * vector(n));
+        let tangents = self.tangents.iter();
+        let tangents = tangents.map(|&t| world_from_mesh.transform_vector3(vector(t)));
+        let is_mirrored = world_from_mesh.matrix3.determinant() < 0.0;
+        let orientation = if is_mirrored {
+            Orientation::Reversed
+        } else {
+            Orientation::Natural
+        };
+        self.mesh((positions, normals, tangents), (orientation, uv), place)
+    }
+
+    /// The mesh as its joints move it, each by a map from the mesh to the world.
+    pub(in crate::gltf) fn skinned(
+        &self,
+        joints: &[DAffine3],
+        uv: &UvMap,
+        place: &Place,
+    ) -> Result<Mesh, GltfFault> {
+        let mut maps = Vec::with_capacity(self.joints.len());
+        for vertex in &self.joints {
+            maps.push(blend(vertex, joints).ok_or_else(|| {
+                place.scene(format!(
+                    "a vertex names a joint that its skin has not: it has {}",
+                    joints.len()
+                ))
+            })?);
+        }
+        let positions = self.positions.iter().zip(&maps);
+        let positions = positions.map(|(&p, map)| map.transform_point3(vector(p)));
+        let normals = self.normals.iter().zip(&maps);
+        let normals = normals.map(|(&n, map)| normal_matrix(map) * vector(n));
+        let tangents = self.tangents.iter().zip(&maps);
+        let tangents = tangents.map(|(&t, map)| map.transform_vector3(vector(t)));
+        let vertices = (positions, normals, tangents);
+        self.mesh(vertices, (Orientation::Natural, uv), place)
+    }
+
+    fn mesh(
+        &self,
+        (positions, normals, tangents): (
+            impl Iterator<Item = DVec3>,
+            impl Iterator<Item = DVec3>,
+            impl Iterator<Item = DVec3>,
+        ),
+        (orientation, uv): (Orientation, &UvMap),
+        place: &Place,
+    ) -> Result<Mesh, GltfFault> {
+        let mut placed = Vec::with_capacity(self.positions.len());
+        for position in positions {
+            let is_near = position.abs().max_element() <= FARTHEST;
+            if !is_near {
+                let message = format!("a coordinate is beyond {FARTHEST:e}");
+                return Err(place.fault(ErrorKind::Limit, message));
+            }
+            placed.push(position.as_vec3());
+        }
+        let uvs = self.uvs[uv.set.min(1)].iter();
+        Ok(Mesh {
+            positions: placed,
+            normals: normals.map(unit).collect(),
+            tangents: tangents.map(unit).collect(),
+            uvs: uvs.map(|&at| uv.apply(at)).collect(),
+            triangles: self.triangles.clone(),
+            orientation,
+        })
+    }
+}
+
+fn vector(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
+fn unit(v: DVec3) -> Vec3 {
+    v.normalize_or_zero().as_vec3()
+}
+
+/// What normals are mapped by, up to scale: the matrix of cofactors, which is there for flat maps too.
+fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
+    let m = map.matrix3;
+    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+    glam::DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
+}
+
+/// The weighted mean of joints' maps. None: there is no such joint.
+fn blend(vertex: &[(u32, f32); 4], joints: &[DAffine3]) -> Option<DAffine3> {
+    let total: f64 = vertex.iter().map(|&(_, weight)| f64::from(weight)).sum();
+    if total <= 0.0 {
+        return joints.first().copied();
+    }
+    let mut sum = [0.0; 12];
+    for &(joint, weight) in vertex {
+        if weight == 0.0 {
+            continue;
+        }
+        let map = joints.get(joint as usize)?.to_cols_array();
+        for (sum, value) in sum.iter_mut().zip(map) {
+            *sum += value * f64::from(weight) / total;
+        }
+    }
+    Some(DAffine3::from_cols_array(&sum))
+}
