@@ -74,7 +74,7 @@ class Image:
 
         Shape: (rows, columns, 3) for colours, points and normals, (rows, columns) for numbers.
         Which there are is decided by ``layers``, ``light_groups`` and ``strategy_layers`` of
-        :func:`bidir.render`; units are told in README.md.
+        :func:`bidir.render`; units are told in docs/reference/layers.md.
         """
         return self._layers
 

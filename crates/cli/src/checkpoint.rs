@@ -14,6 +14,9 @@ use std::time::{Duration, Instant};
 /// A film file that this process alone writes.
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
+    /// The name that was asked for.
+    name: PathBuf,
+    /// The file that it stands for, where it is a link.
     path: PathBuf,
     every: Duration,
     written: Instant,
@@ -31,11 +34,11 @@ impl Checkpoint {
     /// Errors: another process writes the same file; it is there and nothing was said of it; it is
     /// damaged.
     pub(crate) fn open(args: &LongArgs) -> Result<Option<Self>, Failure> {
-        let Some(path) = &args.checkpoint else {
+        let Some(name) = &args.checkpoint else {
             return Ok(None);
         };
-        scene_io::check_writable(path)?;
-        let path = scene_io::target_of(path);
+        scene_io::check_writable(name)?;
+        let path = scene_io::target_of(name);
         let lock = FilmLock::take(&path)?;
         check_existing(&path, args)?;
         let film = if path.exists() && args.resume {
@@ -46,6 +49,7 @@ impl Checkpoint {
         Ok(Some(Self {
             // What is damaged shall not push out the whole file before it.
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
+            name: name.clone(),
             path,
             every: args.checkpoint_every.0,
             written: Instant::now(),
@@ -163,9 +167,9 @@ impl Keeper {
         })
     }
 
-    /// The name of the film file. None: there is none.
+    /// The name of the film file, as it was asked for. None: there is none.
     pub(crate) fn path(&self) -> Option<&Path> {
-        Some(&self.checkpoint.as_ref()?.path)
+        Some(&self.checkpoint.as_ref()?.name)
     }
 
     /// Is it time to write again?

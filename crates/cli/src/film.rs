@@ -119,11 +119,14 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     if let Some(image) = &args.image {
         write_image(image, &all.header, &all.film)?;
     }
+    let written = [Some(&args.output), args.image.as_ref()];
+    let written = written.into_iter().flatten();
+    let written: Vec<_> = written.map(|path| path.display().to_string()).collect();
     say(format_args!(
         "passes {} of {} files; wrote {}",
         all.film.passes(),
         args.files.len(),
-        args.output.display()
+        written.join(", ")
     ));
     Ok(Exit::Done)
 }

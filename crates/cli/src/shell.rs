@@ -12,19 +12,22 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<Exit, Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints the manual page of the whole, or of one command.
+/// Prints the manual page of the whole, or of one command, `film info` among them.
 pub(crate) fn man(args: &ManArgs) -> Result<Exit, Failure> {
     let mut cli = Cli::command();
     cli.build();
-    let command = match &args.command {
-        None => cli,
-        Some(name) => cli.find_subcommand(name).cloned().ok_or_else(|| {
-            Failure::usage(format!("there is no command `{name}`")).with_hint("see `bidir --help`")
-        })?,
-    };
+    let mut command = &cli;
+    for name in &args.command {
+        command = command.find_subcommand(name).ok_or_else(|| {
+            Failure::usage(format!("there is no command `{}`", args.command.join(" ")))
+                .with_hint("see `bidir --help`")
+        })?;
+    }
     let mut page = Vec::new();
-    clap_mangen::Man::new(command)
+    clap_mangen::Man::new(command.clone())
+        .source(concat!("bidir ", env!("CARGO_PKG_VERSION")))
         .render(&mut page)
         .map_err(|error| Failure::new(Exit::RenderFailed, format!("no manual page: {error}")))?;
-    print(&String::from_utf8_lossy(&page))
+    // Examples, tables and descriptions keep their lines.
+    print(&String::from_utf8_lossy(&page).replacen(".SH EXTRA\n", ".SH NOTES\n.nf\n", 1))
 }

@@ -46,8 +46,8 @@ Examples:
   bidir experiment paper --quick -o out/paper
       the statements of the 1995 paper, each with a verdict
   bidir experiment beyond --quick -o out/beyond
-      all estimators and each idea behind them, against what is aimed at; BIDIR_SCENES names the folder
-      that has the scenes made by others in pbrt-v4/, which are left out without it")]
+      all estimators and each idea behind them, against what is aimed at; BIDIR_SCENES names
+      the folder that has the scenes made by others in pbrt-v4/, which are left out without it")]
 #[command(mut_arg("threads", |threads| threads.help(
     "Threads of each render, instead of the description's [default: its own, or one per processor]"
 )))]
@@ -66,7 +66,7 @@ pub(crate) struct ExperimentArgs {
     #[arg(long)]
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references. Of
-    /// `paper`: all claims with wider intervals, in a quarter of an hour instead of two hours. Of
+    /// `paper`: all claims with wider intervals, in five minutes of two cores instead of forty. Of
     /// `beyond`: 3 seeds of small images, 2 seconds, in twenty minutes instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,

@@ -33,8 +33,8 @@ use std::path::PathBuf;
 
 /// Renders scenes by bidirectional path tracing, and spends its shadow rays where they matter.
 ///
-/// Scenes are files of pbrt-v4. Images are written as OpenEXR, linear and exact, and as PNG to look
-/// at. The same scene, settings and seed give the same bits, whatever the number of threads.
+/// Scenes are files of pbrt-v4 and glTF 2.0. Images are written as OpenEXR, linear and exact, and as PNG
+/// to look at. The same scene, settings and seed give the same bits, whatever the number of threads.
 #[derive(Debug, Parser)]
 #[command(name = "bidir", version, propagate_version = true, max_term_width = 100, after_help = Exit::help())]
 pub(crate) struct Cli {
@@ -105,12 +105,12 @@ pub(crate) enum Command {
     Reference(Box<ReferenceArgs>),
     /// Compare image A with the reference B, or images of several seeds with one reference.
     ///
-    /// Prints, over red, green and blue of all pixels: the root of the mean square error (rmse), the
-    /// mean of (a-b)²/(b²+0.01) (relmse), both without the worst 0.1 % of pixels (`rmse_trim`,
-    /// `relmse_trim`), relmse of means over blocks of 16 x 16 pixels
-    /// (`relmse_block`), the mean of |a-b|/(|b|+0.01) (mape), the mean of A divided by the mean of B
-    /// (`mean_ratio`), and whether both have the same size and the same bits (identical); with --flip,
-    /// the mean difference that is seen (flip, `flip_hdr`).
+    /// Prints, over red, green and blue of all pixels: the root of the mean square error (`rmse`), the
+    /// mean of (a-b)²/(b²+0.01) (`relmse`), both without the worst 0.1 % of pixels (`rmse_trim`,
+    /// `relmse_trim`), `relmse` of means over blocks of 16 x 16 pixels (`relmse_block`), the mean of
+    /// |a-b|/(|b|+0.01) (`mape`), the mean of A divided by the mean of B (`mean_ratio`), and whether both
+    /// have the same size and the same bits (`identical`); with --flip, the mean difference that is seen
+    /// (`flip`, `flip_hdr`).
     ///
     /// Where both have variances, as images of `render --aov variance,samples` and references have, two
     /// tests tell whether the difference is noise: `z_pixels` over all pixels and `z_blocks` over
@@ -220,6 +220,7 @@ pub(crate) struct CompletionsArgs {
 /// The flags of `bidir man`.
 #[derive(Args, Debug)]
 pub(crate) struct ManArgs {
-    /// The command that the page is of; without it, the page of the whole.
-    pub(crate) command: Option<String>,
+    /// The command that the page is of, such as `render` or `film info`; without it, the page of the
+    /// whole.
+    pub(crate) command: Vec<String>,
 }

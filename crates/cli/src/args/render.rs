@@ -110,8 +110,9 @@ pub(crate) struct TalkArgs {
 pub(crate) struct EstimatorArgs {
     /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
     ///
-    /// bdpt joins the two subpaths of a sample; lvc joins camera subpaths with light subpaths of many
-    /// samples; auto tries path and lvc with a few samples, and takes what suits the scene.
+    /// path walks from the camera, light from the lights. bdpt joins the two subpaths of a sample; lvc
+    /// joins camera subpaths with light subpaths of many samples; auto tries path and lvc with a few
+    /// samples, and takes what suits the scene.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
     /// Which connections between subpaths are traced (bdpt, lvc) [default: all].
@@ -147,6 +148,8 @@ pub(crate) struct EstimatorArgs {
     #[arg(long, value_name = "KIND", value_parser = named(MisCount::NAMES))]
     pub(crate) mis_count: Option<MisCount>,
     /// How strategies that make the same path share it [default: balance].
+    ///
+    /// balance: by how often each makes it. power: by the squares of that. uniform: all alike.
     #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
     pub(crate) mis: Option<MisHeuristic>,
     /// The strategies that take part (bdpt, lvc) [default: all].
@@ -161,7 +164,7 @@ pub(crate) struct EstimatorArgs {
     /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
     #[arg(long, value_parser = named(LightPointChoice::NAMES))]
     pub(crate) light_point: Option<LightPointChoice>,
-    /// How next-event estimation chooses the light [default: tree].
+    /// How next-event estimation chooses the light (path, bdpt, lvc) [default: tree].
     ///
     /// tree: by what arrives from it at the point, as a hierarchy of the lights estimates. power: by
     /// power alone, as light subpaths do.
@@ -178,6 +181,9 @@ pub(crate) struct EstimatorArgs {
     #[arg(long, value_name = "N")]
     pub(crate) max_depth: Option<u32>,
     /// The random numbers [default: the scene's].
+    ///
+    /// sobol: points that are spread evenly over the samples of a pixel, in random order. independent:
+    /// numbers that know nothing of each other.
     #[arg(long, env = "BIDIR_SAMPLER", value_parser = named(SamplerKind::NAMES))]
     pub(crate) sampler: Option<SamplerKind>,
     /// Other seeds give unrelated noise [default: the scene's, or 0].
@@ -200,8 +206,8 @@ pub(crate) struct BudgetArgs {
     pub(crate) spp: Option<u64>,
     /// The time for rendering: 90, 90s, 10m, 1h30m.
     ///
-    /// Reading the scene and writing the image do not count, film files do. A pass that would overrun is not begun,
-    /// but the first one always is.
+    /// Reading the scene and writing the image do not count; writing film files does. A pass that would
+    /// overrun is not begun, but the first one always is.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// The relative error to reach: the root mean square of the pixels' standard errors, divided by

@@ -1,5 +1,7 @@
 use crate::common::Workplace;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
 
 /// The flags that a command's help describes: the words at the head of its lines.
 fn flags(help: &str) -> BTreeSet<&str> {
@@ -104,6 +106,130 @@ fn version_completions_and_manual_are_printed() {
             .prints("shadow-rays");
     }
     place.run("man").expect(0).prints(".TH bidir");
-    place.run("man render").expect(0).prints("shadow\\-rays");
+    place
+        .run("man render")
+        .expect(0)
+        .prints("shadow\\-rays")
+        .prints("BIDIR_TIME")
+        .prints(".SH NOTES\n.nf");
+    place
+        .run("man film info")
+        .expect(0)
+        .prints("bidir\\-film\\-info");
     place.run("man nothing").expect(2);
+}
+
+/// The commands in the code of a page: lines that run bidir, continued lines joined, comments left out.
+fn commands(page: &str) -> Vec<String> {
+    let page = page.replace("\\\n", " ");
+    let mut fenced = false;
+    let mut found = Vec::new();
+    for line in page.lines() {
+        if line.trim_start().starts_with("```") {
+            fenced = !fenced;
+            continue;
+        }
+        if !fenced && !line.starts_with("    ") {
+            continue;
+        }
+        let line = line.split(" #").next().unwrap_or_default();
+        for part in line.split([';', '|']) {
+            let words = part.split_whitespace();
+            let words: Vec<_> = words
+                .skip_while(|word| word.starts_with("BIDIR_"))
+                .collect();
+            let part = words.join(" ");
+            let arguments = ["bidir ", "cargo run --release -- "]
+                .iter()
+                .find_map(|start| part.strip_prefix(start));
+            found.extend(arguments.map(str::to_owned));
+        }
+    }
+    found
+}
+
+/// The flags of every command that a page may name: `render`, `film info`, `farm slurm` and the like.
+fn known_flags() -> BTreeMap<String, BTreeSet<String>> {
+    let place = Workplace::new();
+    let mut known = BTreeMap::new();
+    let mut open = vec![String::new()];
+    while let Some(command) = open.pop() {
+        let help = place.run(&format!("{command} --help")).expect(0).stdout;
+        let names = help.split("\nCommands:\n").nth(1).unwrap_or_default();
+        let names = names.lines().take_while(|line| !line.is_empty());
+        let names = names.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+        let names = names.filter_map(|line| line.split_whitespace().next());
+        let names = names.filter(|name| *name != "help");
+        open.extend(names.map(|name| format!("{command} {name}").trim().to_owned()));
+        known.insert(
+            command,
+            flags(&help).into_iter().map(str::to_owned).collect(),
+        );
+    }
+    known
+}
+
+/// What is wrong with a command line of a page. None: it names a command and flags that it has.
+fn fault(line: &str, known: &BTreeMap<String, BTreeSet<String>>) -> Option<String> {
+    let mut words = line.split_whitespace().peekable();
+    let mut command = String::new();
+    while let Some(word) = words.peek() {
+        let longer = format!("{command} {word}").trim().to_owned();
+        if !known.contains_key(&longer) {
+            break;
+        }
+        command = longer;
+        words.next();
+    }
+    let takes_none = ["", "film", "farm"].contains(&&*command);
+    if takes_none && words.peek().is_some_and(|word| !word.starts_with('-')) {
+        return Some(format!("there is no command `{line}`"));
+    }
+    // Flags in quotes or behind `--` are for `bidir render`.
+    let mut flags = &known[&command];
+    for word in words {
+        if word == "--" || word.starts_with('\'') {
+            flags = &known["render"];
+        }
+        let flag = word
+            .trim_matches('\'')
+            .split('=')
+            .next()
+            .unwrap_or_default();
+        if flag.len() > 2 && flag.starts_with("--") && !flags.contains(flag) {
+            return Some(format!("`{flag}` is no flag of `{command}`, in `{line}`"));
+        }
+        if word.ends_with('\'') {
+            flags = &known[&command];
+        }
+    }
+    None
+}
+
+#[test]
+fn pages_name_commands_and_flags_that_there_are() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut pages = vec![root.join("README.md")];
+    for folder in ["docs", "docs/guide", "docs/reference"] {
+        let entries = fs::read_dir(root.join(folder)).unwrap();
+        pages.extend(entries.map(|entry| entry.unwrap().path()));
+    }
+    pages.retain(|page| page.extension().is_some_and(|ending| ending == "md"));
+    let known = known_flags();
+    let mut count = 0;
+    for page in pages {
+        for line in commands(&fs::read_to_string(&page).unwrap()) {
+            count += 1;
+            assert_eq!(fault(&line, &known), None, "{}", page.display());
+        }
+    }
+    assert!(count > 50, "only {count} commands: the search is broken");
+    for wrong in [
+        "rendr a.pbrt",
+        "render a.pbrt --sppp 4",
+        "farm sluurm a.pbrt",
+        "merge a --spp 4",
+    ] {
+        assert!(fault(wrong, &known).is_some(), "{wrong}");
+    }
 }
