@@ -22,7 +22,7 @@ export function showCurves(lanes) {
     role: "img",
     "aria-label": `Relative error against seconds, both logarithmic. Now ${label}`,
   });
-  svg.append(...axes(made), ...lanes.flatMap((lane) => curve(made, lane)), ...names(made, lanes));
+  svg.append(...axes(made), ...lanes.flatMap((lane) => curve(made, lane)), ...names(lanes));
   chart.replaceChildren(svg);
 }
 
@@ -64,19 +64,13 @@ function curve(made, lane) {
 }
 
 /**
- * Names of the curves beside their ends, apart from each other.
- * @param {Plot} made
+ * Names in the upper right corner, where errors that fall leave room.
  * @param {Lane[]} lanes
  */
-function names(made, lanes) {
-  const ends = lanes.flatMap((lane) => {
-    const last = usable(lane.curve).at(-1);
-    return last ? [{ lane, at: made.place(last) }] : [];
-  });
-  const isCrowded = ends.length === 2 && Math.abs(ends[0].at[1] - ends[1].at[1]) < 26;
-  return ends.map(({ lane, at: [x, y] }, i) => {
-    const isLower = isCrowded && y >= ends[1 - i].at[1] && (i === 1 || y > ends[1].at[1]);
-    const place = { x: x - 6, y: Math.max(FRAME.top + 10, isLower ? y + 16 : y - 8), "text-anchor": "end" };
-    return draw("text", { class: lane.lane, ...place }, [`${lane.lane} ${lane.integrator}`]);
+function names(lanes) {
+  const { width, right, top } = FRAME;
+  return lanes.map(({ lane, integrator, shadowRays }, i) => {
+    const place = { x: width - right, y: top + 10 + 15 * i, "text-anchor": "end" };
+    return draw("text", { class: lane, ...place }, [`${lane} ${integrator}, ${shadowRays}`]);
   });
 }

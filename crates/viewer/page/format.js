@@ -60,7 +60,7 @@ function two(value) {
 }
 
 /**
- * A value for a small cell: at most seven characters.
+ * A value for a small cell: at most eight characters.
  * @param {number} value
  */
 export function cell(value) {

@@ -7,7 +7,7 @@ import { toScreen } from "./view.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { Fate } from "./samplelines.js" */
-/** @import { SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
+/** @import { Lane, LaneName, SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
 /** @import { Point, View } from "./view.js" */
 
 /** @type {{[fate in Fate]: string}} */
@@ -23,6 +23,12 @@ export class SampleView {
     this.redraw = redraw;
     /** @type {SampleReport | null} */
     this.report = null;
+    /** @type {LaneName} Of the report. */
+    this.lane = "a";
+    /** @type {number | undefined} Of that lane, when the report was made. */
+    this.generation = undefined;
+    /** @type {Lane[]} */
+    this.lanes = [];
     /** The ray whose row is pointed at. */
     this.hot = "";
     get("sample-form", HTMLFormElement).addEventListener("submit", (event) => {
@@ -33,12 +39,20 @@ export class SampleView {
   }
 
   /** @param {Status} status */
-  update({ film, split }) {
+  update({ film, split, lanes }) {
     input("sample-x").max = String(film.crop[2] - 1);
     input("sample-y").max = String(film.crop[3] - 1);
     const lane = select("sample-lane");
     lane.disabled = !split;
     if (!split) lane.value = "a";
+    // A lane that began anew takes other samples.
+    this.lanes = lanes;
+    if (this.report && this.generationOf(this.lane) !== this.generation) this.clear();
+  }
+
+  /** @param {LaneName} name */
+  generationOf(name) {
+    return this.lanes.find(({ lane }) => lane === name)?.generation;
   }
 
   /** @param {Point} pixel */
@@ -57,9 +71,11 @@ export class SampleView {
   async ask() {
     const [x, y, pass] = ["sample-x", "sample-y", "sample-pass"].map((id) => input(id).valueAsNumber);
     if (![x, y, pass].every(Number.isInteger)) return;
-    const lane = select("sample-lane").value;
+    const lane = select("sample-lane").value === "b" ? "b" : "a";
     try {
       this.report = /** @type {SampleReport} */ (await this.link.ask("/sample", { lane, x, y, pass }));
+      this.lane = lane;
+      this.generation = this.generationOf(lane);
       box("sample-list").replaceChildren(...this.describe(this.report));
       button("sample-clear").disabled = false;
     } catch (error) {
@@ -81,11 +97,14 @@ export class SampleView {
     return [
       ...drawSubpath(report.light, "light-path", "y", at),
       ...drawSubpath(report.camera, "camera-path", "z", at),
-      ...rays(report).map((ray) => {
+      ...rays(report).flatMap((ray) => {
         const [[x1, y1], [x2, y2]] = [at(ray.from), at(ray.to)];
         const hot = ray.name === this.hot ? " hot" : "";
         const style = { "stroke-width": ray.width, "stroke-opacity": ray.opacity };
-        return draw("line", { class: `ray ${ray.fate}${hot}`, x1, y1, x2, y2, ...style });
+        return [
+          draw("line", { class: "under", x1, y1, x2, y2, "stroke-width": ray.width + 2 }),
+          draw("line", { class: `ray ${ray.fate}${hot}`, x1, y1, x2, y2, ...style }),
+        ];
       }),
       ...report.light_image.flatMap((splat, i) => {
         const [cx, cy] = at(splat.raster);
