@@ -166,14 +166,18 @@ export function keep(page, name) {
   return page.screenshot({ path: path.join(SHOTS, `${name}-${size}.png`) });
 }
 
+/** @type {WeakMap<Browser, Promise<Page>>} Where images are decoded. */
+const EYES = new WeakMap();
+
 /**
  * The channels of a PNG, four for each pixel, as a browser sees them.
  * @param {Browser} browser
  * @param {Buffer} png
  */
 export async function decode(browser, png) {
-  const page = await browser.newPage();
-  const told = await page.evaluate(async (base64) => {
+  const eye = EYES.get(browser) ?? browser.newPage();
+  EYES.set(browser, eye);
+  return (await eye).evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
     const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
@@ -182,19 +186,15 @@ export async function decode(browser, png) {
     const { data } = context.getImageData(0, 0, bitmap.width, bitmap.height);
     return { width: bitmap.width, height: bitmap.height, data: [...data] };
   }, png.toString("base64"));
-  await page.close();
-  return told;
 }
 
 /**
- * How much neighbours differ, on average: noise, for the most part.
- * @param {{width: number, data: number[]}} image
+ * How far two images are apart, on average over all channels.
+ * @param {{data: number[]}} a
+ * @param {{data: number[]}} b
  */
-export function roughness({ width, data }) {
-  const step = 4;
-  let sum = 0;
-  for (let i = 0; i + 4 * step * width < data.length; i += 4) sum += Math.abs(data[i] - data[i + 4 * step]);
-  return (4 * sum) / data.length;
+export function difference(a, b) {
+  return a.data.reduce((sum, value, i) => sum + Math.abs(value - b.data[i]), 0) / a.data.length;
 }
 
 /**

@@ -17,11 +17,11 @@ export function compact(value) {
 
 /**
  * So many significant digits, without zeros at the end.
- * @param {number} value
+ * @param {number | null} value
  * @param {number} count
  */
 export function digits(value, count) {
-  if (!Number.isFinite(value)) return "–";
+  if (value === null || !Number.isFinite(value)) return "–";
   return String(Number(value.toPrecision(count)));
 }
 
@@ -68,6 +68,16 @@ export function cell(value) {
   if (value === 0) return "0";
   if (size >= 1e-3 && size < 1e4) return digits(value, 4);
   return value.toExponential(1);
+}
+
+/**
+ * A number of things, of which one is one.
+ * @param {number} number
+ * @param {string} thing
+ */
+export function count(number, thing) {
+  const several = thing.endsWith("s") ? `${thing}es` : `${thing}s`;
+  return `${number} ${number === 1 ? thing : several}`;
 }
 
 /**

@@ -1,7 +1,7 @@
 // The head of the page: what is rendered, how far it is, and the buttons that steer it.
 
 import { box, button, get, make, say } from "./dom.js";
-import { compact, digits, duration, percent } from "./format.js";
+import { compact, count, digits, duration, percent } from "./format.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { Lane, Rays, Status } from "./types.js" */
@@ -60,9 +60,9 @@ export function showHead(status) {
 function brief({ lanes, state }) {
   const [lane] = lanes;
   if (!lane) return "";
-  const of = lane.target ? ` of ${lane.target}` : "";
+  const passes = lane.target ? `${lane.passes} of ${count(lane.target, "pass")}` : count(lane.passes, "pass");
   const eta = state === "rendering" && lane.eta !== null ? `, ${duration(lane.eta)} left` : "";
-  return `${lane.passes}${of} passes${eta}`;
+  return `${passes}${eta}`;
 }
 
 /**

@@ -1,7 +1,7 @@
 // The inspector: what is known of one pixel, in each lane.
 
 import { box, get, input, make } from "./dom.js";
-import { compact, exact, luminance, percent } from "./format.js";
+import { compact, count, exact, luminance, percent } from "./format.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { LaneName, PixelReport, Status } from "./types.js" */
@@ -20,7 +20,7 @@ export class Inspector {
     /** @type {Point | null} */
     this.pixel = null;
     /** @type {LaneName[]} */
-    this.lanes = ["a"];
+    this.lanes = [];
     /** What the tables were made of. */
     this.known = "";
     this.asked = 0;
@@ -46,7 +46,8 @@ export class Inspector {
   update({ film, lanes }) {
     input("pixel-x").max = String(film.crop[2] - 1);
     input("pixel-y").max = String(film.crop[3] - 1);
-    this.lanes = lanes.map(({ lane }) => lane);
+    // Before the first pass nothing is known of any pixel.
+    this.lanes = lanes.filter(({ passes }) => passes > 0).map(({ lane }) => lane);
     const state = lanes.map(({ generation, passes }) => `${generation}/${passes}`).join(" ");
     if (state === this.known || performance.now() - this.asked < PATIENCE) return;
     this.known = state;
@@ -55,7 +56,7 @@ export class Inspector {
 
   async ask() {
     const { pixel } = this;
-    if (!pixel) return;
+    if (!pixel || this.lanes.length === 0) return;
     this.asked = performance.now();
     const [x, y] = pixel;
     const told = await Promise.all(
@@ -94,7 +95,7 @@ function table(lane, report) {
     make("tbody", {}, [
       ...["Red", "Green", "Blue"].map((name, i) => row(name, [exact(mean[i]), `± ${exact(standardError[i])}`])),
       row("Luminance", [exact(l), l > 0 ? `about ${percent(e / l)}` : "–"]),
-      row("Samples", [String(samples), `${passes} passes`]),
+      row("Samples", [String(samples), count(passes, "pass")]),
       row("Rays", rays === null ? ["–", ""] : [compact(rays), samples > 0 ? `${compact(rays / samples)} a sample` : ""]),
     ]),
   ]);

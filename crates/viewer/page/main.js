@@ -113,7 +113,7 @@ function allow({ controls, camera }) {
 /** @param {Status} told */
 function showCamera({ camera }) {
   if (!camera) return;
-  const [origin, target] = [camera.origin, camera.target].map((point) => point.map((part) => digits(part, 4)).join(", "));
+  const [origin, target] = [camera.origin, camera.target].map((point) => point.map((part) => Number(part.toFixed(4))).join(", "));
   say(box("camera-place"), `${camera.moved ? "Moved: at" : "At"} ${origin}, looking at ${target}. In the mode Move, drag to orbit and walk by W A S D.`);
 }
 

@@ -1,6 +1,6 @@
 // Without WebGL2: the server's own PNG, asked for again and again.
 
-import { box, get, say } from "./dom.js";
+import { box, get } from "./dom.js";
 
 /** @import { Link } from "./link.js" */
 
@@ -14,7 +14,7 @@ export function showPlain(link) {
   for (const id of ["exposure", "operator", "png-shown", "zoom-in", "zoom-out", "zoom-fit", "zoom-one"]) {
     box(id).setAttribute("disabled", "");
   }
-  say(box("hover"), "This browser has no WebGL2: the picture is the server’s PNG, without exposure, zoom and values.");
+  box("plain-note").hidden = false;
   let version = 0;
   const look = () => {
     version += 1;

@@ -1,13 +1,13 @@
 // The pyramid of strategies: an image of what each (s, t) adds, a row for each number of vertices.
 
 import { box, button, get, input, make, say, select } from "./dom.js";
-import { compact, digits, percent } from "./format.js";
+import { compact, count, digits, percent } from "./format.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { LaneName, Lane, Status, StrategyReport, StrategyTile } from "./types.js" */
 
 /** The least time between two looks. Unit: milliseconds. */
-const PATIENCE = 4000;
+const PATIENCE = 2000;
 
 /**
  * Tiles by the number of vertices of their paths, s growing.
@@ -18,17 +18,16 @@ export function rowsOf(tiles) {
   /** @type {Map<number, StrategyTile[]>} */
   const rows = new Map();
   for (const tile of tiles) {
-    const count = tile.s + tile.t;
-    rows.set(count, [...(rows.get(count) ?? []), tile]);
+    const vertices = tile.s + tile.t;
+    rows.set(vertices, [...(rows.get(vertices) ?? []), tile]);
   }
   const sorted = [...rows].sort(([a], [b]) => a - b);
-  return sorted.map(([count, row]) => [count, row.sort((a, b) => a.s - b.s)]);
+  return sorted.map(([vertices, row]) => [vertices, row.sort((a, b) => a.s - b.s)]);
 }
 
 /** @param {number} vertices */
 export function rowName(vertices) {
-  const bounces = vertices - 2;
-  return `${vertices} vertices, ${bounces} ${bounces === 1 ? "bounce" : "bounces"}`;
+  return `${vertices} vertices, ${count(vertices - 2, "bounce")}`;
 }
 
 /**
@@ -141,18 +140,18 @@ export class Pyramid {
       kind === "weighted"
         ? "What each strategy adds: all tiles and longer paths together are the picture."
         : "What each strategy shows alone, without its weight: the same light all along a row, as far as it can make its paths.";
-    say(box("strategies-hint"), `${meaning} Longer paths: mean ${digits(report.longerMean, 3)}. ${report.passes} passes.`);
+    say(box("strategies-hint"), `${meaning} Longer paths: mean ${digits(report.longerMean, 3)}. ${count(report.passes, "pass")}.`);
     const rows = rowsOf(report.tiles);
     const isSame = box("pyramid").childElementCount === 2 * rows.length;
-    if (!isSame) box("pyramid").replaceChildren(...rows.flatMap(([count, tiles]) => this.row(count, tiles)));
+    if (!isSame) box("pyramid").replaceChildren(...rows.flatMap(([vertices, tiles]) => this.row(vertices, tiles)));
     for (const tile of report.tiles) this.fill(tile, report);
   }
 
   /**
-   * @param {number} count
+   * @param {number} vertices
    * @param {StrategyTile[]} tiles
    */
-  row(count, tiles) {
+  row(vertices, tiles) {
     const buttons = tiles.map(({ s, t }) =>
       make("button", { type: "button", class: "tile", id: `tile-${s}-${t}` }, [
         make("img", { alt: "" }),
@@ -160,7 +159,7 @@ export class Pyramid {
         ...figuresOf(tiles[0]).map(() => make("span")),
       ]),
     );
-    return [make("h2", {}, [rowName(count)]), make("div", { class: "pyramid-row" }, buttons)];
+    return [make("h2", {}, [rowName(vertices)]), make("div", { class: "pyramid-row" }, buttons)];
   }
 
   /**

@@ -169,7 +169,7 @@ export class Stage {
     const density = window.devicePixelRatio || 1;
     this.picture?.draw(view, look, this.film, this.divide * this.size[0], density);
     say(box("exposure-value"), `${look.exposure > 0 ? "+" : ""}${look.exposure}`);
-    say(box("zoom-value"), `${digits(100 * view.zoom * density, 3)} %`);
+    say(box("zoom-value"), `${digits(view.zoom * density, 3)}×`);
     this.drawLegend(look);
     for (const listener of this.listeners) listener();
   }

@@ -77,7 +77,7 @@
  * @property {number} mean
  * @property {number} traced
  * @property {number | null} blockedShare
- * @property {number} variance
+ * @property {number | null} variance
  */
 
 /**

@@ -58,7 +58,7 @@ function writeValue(context, stage, pixel) {
   const frame = stage.picture?.frame(isOfB ? "b" : "a");
   const value = frame && valueAt(frame, stage.film, pixel);
   if (!value) return;
-  const step = stage.view.zoom / 4;
+  const step = Math.min(stage.view.zoom / 4, 20);
   value.forEach((channel, i) => {
     context.fillStyle = COLORS[i];
     context.strokeText(cell(channel), x, y + step * (i - 1));

@@ -110,7 +110,7 @@ test("the keyboard alone: pause, exposure, zoom, a pixel, tabs, a comparison", {
   await renderer.until(({ state }) => state === "paused");
   await reach(page, "exposure");
   await page.keyboard.press("ArrowRight");
-  assert.equal(await page.textContent("#exposure-value"), "+0.25");
+  await page.waitForFunction(() => document.getElementById("exposure-value")?.textContent === "+0.25");
   await reach(page, "stage");
   const zoom = await page.textContent("#zoom-value");
   await page.keyboard.press("+");
@@ -185,7 +185,7 @@ test("without WebGL2 the page says so and shows the server's PNG", { skip }, asy
     const image = document.getElementById("plain");
     return image instanceof HTMLImageElement && image.naturalWidth === 96;
   });
-  assert.match((await page.textContent("#hover")) ?? "", /no WebGL2/);
+  assert.match((await page.textContent("#plain-note:visible")) ?? "", /no WebGL2/);
   await keep(page, "plain");
   await page.close();
 });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { MAGMA, STOPS, magma, marks } from "../../page/falsecolor.js";
-import { cell, compact, digits, duration, exact, percent } from "../../page/format.js";
+import { cell, compact, count, digits, duration, exact, percent } from "../../page/format.js";
 import { share } from "../../page/head.js";
 import { address, backoff } from "../../page/link.js";
 import { rowName, rowsOf } from "../../page/pyramid.js";
@@ -13,6 +13,10 @@ import { rowName, rowsOf } from "../../page/pyramid.js";
 test("large numbers are short", () => {
   const told = [0, 12.345, 950, 999.6, 12345, 4.56e6, 7e9, NaN].map(compact);
   assert.deepEqual(told, ["0", "12.3", "950", "1 k", "12.3 k", "4.56 M", "7 G", "–"]);
+});
+
+test("one is one", () => {
+  assert.deepEqual([count(0, "pass"), count(1, "pass"), count(2, "bounce")], ["0 passes", "1 pass", "2 bounces"]);
 });
 
 test("times change their unit", () => {
