@@ -22,6 +22,7 @@ mod reference;
 mod render;
 mod replay;
 mod scene_io;
+mod serve;
 mod settings;
 mod shell;
 mod signals;

@@ -1,20 +1,18 @@
 //! `bidir view`: a scene rendered in the browser.
 
 use crate::args::ViewArgs;
-use crate::console::{Console, print, say};
+use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::render::set_threads;
 use crate::scene_io::{self, LoadedScene};
+use crate::serve;
 use crate::settings;
 use crate::signals::Signals;
 use bidir::driver::Settings;
-use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::time::Duration;
-use viewer::desk;
 use viewer::studio::{Studio, StudioSettings};
-use viewer::web::{self, Server};
 
 /// The port where none is asked for,
 const PORT: u16 = 8080;
@@ -33,14 +31,9 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let settings = settings::resolve(&args.estimator, loaded.settings.clone());
     // Every flag may have influence: estimators are switched.
     loaded.tell_warnings(&args.scene, 0, console)?;
-    let (desk, link) = desk();
-    for warning in &loaded.warnings {
-        desk.board().log(&format!("warning: {warning}"));
-    }
-    let server = Server::start(listener, link.clone()).map_err(|error| no_thread(&error))?;
+    let (server, desk) = serve::start(listener, &loaded.warnings)?;
     let studio = studio_settings(args, loaded, settings);
-    let studio = Studio::open(studio, desk, link).map_err(|error| no_thread(&error))?;
-    print(&format!("{}\n", server.url()))?;
+    let studio = Studio::open(studio, desk).map_err(|error| serve::failed(&error))?;
     if !args.quiet {
         say("open it in a browser; Ctrl-C ends");
     }
@@ -98,24 +91,5 @@ fn listen(args: &ViewArgs) -> Result<TcpListener, Failure> {
         None => (PORT, MORE_PORTS),
     };
     let address = SocketAddr::new(args.bind, port);
-    web::listen(address, more).map_err(|error| unbound(address, &error))
-}
-
-/// A port cannot be served on.
-pub(crate) fn unbound(address: SocketAddr, error: &io::Error) -> Failure {
-    let hint = match error.kind() {
-        io::ErrorKind::AddrInUse => "another program has it: take another port, or 0 for any",
-        io::ErrorKind::PermissionDenied => "ports below 1024 are the system's: take another",
-        _ => "take an address of this machine: 127.0.0.1, or 0.0.0.0 for all",
-    };
-    let message = format!("cannot serve on {address}: {error}");
-    Failure::new(Exit::InputOutput, message).with_hint(hint)
-}
-
-/// The system gives no thread.
-pub(crate) fn no_thread(error: &io::Error) -> Failure {
-    Failure::new(
-        Exit::RenderFailed,
-        format!("the server cannot start: {error}"),
-    )
+    serve::bind(address, more)
 }

@@ -11,7 +11,7 @@ use bidir::driver::Session;
 use formats::film::FilmHeader;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
@@ -211,9 +211,9 @@ impl Interrupts {
 
 /// Where a renderer takes requests.
 pub struct Desk {
-    board: Arc<Board>,
     requests: Receiver<Request>,
-    interrupts: Arc<Interrupts>,
+    /// That leads here.
+    link: Link,
 }
 
 /// Through which a renderer is asked.
@@ -226,18 +226,15 @@ pub struct Link {
 
 /// A desk with the link to it.
 pub fn desk() -> (Desk, Link) {
-    let board = Arc::new(Board::new());
-    let interrupts = Arc::new(Interrupts::default());
     let (sender, receiver) = sync_channel(REQUESTS);
-    let desk = Desk {
-        board: Arc::clone(&board),
-        requests: receiver,
-        interrupts: Arc::clone(&interrupts),
-    };
     let link = Link {
-        board,
+        board: Arc::new(Board::new()),
         requests: sender,
-        interrupts,
+        interrupts: Arc::default(),
+    };
+    let desk = Desk {
+        requests: receiver,
+        link: link.clone(),
     };
     (desk, link)
 }
@@ -245,11 +242,15 @@ pub fn desk() -> (Desk, Link) {
 impl Desk {
     /// What is shared.
     pub fn board(&self) -> &Board {
-        &self.board
+        &self.link.board
+    }
+
+    pub(crate) fn link(&self) -> Link {
+        self.link.clone()
     }
 
     pub(crate) fn interrupts(&self) -> &Interrupts {
-        &self.interrupts
+        &self.link.interrupts
     }
 
     /// The next request that waits.
@@ -259,11 +260,7 @@ impl Desk {
 
     /// The next request, which is waited for so long. None: there was none.
     pub(crate) fn wait(&self, at_most: Duration) -> Option<Request> {
-        match self.requests.recv_timeout(at_most) {
-            Ok(request) => Some(request),
-            Err(RecvTimeoutError::Timeout) => None,
-            Err(RecvTimeoutError::Disconnected) => Some(Request::Close),
-        }
+        self.requests.recv_timeout(at_most).ok()
     }
 }
 

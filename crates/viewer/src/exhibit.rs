@@ -3,7 +3,7 @@
 use crate::board::{Board, Shown};
 use crate::frame::Frame;
 use crate::status::{LaneId, LaneStatus, RayRates};
-use bidir::driver::Session;
+use bidir::driver::{Session, Settings};
 use bidir::film::Aov;
 use bidir::stats::RayCounts;
 use formats::film::SettingsText;
@@ -23,9 +23,9 @@ const CURVE_POINTS: usize = 256;
 #[derive(Debug)]
 pub struct Exhibit {
     lane: LaneId,
-    generation: u32,
-    preview: bool,
-    target: Option<u64>,
+    course: Course,
+    /// The estimator and the selection of shadow rays, as they were asked for.
+    method: [String; 2],
     /// The time of all passes.
     rendered: Duration,
     last: Option<Last>,
@@ -56,27 +56,22 @@ pub struct Course {
 }
 
 impl Exhibit {
-    /// A lane that nothing was rendered of.
-    pub fn new(lane: LaneId, course: Course) -> Self {
+    /// A lane that nothing was rendered of; `settings` are those that were asked for.
+    pub fn new(lane: LaneId, course: Course, settings: &Settings) -> Self {
+        let texts = SettingsText::from(settings);
         Self {
             lane,
-            generation: course.generation,
-            preview: course.preview,
-            target: course.target,
+            course,
+            method: [texts.integrator.to_owned(), texts.shadow_rays],
             rendered: Duration::ZERO,
             last: None,
             curve: Vec::new(),
         }
     }
 
-    /// Which lane it is.
-    pub fn lane(&self) -> LaneId {
-        self.lane
-    }
-
     /// Grows whenever the lane begins anew.
     pub fn generation(&self) -> u32 {
-        self.generation
+        self.course.generation
     }
 
     /// The time of all passes.
@@ -87,13 +82,13 @@ impl Exhibit {
     /// True where all passes are done.
     pub fn is_complete(&self, session: &Session<'_>) -> bool {
         let passes = session.film().passes().len();
-        self.target.is_some_and(|target| passes >= target)
+        self.course.target.is_some_and(|target| passes >= target)
     }
 
     /// Takes notice of a pass that took so long; shows it where somebody looks and it is time.
     pub fn add_pass(&mut self, session: &Session<'_>, time: Duration, board: &Board) {
         self.rendered += time;
-        if board.is_watched() && (self.preview || self.is_due()) {
+        if board.is_watched() && (self.course.preview || self.is_due()) {
             self.show(session, board);
         }
     }
@@ -117,7 +112,7 @@ impl Exhibit {
         let frame = Frame::new(session.film());
         let relative_error = frame.relative_error;
         let rays = session.film().cost(Aov::Rays);
-        let shown = Shown::new(self.lane, self.generation, frame, rays);
+        let shown = Shown::new(self.lane, self.course.generation, frame, rays);
         board.show(self.lane, Some(Arc::new(shown)));
         self.last = Some(Last {
             at: Instant::now(),
@@ -151,21 +146,24 @@ impl Exhibit {
     /// What is told of it.
     pub fn status(&self, session: &Session<'_>) -> LaneStatus {
         let (stats, settings) = (session.stats(), session.settings());
-        let texts = SettingsText::from(settings);
+        let [integrator, shadow_rays] = self.method.clone();
         let passes = session.film().passes().len();
         let seconds = self.rendered.as_secs_f64();
-        let eta = self.target.filter(|_| passes > 0).map(|target| {
-            let left = target.saturating_sub(passes);
-            left as f64 * seconds / passes as f64
+        // Passes of an earlier run took none of these seconds.
+        let area = session.film().settings().crop.area();
+        let eta = self.course.target.filter(|_| stats.samples > 0);
+        let eta = eta.map(|target| {
+            let left = target.saturating_sub(passes) * area;
+            left as f64 * seconds / stats.samples as f64
         });
         LaneStatus {
             lane: self.lane,
-            generation: self.generation,
-            integrator: texts.integrator.to_owned(),
-            shadow_rays: texts.shadow_rays.clone(),
-            settings: texts.by_flag(),
+            generation: self.course.generation,
+            integrator,
+            shadow_rays,
+            settings: SettingsText::from(settings).by_flag(),
             passes,
-            target: self.target,
+            target: self.course.target,
             seconds,
             eta,
             samples_per_second: ratio(stats.samples, seconds),
@@ -174,7 +172,7 @@ impl Exhibit {
             relative_error: self.relative_error(),
             curve: self.curve.clone(),
             strategy_vertices: settings.layers.strategy_vertices(),
-            preview: self.preview,
+            preview: self.course.preview,
         }
     }
 }

@@ -1,9 +1,11 @@
 //! What watchers are told of a render, as JSON.
 
+use bidir::film::FilmSettings;
 use bidir::integrator::IntegratorKind;
 use bidir::select::ShadowRays;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A render among those that are shown side by side.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,6 +55,25 @@ pub struct FilmStatus {
     pub resolution: [u32; 2],
     /// Left, top, right and bottom (exclusive) of what is rendered.
     pub crop: [u32; 4],
+}
+
+impl From<&FilmSettings> for FilmStatus {
+    fn from(film: &FilmSettings) -> Self {
+        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+        Self {
+            resolution: film.resolution,
+            crop: [left, top, right, bottom],
+        }
+    }
+}
+
+/// The name of a scene file without its folders.
+pub(crate) fn scene_name(name: &str) -> String {
+    let file = Path::new(name).file_name();
+    file.map_or_else(
+        || name.to_owned(),
+        |file| file.to_string_lossy().into_owned(),
+    )
 }
 
 /// What a client can ask for by name.

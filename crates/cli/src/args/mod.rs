@@ -26,7 +26,7 @@ pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArg
 pub(crate) use threads::ThreadsArgs;
 pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
-pub(crate) use view::ViewArgs;
+pub(crate) use view::{ServeAddress, ViewArgs};
 
 use crate::exit::Exit;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};

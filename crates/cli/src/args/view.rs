@@ -3,7 +3,8 @@
 use super::render::{EstimatorArgs, FilmArgs};
 use super::{SceneArgs, ThreadsArgs};
 use clap::Args;
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::str::FromStr;
 
 /// What is rendered, how, and where it is shown.
 #[derive(Args, Debug)]
@@ -49,4 +50,45 @@ pub(crate) struct ViewArgs {
     /// Tell nothing but the URL, warnings and errors.
     #[arg(short, long, help_heading = "Output")]
     pub(crate) quiet: bool,
+}
+
+/// Where a render is served: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ServeAddress(pub(crate) SocketAddr);
+
+impl FromStr for ServeAddress {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let port = text.strip_prefix(':').unwrap_or(text).parse::<u16>();
+        let address = match port {
+            Ok(port) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), port)),
+            Err(_) => text.parse(),
+        };
+        let expected = |_| "expected [ADDRESS:]PORT, such as 8080 or 0.0.0.0:8080".to_owned();
+        address.map(Self).map_err(expected)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, expected: Option<&str>) {
+        let address = text.parse::<ServeAddress>().ok();
+        let address = address.map(|address| address.0.to_string());
+        assert_eq!(address.as_deref(), expected);
+    }
+
+    #[test]
+    fn an_address_is_the_loopback_unless_it_says_otherwise() {
+        check("8080", Some("127.0.0.1:8080"));
+        check(":0", Some("127.0.0.1:0"));
+        check("0.0.0.0:80", Some("0.0.0.0:80"));
+        check("[::1]:8080", Some("[::1]:8080"));
+        for wrong in ["", ":", "65536", "localhost", "example.org:80", "1.2.3.4"] {
+            check(wrong, None);
+        }
+    }
 }

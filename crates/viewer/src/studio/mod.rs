@@ -48,10 +48,11 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// Begins to render; `link` leads to `desk`.
+    /// Begins to render what requests at `desk` are about.
     ///
     /// Errors: no thread can be started.
-    pub fn open(settings: StudioSettings, desk: Desk, link: Link) -> std::io::Result<Self> {
+    pub fn open(settings: StudioSettings, desk: Desk) -> std::io::Result<Self> {
+        let link = desk.link();
         let thread = std::thread::Builder::new()
             .name("studio".to_owned())
             .spawn(move || Painter::new(settings, desk).run())?;

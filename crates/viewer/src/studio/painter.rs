@@ -6,13 +6,12 @@ use super::save::Saved;
 use super::view::View;
 use crate::board::{Desk, Request};
 use crate::exhibit::{Course, Exhibit};
-use crate::status::{Choices, FilmStatus, LaneId, State, Status};
+use crate::status::{Choices, LaneId, State, Status, scene_name};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
 use formats::film::{FilmHeader, SceneIdentity, program};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -212,7 +211,7 @@ impl Painter {
         Ok(Lane {
             header: self.header(wanted, &session),
             session,
-            exhibit: Exhibit::new(lane, course),
+            exhibit: Exhibit::new(lane, course, wanted),
         })
     }
 
@@ -241,18 +240,13 @@ impl Painter {
             .map(|lane| lane.exhibit.status(&lane.session))
             .collect();
         let board = self.desk.board();
-        let film = self.view.full_film();
-        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
         board.tell(Status {
             version: env!("CARGO_PKG_VERSION"),
             scene: scene_name(&self.name),
             state: self.state,
             message: self.message.clone(),
             controls: true,
-            film: FilmStatus {
-                resolution: film.resolution,
-                crop: [left, top, right, bottom],
-            },
+            film: self.view.full_film().into(),
             choices: Choices::all(),
             camera: Some(self.view.status()),
             split: self.wanted.len() > 1,
@@ -288,13 +282,4 @@ impl Painter {
 fn with_inspected(layers: &Layers) -> Layers {
     let aovs = [layers.aovs(), &[Aov::Samples, Aov::Variance, Aov::Rays]].concat();
     Layers::new(&aovs, layers.light_groups(), layers.strategy_vertices())
-}
-
-/// The name of a scene file without its folders.
-pub(crate) fn scene_name(name: &str) -> String {
-    let file = Path::new(name).file_name();
-    file.map_or_else(
-        || name.to_owned(),
-        |file| file.to_string_lossy().into_owned(),
-    )
 }
