@@ -2,13 +2,12 @@
 
 mod parts;
 
-pub(crate) use parts::TrainingReport;
-
 use crate::args;
 use crate::scene_io::Stopping;
 use crate::settings::{Budget, SettingsText};
 use bidir::driver::Session;
 use bidir::film::Film;
+use lab::sample::TrainingReport;
 use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;
 use std::time::Duration;
@@ -182,7 +181,6 @@ fn short(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bidir::stats::RayCounts;
 
     #[test]
     fn numbers_are_written_shortly() {
@@ -190,18 +188,5 @@ mod tests {
         assert_eq!(short(1234.0), "1.23 k");
         assert_eq!(short(123_456_789.0), "123 M");
         assert_eq!(short(0.0), "0.00");
-    }
-
-    #[test]
-    fn numbers_that_are_not_finite_are_null() {
-        let report = TrainingReport {
-            samples: 1,
-            mean_luminance: f32::NAN,
-            threshold: Some(f32::INFINITY),
-            rays: RayCounts::default().into(),
-            plan: None,
-        };
-        let json = serde_json::to_value(report).unwrap();
-        assert!(json["mean_luminance"].is_null() && json["threshold"].is_null());
     }
 }

@@ -10,11 +10,12 @@
 //! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
 //! - [`report`]: what an experiment found, as a page for people.
 //! - [`results`]: what an experiment found, as it is written down.
+//! - [`sample`]: one sample, told step by step.
 //! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
 //!   renders have the same expectation.
 //!
-//! All but [`experiment`] and [`reference`](mod@reference) read no file and know no scene: who has images can
-//! ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
+//! All but [`experiment`], [`reference`](mod@reference) and [`sample`] read no file and know no scene: who has
+//! images can ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
 
 pub mod beyond;
 mod blocks;
@@ -28,5 +29,6 @@ pub mod pyramid;
 pub mod reference;
 pub mod report;
 pub mod results;
+pub mod sample;
 mod scenes;
 pub mod statistics;

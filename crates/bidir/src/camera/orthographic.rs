@@ -23,7 +23,7 @@ pub struct OrthographicSettings {
 /// Parallel rays from a plane. What lies behind the plane is not seen.
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic {
-    pose: Pose,
+    pub(super) pose: Pose,
     /// Place on the plane = `screen_origin` + raster · `screen_per_raster`, in the world's unit.
     screen_origin: Vec2,
     screen_per_raster: Vec2,
@@ -45,6 +45,14 @@ impl Orthographic {
             screen_per_raster,
             raster_density,
         })
+    }
+
+    pub(super) fn resized(self, factor: Vec2) -> Self {
+        Self {
+            screen_per_raster: self.screen_per_raster / factor,
+            raster_density: self.raster_density * factor.x * factor.y,
+            ..self
+        }
     }
 
     #[inline]

@@ -26,7 +26,7 @@ pub struct PerspectiveSettings {
 /// A pinhole or thin lens in front of a plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective {
-    pose: Pose,
+    pub(super) pose: Pose,
     /// Screen position = `screen_origin` + raster · `screen_per_raster`.
     screen_origin: Vec2,
     screen_per_raster: Vec2,
@@ -54,6 +54,14 @@ impl Perspective {
             lens_radius: settings.lens_radius * pose.scale,
             focal_distance: settings.focal_distance * pose.scale,
         })
+    }
+
+    pub(super) fn resized(self, factor: Vec2) -> Self {
+        Self {
+            screen_per_raster: self.screen_per_raster / factor,
+            raster_density: self.raster_density * factor.x * factor.y,
+            ..self
+        }
     }
 
     #[inline]

@@ -7,6 +7,7 @@
 use crate::film::{FilmSettings, SplatPlace};
 use crate::integrator::{Entry, Fate, Link, Term, Workspace};
 use crate::path::{PathContext, Strategy};
+use crate::scene::SegmentEnd;
 use crate::select::Selector;
 use crate::spectrum::{Spectrum, Wavelengths};
 
@@ -30,6 +31,8 @@ pub struct ReplayedTerm {
     pub term: Term,
     /// What was done with it.
     pub fate: Fate,
+    /// The ends of its shadow ray, light and camera. None for s = 0, which needs none.
+    pub ends: Option<[SegmentEnd; 2]>,
     /// For what is chosen from: importance and probability.
     pub selection: Option<Selection>,
     /// How much of it arrives, traced or not: 0 where something opaque is in the way, 1 where nothing
@@ -118,6 +121,7 @@ impl ReplayedTerm {
         Self {
             term: entry.term,
             fate: entry.fate,
+            ends: ends.copied(),
             selection,
             transmittance,
             landing,

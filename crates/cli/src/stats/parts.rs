@@ -3,8 +3,9 @@
 use crate::settings::Budget;
 use bidir::driver::{Session, Training};
 use bidir::path::Strategy;
-use bidir::stats::{Dropped, RayCounts, Stage, StageTimes, Stats, StrategyCounts};
+use bidir::stats::{Dropped, Stage, StageTimes, Stats, StrategyCounts};
 use lab::pyramid::Figures;
+use lab::sample::RaysByKind;
 use serde::Serialize;
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -22,34 +23,11 @@ impl From<Budget> for BudgetReport {
     }
 }
 
-/// Rays by kind.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct KindsReport {
-    pub(crate) camera: u64,
-    pub(crate) light: u64,
-    pub(crate) connection: u64,
-    pub(crate) light_image: u64,
-    /// The sum of those above.
-    pub(crate) total: u64,
-}
-
-impl From<RayCounts> for KindsReport {
-    fn from(rays: RayCounts) -> Self {
-        Self {
-            camera: rays.camera,
-            light: rays.light,
-            connection: rays.connection,
-            light_image: rays.light_image,
-            total: rays.total(),
-        }
-    }
-}
-
 /// The rays of a render.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct RayReport {
     #[serde(flatten)]
-    pub(super) of_image: KindsReport,
+    pub(super) of_image: RaysByKind,
     /// Not in the sum.
     pub(super) training: u64,
 }
@@ -57,7 +35,7 @@ pub(super) struct RayReport {
 impl RayReport {
     pub(super) fn new(stats: &Stats, training: Option<&Training>) -> Self {
         Self {
-            of_image: KindsReport::from(stats.rays),
+            of_image: RaysByKind::from(stats.rays),
             training: training.map_or(0, |training| training.rays.total()),
         }
     }
@@ -97,35 +75,6 @@ impl StagesReport {
             measured_samples: times.samples,
             nanoseconds_per_sample: per_sample(total),
             parts: parts.filter(|part| part.share > 0.0).collect(),
-        })
-    }
-}
-
-/// The render before the first pass.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct TrainingReport {
-    pub(crate) samples: u64,
-    /// Of the image.
-    pub(crate) mean_luminance: f32,
-    /// The score from which on a candidate is sure to be traced.
-    pub(crate) threshold: Option<f32>,
-    pub(crate) rays: KindsReport,
-    /// What `auto` renders with.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) plan: Option<String>,
-}
-
-impl TrainingReport {
-    /// None: there was none.
-    pub(crate) fn new(session: &Session<'_>) -> Option<Self> {
-        let training = session.training()?;
-        let rule = session.settings().shadow_rays;
-        Some(Self {
-            samples: training.samples,
-            mean_luminance: training.mean_luminance,
-            threshold: rule.threshold(training.mean_luminance),
-            rays: KindsReport::from(training.rays),
-            plan: training.plan.map(|plan| plan.to_string()),
         })
     }
 }

@@ -1,6 +1,8 @@
 //! A told sample as a text: tables of the subpaths, of each kind of strategy, and the sums.
 
-use super::{CandidateReport, SampleReport, SplatReport, SubpathReport, TermReport, VertexReport};
+use super::SampleReport;
+use super::subpath::{SubpathReport, VertexReport};
+use super::term::{CandidateReport, SplatReport, TermReport};
 use std::fmt::{self, Display, Formatter};
 
 /// A point or direction, in columns.
@@ -160,8 +162,9 @@ impl Display for SubpathReport {
 
 impl Display for VertexReport {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let place = if self.is_infinite { "towards" } else { "at" };
-        write!(f, "{:<7} {place} {}", self.kind, Point(self.position))?;
+        let place = &self.place;
+        let at = if place.is_infinite { "towards" } else { "at" };
+        write!(f, "{:<7} {at} {}", self.kind, Point(place.position))?;
         write!(f, "  beta {}", Triple(self.beta))?;
         write!(
             f,

@@ -1,0 +1,123 @@
+//! All that is told of a sample.
+
+use super::TrainingReport;
+use super::subpath::{SubpathReport, View};
+use super::term::{CandidateReport, SplatReport, TermReport};
+use bidir::driver::{Replay, Session};
+use bidir::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
+use formats::film::SettingsText;
+use serde::Serialize;
+
+/// A sample, told. Numbers that are not finite are null in JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct SampleReport {
+    pub(super) pixel: [u32; 2],
+    pub(super) pass: u64,
+    pub(super) settings: SettingsText,
+    pub(super) training: Option<TrainingReport>,
+    pub(super) camera: SubpathReport,
+    pub(super) light: SubpathReport,
+    /// s = 0: lights that the camera subpath came to.
+    pub(super) hits: Vec<TermReport>,
+    /// s ≥ 1 and t ≥ 2: connections that are not zero before selection and visibility.
+    pub(super) candidates: Vec<CandidateReport>,
+    /// The connections that are.
+    pub(super) zeros: Vec<String>,
+    /// t = 1: splats.
+    pub(super) light_image: Vec<SplatReport>,
+    /// What splats are divided by.
+    pub(super) light_paths: u64,
+    /// What was added to the pixel.
+    pub(super) value: Rgb,
+    pub(super) value_of_hits: Rgb,
+    pub(super) value_of_candidates: Rgb,
+    /// What candidates would have added, had all been traced: what a selection is to expect.
+    pub(super) value_of_all_candidates: Rgb,
+    pub(super) rays: u64,
+    pub(super) dropped: u64,
+}
+
+/// How light is told: as linear Rec. 709.
+pub(super) struct Color {
+    model: ColorModel,
+    wavelengths: Wavelengths,
+}
+
+impl Color {
+    pub(super) fn rgb(&self, value: Spectrum) -> Rgb {
+        self.model.to_rgb(value, &self.wavelengths)
+    }
+}
+
+impl SampleReport {
+    /// The report of what `session` repeated: the sample of `pixel` in `pass`.
+    pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
+        let (scene, workspace) = (session.scene(), &replay.workspace);
+        let color = Color {
+            model: scene.color(),
+            wavelengths: replay.wavelengths,
+        };
+        let view = View::new(scene.camera(), &workspace.camera);
+        let Terms {
+            hits,
+            candidates,
+            light_image,
+        } = Terms::new(&color, &view, replay);
+        let all = candidates
+            .iter()
+            .filter(|c| c.is_visible && !c.term.is_dropped);
+        Self {
+            pixel,
+            pass,
+            settings: SettingsText::from(session.settings()),
+            training: TrainingReport::new(session),
+            camera: SubpathReport::new(&color, &view, &workspace.camera),
+            light: SubpathReport::new(&color, &view, &workspace.light),
+            value: color.rgb(workspace.value),
+            value_of_hits: sum(hits.iter().map(|hit| hit.added)),
+            value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
+            value_of_all_candidates: sum(all.map(CandidateReport::arriving)),
+            hits,
+            candidates,
+            zeros: replay.zeros.iter().map(ToString::to_string).collect(),
+            light_image,
+            light_paths: scene.film().light_paths(),
+            rays: workspace.stats.rays.total(),
+            dropped: workspace.stats.dropped,
+        }
+    }
+}
+
+/// The terms of a sample, by what is told of them.
+#[derive(Default)]
+struct Terms {
+    hits: Vec<TermReport>,
+    candidates: Vec<CandidateReport>,
+    light_image: Vec<SplatReport>,
+}
+
+impl Terms {
+    fn new(color: &Color, view: &View<'_>, replay: &Replay) -> Self {
+        let mut terms = Self::default();
+        for term in &replay.terms {
+            match (&term.landing, &term.ends) {
+                (Some(landing), Some([light, _])) => {
+                    let splat = SplatReport::new(color, term, landing, view.end(light));
+                    terms.light_image.push(splat);
+                }
+                (None, Some([light, _])) => {
+                    let candidate = CandidateReport::new(color, term, view.end(light));
+                    terms.candidates.push(candidate);
+                }
+                (_, None) => terms.hits.push(TermReport::new(color, term)),
+            }
+        }
+        terms
+    }
+}
+
+fn sum(values: impl Iterator<Item = Rgb>) -> Rgb {
+    values.fold([0.0; 3], |sum, value| {
+        std::array::from_fn(|channel| sum[channel] + value[channel])
+    })
+}

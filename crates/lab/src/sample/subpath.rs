@@ -1,0 +1,116 @@
+//! The vertices of a sample, in the scene and on the film.
+
+use super::report::Color;
+use bidir::camera::{Camera, LensSample};
+use bidir::math::{Vec2, Vec3};
+use bidir::path::{Subpath, Vertex, VertexKind};
+use bidir::scene::SegmentEnd;
+use bidir::spectrum::Rgb;
+use serde::Serialize;
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SubpathReport {
+    pub(super) vertices: Vec<VertexReport>,
+    /// The direction in which the walk left the scene.
+    pub(super) escape: Option<[f32; 3]>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct VertexReport {
+    pub(super) kind: &'static str,
+    #[serde(flatten)]
+    pub(super) place: Place,
+    pub(super) normal: [f32; 3],
+    pub(super) is_delta: bool,
+    pub(super) light: Option<u32>,
+    pub(super) beta: Rgb,
+    pub(super) pdf_fwd: f32,
+    pub(super) pdf_rev: f32,
+}
+
+/// Where something is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Place {
+    /// The direction towards it where it is at infinity.
+    pub(super) position: [f32; 3],
+    pub(super) is_infinite: bool,
+    /// Where the sample's lens point sees it on the film, or beyond its edges, whatever is in between.
+    /// None: it is behind the camera, or the camera itself. Unit: pixels, from the top left.
+    pub(super) raster: Option<[f32; 2]>,
+}
+
+/// From where a sample looks.
+pub(super) struct View<'a> {
+    camera: &'a Camera,
+    lens: LensSample,
+}
+
+impl<'a> View<'a> {
+    /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
+    /// camera subpath, from the middle of the lens.
+    pub(super) fn new(camera: &'a Camera, subpath: &Subpath) -> Self {
+        let middle = camera.sample_lens(|| Vec2::splat(0.5));
+        let point = subpath.vertices.first().map_or(middle.point, |y0| y0.point);
+        let lens = LensSample { point, ..middle };
+        Self { camera, lens }
+    }
+
+    pub(super) fn end(&self, end: &SegmentEnd) -> Place {
+        self.place(end.point, end.is_infinite)
+    }
+
+    fn place(&self, point: Vec3, is_infinite: bool) -> Place {
+        let raster = self.raster(point, is_infinite);
+        Place {
+            position: point.to_array(),
+            is_infinite,
+            raster: raster.filter(|p| p.is_finite()).map(|p| p.to_array()),
+        }
+    }
+
+    fn raster(&self, point: Vec3, is_infinite: bool) -> Option<Vec2> {
+        match (self.lens.is_infinite, is_infinite) {
+            // Rays of one direction see no other direction.
+            (true, true) => None,
+            (true, false) => self.camera.raster(point, -self.lens.point),
+            (false, true) => self.camera.raster(self.lens.point, point),
+            (false, false) => {
+                let direction = (point - self.lens.point).try_normalize()?;
+                self.camera.raster(self.lens.point, direction)
+            }
+        }
+    }
+}
+
+impl SubpathReport {
+    pub(super) fn new(color: &Color, view: &View<'_>, subpath: &Subpath) -> Self {
+        let vertices = subpath
+            .vertices
+            .iter()
+            .map(|vertex| VertexReport::new(color, view, vertex));
+        Self {
+            vertices: vertices.collect(),
+            escape: subpath.escape.map(|escape| escape.direction.to_array()),
+        }
+    }
+}
+
+impl VertexReport {
+    fn new(color: &Color, view: &View<'_>, vertex: &Vertex) -> Self {
+        let kind = match vertex.kind {
+            VertexKind::Camera => "camera",
+            VertexKind::Light => "light",
+            VertexKind::Surface => "surface",
+        };
+        Self {
+            kind,
+            place: view.place(vertex.point, vertex.is_infinite),
+            normal: vertex.n_g.to_array(),
+            is_delta: vertex.is_delta() || vertex.went_by_delta,
+            light: vertex.light,
+            beta: color.rgb(vertex.beta),
+            pdf_fwd: vertex.pdf_fwd,
+            pdf_rev: vertex.pdf_rev,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What each strategy gave.
+
+use super::report::Color;
+use super::subpath::Place;
+use bidir::driver::{Landing, ReplayedTerm};
+use bidir::integrator::Fate;
+use bidir::spectrum::Rgb;
+use serde::Serialize;
+
+/// What all strategies have in common.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct TermReport {
+    pub(super) s: u16,
+    pub(super) t: u16,
+    /// C, unweighted, as if nothing were in the way.
+    pub(super) contribution: Rgb,
+    /// w.
+    pub(super) weight: f32,
+    /// w C.
+    pub(super) value: Rgb,
+    pub(super) is_dropped: bool,
+    /// What it added to a pixel of an image of one pass.
+    pub(super) added: Rgb,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct CandidateReport {
+    #[serde(flatten)]
+    pub(super) term: TermReport,
+    /// Where the light subpath ends: for s = 1 a light point of its own, in `lvc` a vertex of another
+    /// sample. The other end is vertex t - 1 of the camera subpath.
+    pub(super) light_end: Place,
+    /// What candidates are compared by; null where none are chosen.
+    pub(super) score: Option<f32>,
+    /// The probability of being chosen.
+    pub(super) prob: f64,
+    pub(super) is_chosen: bool,
+    /// Traced or not.
+    pub(super) is_visible: bool,
+    /// How much of it arrives.
+    pub(super) transmittance: f32,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SplatReport {
+    #[serde(flatten)]
+    pub(super) term: TermReport,
+    /// What is seen: vertex s - 1 of the light subpath.
+    pub(super) light_end: Place,
+    pub(super) is_visible: bool,
+    /// How much of it arrives.
+    pub(super) transmittance: f32,
+    /// Where it lands, or would.
+    pub(super) raster: [f32; 2],
+    /// The pixel that the filter drew; null where it is not rendered.
+    pub(super) landed: Option<[u32; 2]>,
+}
+
+impl TermReport {
+    pub(super) fn new(color: &Color, replayed: &ReplayedTerm) -> Self {
+        let term = &replayed.term;
+        Self {
+            s: term.strategy.s,
+            t: term.strategy.t,
+            contribution: color.rgb(term.contribution),
+            weight: term.weight,
+            value: color.rgb(term.value()),
+            is_dropped: replayed.fate == Fate::Dropped,
+            added: color.rgb(replayed.added),
+        }
+    }
+}
+
+impl CandidateReport {
+    pub(super) fn new(color: &Color, replayed: &ReplayedTerm, light_end: Place) -> Self {
+        Self {
+            term: TermReport::new(color, replayed),
+            light_end,
+            score: replayed.selection.map(|selection| selection.score),
+            // Where nothing is chosen, everything is traced.
+            prob: replayed.selection.map_or(1.0, |selection| selection.prob),
+            is_chosen: replayed.is_chosen(),
+            is_visible: replayed.is_visible(),
+            transmittance: replayed.transmittance,
+        }
+    }
+
+    /// What it is worth behind what lies in its way.
+    pub(super) fn arriving(&self) -> Rgb {
+        self.term.value.map(|channel| channel * self.transmittance)
+    }
+}
+
+impl SplatReport {
+    pub(super) fn new(
+        color: &Color,
+        replayed: &ReplayedTerm,
+        landing: &Landing,
+        light_end: Place,
+    ) -> Self {
+        Self {
+            term: TermReport::new(color, replayed),
+            light_end,
+            is_visible: replayed.is_visible(),
+            transmittance: replayed.transmittance,
+            raster: landing.raster,
+            landed: landing.pixel,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! What was learnt before the first pass.
+
+use bidir::driver::Session;
+use bidir::stats::RayCounts;
+use serde::Serialize;
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RaysByKind {
+    /// Of camera walks.
+    pub camera: u64,
+    /// Of light walks.
+    pub light: u64,
+    /// Shadow rays of connections.
+    pub connection: u64,
+    /// Shadow rays of the light image.
+    pub light_image: u64,
+    /// The sum of those above.
+    pub total: u64,
+}
+
+impl From<RayCounts> for RaysByKind {
+    fn from(rays: RayCounts) -> Self {
+        Self {
+            camera: rays.camera,
+            light: rays.light,
+            connection: rays.connection,
+            light_image: rays.light_image,
+            total: rays.total(),
+        }
+    }
+}
+
+/// The render before the first pass. Numbers that are not finite are null in JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct TrainingReport {
+    /// Its samples.
+    pub samples: u64,
+    /// Of the image.
+    pub mean_luminance: f32,
+    /// The score from which on a candidate is sure to be traced.
+    pub threshold: Option<f32>,
+    /// Its rays.
+    pub rays: RaysByKind,
+    /// What `auto` renders with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<String>,
+}
+
+impl TrainingReport {
+    /// None: there was none.
+    pub fn new(session: &Session<'_>) -> Option<Self> {
+        let training = session.training()?;
+        let rule = session.settings().shadow_rays;
+        Some(Self {
+            samples: training.samples,
+            mean_luminance: training.mean_luminance,
+            threshold: rule.threshold(training.mean_luminance),
+            rays: RaysByKind::from(training.rays),
+            plan: training.plan.map(|plan| plan.to_string()),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_are_not_finite_are_null() {
+        let report = TrainingReport {
+            samples: 1,
+            mean_luminance: f32::NAN,
+            threshold: Some(f32::INFINITY),
+            rays: RayCounts::default().into(),
+            plan: None,
+        };
+        let json = serde_json::to_value(report).unwrap();
+        assert!(json["mean_luminance"].is_null() && json["threshold"].is_null());
+    }
+}
