@@ -2,7 +2,7 @@
 
 import { showCurves } from "./chart.js";
 import { connectDivider, placeDivider } from "./divider.js";
-import { box, get, say } from "./dom.js";
+import { box, button, get, say } from "./dom.js";
 import { cell, digits } from "./format.js";
 import { valueAt } from "./frame.js";
 import { Gestures } from "./gestures.js";
@@ -66,7 +66,7 @@ function connectModes() {
     stage.element.dataset.mode = mode();
     if (mode() === "sample") showTab("tab-sample");
   });
-  box("home").addEventListener("click", () => link.send("home"));
+  button("home").addEventListener("click", () => link.send("home"));
 }
 
 function connectKeys() {
@@ -113,6 +113,7 @@ function allow({ controls, camera }) {
 /** @param {Status} told */
 function showCamera({ camera }) {
   if (!camera) return;
+  button("home").disabled = !camera.moved;
   const [origin, target] = [camera.origin, camera.target].map((point) => point.map((part) => Number(part.toFixed(4))).join(", "));
   say(box("camera-place"), `${camera.moved ? "Moved: at" : "At"} ${origin}, looking at ${target}. In the mode Move, drag to orbit and walk by W A S D.`);
 }

@@ -1,7 +1,7 @@
 // The pyramid of strategies: an image of what each (s, t) adds, a row for each number of vertices.
 
 import { box, button, get, input, make, say, select } from "./dom.js";
-import { compact, count, digits, percent } from "./format.js";
+import { cell, compact, count, digits, percent } from "./format.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { LaneName, Lane, Status, StrategyReport, StrategyTile } from "./types.js" */
@@ -31,15 +31,26 @@ export function rowName(vertices) {
 }
 
 /**
+ * What a strategy does, in words.
+ * @param {{s: number, t: number}} strategy
+ */
+export function meaning({ s, t }) {
+  if (s === 0) return "the camera subpath hits a light";
+  if (t === 1) return "the light subpath is seen by the lens";
+  if (s === 1) return "a point of a light is connected (next event)";
+  return "both subpaths are connected";
+}
+
+/**
  * The figures of a tile.
  * @param {StrategyTile} tile
  */
 export function figuresOf(tile) {
   return [
-    `mean ${digits(tile.mean, 3)}`,
+    `mean ${cell(tile.mean)}`,
     `traced ${compact(tile.traced)}`,
     `blocked ${percent(tile.blockedShare)}`,
-    `variance ${digits(tile.variance, 2)}`,
+    `variance ${tile.variance === null ? "–" : cell(tile.variance)}`,
   ];
 }
 
@@ -136,11 +147,11 @@ export class Pyramid {
   show(report) {
     const { lane, kind } = this.query;
     get("strategies-sheet", HTMLAnchorElement).href = this.link.url("/strategies.png", { lane, kind });
-    const meaning =
+    const told =
       kind === "weighted"
         ? "What each strategy adds: all tiles and longer paths together are the picture."
         : "What each strategy shows alone, without its weight: the same light all along a row, as far as it can make its paths.";
-    say(box("strategies-hint"), `${meaning} Longer paths: mean ${digits(report.longerMean, 3)}. ${count(report.passes, "pass")}.`);
+    say(box("strategies-hint"), `${told} Longer paths: mean ${digits(report.longerMean, 3)}. ${count(report.passes, "pass")}.`);
     const rows = rowsOf(report.tiles);
     const isSame = box("pyramid").childElementCount === 2 * rows.length;
     if (!isSame) box("pyramid").replaceChildren(...rows.flatMap(([vertices, tiles]) => this.row(vertices, tiles)));
@@ -174,7 +185,7 @@ export class Pyramid {
     image.src = this.link.url("/strategies.png", { ...this.query, s: tile.s, t: tile.t, version });
     const figures = figuresOf(tile);
     element.querySelectorAll("span").forEach((span, i) => say(span, figures[i]));
-    element.setAttribute("aria-label", `Strategy s = ${tile.s}, t = ${tile.t}, ${tile.name}: ${figures.join(", ")}. Enlarge`);
+    element.setAttribute("aria-label", `Strategy s = ${tile.s}, t = ${tile.t}, ${meaning(tile)}: ${figures.join(", ")}. Enlarge`);
     element.onclick = () => enlarge(tile, image.src);
   }
 }
@@ -184,7 +195,7 @@ export class Pyramid {
  * @param {string} source
  */
 function enlarge(tile, source) {
-  say(box("large-title"), `s = ${tile.s}, t = ${tile.t}: ${tile.name}`);
+  say(box("large-title"), `s = ${tile.s}, t = ${tile.t}: ${meaning(tile)}`);
   const image = get("large-image", HTMLImageElement);
   image.src = source;
   image.alt = `Image of the strategy s = ${tile.s}, t = ${tile.t}`;

@@ -154,3 +154,45 @@ impl AsyncWrite for Patient {
         Pin::new(&mut self.stream).poll_shutdown(context)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::io::AsyncWriteExt;
+
+    #[tokio::test(flavor = "current_thread", start_paused = true)]
+    async fn a_peer_that_takes_nothing_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let peer = TcpStream::connect(listener.local_addr().unwrap())
+            .await
+            .unwrap();
+        let (stream, _) = listener.accept().await.unwrap();
+        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
+        let mut stream = Patient::new(stream, place);
+        let start = tokio::time::Instant::now();
+        let lot = vec![0; 1 << 26];
+        let error = stream.write_all(&lot).await.unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::TimedOut);
+        // By the clock of the test, which does not run while anything else does.
+        assert!(start.elapsed() >= PATIENCE);
+        drop(peer);
+    }
+
+    #[tokio::test(flavor = "current_thread")]
+    async fn a_peer_that_takes_little_is_waited_for() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let mut peer = TcpStream::connect(listener.local_addr().unwrap())
+            .await
+            .unwrap();
+        let (stream, _) = listener.accept().await.unwrap();
+        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
+        let mut stream = Patient::new(stream, place);
+        let writing = tokio::spawn(async move { stream.write_all(&[7; 1 << 24]).await });
+        let mut taken = Vec::new();
+        tokio::io::AsyncReadExt::read_to_end(&mut peer, &mut taken)
+            .await
+            .unwrap();
+        writing.await.unwrap().unwrap();
+        assert_eq!(taken.len(), 1 << 24);
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::Site;
 use super::error::Refusal;
-use super::query::{Asked, OfLane, OfPixel};
+use super::query::{Asked, OfLane, OfPixel, OfSample};
 use super::routes::json;
 use crate::board::{Request, Shown, Subject};
 use crate::status::LaneId;
@@ -11,6 +11,7 @@ use axum::http::StatusCode;
 use axum::response::Response;
 use bidir::driver::Session;
 use lab::pyramid::{Figures, mean_of_longer};
+use lab::sample::SampleReport;
 use serde::Serialize;
 use std::sync::Arc;
 use std::time::Duration;
@@ -119,7 +120,31 @@ pub(super) async fn pixel(
         })
     };
     let report = index.and_then(of_pixel);
-    json(&report.ok_or_else(|| Refusal::query(format!("the pixel {x},{y} is not rendered")))?)
+    json(&report.ok_or_else(|| not_rendered(x, y))?)
+}
+
+/// What a sample did, as `bidir render --replay --json` tells it.
+pub(super) async fn sample(
+    State(site): State<Arc<Site>>,
+    Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
+) -> Result<Response, Refusal> {
+    let resolution = site.link.board().status().film.resolution;
+    let report = site.look(lane, move |subject| {
+        let session = subject.session;
+        if session.scene().film().resolution != resolution {
+            return Err(Refusal::now(
+                "the camera moves: ask when the picture is whole",
+            ));
+        }
+        let replay = session.replay([x, y], pass);
+        let replay = replay.ok_or_else(|| not_rendered(x, y))?;
+        json(&SampleReport::new(session, [x, y], pass, &replay))
+    });
+    report.await?
+}
+
+fn not_rendered(x: u32, y: u32) -> Refusal {
+    Refusal::query(format!("the pixel {x},{y} is not rendered"))
 }
 
 /// What the strategies of a lane do.

@@ -36,3 +36,13 @@ pub(super) struct OfPixel {
     pub(super) x: u32,
     pub(super) y: u32,
 }
+
+/// Which sample of a pixel.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) struct OfSample {
+    #[serde(default)]
+    pub(super) lane: LaneId,
+    pub(super) x: u32,
+    pub(super) y: u32,
+    pub(super) pass: u64,
+}

@@ -27,6 +27,7 @@ pub(super) fn router(site: &Arc<Site>) -> Router {
         .route("/render.png", get(images::png))
         .route("/render.exr", get(images::exr))
         .route("/pixel", get(inspect::pixel))
+        .route("/sample", get(inspect::sample))
         .route("/strategies", get(inspect::strategies))
         .route("/strategies.png", get(images::strategies))
         .fallback(|| async { Refusal::new(StatusCode::NOT_FOUND, "there is no such page") })
