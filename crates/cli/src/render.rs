@@ -34,6 +34,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         Outputs::named(args)?.check(args)?;
         Checkpoint::open(&args.long)?
     } else {
+        replay::check(args)?;
         None
     };
     let start = Instant::now();

@@ -24,6 +24,7 @@ mod tests;
 
 pub use orthographic::{Orthographic, OrthographicSettings};
 pub use perspective::{Perspective, PerspectiveSettings};
+pub use pose::Pose;
 pub use spherical::{Spherical, SphericalMapping};
 
 use crate::math::{Vec2, Vec3};
@@ -70,6 +71,15 @@ impl Camera {
             Self::Perspective(_) => "perspective",
             Self::Orthographic(_) => "orthographic",
             Self::Spherical(_) => "spherical",
+        }
+    }
+
+    /// Where it stands, and which way it looks.
+    pub fn pose(&self) -> Pose {
+        match self {
+            Self::Perspective(camera) => camera.pose,
+            Self::Orthographic(camera) => camera.pose,
+            Self::Spherical(camera) => camera.pose,
         }
     }
 

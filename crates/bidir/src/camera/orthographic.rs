@@ -23,7 +23,7 @@ pub struct OrthographicSettings {
 /// Parallel rays from a plane. What lies behind the plane is not seen.
 #[derive(Clone, Copy, Debug)]
 pub struct Orthographic {
-    pose: Pose,
+    pub(super) pose: Pose,
     /// Place on the plane = `screen_origin` + raster · `screen_per_raster`, in the world's unit.
     screen_origin: Vec2,
     screen_per_raster: Vec2,

@@ -26,7 +26,7 @@ pub struct PerspectiveSettings {
 /// A pinhole or thin lens in front of a plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Perspective {
-    pose: Pose,
+    pub(super) pose: Pose,
     /// Screen position = `screen_origin` + raster · `screen_per_raster`.
     screen_origin: Vec2,
     screen_per_raster: Vec2,

@@ -4,12 +4,16 @@ use crate::math::{Affine3A, Vec3, sqr};
 
 /// A camera's place: x right, y up, z forward, all of unit length. Mirrored cameras have a
 /// left-handed frame in the world.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
-    pub(super) origin: Vec3,
-    pub(super) right: Vec3,
-    pub(super) up: Vec3,
-    pub(super) forward: Vec3,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Where it stands.
+    pub origin: Vec3,
+    /// The picture's right.
+    pub right: Vec3,
+    /// The picture's up.
+    pub up: Vec3,
+    /// The optical axis.
+    pub forward: Vec3,
     /// Length in the world of a unit of camera space.
     pub(super) scale: f32,
 }

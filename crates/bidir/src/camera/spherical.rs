@@ -24,7 +24,7 @@ pub enum SphericalMapping {
 /// A point that sees all around it.
 #[derive(Clone, Copy, Debug)]
 pub struct Spherical {
-    pose: Pose,
+    pub(super) pose: Pose,
     resolution: Vec2,
     mapping: SphericalMapping,
 }
