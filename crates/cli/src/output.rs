@@ -75,12 +75,7 @@ impl Outputs {
                 return Err(Failure::usage(message).with_hint(hint));
             }
             taken.push(target);
-            if file.is_dir() {
-                let message = format!("{}: cannot write: it is a folder", file.display());
-                return Err(Failure::new(Exit::InputOutput, message));
-            }
-            scene_io::check_writable(file)
-                .map_err(|failure| failure.with_hint(hint(scene_io::folder_of(file))))?;
+            check_file(file)?;
         }
         Ok(())
     }
@@ -103,6 +98,16 @@ impl Outputs {
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
         self.files().map(|file| file.display().to_string())
     }
+}
+
+/// Fails where a file could not be written.
+pub(crate) fn check_file(file: &Path) -> Result<(), Failure> {
+    if file.is_dir() {
+        let message = format!("{}: cannot write: it is a folder", file.display());
+        return Err(Failure::new(Exit::InputOutput, message));
+    }
+    scene_io::check_writable(file)
+        .map_err(|failure| failure.with_hint(hint(scene_io::folder_of(file))))
 }
 
 /// The EXR, if any, and the PNG that go by the name of an image.

@@ -37,6 +37,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         Outputs::named(args)?.check(args)?;
         Checkpoint::open(&args.long)?
     } else {
+        replay::check(args)?;
         None
     };
     let listener = args.serve.map(serve::listen).transpose()?;

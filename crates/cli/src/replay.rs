@@ -1,11 +1,26 @@
 //! `bidir render --replay`: one sample again, told step by step.
 
 use crate::args::{RenderArgs, ReplayTarget};
-use crate::console::{print, print_json};
+use crate::console::{print, print_json, say};
 use crate::exit::{Exit, Failure};
+use crate::output;
+use crate::scene_io;
 use bidir::driver::Session;
 use bidir::scene::Scene;
 use lab::sample::SampleReport;
+
+/// Fails now rather than after a scene was read where the drawing could not be written.
+pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
+    let Some(path) = &args.svg else {
+        return Ok(());
+    };
+    let ending = path.extension().unwrap_or_default();
+    if !ending.eq_ignore_ascii_case("svg") {
+        let message = format!("{}: a drawing is an SVG", path.display());
+        return Err(Failure::usage(message).with_hint("call it NAME.svg"));
+    }
+    output::check_file(path)
+}
 
 /// Repeats a sample and prints what it did.
 pub(crate) fn run(
@@ -23,9 +38,18 @@ pub(crate) fn run(
         Failure::usage(format!("the pixel {x},{y} is not rendered")).with_hint(hint)
     })?;
     let report = SampleReport::new(session, target.pixel, target.pass, &replay);
-    if args.json {
+    let told = if args.json {
         print_json(&report)
     } else {
         print(&report.to_string())
+    };
+    let Some(path) = &args.svg else {
+        return told;
+    };
+    let name = args.scene.scene.display().to_string();
+    scene_io::write_text(path, &report.drawing(scene, &name))?;
+    if !args.output.talk.quiet {
+        say(format_args!("wrote {}", path.display()));
     }
+    told
 }

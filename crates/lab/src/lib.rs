@@ -22,6 +22,7 @@ mod blocks;
 pub mod experiment;
 pub mod flip;
 pub mod image;
+mod markup;
 pub mod metric;
 pub mod paper;
 mod parts;

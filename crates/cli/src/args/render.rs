@@ -31,7 +31,9 @@ Examples:
   bidir render room.pbrt --strategies all,-s0
       without the light that camera subpaths hit by chance
   bidir render room.pbrt --replay 17,4,3
-      what sample 3 of the pixel in column 17 of row 4 did")]
+      what sample 3 of the pixel in column 17 of row 4 did
+  bidir render room.pbrt --replay 17,4,3 --svg sample.svg
+      the same as a picture, too")]
 pub(crate) struct RenderArgs {
     /// The scene.
     #[command(flatten)]
@@ -77,6 +79,16 @@ pub(crate) struct RenderArgs {
     /// Print the replayed sample as JSON.
     #[arg(long, requires = "replay", help_heading = "Debugging")]
     pub(crate) json: bool,
+    /// Draw the replayed sample, too: from above and from the side, with both subpaths, the candidates,
+    /// the shadow rays that were traced, and which of them were blocked.
+    #[arg(
+        long,
+        value_name = "FILE.svg",
+        requires = "replay",
+        help_heading = "Debugging"
+    )]
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) svg: Option<PathBuf>,
 }
 
 /// Where results go.

@@ -149,3 +149,48 @@ fn json_alone_means_nothing() {
         .expect(2)
         .says("--replay");
 }
+
+#[test]
+fn a_sample_is_drawn() {
+    let place = Workplace::new();
+    let command = "render room.pbrt --replay 12,12,1 --svg sample.svg";
+    place
+        .run(command)
+        .expect(0)
+        .prints("pixel 12,12 pass 1")
+        .says("wrote sample.svg");
+    let drawing = place.read("sample.svg");
+    for part in [
+        "<svg xmlns=",
+        "Sample of pixel 12,12 in pass 1",
+        "room.pbrt",
+        "</svg>\n",
+    ] {
+        assert!(drawing.contains(part), "{part}");
+    }
+    let json = place
+        .run(&format!("{command} --json --quiet --threads 1"))
+        .expect(0);
+    assert_eq!(json.json()["pixel"][0], 12);
+    assert_eq!(json.stderr, "");
+    assert_eq!(
+        place.read("sample.svg"),
+        drawing,
+        "the same sample has the same bytes"
+    );
+    assert_eq!(place.names(), ["room.pbrt", "sample.svg"]);
+}
+
+#[test]
+fn a_drawing_that_cannot_be_written_is_refused_before_a_scene_is_read() {
+    let place = Workplace::new();
+    let run = |arguments: &str| place.run(&format!("render missing.pbrt {arguments}"));
+    run("--svg a.svg").expect(2).says("--replay");
+    run("--replay 1,1,1 --svg a.png")
+        .expect(2)
+        .says("a drawing is an SVG")
+        .says("NAME.svg");
+    run("--replay 1,1,1 --svg none/a.svg")
+        .expect(4)
+        .says("there is no folder `none`");
+}

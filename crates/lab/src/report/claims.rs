@@ -1,8 +1,8 @@
 //! Claims: what others said, and what was found.
 
-use super::markup::{Element, element};
 use super::overview::badge;
 use super::{definitions, plot, table};
+use crate::markup::{Element, element};
 use crate::results::Claim;
 
 /// All claims, one after the other.

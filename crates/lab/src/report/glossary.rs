@@ -1,7 +1,7 @@
 //! How to make the report again, and what its words mean.
 
-use super::markup::{Element, element};
 use super::{Report, definitions};
+use crate::markup::{Element, element};
 use crate::metric::Metric;
 use crate::statistics::RATIOS;
 

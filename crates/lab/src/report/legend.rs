@@ -1,8 +1,8 @@
 //! The legend of a plot, below it.
 
-use super::markup::{Element, element};
 use super::plot::{LETTER, WIDTH, label_at};
 use super::series::Look;
+use crate::markup::{Element, element};
 use crate::results::{Plot, PlotKind};
 
 const ROW: f64 = 20.0;

@@ -29,8 +29,7 @@ mod flip;
 mod glossary;
 mod half;
 mod legend;
-mod markup;
-mod number;
+pub(crate) mod number;
 mod overview;
 mod plot;
 mod series;
@@ -46,9 +45,9 @@ pub use flip::add_flip;
 pub use text::table_text;
 
 use crate::image::Pixels;
+use crate::markup::{Element, element};
 use crate::metric::ErrorMap;
 use crate::results::{Plot, Results, Table};
-use markup::{Element, element};
 use sha2::{Digest, Sha256};
 
 /// All that a page shows.

@@ -1,7 +1,7 @@
 //! Numbers for people: as many digits as mean something.
 
 /// A number with at most four significant digits; whole numbers below ten millions have all of theirs.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if let Some(word) = not_finite(value) {
         return word.to_owned();
     }

@@ -1,8 +1,8 @@
 //! The beginning and the end of the page: what it is about, all verdicts at a glance, its size.
 
-use super::markup::{Element, element};
 use super::number::with_decimals;
 use super::{Report, paragraphs, section};
+use crate::markup::{Element, element};
 use crate::results::{Claim, Verdict};
 
 /// Title, description and the way around the page.

@@ -5,10 +5,10 @@
 
 use super::axis::Ruler;
 use super::legend::legend;
-use super::markup::{Element, element};
 use super::number::number;
 use super::series::{curve, steps};
 use super::table::table;
+use crate::markup::{Element, element};
 use crate::results::{Cell, Plot, PlotKind, Series, Table};
 
 /// Unit of all lengths: pixels of the picture.

@@ -1,7 +1,7 @@
 //! Curves and histograms, told apart by colour, by marker and by dashes.
 
-use super::markup::{Element, element};
 use super::plot::{BOTTOM, Frame, last_edge};
+use crate::markup::{Element, element};
 use crate::results::Series;
 use std::fmt::Write;
 

@@ -1,10 +1,10 @@
 //! What was compared, on what, with which settings.
 
 use super::definitions;
-use super::markup::{Element, element};
 use super::number::number;
 use super::table::table;
 use crate::experiment::analysis::reference_noise;
+use crate::markup::{Element, element};
 use crate::results::{BudgetInfo, BudgetKind, Cell, MethodInfo, Results, SceneInfo, Table};
 use std::collections::BTreeSet;
 

@@ -2,9 +2,9 @@
 
 use super::Sheet;
 use super::half::base64;
-use super::markup::{Element, element};
 use super::number::number;
 use super::table::{NOTHING, table};
+use crate::markup::{Element, element};
 use crate::results::{Cell, Pyramid, Results, SceneInfo, StrategyInfo, Table};
 
 /// The section: for each scene its sheets and a table.

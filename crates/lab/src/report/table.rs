@@ -5,8 +5,8 @@
 //! that agree in all but the last of the texts at their beginning are compared with each other:
 //! the methods of one scene and budget.
 
-use super::markup::{Element, element};
 use super::number::{interval, number};
+use crate::markup::{Element, element};
 use crate::metric::Metric;
 use crate::results::{Cell, Table};
 

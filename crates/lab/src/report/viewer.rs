@@ -3,8 +3,8 @@
 //! The scripts find everything by the ids that stand here.
 
 use super::half::{base64, half_bytes};
-use super::markup::{Element, element, script_json};
 use super::{ImageKind, ReportImage};
+use crate::markup::{Element, element, script_json};
 use crate::metric::ErrorMap;
 use serde::Serialize;
 

@@ -4,6 +4,7 @@
 //! A [`SampleReport`] is made of a [`Replay`](bidir::driver::Replay) of the driver. It is written as
 //! JSON, as a text (`Display`), and as a picture.
 
+mod drawing;
 mod report;
 mod subpath;
 mod term;

@@ -39,6 +39,35 @@ pub(super) struct Place {
     pub(super) raster: Option<[f32; 2]>,
 }
 
+impl Place {
+    /// What a picture shows of the camera where there is no camera subpath.
+    pub(super) fn eye(camera: &Camera) -> Self {
+        let lens = middle_of_lens(camera);
+        Self {
+            is_infinite: lens.is_infinite,
+            ..Self::finite(lens.point)
+        }
+    }
+
+    /// A point that is on no film.
+    pub(super) fn finite(point: Vec3) -> Self {
+        Self {
+            position: point.to_array(),
+            is_infinite: false,
+            raster: None,
+        }
+    }
+
+    /// The point, or the direction.
+    pub(super) fn point(&self) -> Vec3 {
+        Vec3::from(self.position)
+    }
+}
+
+fn middle_of_lens(camera: &Camera) -> LensSample {
+    camera.sample_lens(|| Vec2::splat(0.5))
+}
+
 /// From where a sample looks.
 pub(super) struct View<'a> {
     camera: &'a Camera,
@@ -49,7 +78,7 @@ impl<'a> View<'a> {
     /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
     /// camera subpath, from the middle of the lens.
     pub(super) fn new(camera: &'a Camera, subpath: &Subpath) -> Self {
-        let middle = camera.sample_lens(|| Vec2::splat(0.5));
+        let middle = middle_of_lens(camera);
         let point = subpath.vertices.first().map_or(middle.point, |y0| y0.point);
         let lens = LensSample { point, ..middle };
         Self { camera, lens }

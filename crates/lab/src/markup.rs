@@ -4,7 +4,7 @@ use std::fmt::{self, Display, Formatter};
 
 /// An element with its attributes and what is in it.
 #[derive(Clone, Debug)]
-pub(super) struct Element {
+pub(crate) struct Element {
     name: &'static str,
     attributes: Vec<(&'static str, String)>,
     content: Vec<Node>,
@@ -18,7 +18,7 @@ enum Node {
 }
 
 /// An element without attributes and content.
-pub(super) fn element(name: &'static str) -> Element {
+pub(crate) fn element(name: &'static str) -> Element {
     Element {
         name,
         attributes: Vec::new(),
@@ -27,32 +27,32 @@ pub(super) fn element(name: &'static str) -> Element {
 }
 
 impl Element {
-    pub(super) fn with(mut self, attribute: &'static str, value: impl Display) -> Self {
+    pub(crate) fn with(mut self, attribute: &'static str, value: impl Display) -> Self {
         self.attributes.push((attribute, value.to_string()));
         self
     }
 
-    pub(super) fn class(self, name: &'static str) -> Self {
+    pub(crate) fn class(self, name: &'static str) -> Self {
         self.with("class", name)
     }
 
-    pub(super) fn text(mut self, text: impl Display) -> Self {
+    pub(crate) fn text(mut self, text: impl Display) -> Self {
         self.content.push(Node::Text(text.to_string()));
         self
     }
 
-    pub(super) fn child(mut self, child: Self) -> Self {
+    pub(crate) fn child(mut self, child: Self) -> Self {
         self.content.push(Node::Element(child));
         self
     }
 
-    pub(super) fn children(mut self, children: impl IntoIterator<Item = Self>) -> Self {
+    pub(crate) fn children(mut self, children: impl IntoIterator<Item = Self>) -> Self {
         self.content.extend(children.into_iter().map(Node::Element));
         self
     }
 
     /// Content of `script` and `style`, where HTML knows no escapes.
-    pub(super) fn code(mut self, code: impl Into<String>) -> Self {
+    pub(crate) fn code(mut self, code: impl Into<String>) -> Self {
         let code = code.into();
         debug_assert!(!code.contains("</"), "the code ends its element");
         self.content.push(Node::Code(code));
@@ -116,7 +116,7 @@ fn escaped(text: &str) -> String {
 }
 
 /// JSON as it stands in a `script`: nothing in it can end the element, or begin a comment.
-pub(super) fn script_json(json: &str) -> String {
+pub(crate) fn script_json(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
