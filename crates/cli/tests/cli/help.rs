@@ -33,8 +33,14 @@ fn every_flag_is_described() {
         "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
          --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --mis-count --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
-         --resume --sampler --samples-per-subpath --seed --shadow-rays --size --spp --stats --strategies --strategy-layers \
+         --resume --sampler --samples-per-subpath --seed --serve --shadow-rays --size --spp --stats --strategies --strategy-layers \
          --strict --threads --time --version",
+    );
+    check_flags(
+        "view",
+        "--bind --candidates --crop --cropwindow --help --integrator --isa --lenient --light-choice --light-point \
+         --max-depth --mis --mis-count --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
+         --samples-per-subpath --seed --shadow-rays --size --spp --strategies --strict --threads --version",
     );
     check_flags(
         "info",

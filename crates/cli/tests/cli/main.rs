@@ -20,3 +20,5 @@ mod replay;
 #[cfg(unix)]
 mod signals;
 mod tonemap;
+#[cfg(unix)]
+mod view;

@@ -16,7 +16,7 @@ use common::Place;
 
 /// Frames of a megabyte, and so many that no socket takes them all.
 const SIZE: [u32; 2] = [320, 288];
-const FRAMES: usize = 40;
+const FRAMES: usize = 24;
 
 /// The memory of this process. None: the system does not tell. Unit: bytes.
 fn memory() -> Option<usize> {
@@ -32,15 +32,20 @@ fn a_client_that_never_reads_costs_nobody_anything() {
     let mut client = place.client();
     // The least of rays: frames follow each other quickly.
     client.send(r#"{"command":"method","lane":"a","integrator":"path","shadowRays":"all"}"#);
-    let mut passes = 0;
+    let mut last = (0, 0);
     let mut next = |client: &mut common::Client| {
-        passes = client.frame(|frame| frame.passes > passes).passes;
+        let newest = client.frame(|frame| (frame.generation, frame.passes) > last);
+        last = (newest.generation, newest.passes);
     };
     for _ in 0..4 {
         next(&mut client);
     }
     let before = memory();
-    for _ in 0..FRAMES {
+    for frame in 0..FRAMES {
+        // The first frames of a render follow each other more quickly than later ones.
+        if frame % 8 == 0 {
+            client.send(r#"{"command":"restart"}"#);
+        }
         next(&mut client);
     }
     assert_eq!(place.get("/render.png").code, 200);
@@ -48,7 +53,7 @@ fn a_client_that_never_reads_costs_nobody_anything() {
         let grown = after.saturating_sub(before);
         let sent = FRAMES * 12 * (SIZE[0] * SIZE[1]) as usize;
         assert!(
-            grown < sent / 3,
+            grown < sent / 2,
             "{grown} bytes more after {sent} were sent"
         );
     }
