@@ -11,7 +11,7 @@ import { Inspector } from "./inspector.js";
 import { Link } from "./link.js";
 import { connectMethods, showMethods } from "./methods.js";
 import { Pilot } from "./motion.js";
-import { showPlain } from "./plain.js";
+import { placePlain, showPlain } from "./plain.js";
 import { Pyramid } from "./pyramid.js";
 import { SampleView } from "./sample.js";
 import { connectSave, showSave } from "./save.js";
@@ -28,7 +28,7 @@ let status = null;
 /** @type {Point | null} */
 let hovered = null;
 
-const stage = new Stage();
+const stage = new Stage((reason) => showPlain(link, reason));
 const link = new Link({ onStatus: show, onFrame: (frame) => stage.take(frame), onBreak: tellBreak });
 const inspector = new Inspector(link, choose);
 const sample = new SampleView(link, () => stage.redraw());
@@ -53,7 +53,7 @@ connectTabs(() => pyramid.look());
 connectModes();
 connectKeys();
 stage.listeners.push(drawOver);
-if (!stage.picture) showPlain(link);
+if (!stage.picture) stage.giveUp("This browser has no WebGL2");
 
 /** @returns {Mode} */
 function mode() {
@@ -153,6 +153,7 @@ function choose(pixel) {
 function drawOver() {
   drawValues(stage);
   placeDivider(stage);
+  placePlain(stage);
   get("drawing", SVGSVGElement).replaceChildren(...sample.drawing(stage.view), ...marker(stage));
   nameLanes();
   tellHovered();

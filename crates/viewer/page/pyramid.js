@@ -50,7 +50,7 @@ export function figuresOf(tile) {
     `mean ${cell(tile.mean)}`,
     `traced ${compact(tile.traced)}`,
     `blocked ${percent(tile.blockedShare)}`,
-    `variance ${tile.variance === null ? "–" : cell(tile.variance)}`,
+    `variance ${tile.variance === null ? "–" : cell(Number(tile.variance.toPrecision(2)))}`,
   ];
 }
 

@@ -122,7 +122,8 @@ export class SampleView {
    */
   describe(report) {
     const [x, y] = report.pixel;
-    const title = `Pixel ${x}, ${y}, pass ${report.pass}: ${report.rays} rays, adds ${digits(luminance(report.value), 4)}; with every connection traced ${digits(luminance(report.value_of_all_candidates), 4)} of connections. All as luminance.`;
+    const [value, all] = [report.value, report.value_of_all_candidates].map((color) => digits(luminance(color), 4));
+    const title = `Pixel ${x}, ${y}, pass ${report.pass}: ${report.rays} rays, adds ${value}. Had every connection been traced, connections would have added ${all}. Values are luminances.`;
     const most = greatest(report.candidates);
     const parts = [
       make("p", { class: "hint" }, [title]),

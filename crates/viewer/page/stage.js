@@ -11,7 +11,9 @@ import { centred, clamp, fit, pan, pixelAt, toScreen, zoomAt } from "./view.js";
 /** @import { Point, View } from "./view.js" */
 
 export class Stage {
-  constructor() {
+  /** @param {(reason: string) => void} onGiveUp */
+  constructor(onGiveUp) {
+    this.onGiveUp = onGiveUp;
     this.element = box("stage");
     this.canvas = get("canvas", HTMLCanvasElement);
     this.picture = Picture.on(this.canvas);
@@ -77,10 +79,22 @@ export class Stage {
   /** @param {Frame} frame */
   take(frame) {
     const { picture } = this;
-    if (!picture || Math.max(...frame.size) > picture.largest) return;
+    if (!picture) return;
+    if (Math.max(...frame.size) > picture.largest) return this.giveUp("The film is larger than this browser’s textures");
     const before = picture.frame(frame.lane);
     if (before && before.generation > frame.generation) return;
     picture.take(frame);
+    this.redraw();
+  }
+
+  /**
+   * Draws nothing any more, and says why.
+   * @param {string} reason
+   */
+  giveUp(reason) {
+    this.picture = null;
+    this.canvas.hidden = true;
+    this.onGiveUp(reason);
     this.redraw();
   }
 

@@ -171,6 +171,25 @@ test("a render that is only shown has nothing that steers", { skip }, async () =
   await served.end();
 });
 
+test("a page on all addresses has a token, and passes it on", { skip }, async () => {
+  const shared = await Renderer.start(["view", SCENE, "--bind", "0.0.0.0", "--port", "0", "--size", "64x64"]);
+  const url = new URL(shared.url);
+  assert.ok((url.searchParams.get("token") ?? "").length >= 16, shared.url);
+  url.hostname = "127.0.0.1";
+  const { page, faults } = await open(browser, url.href);
+  await page.waitForSelector("#figures td");
+  await page.click("#tab-pixel");
+  await page.fill("#pixel-x", "9");
+  await page.fill("#pixel-y", "9");
+  await page.waitForFunction(() => /[1-9]/.test(document.getElementById("brief")?.textContent ?? ""));
+  await page.click("#pixel-form button");
+  await page.waitForSelector('#pixel-tables[data-pixel="9,9"]');
+  assert.equal((await fetch(new URL("/status", url))).status, 403);
+  assert.deepEqual(faults, []);
+  await page.close();
+  await shared.end();
+});
+
 test("without WebGL2 the page says so and shows the server's PNG", { skip }, async () => {
   const page = await browser.newPage({ viewport: WIDE });
   await page.addInitScript(() => {
@@ -185,6 +204,9 @@ test("without WebGL2 the page says so and shows the server's PNG", { skip }, asy
     const image = document.getElementById("plain");
     return image instanceof HTMLImageElement && image.naturalWidth === 96;
   });
+  const before = await page.locator("#plain").boundingBox();
+  await page.click("#zoom-in");
+  await page.waitForFunction((width) => (document.getElementById("plain")?.clientWidth ?? 0) > 1.3 * width, before?.width ?? 0);
   assert.match((await page.textContent("#plain-note:visible")) ?? "", /no WebGL2/);
   await keep(page, "plain");
   await page.close();
