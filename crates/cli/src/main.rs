@@ -22,11 +22,13 @@ mod reference;
 mod render;
 mod replay;
 mod scene_io;
+mod serve;
 mod settings;
 mod shell;
 mod signals;
 mod stats;
 mod tonemap;
+mod view;
 
 use args::{Cli, Command};
 use console::Console;
@@ -57,6 +59,7 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
         Command::Render(args) => render::run(args, console)
             .inspect_err(|failure| progress::tell_failure(args.output.talk, failure)),
+        Command::View(args) => view::run(args, console),
         Command::Reference(args) => reference::run(args, console)
             .inspect_err(|failure| progress::tell_failure(args.talk, failure)),
         Command::Info(args) => info::run(args, console),

@@ -11,6 +11,7 @@ use crate::progress::{Clock, Reporter};
 use crate::pyramid;
 use crate::replay;
 use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, Stopping};
+use crate::serve::{self, Show};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
@@ -18,6 +19,8 @@ use bidir::driver::{Resources, Session, SessionError, Settings};
 use bidir::film::Film;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use viewer::web::Server;
+use viewer::{Desk, StageSettings};
 
 /// Renders a scene, or repeats one sample.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
@@ -37,6 +40,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         replay::check(args)?;
         None
     };
+    let listener = args.serve.map(serve::listen).transpose()?;
     let start = Instant::now();
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let load = start.elapsed();
@@ -51,6 +55,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check(args)?;
+    let server = listener.map(|listener| serve::start(listener, &loaded.warnings));
+    let server = server.transpose()?;
     Job {
         args,
         console,
@@ -60,7 +66,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         filter: filter.as_ref(),
         signals: &signals,
     }
-    .run(checkpoint, load)
+    .run(checkpoint, load, server)
 }
 
 /// The threads that build the scene; the session has its own.
@@ -110,7 +116,12 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    fn run(&self, checkpoint: Option<Checkpoint>, load: Duration) -> Result<Exit, Failure> {
+    fn run(
+        &self,
+        checkpoint: Option<Checkpoint>,
+        load: Duration,
+        server: Option<(Server, Desk)>,
+    ) -> Result<Exit, Failure> {
         let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
         let name = self.args.scene.scene.display().to_string();
         let header = |training| film_header::header(&name, self.loaded, self.settings, training);
@@ -127,7 +138,16 @@ impl Job<'_> {
             samples_per_pass: self.loaded.scene.film().crop.area(),
             start,
         };
-        let end = self.render(&mut session, clock, self.signals, &mut keeper);
+        let mut show = Show::new(
+            server,
+            &session,
+            StageSettings {
+                name: &name,
+                settings: self.settings,
+                target: budget.passes,
+            },
+        );
+        let end = self.render(&mut session, clock, &mut keeper, &mut show);
         let course = Course {
             load,
             render: start.elapsed(),
@@ -156,10 +176,10 @@ impl Job<'_> {
         &self,
         session: &mut Session<'_>,
         clock: Clock,
-        signals: &Signals,
         keeper: &mut Keeper,
+        show: &mut Show,
     ) -> End {
-        let budget = clock.budget;
+        let (budget, signals) = (clock.budget, self.signals);
         let first = Instant::now();
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
         let reporter = Reporter::new(self.display(), signals, clock).after(before);
@@ -175,10 +195,15 @@ impl Job<'_> {
             if budget.looks_at_noise(passes) && is_below(budget.noise, session.film()) {
                 break End::Noise;
             }
+            let begun = Instant::now();
             session.step(&reporter);
             rendered = rendered.saturating_add(1);
+            show.add_pass(session, begun.elapsed(), &|| {
+                keeper.header(session, Stopping::Time)
+            });
             self.keep_now_and_then(session, signals, keeper);
         };
+        show.end(session, &|| keeper.header(session, end.stopping()));
         if !matches!(end, End::Signal(_)) {
             reporter.complete();
         }

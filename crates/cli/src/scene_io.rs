@@ -4,7 +4,7 @@ use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use bidir::driver::Settings;
-use bidir::film::{self, Film, FilmSettings, LayerImage, Picture};
+use bidir::film::{self, Film, FilmSettings, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
@@ -14,7 +14,7 @@ use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
 
 pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
-pub(crate) use formats::film::{FilmFile, FilmHeader, Stopping, is_film};
+pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_film};
 pub(crate) use formats::image::{Layers, MetadataValue};
 
 /// A scene that was read, with what else its file says.
@@ -153,35 +153,6 @@ pub(crate) struct Variance {
     pub(crate) freedom: f64,
 }
 
-/// A developed film: the picture with the images beside it.
-pub(crate) struct Developed {
-    pub(crate) picture: Picture,
-    pub(crate) layers: Vec<LayerImage>,
-}
-
-impl Developed {
-    pub(crate) fn new(film: &Film) -> Self {
-        Self {
-            picture: film.develop(),
-            layers: film.develop_layers(),
-        }
-    }
-
-    fn exr_layers(&self) -> Vec<ExrLayer<'_>> {
-        let picture = ExrLayer {
-            name: "",
-            channels: &["R", "G", "B"],
-            data: self.picture.pixels.as_flattened(),
-        };
-        let others = self.layers.iter().map(|layer| ExrLayer {
-            name: &layer.name,
-            channels: layer.channels,
-            data: &layer.data,
-        });
-        std::iter::once(picture).chain(others).collect()
-    }
-}
-
 /// Writes a picture with its layers as EXR with attributes.
 pub(crate) fn write_exr(
     path: &Path,
@@ -189,19 +160,8 @@ pub(crate) fn write_exr(
     developed: &Developed,
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
-    let crop = [
-        film.crop.min[0],
-        film.crop.min[1],
-        film.crop.max[0],
-        film.crop.max[1],
-    ];
-    let image = ExrImage {
-        resolution: film.resolution.map(|side| side as usize),
-        crop: crop.map(|edge| edge as usize),
-        layers: &developed.exr_layers(),
-        metadata,
-    };
-    formats::image::write_exr(path, &image)
+    developed
+        .write_exr(path, film, metadata)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
 }
 

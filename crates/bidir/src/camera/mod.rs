@@ -24,7 +24,7 @@ mod tests;
 
 pub use orthographic::{Orthographic, OrthographicSettings};
 pub use perspective::{Perspective, PerspectiveSettings};
-pub use pose::Pose;
+pub use pose::{Pose, Turn};
 pub use spherical::{Spherical, SphericalMapping};
 
 use crate::math::{Vec2, Vec3};
@@ -80,6 +80,27 @@ impl Camera {
             Self::Perspective(camera) => camera.pose,
             Self::Orthographic(camera) => camera.pose,
             Self::Spherical(camera) => camera.pose,
+        }
+    }
+
+    /// The same camera elsewhere.
+    #[must_use]
+    pub fn with_pose(mut self, pose: Pose) -> Self {
+        match &mut self {
+            Self::Perspective(camera) => camera.pose = pose,
+            Self::Orthographic(camera) => camera.pose = pose,
+            Self::Spherical(camera) => camera.pose = pose,
+        }
+        self
+    }
+
+    /// The same view on a film with `factor` times as many pixels to each side, all positive.
+    #[must_use]
+    pub fn resized(self, factor: Vec2) -> Self {
+        match self {
+            Self::Perspective(camera) => Self::Perspective(camera.resized(factor)),
+            Self::Orthographic(camera) => Self::Orthographic(camera.resized(factor)),
+            Self::Spherical(camera) => Self::Spherical(camera.resized(factor)),
         }
     }
 

@@ -47,6 +47,14 @@ impl Orthographic {
         })
     }
 
+    pub(super) fn resized(self, factor: Vec2) -> Self {
+        Self {
+            screen_per_raster: self.screen_per_raster / factor,
+            raster_density: self.raster_density * factor.x * factor.y,
+            ..self
+        }
+    }
+
     #[inline]
     pub(super) fn lens(&self) -> LensSample {
         LensSample {

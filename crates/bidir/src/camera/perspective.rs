@@ -56,6 +56,14 @@ impl Perspective {
         })
     }
 
+    pub(super) fn resized(self, factor: Vec2) -> Self {
+        Self {
+            screen_per_raster: self.screen_per_raster / factor,
+            raster_density: self.raster_density * factor.x * factor.y,
+            ..self
+        }
+    }
+
     #[inline]
     pub(super) fn sample_lens(&self, u: impl FnOnce() -> Vec2) -> LensSample {
         let offset = if self.lens_radius > 0.0 {

@@ -1,6 +1,11 @@
-//! Where a camera stands, and which way it looks.
+//! Where a camera stands, and which way it looks. Moves keep the frame's handedness: a mirrored
+//! camera stays mirrored, and its right is the picture's right.
 
-use crate::math::{Affine3A, Vec3, sqr};
+use crate::math::{Affine3A, PI, Vec3, sin_cos, sqr};
+
+/// The largest angle between a turned camera's axis and the horizon: beyond it right and left would
+/// change places. Unit: radians.
+const STEEPEST: f32 = 89.0 / 180.0 * PI;
 
 /// A camera's place: x right, y up, z forward, all of unit length. Mirrored cameras have a
 /// left-handed frame in the world.
@@ -16,6 +21,15 @@ pub struct Pose {
     pub forward: Vec3,
     /// Length in the world of a unit of camera space.
     pub(super) scale: f32,
+}
+
+/// A change of the direction in which a camera looks. Unit: radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// Towards the picture's right.
+    pub right: f32,
+    /// Towards the vertical.
+    pub up: f32,
 }
 
 impl Pose {
@@ -41,13 +55,179 @@ impl Pose {
 
     /// A world vector in the camera's axes.
     #[inline]
-    pub(super) fn to_local(self, v: Vec3) -> Vec3 {
+    pub fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(self.right.dot(v), self.up.dot(v), self.forward.dot(v))
     }
 
     /// The world vector of one in the camera's axes.
     #[inline]
-    pub(super) fn to_world(self, v: Vec3) -> Vec3 {
+    pub fn to_world(self, v: Vec3) -> Vec3 {
         self.right * v.x + self.up * v.y + self.forward * v.z
+    }
+
+    /// The axis of the world that is up for who looks through the camera: of those that are level with
+    /// the picture the one nearest to its up, as a camera without roll has it however steep it looks.
+    pub fn vertical(&self) -> Vec3 {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
+            let upwards = self.up.dot(axis);
+            (axis * upwards.signum(), upwards.abs())
+        });
+        let is_level = |axis: Vec3| self.right.dot(axis).abs() < 1e-3;
+        let rank = |(axis, upwards): &(Vec3, f32)| (is_level(*axis) && *upwards > 0.01, *upwards);
+        let highest = axes.iter().max_by(|a, b| {
+            let ((a_level, a_up), (b_level, b_up)) = (rank(a), rank(b));
+            a_level.cmp(&b_level).then(a_up.total_cmp(&b_up))
+        });
+        highest.map_or(self.up, |(axis, _)| *axis)
+    }
+
+    /// The same frame elsewhere.
+    #[must_use]
+    pub fn shifted(self, by: Vec3) -> Self {
+        Self {
+            origin: self.origin + by,
+            ..self
+        }
+    }
+
+    /// The camera turned about the point `pivot`: the world's points keep their distances from it.
+    /// About its own origin it looks around; about what it looks at it goes around that, the other
+    /// way. It never looks along `vertical`.
+    #[must_use]
+    pub fn turned(self, pivot: Vec3, vertical: Vec3, turn: Turn) -> Self {
+        // In a mirrored frame rotations go the other way round.
+        let hand = self.up.cross(self.forward).dot(self.right).signum();
+        let elevation = libm::asinf(self.forward.dot(vertical).clamp(-1.0, 1.0));
+        let up = (elevation + turn.up).clamp(-STEEPEST, STEEPEST) - elevation;
+        self.rotated(pivot, self.right, -hand * up)
+            .rotated(pivot, vertical, hand * turn.right)
+    }
+
+    /// The frame rotated by `angle` about the unit vector `axis` through `pivot`, square again
+    /// however often it was rotated.
+    fn rotated(self, pivot: Vec3, axis: Vec3, angle: f32) -> Self {
+        let (sin, cos) = sin_cos(angle);
+        // Rodrigues' formula.
+        let rotate = |v: Vec3| v * cos + axis.cross(v) * sin + axis * axis.dot(v) * (1.0 - cos);
+        let forward = rotate(self.forward).normalize();
+        let right = rotate(self.right).reject_from_normalized(forward);
+        let right = right.normalize();
+        let up = rotate(self.up).reject_from_normalized(forward);
+        let up = up.reject_from_normalized(right).normalize();
+        Self {
+            origin: pivot + rotate(self.origin - pivot),
+            right,
+            up,
+            forward,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TARGET: Vec3 = Vec3::new(1.0, 0.5, -2.0);
+
+    /// Cameras at some distance of the target, level or not, one of them mirrored.
+    fn examples() -> [Pose; 3] {
+        let frame = |right: Vec3, up: Vec3| {
+            let forward = right.cross(up);
+            Pose {
+                origin: TARGET - forward * 3.0,
+                right,
+                up,
+                forward,
+                scale: 2.0,
+            }
+        };
+        let level = frame(Vec3::X, Vec3::Y);
+        let tilted = level.turned(
+            TARGET,
+            Vec3::Y,
+            Turn {
+                right: 0.7,
+                up: -1.1,
+            },
+        );
+        let mirrored = Pose {
+            right: -tilted.right,
+            ..tilted
+        };
+        [level, tilted, mirrored]
+    }
+
+    fn distance(a: &Pose, b: &Pose) -> f32 {
+        let pairs = [
+            (a.origin, b.origin),
+            (a.right, b.right),
+            (a.up, b.up),
+            (a.forward, b.forward),
+        ];
+        pairs.iter().map(|(a, b)| a.distance(*b)).sum()
+    }
+
+    #[test]
+    fn going_around_keeps_the_target_in_the_middle_at_its_distance() {
+        for start in examples() {
+            let mut pose = start;
+            for step in 0..1000 {
+                let up = if step % 300 < 150 { 0.013 } else { -0.013 };
+                pose = pose.turned(TARGET, start.vertical(), Turn { right: 0.021, up });
+                let offset = TARGET - pose.origin;
+                assert!((offset.length() - 3.0).abs() < 1e-3, "{offset}");
+                assert!(offset.normalize().distance(pose.forward) < 1e-3);
+                assert!(pose.right.dot(pose.up).abs() < 1e-5);
+                let hand = |p: &Pose| p.right.cross(p.up).dot(p.forward);
+                assert!((hand(&pose) - hand(&start)).abs() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn a_full_turn_comes_home() {
+        for start in examples() {
+            let mut pose = start;
+            let turn = Turn {
+                right: 2.0 * PI / 90.0,
+                up: 0.0,
+            };
+            for _ in 0..90 {
+                pose = pose.turned(TARGET, start.vertical(), turn);
+            }
+            assert!(distance(&pose, &start) < 1e-3, "{pose:?}");
+        }
+    }
+
+    #[test]
+    fn looking_right_brings_the_right_side_to_the_middle() {
+        for start in examples() {
+            let by = |right, up| start.turned(start.origin, start.vertical(), Turn { right, up });
+            assert!(by(0.2, 0.0).forward.dot(start.right) > 0.05);
+            assert!(by(0.0, 0.2).forward.dot(start.up) > 0.05);
+            assert_eq!(by(0.3, 0.1).origin, start.origin);
+        }
+    }
+
+    #[test]
+    fn no_camera_turns_over() {
+        let start = examples()[0];
+        let turn = Turn {
+            right: 0.0,
+            up: 9.0,
+        };
+        let steep = start.turned(TARGET, Vec3::Y, turn);
+        assert!((steep.forward.dot(Vec3::Y) - libm::sinf(STEEPEST)).abs() < 1e-4);
+        assert!(steep.up.dot(Vec3::Y) > 0.0 && steep.vertical() == Vec3::Y);
+    }
+
+    #[test]
+    fn up_is_an_axis_of_the_world_however_steep_the_camera_looks() {
+        for start in examples() {
+            assert_eq!(start.vertical(), Vec3::Y);
+        }
+        let rolled = examples()[0].rotated(Vec3::ZERO, Vec3::Z, 0.3);
+        assert_eq!(rolled.vertical(), Vec3::Y);
     }
 }

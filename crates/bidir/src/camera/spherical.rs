@@ -45,6 +45,13 @@ impl Spherical {
         })
     }
 
+    pub(super) fn resized(self, factor: Vec2) -> Self {
+        Self {
+            resolution: self.resolution * factor,
+            ..self
+        }
+    }
+
     #[inline]
     pub(super) fn lens(&self) -> LensSample {
         LensSample {

@@ -124,6 +124,13 @@ impl Film {
         })
     }
 
+    /// The cost that each pixel has, row by row from the top left of the crop. None: the film does not
+    /// keep it.
+    pub fn cost(&self, aov: Aov) -> Option<Vec<f32>> {
+        let is_kept = aov.kind() == AovKind::Cost && self.layers.aovs().contains(&aov);
+        is_kept.then(|| self.feature(aov))
+    }
+
     /// The images that `aov` becomes.
     fn aov(&self, aov: Aov) -> Vec<LayerImage> {
         let channels = aov.channels();

@@ -120,6 +120,16 @@ impl Scene {
         &self.camera
     }
 
+    /// Looks at the same from elsewhere, or on another film: the one change that a built scene takes,
+    /// as nothing else of it depends on either.
+    ///
+    /// Errors: the film's crop is empty or outside of it; the scene stays as it was.
+    pub fn set_view(&mut self, camera: Camera, film: FilmSettings) -> Result<(), SceneError> {
+        check::check_crop(&film)?;
+        (self.camera, self.film) = (camera, film);
+        Ok(())
+    }
+
     /// The film's geometry, filter and exposure.
     #[inline]
     pub fn film(&self) -> &FilmSettings {

@@ -13,6 +13,7 @@ mod sources;
 mod threads;
 mod tonemap;
 mod values;
+mod view;
 
 pub(crate) use compare::{CompareArgs, MetricArgs};
 pub(crate) use denoise::DenoiseArgs;
@@ -25,6 +26,7 @@ pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArg
 pub(crate) use threads::ThreadsArgs;
 pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
+pub(crate) use view::{ServeAddress, ViewArgs};
 
 use crate::exit::Exit;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueHint};
@@ -83,6 +85,15 @@ pub(crate) enum Command {
     /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once. With
     /// --checkpoint such an end has exit code 75: the same command with --resume goes on.
     Render(Box<RenderArgs>),
+    /// Render a scene in the browser: watch it, ask it, change it.
+    ///
+    /// Prints the URL of a page that shows the render as it goes, and serves it until Ctrl-C. The
+    /// page switches estimators and compares two of them side by side in equal time, moves the
+    /// camera, tells of pixels and of strategies, and saves images into the current folder.
+    ///
+    /// The page is a part of the program, and asks nothing of the network. It can be reached from
+    /// this machine alone, unless --bind says otherwise.
+    View(Box<ViewArgs>),
     /// Tell what is in a scene.
     ///
     /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and

@@ -4,6 +4,7 @@ use super::layers::LayerArgs;
 use super::long::LongArgs;
 use super::sources::Sources;
 use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, named};
+use super::view::ServeAddress;
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
 use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
@@ -55,6 +56,18 @@ pub(crate) struct RenderArgs {
     /// The picture's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
+    /// Show the render in the browser as it goes, and print the URL on stdout: the page of
+    /// `bidir view`, to look at only.
+    ///
+    /// Without an address it can be reached from this machine alone; on others the URL has a random
+    /// token, without which nothing is answered. The server ends with the render.
+    #[arg(
+        long,
+        value_name = "[ADDRESS:]PORT",
+        conflicts_with = "replay",
+        help_heading = "Output"
+    )]
+    pub(crate) serve: Option<ServeAddress>,
     /// Repeat one sample instead of rendering, and tell on stdout what it did.
     ///
     /// Prints the vertices of both subpaths, the candidate connections with their strategies,

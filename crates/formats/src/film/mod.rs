@@ -22,6 +22,7 @@
 //! files of different passes is the file of both.
 
 mod block;
+mod developed;
 mod header;
 mod identity;
 mod layers;
@@ -29,6 +30,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
+pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
 pub use identity::{SceneIdentity, counts_by_name, metadata, of_run, program, untrained};
 pub use layers::{LayerNames, StrategyImagesName};

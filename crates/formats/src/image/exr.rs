@@ -48,7 +48,7 @@ pub struct ExrImage<'a> {
 
 /// Writes an EXR of 32-bit numbers with Rec. 709 primaries. The same image gives the same bytes.
 pub fn write_exr(path: &Path, image: &ExrImage<'_>) -> Result<()> {
-    let encoded = encode(image).map_err(|error| error.in_file(path))?;
+    let encoded = encode_exr(image).map_err(|error| error.in_file(path))?;
     file::replace(path, &encoded)
 }
 
@@ -62,7 +62,8 @@ pub(super) const ENCODING: Encoding = Encoding {
     line_order: LineOrder::Increasing,
 };
 
-fn encode(image: &ExrImage<'_>) -> Result<Vec<u8>> {
+/// The bytes that [`write_exr`] writes.
+pub fn encode_exr(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     let [left, top, right, bottom] = image.crop;
     let size = (right.saturating_sub(left), bottom.saturating_sub(top));
     let channels = channels(image.layers, size.0 * size.1)?;

@@ -15,7 +15,7 @@ mod png;
 mod raster;
 mod transfer;
 
-pub use exr::{ExrImage, ExrLayer, MetadataValue, write_exr};
+pub use exr::{ExrImage, ExrLayer, MetadataValue, encode_exr, write_exr};
 pub use layers::{Layers, decode_layers, read_layers, write_layers};
 pub use png::{encode_png, write_png};
 pub use transfer::Encoding;

@@ -120,10 +120,16 @@ fn longer(film: &Film) -> Option<usize> {
     film.layers().part_names().position(|name| name == "longer")
 }
 
-fn strategy_tile(film: &Film, kind: Kind, strategy: Strategy) -> Option<Tile> {
+/// The image of a strategy, as large as the film. None: the film keeps none.
+pub fn strategy_image(film: &Film, kind: Kind, strategy: Strategy) -> Option<Pixels> {
     let part = kind.part(film.layers(), strategy)?;
+    Some(part_image(film, part))
+}
+
+fn strategy_tile(film: &Film, kind: Kind, strategy: Strategy) -> Option<Tile> {
+    let image = strategy_image(film, kind, strategy)?;
     let Strategy { s, t } = strategy;
-    Some(Tile::new(format!("s={s} t={t}"), &part_image(film, part)))
+    Some(Tile::new(format!("s={s} t={t}"), &image))
 }
 
 fn part_image(film: &Film, part: usize) -> Pixels {

@@ -1,0 +1,94 @@
+//! The flags of `bidir view`.
+
+use super::render::{EstimatorArgs, FilmArgs};
+use super::{SceneArgs, ThreadsArgs};
+use clap::Args;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::str::FromStr;
+
+/// What is rendered, how, and where it is shown.
+#[derive(Args, Debug)]
+#[command(after_long_help = "\
+Examples:
+  bidir view scenes/room-indirect.pbrt
+      prints a URL to open; Ctrl-C ends
+  bidir view room.glb --size 640x360 --integrator auto
+      a smaller picture is clear sooner
+  bidir view room.pbrt --bind 0.0.0.0 --port 9000
+      for other machines, too, which need the token of the URL")]
+pub(crate) struct ViewArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The port; 0 is any that is free [default: 8080, or one of the next ten].
+    #[arg(long, value_name = "N", help_heading = "Server")]
+    pub(crate) port: Option<u16>,
+    /// The address that the page is served on.
+    ///
+    /// On any but the loopback the URL has a random token, without which nothing is answered. What
+    /// is sent is not encrypted: across networks that are not yours, take a tunnel.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        default_value = "127.0.0.1",
+        help_heading = "Server"
+    )]
+    pub(crate) bind: IpAddr,
+    /// How light is estimated.
+    #[command(flatten)]
+    pub(crate) estimator: EstimatorArgs,
+    /// Samples per pixel after which it is enough [default: no end].
+    #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Resources")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) spp: Option<u64>,
+    /// How fast it is.
+    #[command(flatten, next_help_heading = "Resources")]
+    pub(crate) threads: ThreadsArgs,
+    /// The picture's geometry.
+    #[command(flatten)]
+    pub(crate) film: FilmArgs,
+    /// Tell nothing but the URL, warnings and errors.
+    #[arg(short, long, help_heading = "Output")]
+    pub(crate) quiet: bool,
+}
+
+/// Where a render is served: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ServeAddress(pub(crate) SocketAddr);
+
+impl FromStr for ServeAddress {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let port = text.strip_prefix(':').unwrap_or(text).parse::<u16>();
+        let address = match port {
+            Ok(port) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), port)),
+            Err(_) => text.parse(),
+        };
+        let expected = |_| "expected [ADDRESS:]PORT, such as 8080 or 0.0.0.0:8080".to_owned();
+        address.map(Self).map_err(expected)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, expected: Option<&str>) {
+        let address = text.parse::<ServeAddress>().ok();
+        let address = address.map(|address| address.0.to_string());
+        assert_eq!(address.as_deref(), expected);
+    }
+
+    #[test]
+    fn an_address_is_the_loopback_unless_it_says_otherwise() {
+        check("8080", Some("127.0.0.1:8080"));
+        check(":0", Some("127.0.0.1:0"));
+        check("0.0.0.0:80", Some("0.0.0.0:80"));
+        check("[::1]:8080", Some("[::1]:8080"));
+        for wrong in ["", ":", "65536", "localhost", "example.org:80", "1.2.3.4"] {
+            check(wrong, None);
+        }
+    }
+}

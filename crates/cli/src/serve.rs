@@ -1,0 +1,90 @@
+//! `bidir render --serve`: a render that others watch.
+
+use crate::args::ServeAddress;
+use crate::console::print;
+use crate::exit::{Exit, Failure};
+use crate::scene_io::FilmHeader;
+use bidir::driver::Session;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::time::Duration;
+use viewer::web::{self, Server};
+use viewer::{Desk, Stage, StageSettings, desk};
+
+/// Takes the address before anything is read.
+pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
+    bind(address.0, 0)
+}
+
+/// A listener on an address, or where its port is taken on one of the next `more`.
+pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failure> {
+    web::listen(address, more).map_err(|error| {
+        let hint = match error.kind() {
+            io::ErrorKind::AddrInUse => "another program has it: take another port, or 0 for any",
+            io::ErrorKind::PermissionDenied => "ports below 1024 are the system's: take another",
+            _ => "take an address of this machine: 127.0.0.1, or 0.0.0.0 for all",
+        };
+        let message = format!("cannot serve on {address}: {error}");
+        Failure::new(Exit::InputOutput, message).with_hint(hint)
+    })
+}
+
+/// Starts a server, and tells on stdout where it is.
+pub(crate) fn start(listener: TcpListener, warnings: &[String]) -> Result<(Server, Desk), Failure> {
+    let (desk, link) = desk();
+    for warning in warnings {
+        desk.board().log(&format!("warning: {warning}"));
+    }
+    let server = Server::start(listener, link).map_err(|error| failed(&error))?;
+    print(&format!("{}\n", server.url()))?;
+    Ok((server, desk))
+}
+
+/// The system gives no thread, or no random numbers.
+pub(crate) fn failed(error: &io::Error) -> Failure {
+    Failure::new(
+        Exit::RenderFailed,
+        format!("the server cannot start: {error}"),
+    )
+}
+
+/// A render that is watched, where somebody asked for it.
+pub(crate) struct Show {
+    stage: Option<Stage>,
+    /// Serves as long as it is there.
+    _server: Option<Server>,
+}
+
+impl Show {
+    /// Shows what `session` is going to render.
+    pub(crate) fn new(
+        server: Option<(Server, Desk)>,
+        session: &Session<'_>,
+        settings: StageSettings<'_>,
+    ) -> Self {
+        let (server, desk) = server.unzip();
+        Self {
+            stage: desk.map(|desk| Stage::new(desk, session, settings)),
+            _server: server,
+        }
+    }
+
+    /// Shows a pass that took so long.
+    pub(crate) fn add_pass(
+        &mut self,
+        session: &Session<'_>,
+        time: Duration,
+        header: &dyn Fn() -> FilmHeader,
+    ) {
+        if let Some(stage) = &mut self.stage {
+            stage.add_pass(session, time, header);
+        }
+    }
+
+    /// Shows that all is done.
+    pub(crate) fn end(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
+        if let Some(stage) = &mut self.stage {
+            stage.end(session, header);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! A developed film as an image file.
+
+use crate::error::Result;
+use crate::image::{self, ExrImage, ExrLayer, MetadataValue};
+use bidir::film::{Film, FilmSettings, LayerImage, Picture};
+use std::path::Path;
+
+/// A developed film: the picture with the images beside it.
+#[derive(Clone, Debug)]
+pub struct Developed {
+    /// The picture.
+    pub picture: Picture,
+    /// The images beside it.
+    pub layers: Vec<LayerImage>,
+}
+
+impl Developed {
+    /// All that `film` keeps.
+    pub fn new(film: &Film) -> Self {
+        Self {
+            picture: film.develop(),
+            layers: film.develop_layers(),
+        }
+    }
+
+    /// Writes it as EXR with attributes.
+    pub fn write_exr(
+        &self,
+        path: &Path,
+        film: &FilmSettings,
+        metadata: &[(String, MetadataValue)],
+    ) -> Result<()> {
+        image::write_exr(path, &Self::exr(film, &self.exr_layers(), metadata))
+    }
+
+    /// The bytes of that file.
+    pub fn encode_exr(
+        &self,
+        film: &FilmSettings,
+        metadata: &[(String, MetadataValue)],
+    ) -> Result<Vec<u8>> {
+        image::encode_exr(&Self::exr(film, &self.exr_layers(), metadata))
+    }
+
+    fn exr<'a>(
+        film: &FilmSettings,
+        layers: &'a [ExrLayer<'a>],
+        metadata: &'a [(String, MetadataValue)],
+    ) -> ExrImage<'a> {
+        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+        ExrImage {
+            resolution: film.resolution.map(|side| side as usize),
+            crop: [left, top, right, bottom].map(|edge| edge as usize),
+            layers,
+            metadata,
+        }
+    }
+
+    fn exr_layers(&self) -> Vec<ExrLayer<'_>> {
+        let picture = ExrLayer {
+            name: "",
+            channels: &["R", "G", "B"],
+            data: self.picture.pixels.as_flattened(),
+        };
+        let others = self.layers.iter().map(|layer| ExrLayer {
+            name: &layer.name,
+            channels: layer.channels,
+            data: &layer.data,
+        });
+        std::iter::once(picture).chain(others).collect()
+    }
+}

@@ -1,0 +1,165 @@
+//! What a client can ask of a render, as JSON.
+
+use crate::status::LaneId;
+use serde::Deserialize;
+
+/// What is done with a render.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "command", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Command {
+    /// Render no further pass until [`Self::Resume`].
+    Pause {},
+    /// Go on.
+    Resume {},
+    /// End the render.
+    Stop {},
+    /// Begin anew.
+    Restart {},
+    /// Begin a lane anew with another estimator.
+    Method {
+        /// Which lane.
+        lane: LaneId,
+        /// The estimator, by its name on the command line.
+        integrator: String,
+        /// Which connections are traced, likewise.
+        #[serde(rename = "shadowRays")]
+        shadow_rays: String,
+    },
+    /// Begin anew with a second lane beside the first, or without it.
+    Split {
+        /// True for two lanes.
+        on: bool,
+        /// The estimator of the second lane. None: that of the first.
+        integrator: Option<String>,
+        /// Its shadow rays. None: those of the first.
+        #[serde(rename = "shadowRays")]
+        shadow_rays: Option<String>,
+    },
+    /// Begin a lane anew with images of strategies.
+    Strategies {
+        /// Which lane.
+        lane: LaneId,
+        /// The most vertices of their paths; 0: without images.
+        vertices: usize,
+    },
+    /// Move the camera around what it looks at. Unit: radians.
+    Orbit {
+        /// To the camera's right.
+        yaw: f32,
+        /// Up.
+        pitch: f32,
+    },
+    /// Move the camera away from what it looks at.
+    Dolly {
+        /// What the distance is multiplied by.
+        factor: f32,
+    },
+    /// Move the camera across what it looks at. Unit: the distance.
+    Pan {
+        /// To the camera's right.
+        right: f32,
+        /// Up.
+        up: f32,
+    },
+    /// Move the camera, and turn it where it stands.
+    Walk(Walk),
+    /// Bring the camera back to where the scene has it.
+    Home {},
+    /// Write an EXR into the folder that the server was started in.
+    Save {
+        /// Its name, which has no folders and ends in `.exr`.
+        name: String,
+        /// Which lane.
+        #[serde(default)]
+        lane: LaneId,
+    },
+}
+
+/// A step. Unit: the distance to what the camera looks at; of angles radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Walk {
+    /// Along the axis.
+    pub forward: f32,
+    /// To the picture's right.
+    pub right: f32,
+    /// To its up.
+    pub up: f32,
+    /// The turn to the right.
+    pub yaw: f32,
+    /// The turn up.
+    pub pitch: f32,
+}
+
+impl Command {
+    /// True where it only moves the camera: many such come one after another.
+    pub fn is_move(&self) -> bool {
+        matches!(
+            self,
+            Self::Orbit { .. } | Self::Dolly { .. } | Self::Pan { .. } | Self::Walk(_)
+        )
+    }
+
+    /// True where a pass that is running is not wanted any more.
+    pub fn ends_pass(&self) -> bool {
+        !matches!(self, Self::Resume {} | Self::Save { .. })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(json: &str, command: &Command) {
+        assert_eq!(&serde_json::from_str::<Command>(json).unwrap(), command);
+    }
+
+    #[test]
+    fn commands_are_read_as_they_are_documented() {
+        check(r#"{"command":"pause"}"#, &Command::Pause {});
+        check(
+            r#"{"command":"method","lane":"b","integrator":"bdpt","shadowRays":"per-pair"}"#,
+            &Command::Method {
+                lane: LaneId::B,
+                integrator: "bdpt".into(),
+                shadow_rays: "per-pair".into(),
+            },
+        );
+        check(
+            r#"{"command":"split","on":false}"#,
+            &Command::Split {
+                on: false,
+                integrator: None,
+                shadow_rays: None,
+            },
+        );
+        let walk = Walk {
+            forward: 0.5,
+            ..Walk::default()
+        };
+        check(r#"{"command":"walk","forward":0.5}"#, &Command::Walk(walk));
+        let save = Command::Save {
+            name: "a.exr".into(),
+            lane: LaneId::A,
+        };
+        check(r#"{"command":"save","name":"a.exr"}"#, &save);
+    }
+
+    #[test]
+    fn what_is_no_command_is_refused() {
+        for json in [
+            r#"{"command":"explode"}"#,
+            r#"{"command":"pause","now":true}"#,
+            r#"{"command":"orbit","yaw":1}"#,
+            r#"{"command":"orbit","yaw":"1","pitch":0}"#,
+            r#"{"command":"walk","sideways":1}"#,
+            r#"{"command":"strategies","lane":"c","vertices":6}"#,
+            r#"{"command":"strategies","lane":"a","vertices":-1}"#,
+            r#"["pause"]"#,
+            "pause",
+        ] {
+            assert!(serde_json::from_str::<Command>(json).is_err(), "{json}");
+        }
+    }
+}

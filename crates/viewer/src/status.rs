@@ -1,0 +1,198 @@
+//! What watchers are told of a render, as JSON.
+
+use bidir::film::FilmSettings;
+use bidir::integrator::IntegratorKind;
+use bidir::select::ShadowRays;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A render among those that are shown side by side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LaneId {
+    /// The first, which is always there.
+    #[default]
+    A,
+    /// The one beside it.
+    B,
+}
+
+impl LaneId {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::A, Self::B];
+
+    /// Its number.
+    pub fn index(self) -> usize {
+        match self {
+            Self::A => 0,
+            Self::B => 1,
+        }
+    }
+}
+
+/// What a render is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum State {
+    /// Something is learnt or built before the first pass.
+    #[default]
+    Preparing,
+    /// Passes are rendered.
+    Rendering,
+    /// It goes on when it is told to.
+    Paused,
+    /// All passes are done, or it was stopped.
+    Done,
+    /// It cannot begin.
+    Failed,
+}
+
+/// The film's geometry. Unit: pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct FilmStatus {
+    /// Width and height of the whole film.
+    pub resolution: [u32; 2],
+    /// Left, top, right and bottom (exclusive) of what is rendered.
+    pub crop: [u32; 4],
+}
+
+impl From<&FilmSettings> for FilmStatus {
+    fn from(film: &FilmSettings) -> Self {
+        let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
+        Self {
+            resolution: film.resolution,
+            crop: [left, top, right, bottom],
+        }
+    }
+}
+
+/// The name of a scene file without its folders.
+pub(crate) fn scene_name(name: &str) -> String {
+    let file = Path::new(name).file_name();
+    file.map_or_else(
+        || name.to_owned(),
+        |file| file.to_string_lossy().into_owned(),
+    )
+}
+
+/// What a client can ask for by name.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Choices {
+    /// Estimators.
+    pub integrators: Vec<&'static str>,
+    /// Selections of shadow rays; those with a number take others, too.
+    pub shadow_rays: Vec<String>,
+}
+
+impl Choices {
+    /// All that there are.
+    pub fn all() -> Self {
+        let names = IntegratorKind::NAMES.iter();
+        let rays = [
+            ShadowRays::All,
+            ShadowRays::PerLightVertex,
+            ShadowRays::PerCameraVertex,
+            ShadowRays::PerPair,
+            ShadowRays::Budget(2),
+            ShadowRays::RayRoulette(ShadowRays::DEFAULT_ROULETTE),
+        ];
+        Self {
+            integrators: names.map(|(name, _)| *name).collect(),
+            shadow_rays: rays.iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+/// Where the camera is. Space: world.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CameraStatus {
+    /// Its kind in one word.
+    pub kind: &'static str,
+    /// Where it stands.
+    pub origin: [f32; 3],
+    /// What it moves around.
+    pub target: [f32; 3],
+    /// The picture's up.
+    pub up: [f32; 3],
+    /// True where it is not the scene's own.
+    pub moved: bool,
+}
+
+/// Numbers of rays by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct RayRates {
+    /// Of camera walks.
+    pub camera: f64,
+    /// Of light walks.
+    pub light: f64,
+    /// Shadow rays that join s ≥ 1 with t ≥ 2.
+    pub connection: f64,
+    /// Shadow rays of the light image, t = 1.
+    pub light_image: f64,
+}
+
+/// How far a lane is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct LaneStatus {
+    /// Which one.
+    pub lane: LaneId,
+    /// Grows whenever the lane begins anew.
+    pub generation: u32,
+    /// All settings, by the names of flags.
+    pub settings: BTreeMap<String, String>,
+    /// The estimator.
+    pub integrator: String,
+    /// Which connections are traced.
+    pub shadow_rays: String,
+    /// The passes that are done.
+    pub passes: u64,
+    /// The passes that are wanted. None: there is no end.
+    pub target: Option<u64>,
+    /// The time that they took, without what showing them took.
+    pub seconds: f64,
+    /// The time that those to come are expected to take. Unit: seconds.
+    pub eta: Option<f64>,
+    /// Camera samples per second.
+    pub samples_per_second: f64,
+    /// Rays per second.
+    pub rays_per_second: RayRates,
+    /// Rays per camera sample.
+    pub rays_per_sample: RayRates,
+    /// The noise that was left when the picture was last developed. None: it is not known.
+    pub relative_error: Option<f64>,
+    /// The same over the seconds.
+    pub curve: Vec<[f64; 2]>,
+    /// The most vertices of paths whose strategies have images.
+    pub strategy_vertices: usize,
+    /// True for the low resolution of a moving camera.
+    pub preview: bool,
+}
+
+/// Everything that is told.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Status {
+    /// That of the program.
+    pub version: &'static str,
+    /// The name of the scene, without folders.
+    pub scene: String,
+    /// What the render is doing.
+    pub state: State,
+    /// Why the last command was refused, what it came to, or why the render failed.
+    pub message: Option<String>,
+    /// False where one may only look.
+    pub controls: bool,
+    /// The film in full.
+    pub film: FilmStatus,
+    /// What can be asked for.
+    pub choices: Choices,
+    /// None: it cannot be moved.
+    pub camera: Option<CameraStatus>,
+    /// True where there are two lanes.
+    pub split: bool,
+    /// The lanes.
+    pub lanes: Vec<LaneStatus>,
+}

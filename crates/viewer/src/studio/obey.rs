@@ -1,0 +1,180 @@
+//! What commands do.
+
+use super::painter::Painter;
+use super::view::View;
+use crate::command::Command;
+use crate::status::{LaneId, State};
+use bidir::driver::Settings;
+use bidir::film::Layers;
+use bidir::integrator::IntegratorKind;
+use bidir::select::{ShadowRays, ShadowRaysError};
+use formats::film::{Developed, SettingsText, metadata};
+
+impl Painter {
+    /// Does what `command` says; what is refused is told why.
+    pub(super) fn obey(&mut self, command: Command) {
+        match self.apply(command) {
+            Ok(message) => self.message = message,
+            Err(refusal) => {
+                self.log(&format!("refused: {refusal}"));
+                self.message = Some(refusal);
+            }
+        }
+    }
+
+    /// Does it; what there is to tell of it.
+    fn apply(&mut self, command: Command) -> Result<Option<String>, String> {
+        match command {
+            Command::Pause {} => self.pause()?,
+            Command::Resume {} => self.resume()?,
+            Command::Stop {} => self.stop(),
+            Command::Restart {} => self.is_stale = true,
+            Command::Method {
+                lane,
+                integrator,
+                shadow_rays,
+            } => self.set_method(lane, &integrator, &shadow_rays)?,
+            Command::Split {
+                on,
+                integrator,
+                shadow_rays,
+            } => self.split(on, integrator.as_deref(), shadow_rays.as_deref())?,
+            Command::Strategies { lane, vertices } => self.set_strategies(lane, vertices)?,
+            Command::Orbit { yaw, pitch } => self.moved(|view| view.orbit(yaw, pitch))?,
+            Command::Dolly { factor } => self.moved(|view| view.dolly(factor))?,
+            Command::Pan { right, up } => self.moved(|view| view.pan(right, up))?,
+            Command::Walk(walk) => self.moved(|view| view.walk(walk))?,
+            Command::Home {} => {
+                self.view.go_home();
+                self.is_stale = true;
+            }
+            Command::Save { name, lane } => return self.save(&name, lane).map(Some),
+        }
+        Ok(None)
+    }
+
+    fn pause(&mut self) -> Result<(), String> {
+        self.check_runs()?;
+        self.state = State::Paused;
+        self.log("paused");
+        Ok(())
+    }
+
+    fn resume(&mut self) -> Result<(), String> {
+        self.check_runs()?;
+        self.state = State::Rendering;
+        self.log("goes on");
+        Ok(())
+    }
+
+    /// Refuses what has no meaning after the end.
+    fn check_runs(&self) -> Result<(), String> {
+        match self.state {
+            State::Rendering | State::Paused => Ok(()),
+            // Lanes that begin anew will render.
+            _ if self.is_stale => Ok(()),
+            _ => Err("the render has ended: `restart` begins anew".to_owned()),
+        }
+    }
+
+    fn stop(&mut self) {
+        self.state = State::Done;
+        self.log("stopped");
+    }
+
+    fn set_method(&mut self, lane: LaneId, integrator: &str, rays: &str) -> Result<(), String> {
+        let settings = self.method(self.wanted(lane)?, integrator, rays)?;
+        self.wanted[lane.index()] = settings;
+        self.is_stale = true;
+        Ok(())
+    }
+
+    fn split(
+        &mut self,
+        on: bool,
+        integrator: Option<&str>,
+        rays: Option<&str>,
+    ) -> Result<(), String> {
+        if !on {
+            self.wanted.truncate(1);
+            self.lanes.truncate(1);
+            self.desk.board().show(LaneId::B, None);
+            return Ok(());
+        }
+        let first = self.wanted(LaneId::A)?;
+        let names = SettingsText::from(first);
+        let integrator = integrator.unwrap_or(names.integrator);
+        let rays = rays.unwrap_or(&names.shadow_rays);
+        let second = self.method(first, integrator, rays)?;
+        self.wanted.truncate(1);
+        self.wanted.push(second);
+        self.is_stale = true;
+        Ok(())
+    }
+
+    fn set_strategies(&mut self, lane: LaneId, vertices: usize) -> Result<(), String> {
+        let most = Layers::MOST_STRATEGY_VERTICES;
+        if vertices > most || vertices == 1 {
+            return Err(format!(
+                "images of strategies are of paths with 2 to {most} vertices, or 0 for none"
+            ));
+        }
+        let layers = &self.wanted(lane)?.layers;
+        let layers = Layers::new(layers.aovs(), layers.light_groups(), vertices).with_raw();
+        self.wanted[lane.index()].layers = layers;
+        self.is_stale = true;
+        Ok(())
+    }
+
+    fn moved(&mut self, go: impl FnOnce(&mut View) -> Result<(), String>) -> Result<(), String> {
+        go(&mut self.view)?;
+        self.is_stale = true;
+        Ok(())
+    }
+
+    fn save(&mut self, name: &str, lane: LaneId) -> Result<String, String> {
+        let lane = self.lanes.get(lane.index());
+        let lane = lane.filter(|lane| !lane.session.film().passes().is_empty());
+        let lane = lane.ok_or("nothing is saved: no pass is done yet")?;
+        let film = lane.session.film();
+        self.saved.save(name, |path| {
+            let metadata = metadata(&lane.header());
+            let written = Developed::new(film).write_exr(path, film.settings(), &metadata);
+            written.map_err(|error| error.to_string())
+        })?;
+        let told = format!("wrote {name} with {} spp", film.passes().len());
+        self.log(&told);
+        Ok(told)
+    }
+
+    /// The settings of a lane.
+    fn wanted(&self, lane: LaneId) -> Result<&Settings, String> {
+        let wanted = self.wanted.get(lane.index());
+        wanted.ok_or_else(|| "there is no second lane: `split` makes one".to_owned())
+    }
+
+    /// `settings` with another method; roulette is the one that suits it, where none was asked for.
+    fn method(
+        &self,
+        settings: &Settings,
+        integrator: &str,
+        rays: &str,
+    ) -> Result<Settings, String> {
+        let names = IntegratorKind::NAMES.iter();
+        let known = names.clone().find(|(name, _)| *name == integrator);
+        let (_, integrator) = known.ok_or_else(|| {
+            let names: Vec<_> = names.map(|(name, _)| *name).collect();
+            let integrator = integrator.escape_debug();
+            format!(
+                "`{integrator}` is no integrator: there are {}",
+                names.join(", ")
+            )
+        })?;
+        let mut settings = settings.clone();
+        settings.integrator = *integrator;
+        let rays: Result<ShadowRays, ShadowRaysError> = rays.parse();
+        settings.shadow_rays = rays.map_err(|error| error.to_string())?;
+        settings.path.roulette = self.roulette.unwrap_or(integrator.roulette());
+        Ok(settings)
+    }
+}

@@ -1,0 +1,234 @@
+//! Where the camera is, and how large the film: quarter sides while it moves.
+
+use crate::command::Walk;
+use crate::status::CameraStatus;
+use bidir::camera::{Camera, Pose, Turn};
+use bidir::film::{FilmSettings, PixelRect};
+use bidir::math::{Vec2, Vec3};
+use bidir::sampler::{Domain, Sampler, SamplerKind};
+use bidir::scene::{Chances, Scene};
+use std::time::{Duration, Instant};
+
+/// A camera that has not moved for so long stands still.
+const REST: Duration = Duration::from_millis(500);
+/// How many times fewer pixels a side has while the camera moves.
+const COARSENESS: u32 = 4;
+/// The nearest and the farthest that the camera comes to its target. Unit: the scene's radius.
+const REACH: [f32; 2] = [1e-4, 1e3];
+
+/// The view of a scene.
+#[derive(Debug)]
+pub(super) struct View {
+    home: Camera,
+    film: FilmSettings,
+    camera: Camera,
+    /// What the middle of the scene's own picture sees, in the axes of the camera.
+    home_target: Vec3,
+    /// What the camera moves around, likewise.
+    target: Vec3,
+    /// Up in the world.
+    vertical: Vec3,
+    /// The radius of the scene.
+    radius: f32,
+    /// When it was moved last. None: it stands still.
+    moved: Option<Instant>,
+}
+
+/// A camera cannot be moved so.
+pub(super) type Refusal = String;
+
+impl View {
+    /// The scene's own view.
+    pub(super) fn new(scene: &Scene) -> Self {
+        let (camera, film) = (*scene.camera(), scene.film().clone());
+        let target = target(scene);
+        Self {
+            home: camera,
+            film,
+            camera,
+            home_target: target,
+            target,
+            vertical: camera.pose().vertical(),
+            radius: scene.light_context().radius,
+            moved: None,
+        }
+    }
+
+    /// The film in full.
+    pub(super) fn full_film(&self) -> &FilmSettings {
+        &self.film
+    }
+
+    /// True while the camera moves.
+    pub(super) fn is_preview(&self) -> bool {
+        self.moved.is_some()
+    }
+
+    /// True once when the camera stands still again.
+    pub(super) fn settle(&mut self) -> bool {
+        self.rest() == Some(Duration::ZERO) && self.moved.take().is_some()
+    }
+
+    /// How long it still has to stand. None: it does not move.
+    pub(super) fn rest(&self) -> Option<Duration> {
+        let moved = self.moved?;
+        Some(REST.saturating_sub(moved.elapsed()))
+    }
+
+    /// The camera and the film that are rendered now.
+    pub(super) fn current(&self) -> (Camera, FilmSettings) {
+        if !self.is_preview() {
+            return (self.camera, self.film.clone());
+        }
+        let film = coarse(&self.film);
+        let [new, old] = [film.resolution, self.film.resolution]
+            .map(|[width, height]| Vec2::new(width as f32, height as f32));
+        (self.camera.resized(new / old), film)
+    }
+
+    /// What is told of it.
+    pub(super) fn status(&self) -> CameraStatus {
+        let pose = self.camera.pose();
+        CameraStatus {
+            kind: self.camera.kind(),
+            origin: pose.origin.to_array(),
+            target: self.world_target(pose).to_array(),
+            up: pose.up.to_array(),
+            moved: self.is_elsewhere(),
+        }
+    }
+
+    fn is_elsewhere(&self) -> bool {
+        self.camera.pose() != self.home.pose()
+    }
+
+    /// The view in words that no other view has. None: it is the scene's own.
+    pub(super) fn text(&self) -> Option<String> {
+        let pose = self.camera.pose();
+        let [origin, forward, up] = [pose.origin, pose.forward, pose.up].map(|v| v.to_array());
+        let text = || format!("origin {origin:?} forward {forward:?} up {up:?}");
+        self.is_elsewhere().then(text)
+    }
+
+    /// Back to the scene's own view, in full at once.
+    pub(super) fn go_home(&mut self) {
+        self.camera = self.home;
+        self.target = self.home_target;
+        self.moved = None;
+    }
+
+    /// Around the target.
+    pub(super) fn orbit(&mut self, yaw: f32, pitch: f32) -> Result<(), Refusal> {
+        self.check_is_flat("orbit")?;
+        let pose = self.camera.pose();
+        // Who goes to the right around something looks to the left.
+        let turn = Turn {
+            right: -yaw,
+            up: -pitch,
+        };
+        self.go(
+            pose.turned(self.world_target(pose), self.vertical, turn),
+            self.target,
+        )
+    }
+
+    /// To `factor` times the distance of the target.
+    pub(super) fn dolly(&mut self, factor: f32) -> Result<(), Refusal> {
+        self.check_is_flat("dolly")?;
+        if !(factor > 0.0 && factor.is_finite()) {
+            return Err("the factor of `dolly` is a positive number".to_owned());
+        }
+        let distance = self.distance();
+        let [nearest, farthest] = REACH.map(|reach| reach * self.radius);
+        let factor = (distance * factor).clamp(nearest, farthest) / distance;
+        let pose = self.camera.pose();
+        let back = (pose.origin - self.world_target(pose)) * (factor - 1.0);
+        self.go(pose.shifted(back), self.target * factor)
+    }
+
+    /// Across the target, which comes along.
+    pub(super) fn pan(&mut self, right: f32, up: f32) -> Result<(), Refusal> {
+        self.check_is_flat("pan")?;
+        self.walk(Walk {
+            right,
+            up,
+            ..Walk::default()
+        })
+    }
+
+    /// A step and a turn; the target comes along.
+    pub(super) fn walk(&mut self, walk: Walk) -> Result<(), Refusal> {
+        let (pose, unit) = (self.camera.pose(), self.distance());
+        let step = pose.right * walk.right + pose.up * walk.up + pose.forward * walk.forward;
+        let turn = Turn {
+            right: walk.yaw,
+            up: walk.pitch,
+        };
+        let pose = pose.shifted(step * unit);
+        self.go(pose.turned(pose.origin, self.vertical, turn), self.target)
+    }
+
+    fn go(&mut self, pose: Pose, target: Vec3) -> Result<(), Refusal> {
+        let numbers = [pose.origin, pose.right, pose.up, pose.forward, target];
+        if !numbers.iter().all(|vector| vector.is_finite()) {
+            return Err("the camera cannot go there".to_owned());
+        }
+        self.camera = self.camera.with_pose(pose);
+        self.target = target;
+        self.moved = Some(Instant::now());
+        Ok(())
+    }
+
+    /// Refuses what makes no sense for a picture of all directions.
+    fn check_is_flat(&self, command: &str) -> Result<(), Refusal> {
+        match self.camera {
+            Camera::Spherical(_) => Err(format!(
+                "`{command}` is not for a camera that sees all around: `walk` moves it"
+            )),
+            Camera::Perspective(_) | Camera::Orthographic(_) => Ok(()),
+        }
+    }
+
+    fn world_target(&self, pose: Pose) -> Vec3 {
+        pose.origin + pose.to_world(self.target)
+    }
+
+    fn distance(&self) -> f32 {
+        self.target.length()
+    }
+}
+
+/// What the middle of the picture sees, in the axes of the camera; where that is nothing, a point as far
+/// as the middle of the scene.
+fn target(scene: &Scene) -> Vec3 {
+    let (camera, film) = (scene.camera(), scene.film());
+    let pose = camera.pose();
+    let [width, height] = film.resolution.map(|side| side as f32);
+    let (origin, direction) = match camera {
+        Camera::Spherical(_) => (pose.origin, pose.forward),
+        Camera::Perspective(_) | Camera::Orthographic(_) => {
+            let middle = Vec2::new(width, height) / 2.0;
+            let ray = camera.sample_ray(middle, || Vec2::splat(0.5));
+            (ray.origin, ray.direction)
+        }
+    };
+    let numbers = Sampler::new(SamplerKind::default(), 0).stream(Domain::Camera, 0, 0);
+    let hit = scene.intersect(origin, direction, Chances::new(&numbers, 0));
+    let whole = scene.light_context();
+    let far = origin.distance(whole.centre).max(REACH[0] * whole.radius);
+    let point = hit.map_or(origin + direction * far, |hit| hit.surface.point);
+    pose.to_local(point - pose.origin)
+}
+
+/// A film with a fraction of the pixels of `film` to each side.
+fn coarse(film: &FilmSettings) -> FilmSettings {
+    let PixelRect { min, max } = film.crop;
+    FilmSettings {
+        resolution: film.resolution.map(|side| side.div_ceil(COARSENESS)),
+        crop: PixelRect {
+            min: min.map(|edge| edge / COARSENESS),
+            max: max.map(|edge| edge.div_ceil(COARSENESS)),
+        },
+        ..film.clone()
+    }
+}

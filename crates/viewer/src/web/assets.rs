@@ -1,0 +1,44 @@
+//! The page and what belongs to it, as it was when the program was built.
+
+use super::error::Refusal;
+use axum::extract::Path;
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use rust_embed::{Embed, EmbeddedFile};
+
+#[derive(Embed)]
+#[folder = "page"]
+struct Page;
+
+/// True for what is embedded beside the page.
+pub(super) fn is_asset(path: &str) -> bool {
+    path.starts_with("/assets/")
+}
+
+/// The page.
+pub(super) async fn index() -> Result<Response, Refusal> {
+    answer("index.html")
+}
+
+/// What belongs to it.
+pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Refusal> {
+    answer(&name)
+}
+
+fn answer(name: &str) -> Result<Response, Refusal> {
+    let missing = || Refusal::new(StatusCode::NOT_FOUND, "there is no such page");
+    let EmbeddedFile { data, .. } = Page::get(name).ok_or_else(missing)?;
+    let kind = [(header::CONTENT_TYPE, content_type(name))];
+    Ok((kind, data).into_response())
+}
+
+/// The type of a file by its name's end.
+fn content_type(name: &str) -> &'static str {
+    match name.rsplit_once('.').map(|(_, end)| end) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        _ => "application/octet-stream",
+    }
+}

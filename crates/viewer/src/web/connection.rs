@@ -1,0 +1,198 @@
+//! Connections: how many there are at once, and how long a peer may do nothing.
+
+use super::{Site, routes};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use std::future::Future;
+use std::io;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll};
+use std::time::Duration;
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use tokio::time::{Sleep, sleep};
+
+/// Connections at once; others wait until one of them is closed.
+const CONNECTIONS: usize = 256;
+/// The time that a peer has for the head of a request, from the end of the one before.
+const HEAD_TIME: Duration = Duration::from_secs(30);
+/// The time that a peer may take nothing of what it is sent.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// The largest head of a request. Unit: bytes.
+const LARGEST_HEAD: usize = 16 << 10;
+/// The time until it is tried again where the system gives no connection, as with too many files.
+const RETRY: Duration = Duration::from_millis(100);
+
+/// Accepts connections until `stopped`, which closes all of them.
+pub(super) async fn serve(
+    listener: std::net::TcpListener,
+    site: &Arc<Site>,
+    mut stopped: watch::Receiver<bool>,
+) {
+    let listener = match TcpListener::from_std(listener) {
+        Ok(listener) => listener,
+        Err(error) => return site.link.board().log(&format!("the server fails: {error}")),
+    };
+    let router = routes::router(site);
+    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    loop {
+        tokio::select! {
+            accepted = accept(&listener, &places) => match accepted {
+                Ok((stream, place)) => {
+                    tokio::spawn(converse(stream, router.clone(), place));
+                }
+                Err(_) => sleep(RETRY).await,
+            },
+            _ = stopped.changed() => return,
+        }
+    }
+}
+
+/// The next connection, when there is a place for it.
+async fn accept(
+    listener: &TcpListener,
+    places: &Arc<Semaphore>,
+) -> io::Result<(TcpStream, OwnedSemaphorePermit)> {
+    let place = Arc::clone(places).acquire_owned().await;
+    let place = place.map_err(io::Error::other)?;
+    let (stream, _) = listener.accept().await?;
+    Ok((stream, place))
+}
+
+/// Answers the requests of a connection.
+async fn converse(stream: TcpStream, router: axum::Router, place: OwnedSemaphorePermit) {
+    // Without it a small answer may wait; it is no reason to give none.
+    let _ = stream.set_nodelay(true);
+    let stream = TokioIo::new(Patient::new(stream, place));
+    let connection = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(HEAD_TIME)
+        .max_buf_size(LARGEST_HEAD)
+        .serve_connection(stream, TowerToHyperService::new(router))
+        .with_upgrades();
+    // What fails here is the peer's connection, which is closed by that.
+    let _ = connection.await;
+}
+
+/// A stream whose writes fail when the peer takes nothing for a while.
+struct Patient {
+    stream: TcpStream,
+    /// When the patience ends. None: the peer is not waited for.
+    deadline: Option<Pin<Box<Sleep>>>,
+    /// The place is free again when the stream is gone, which may be long after an upgrade.
+    _place: OwnedSemaphorePermit,
+}
+
+impl Patient {
+    fn new(stream: TcpStream, place: OwnedSemaphorePermit) -> Self {
+        Self {
+            stream,
+            deadline: None,
+            _place: place,
+        }
+    }
+
+    /// The outcome of a write, which may be that the patience has ended.
+    fn watched<T>(
+        &mut self,
+        context: &mut Context<'_>,
+        written: Poll<io::Result<T>>,
+    ) -> Poll<io::Result<T>> {
+        if written.is_ready() {
+            self.deadline = None;
+            return written;
+        }
+        let deadline = self
+            .deadline
+            .get_or_insert_with(|| Box::pin(sleep(PATIENCE)));
+        let late = || Err(io::ErrorKind::TimedOut.into());
+        deadline.as_mut().poll(context).map(|()| late())
+    }
+}
+
+impl AsyncRead for Patient {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_read(context, buffer)
+    }
+}
+
+impl AsyncWrite for Patient {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.stream).poll_write(context, bytes);
+        self.watched(context, written)
+    }
+
+    fn poll_write_vectored(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        parts: &[io::IoSlice<'_>],
+    ) -> Poll<io::Result<usize>> {
+        let written = Pin::new(&mut self.stream).poll_write_vectored(context, parts);
+        self.watched(context, written)
+    }
+
+    fn is_write_vectored(&self) -> bool {
+        self.stream.is_write_vectored()
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Pin::new(&mut self.stream).poll_shutdown(context)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::io::AsyncWriteExt;
+
+    #[tokio::test(flavor = "current_thread", start_paused = true)]
+    async fn a_peer_that_takes_nothing_is_given_up() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let peer = TcpStream::connect(listener.local_addr().unwrap())
+            .await
+            .unwrap();
+        let (stream, _) = listener.accept().await.unwrap();
+        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
+        let mut stream = Patient::new(stream, place);
+        let start = tokio::time::Instant::now();
+        let lot = vec![0; 1 << 26];
+        let error = stream.write_all(&lot).await.unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::TimedOut);
+        // By the clock of the test, which does not run while anything else does.
+        assert!(start.elapsed() >= PATIENCE);
+        drop(peer);
+    }
+
+    #[tokio::test(flavor = "current_thread")]
+    async fn a_peer_that_takes_little_is_waited_for() {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let mut peer = TcpStream::connect(listener.local_addr().unwrap())
+            .await
+            .unwrap();
+        let (stream, _) = listener.accept().await.unwrap();
+        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
+        let mut stream = Patient::new(stream, place);
+        let writing = tokio::spawn(async move { stream.write_all(&[7; 1 << 24]).await });
+        let mut taken = Vec::new();
+        tokio::io::AsyncReadExt::read_to_end(&mut peer, &mut taken)
+            .await
+            .unwrap();
+        writing.await.unwrap().unwrap();
+        assert_eq!(taken.len(), 1 << 24);
+    }
+}

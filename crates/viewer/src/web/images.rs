@@ -1,0 +1,158 @@
+//! Pictures as files: what the film shows, and what its strategies do.
+
+use super::Site;
+use super::error::Refusal;
+use super::inspect::check_strategies;
+use super::query::{Asked, OfLane};
+use crate::status::LaneId;
+use axum::extract::State;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use bidir::path::Strategy;
+use formats::film::{Developed, metadata};
+use formats::image::encode_png;
+use lab::image::Pixels;
+use lab::pyramid::{self, Kind};
+use serde::Deserialize;
+use std::sync::Arc;
+use tokio::task::spawn_blocking;
+
+/// The most that a tile is made brighter or darker. Unit: stops.
+const MOST_STOPS: f32 = 40.0;
+
+/// What the film shows, as `bidir render` writes PNG.
+pub(super) async fn png(
+    State(site): State<Arc<Site>>,
+    Asked(OfLane { lane }): Asked<OfLane>,
+) -> Result<Response, Refusal> {
+    let shown = site.frame(lane).await?;
+    encode("image/png", move || {
+        let crop = shown.frame.film.crop;
+        encode_png([crop.width(), crop.height()], &shown.frame.pixels)
+    })
+    .await
+}
+
+/// The same as `bidir render` writes EXR, with layers and attributes.
+pub(super) async fn exr(
+    State(site): State<Arc<Site>>,
+    Asked(OfLane { lane }): Asked<OfLane>,
+) -> Result<Response, Refusal> {
+    // Held until it is encoded: each takes the memory of a whole film.
+    let Ok(_place) = site.large.acquire().await else {
+        return Err(Refusal::bug("no image is encoded any more"));
+    };
+    let developed = site.look(lane, |subject| {
+        let film = subject.session.film();
+        let is_empty = film.passes().is_empty();
+        let file = || {
+            (
+                Developed::new(film),
+                film.settings().clone(),
+                (subject.header)(),
+            )
+        };
+        (!is_empty).then(file)
+    });
+    let empty = || Refusal::now("no pass is done yet");
+    let (developed, film, header) = developed.await?.ok_or_else(empty)?;
+    let name = file_name(&header.scene_name());
+    let mut response = encode("image/x-exr", move || {
+        developed.encode_exr(&film, &metadata(&header))
+    })
+    .await?;
+    let disposition = format!("attachment; filename=\"{name}.exr\"");
+    if let Ok(value) = disposition.parse() {
+        response
+            .headers_mut()
+            .insert(header::CONTENT_DISPOSITION, value);
+    }
+    Ok(response)
+}
+
+/// A name for a file of the scene `name`, of letters that mean nothing anywhere.
+fn file_name(name: &str) -> String {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+    stem.chars()
+        .map(|c| if is_plain(c) { c } else { '_' })
+        .collect()
+}
+
+/// Which picture of strategies.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) struct OfStrategies {
+    #[serde(default)]
+    lane: LaneId,
+    kind: KindName,
+    /// One strategy; without both the contact sheet of all.
+    s: Option<u16>,
+    t: Option<u16>,
+    /// How much brighter a strategy is shown. Unit: stops.
+    #[serde(default)]
+    exposure: f32,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum KindName {
+    Weighted,
+    Raw,
+}
+
+impl From<KindName> for Kind {
+    fn from(name: KindName) -> Self {
+        match name {
+            KindName::Weighted => Self::Weighted,
+            KindName::Raw => Self::Raw,
+        }
+    }
+}
+
+/// The contact sheet of strategies, or one of them as large as the film.
+pub(super) async fn strategies(
+    State(site): State<Arc<Site>>,
+    Asked(asked): Asked<OfStrategies>,
+) -> Result<Response, Refusal> {
+    let kind = asked.kind.into();
+    let strategy = match (asked.s, asked.t) {
+        (None, None) => None,
+        (Some(s), Some(t)) => Some(Strategy { s, t }),
+        _ => return Err(Refusal::query("a strategy is both s and t")),
+    };
+    if asked.exposure.is_nan() || asked.exposure.abs() > MOST_STOPS {
+        let message = format!("the exposure is a number of stops up to {MOST_STOPS}");
+        return Err(Refusal::query(message));
+    }
+    let pixels = site.look(asked.lane, move |subject| {
+        check_strategies(subject.session)?;
+        let film = subject.session.film();
+        let Some(strategy) = strategy else {
+            return Ok(pyramid::sheet(film, kind, &(subject.header)().scene_name()));
+        };
+        let image = pyramid::strategy_image(film, kind, strategy);
+        image.ok_or_else(|| Refusal::query(format!("there is no image of {strategy}")))
+    });
+    let pixels = pixels.await??;
+    encode("image/png", move || encode_pixels(pixels, asked.exposure)).await
+}
+
+/// A picture, so many stops brighter.
+fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
+    let factor = libm::exp2f(stops);
+    for channel in pixels.data.as_flattened_mut() {
+        *channel *= factor;
+    }
+    encode_png(pixels.size.map(|side| side as u32), &pixels.data)
+}
+
+/// An answer of this type that takes a while to make.
+async fn encode(
+    kind: &'static str,
+    encode: impl FnOnce() -> formats::Result<Vec<u8>> + Send + 'static,
+) -> Result<Response, Refusal> {
+    let encoded = spawn_blocking(encode).await;
+    let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
+    let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
+    Ok(([(header::CONTENT_TYPE, kind)], encoded).into_response())
+}

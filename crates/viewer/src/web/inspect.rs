@@ -1,0 +1,219 @@
+//! What is in a picture: a pixel, the strategies.
+
+use super::Site;
+use super::error::Refusal;
+use super::query::{Asked, OfLane, OfPixel, OfSample};
+use super::routes::json;
+use crate::board::{Request, Shown, Subject};
+use crate::status::LaneId;
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use bidir::driver::Session;
+use lab::pyramid::{Figures, mean_of_longer};
+use lab::sample::SampleReport;
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::oneshot;
+use tokio::time::timeout;
+
+/// How long the renderer is waited for, which answers between passes.
+const PASS_TIME: Duration = Duration::from_secs(60);
+
+impl Site {
+    /// Has `look` look at a lane between two passes.
+    pub(super) async fn look<T: Send + 'static>(
+        &self,
+        lane: LaneId,
+        look: impl FnOnce(&Subject<'_>) -> T + Send + 'static,
+    ) -> Result<T, Refusal> {
+        let (send, receive) = oneshot::channel();
+        let look = move |subject: Option<&Subject<'_>>| {
+            // Who has gone away meanwhile is spared the work.
+            if !send.is_closed() {
+                let _ = send.send(subject.map(look));
+            }
+        };
+        self.ask(Request::Look(lane, Box::new(look)))?;
+        let busy = || {
+            Refusal::new(
+                StatusCode::SERVICE_UNAVAILABLE,
+                "a pass takes long: try again",
+            )
+        };
+        let answer = timeout(PASS_TIME, receive).await.map_err(|_| busy())?;
+        let answer = answer.map_err(|_| Refusal::now("the render has ended"))?;
+        answer.ok_or_else(|| Refusal::now("there is no such lane now"))
+    }
+
+    /// The newest frame of a lane.
+    pub(super) async fn frame(&self, lane: LaneId) -> Result<Arc<Shown>, Refusal> {
+        let board = self.link.board();
+        let status = board.status();
+        let told = status.lanes.iter().find(|told| told.lane == lane);
+        let told = told.ok_or_else(|| Refusal::now("there is no such lane now"))?;
+        let is_newest = |shown: &Arc<Shown>| {
+            shown.generation == told.generation && shown.frame.passes == told.passes
+        };
+        if let Some(shown) = board.shown(lane).filter(is_newest) {
+            return Ok(shown);
+        }
+        self.ask(Request::Show(lane))?;
+        self.look(lane, |_| ()).await?;
+        board
+            .shown(lane)
+            .ok_or_else(|| Refusal::now("no pass is done yet"))
+    }
+
+    fn ask(&self, request: Request) -> Result<(), Refusal> {
+        let busy = |_| Refusal::new(StatusCode::TOO_MANY_REQUESTS, "too many requests wait");
+        self.link.ask(request).map_err(busy)
+    }
+}
+
+/// What is known of a pixel.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct PixelReport {
+    x: u32,
+    y: u32,
+    mean: [f32; 3],
+    /// That of the mean; after one pass it is not known, and zero.
+    standard_error: [f32; 3],
+    samples: u64,
+    /// Of all samples, with those of the light subpaths that go with them.
+    rays: Option<f32>,
+    passes: u64,
+    generation: u32,
+}
+
+/// A pixel of the newest frame; where that is small, the one that shows the place.
+pub(super) async fn pixel(
+    State(site): State<Arc<Site>>,
+    Asked(OfPixel { lane, x, y }): Asked<OfPixel>,
+) -> Result<Response, Refusal> {
+    let shown = site.frame(lane).await?;
+    let [width, height] = site.link.board().status().film.resolution;
+    let frame = &shown.frame;
+    let [small_width, small_height] = frame.film.resolution;
+    let scaled =
+        |at: u32, side: u32, small: u32| i64::from(at) * i64::from(small) / i64::from(side.max(1));
+    let place = [
+        scaled(x, width, small_width),
+        scaled(y, height, small_height),
+    ];
+    let index = frame.film.crop.index(place[0], place[1]);
+    let of_pixel = |index: usize| {
+        Some(PixelReport {
+            x,
+            y,
+            mean: *frame.pixels.get(index)?,
+            standard_error: frame.variance.get(index)?.map(f32::sqrt),
+            samples: frame.passes,
+            rays: shown
+                .rays
+                .as_ref()
+                .and_then(|rays| rays.get(index).copied()),
+            passes: frame.passes,
+            generation: shown.generation,
+        })
+    };
+    let report = index.and_then(of_pixel);
+    json(&report.ok_or_else(|| not_rendered(x, y))?)
+}
+
+/// What a sample did, as `bidir render --replay --json` tells it.
+pub(super) async fn sample(
+    State(site): State<Arc<Site>>,
+    Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
+) -> Result<Response, Refusal> {
+    let resolution = site.link.board().status().film.resolution;
+    let report = site.look(lane, move |subject| {
+        let session = subject.session;
+        if session.scene().film().resolution != resolution {
+            return Err(Refusal::now(
+                "the camera moves: ask when the picture is whole",
+            ));
+        }
+        let replay = session.replay([x, y], pass);
+        let replay = replay.ok_or_else(|| not_rendered(x, y))?;
+        json(&SampleReport::new(session, [x, y], pass, &replay))
+    });
+    report.await?
+}
+
+fn not_rendered(x: u32, y: u32) -> Refusal {
+    Refusal::query(format!("the pixel {x},{y} is not rendered"))
+}
+
+/// What the strategies of a lane do.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct StrategiesReport {
+    generation: u32,
+    passes: u64,
+    vertices: usize,
+    tiles: Vec<TileReport>,
+    /// The mean luminance of longer paths.
+    longer_mean: f64,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+struct TileReport {
+    s: u16,
+    t: u16,
+    name: String,
+    /// The mean luminance of the weighted image.
+    mean: f64,
+    /// Shadow rays.
+    traced: u64,
+    blocked_share: Option<f64>,
+    /// What a pass adds to the mean pixel varies by this.
+    variance: Option<f64>,
+}
+
+pub(super) async fn strategies(
+    State(site): State<Arc<Site>>,
+    Asked(OfLane { lane }): Asked<OfLane>,
+) -> Result<Response, Refusal> {
+    let report = site.look(lane, |subject| {
+        let session = subject.session;
+        check_strategies(session)?;
+        Ok(StrategiesReport {
+            generation: subject.generation,
+            passes: session.film().passes().len(),
+            vertices: session.film().layers().strategy_vertices(),
+            tiles: tiles(session),
+            longer_mean: mean_of_longer(session.film()),
+        })
+    });
+    json(&report.await??)
+}
+
+/// Refuses to tell of strategies where none are kept.
+pub(super) fn check_strategies(session: &Session<'_>) -> Result<(), Refusal> {
+    if session.film().layers().strategy_vertices() > 0 {
+        return Ok(());
+    }
+    let message = "the lane keeps no images of strategies: the command `strategies` makes it";
+    Err(Refusal::now(message))
+}
+
+fn tiles(session: &Session<'_>) -> Vec<TileReport> {
+    let figures = Figures::all(session).into_iter();
+    let tiles = figures.filter_map(|figures| {
+        let images = figures.images?;
+        Some(TileReport {
+            s: figures.strategy.s,
+            t: figures.strategy.t,
+            name: figures.strategy.to_string(),
+            mean: images.mean,
+            traced: figures.counts.traced,
+            blocked_share: figures.blocked_share(),
+            variance: images.variance,
+        })
+    });
+    tiles.collect()
+}

@@ -1,0 +1,212 @@
+//! The WebSocket: the newest status and frames to a client, as fast as it takes them, and its
+//! commands.
+
+use super::Site;
+use super::error::Refusal;
+use crate::board::{Request, Shown};
+use crate::command::Command;
+use crate::status::{LaneId, Status};
+use axum::body::Bytes;
+use axum::extract::State;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
+use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::http::StatusCode;
+use axum::response::Response;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep, sleep_until};
+
+/// Clients at once.
+const CLIENTS: usize = 64;
+/// The largest message of a client. Unit: bytes.
+const LARGEST_MESSAGE: usize = 4 << 10;
+/// The status is sent no more often.
+const STATUS_GAP: Duration = Duration::from_millis(250);
+/// A client is asked now and then whether it is there.
+const PING_GAP: Duration = Duration::from_secs(20);
+/// How often, and how far apart, it is tried to hand a command to a renderer that is busy.
+const TRIES: usize = 500;
+const TRY_GAP: Duration = Duration::from_millis(20);
+
+/// The places of clients.
+pub(super) struct Clients(Arc<Semaphore>);
+
+impl Default for Clients {
+    fn default() -> Self {
+        Self(Arc::new(Semaphore::new(CLIENTS)))
+    }
+}
+
+/// Begins a conversation.
+pub(super) async fn live(
+    State(site): State<Arc<Site>>,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Result<Response, Refusal> {
+    let upgrade = upgrade.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
+    let full = |_| Refusal::new(StatusCode::TOO_MANY_REQUESTS, "too many clients watch");
+    let place = Arc::clone(&site.live.0).try_acquire_owned().map_err(full)?;
+    let upgrade = upgrade
+        .max_message_size(LARGEST_MESSAGE)
+        .max_frame_size(LARGEST_MESSAGE)
+        .write_buffer_size(0);
+    Ok(upgrade.on_upgrade(move |socket| Client::new(socket, site, place).talk()))
+}
+
+/// Who watches.
+struct Client {
+    socket: WebSocket,
+    site: Arc<Site>,
+    status: watch::Receiver<Arc<Status>>,
+    frames: [watch::Receiver<Option<Arc<Shown>>>; 2],
+    _place: OwnedSemaphorePermit,
+}
+
+/// Why a conversation ends; without a reason where the client ended it.
+type End = Option<CloseFrame>;
+
+impl Client {
+    fn new(socket: WebSocket, site: Arc<Site>, place: OwnedSemaphorePermit) -> Self {
+        let board = site.link.board();
+        let mut status = board.watch_status();
+        let mut frames = LaneId::ALL.map(|lane| board.watch_frames(lane));
+        // What is there now is new to it.
+        status.mark_changed();
+        frames.iter_mut().for_each(watch::Receiver::mark_changed);
+        Self {
+            socket,
+            status,
+            frames,
+            site,
+            _place: place,
+        }
+    }
+
+    async fn talk(mut self) {
+        for lane in LaneId::ALL {
+            // A renderer that is too busy for it shows its next frame anyway.
+            let _ = self.site.link.ask(Request::Show(lane));
+        }
+        if let Err(Some(reason)) = self.exchange().await {
+            // Where it cannot be told, the connection is closed all the same.
+            let _ = self.socket.send(Message::Close(Some(reason))).await;
+        }
+    }
+
+    /// Sends what is new, and does what is asked for, to the end.
+    async fn exchange(&mut self) -> Result<(), End> {
+        let mut status_due = Instant::now();
+        let mut ping = interval(PING_GAP);
+        ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            let [a, b] = &mut self.frames;
+            tokio::select! {
+                message = self.socket.recv() => {
+                    let command = heard(message)?;
+                    self.pass_on(command).await?;
+                }
+                changed = a.changed() => self.send_frame(changed, LaneId::A).await?,
+                changed = b.changed() => self.send_frame(changed, LaneId::B).await?,
+                changed = changed_after(&mut self.status, status_due) => {
+                    changed.map_err(gone)?;
+                    let status = self.status.borrow_and_update().clone();
+                    let text = serde_json::to_string(&*status).map_err(|_| None)?;
+                    self.send(Message::Text(text.into())).await?;
+                    status_due = Instant::now() + STATUS_GAP;
+                }
+                _ = ping.tick() => self.send(Message::Ping(Bytes::new())).await?,
+            }
+        }
+    }
+
+    async fn send(&mut self, message: Message) -> Result<(), End> {
+        self.socket.send(message).await.map_err(|_| None)
+    }
+
+    async fn send_frame(
+        &mut self,
+        changed: Result<(), watch::error::RecvError>,
+        lane: LaneId,
+    ) -> Result<(), End> {
+        changed.map_err(gone)?;
+        let shown = self.frames[lane.index()].borrow_and_update().clone();
+        match shown {
+            Some(shown) => self.send(Message::Binary(shown.message())).await,
+            None => Ok(()),
+        }
+    }
+
+    /// Hands a command to the renderer. While that is too busy, the client is not listened to.
+    async fn pass_on(&mut self, command: Option<Command>) -> Result<(), End> {
+        let Some(command) = command else {
+            return Ok(());
+        };
+        if !self.status.borrow().controls {
+            return Err(close(close_code::POLICY, "this render takes no commands"));
+        }
+        for _ in 0..TRIES {
+            let request = Request::Command(command.clone());
+            if self.site.link.ask(request).is_ok() {
+                return Ok(());
+            }
+            sleep(TRY_GAP).await;
+        }
+        Err(close(close_code::AGAIN, "the render is busy"))
+    }
+}
+
+/// Waits until `due`, and then for a change.
+async fn changed_after(
+    status: &mut watch::Receiver<Arc<Status>>,
+    due: Instant,
+) -> Result<(), watch::error::RecvError> {
+    sleep_until(due).await;
+    status.changed().await
+}
+
+/// The command in a message. None: it has none, as the answer to a ping.
+fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command>, End> {
+    match message {
+        None | Some(Ok(Message::Close(_))) => Err(None),
+        Some(Ok(Message::Ping(_) | Message::Pong(_))) => Ok(None),
+        Some(Ok(Message::Binary(_))) => Err(close(close_code::UNSUPPORTED, "commands are text")),
+        Some(Ok(Message::Text(text))) => command(&text).map(Some),
+        Some(Err(error)) => Err(broken(error)),
+    }
+}
+
+fn command(text: &str) -> Result<Command, End> {
+    serde_json::from_str(text).map_err(|error: serde_json::Error| {
+        if error.is_data() {
+            close(close_code::POLICY, &format!("no command: {error}"))
+        } else {
+            close(close_code::INVALID, &format!("no JSON: {error}"))
+        }
+    })
+}
+
+/// What a client is told whose message cannot be read.
+fn broken(error: axum::Error) -> End {
+    use tungstenite::Error;
+    match error.into_inner().downcast_ref::<Error>() {
+        Some(Error::Capacity(_)) => close(close_code::SIZE, "a message has 4096 bytes at most"),
+        Some(Error::Utf8(_)) => close(close_code::INVALID, "a text is UTF-8"),
+        Some(Error::Protocol(_)) => close(close_code::PROTOCOL, "this is no WebSocket"),
+        _ => None,
+    }
+}
+
+fn close(code: u16, reason: &str) -> End {
+    // A control frame has room for 123 bytes.
+    let mut end = reason.len().min(120);
+    while !reason.is_char_boundary(end) {
+        end -= 1;
+    }
+    let reason = reason[..end].into();
+    Some(CloseFrame { code, reason })
+}
+
+/// The renderer is gone.
+fn gone(_: watch::error::RecvError) -> End {
+    close(close_code::AWAY, "the render has ended")
+}

@@ -1,0 +1,111 @@
+//! The server: a page, the state of the render, its picture and what is in it, over HTTP and a
+//! WebSocket. It serves what is embedded or rendered, and reads no file.
+//!
+//! It binds to the address that it is told; on any that others can reach, a random token is asked
+//! for. A client that does not read is forgotten after a while: it costs one encoded frame until
+//! then, and nobody waits for it.
+
+mod access;
+mod assets;
+mod connection;
+mod error;
+mod images;
+mod inspect;
+mod live;
+mod query;
+mod routes;
+
+use crate::board::Link;
+use access::Access;
+use std::io;
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use tokio::runtime::Builder;
+use tokio::sync::{Semaphore, watch};
+
+/// Threads that encode images.
+const ENCODERS: usize = 2;
+
+/// What the answers to all clients have in common.
+pub(crate) struct Site {
+    link: Link,
+    access: Access,
+    live: live::Clients,
+    /// Answers at once that take the memory of a film.
+    large: Semaphore,
+}
+
+/// A server that runs.
+#[derive(Debug)]
+pub struct Server {
+    thread: Option<JoinHandle<()>>,
+    url: String,
+    stop: watch::Sender<bool>,
+}
+
+impl Server {
+    /// Serves what `link` leads to on `listener`, in a thread of its own.
+    ///
+    /// Errors: the system gives no thread, no random numbers, or not the listener's address.
+    pub fn start(listener: TcpListener, link: Link) -> io::Result<Self> {
+        listener.set_nonblocking(true)?;
+        let access = Access::new(listener.local_addr()?)?;
+        let url = access.url();
+        let runtime = Builder::new_current_thread()
+            .enable_io()
+            .enable_time()
+            .max_blocking_threads(ENCODERS)
+            .thread_name("encoder")
+            .build()?;
+        let site = Arc::new(Site {
+            link,
+            access,
+            live: live::Clients::default(),
+            large: Semaphore::new(ENCODERS),
+        });
+        let (stop, stopped) = watch::channel(false);
+        let thread = std::thread::Builder::new()
+            .name("server".to_owned())
+            .spawn(move || {
+                runtime.block_on(connection::serve(listener, &site, stopped));
+                // What still encodes is not waited for.
+                runtime.shutdown_background();
+            })?;
+        Ok(Self {
+            thread: Some(thread),
+            url,
+            stop,
+        })
+    }
+
+    /// Where it is, with the token where there is one.
+    pub fn url(&self) -> &str {
+        &self.url
+    }
+}
+
+/// Closes all connections.
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.stop.send_replace(true);
+        if let Some(thread) = self.thread.take() {
+            // A server that failed is gone as well.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A listener on `address`; where its port is taken, on one of the next `more`.
+///
+/// Errors: all of them are taken, or the address is not this machine's.
+pub fn listen(address: SocketAddr, more: u16) -> io::Result<TcpListener> {
+    let mut ports = address.port()..=address.port().saturating_add(more);
+    loop {
+        let port = ports.next().unwrap_or(address.port());
+        match TcpListener::bind(SocketAddr::new(address.ip(), port)) {
+            Err(error) if error.kind() == io::ErrorKind::AddrInUse && !ports.is_empty() => {}
+            bound => return bound,
+        }
+    }
+}

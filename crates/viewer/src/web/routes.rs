@@ -1,0 +1,93 @@
+//! Which request is answered by what, and what all answers have in common.
+
+use super::error::Refusal;
+use super::{Site, assets, images, inspect, live};
+use axum::Router;
+use axum::extract::{Request, State};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use std::sync::Arc;
+
+/// The longest path with its query. Unit: bytes.
+const LONGEST_URI: usize = 2048;
+/// The page is of modules and styles of this server, and of nothing else.
+const POLICY: &str = "default-src 'self'; base-uri 'none'; form-action 'none'; \
+                      frame-ancestors 'none'; object-src 'none'";
+
+/// All answers.
+pub(super) fn router(site: &Arc<Site>) -> Router {
+    Router::new()
+        .route("/", get(assets::index))
+        .route("/assets/{name}", get(assets::asset))
+        .route("/status", get(status))
+        .route("/log", get(log))
+        .route("/live", get(live::live))
+        .route("/render.png", get(images::png))
+        .route("/render.exr", get(images::exr))
+        .route("/pixel", get(inspect::pixel))
+        .route("/sample", get(inspect::sample))
+        .route("/strategies", get(inspect::strategies))
+        .route("/strategies.png", get(images::strategies))
+        .fallback(|| async { Refusal::new(StatusCode::NOT_FOUND, "there is no such page") })
+        .method_not_allowed_fallback(|| async {
+            Refusal::new(StatusCode::METHOD_NOT_ALLOWED, "nothing here but GET")
+        })
+        .layer(from_fn_with_state(Arc::clone(site), guard))
+        .layer(from_fn(dress))
+        .with_state(Arc::clone(site))
+}
+
+/// Refuses what is too long or comes from others.
+async fn guard(State(site): State<Arc<Site>>, request: Request, next: Next) -> Response {
+    let (uri, headers) = (request.uri(), request.headers());
+    let length = uri.path_and_query().map_or(0, |path| path.as_str().len());
+    if length > LONGEST_URI {
+        return Refusal::new(StatusCode::URI_TOO_LONG, "the request is too long").into_response();
+    }
+    let has_body = headers
+        .get(header::CONTENT_LENGTH)
+        .is_some_and(|length| length != "0");
+    if has_body || headers.contains_key(header::TRANSFER_ENCODING) {
+        let message = "requests have no body here";
+        return Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, message).into_response();
+    }
+    if let Err(refusal) = site.access.check(uri, headers) {
+        return refusal.into_response();
+    }
+    next.run(request).await
+}
+
+/// Gives an answer the headers of all.
+async fn dress(request: Request, next: Next) -> Response {
+    let mut response = next.run(request).await;
+    let headers = [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        // The URL may have the token.
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ];
+    for (name, value) in headers {
+        response
+            .headers_mut()
+            .insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+async fn status(State(site): State<Arc<Site>>) -> Result<Response, Refusal> {
+    json(&*site.link.board().status())
+}
+
+async fn log(State(site): State<Arc<Site>>) -> Response {
+    let kind = [(header::CONTENT_TYPE, "text/plain; charset=utf-8")];
+    (kind, site.link.board().log_text()).into_response()
+}
+
+/// An answer in JSON.
+pub(super) fn json(value: &impl serde::Serialize) -> Result<Response, Refusal> {
+    let body = serde_json::to_string(value).map_err(|error| Refusal::bug(error.to_string()))?;
+    Ok(([(header::CONTENT_TYPE, "application/json")], body).into_response())
+}
