@@ -66,8 +66,13 @@ struct Client {
     _place: OwnedSemaphorePermit,
 }
 
-/// Why a conversation ends; without a reason where the client ended it.
-type End = Option<CloseFrame>;
+/// Why a conversation ends.
+enum End {
+    /// The client ended it, or cannot be reached.
+    Gone,
+    /// The server does, for this reason.
+    Told(CloseFrame),
+}
 
 impl Client {
     fn new(socket: WebSocket, site: Arc<Site>, place: OwnedSemaphorePermit) -> Self {
@@ -91,7 +96,7 @@ impl Client {
             // A renderer that is too busy for it shows its next frame anyway.
             let _ = self.site.link.ask(Request::Show(lane));
         }
-        if let Err(Some(reason)) = self.exchange().await {
+        if let Err(End::Told(reason)) = self.exchange().await {
             // Where it cannot be told, the connection is closed all the same.
             let _ = self.socket.send(Message::Close(Some(reason))).await;
             // What is still on its way here would otherwise throw the reason away.
@@ -117,7 +122,7 @@ impl Client {
                 changed = changed_after(&mut self.status, status_due) => {
                     changed.map_err(gone)?;
                     let status = self.status.borrow_and_update().clone();
-                    let text = serde_json::to_string(&*status).map_err(|_| None)?;
+                    let text = serde_json::to_string(&*status).map_err(|_| End::Gone)?;
                     self.send(Message::Text(text.into())).await?;
                     status_due = Instant::now() + STATUS_GAP;
                 }
@@ -127,7 +132,7 @@ impl Client {
     }
 
     async fn send(&mut self, message: Message) -> Result<(), End> {
-        self.socket.send(message).await.map_err(|_| None)
+        self.socket.send(message).await.map_err(|_| End::Gone)
     }
 
     async fn send_frame(
@@ -174,7 +179,7 @@ async fn changed_after(
 /// The command in a message. None: it has none, as the answer to a ping.
 fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command>, End> {
     match message {
-        None | Some(Ok(Message::Close(_))) => Err(None),
+        None | Some(Ok(Message::Close(_))) => Err(End::Gone),
         Some(Ok(Message::Ping(_) | Message::Pong(_))) => Ok(None),
         Some(Ok(Message::Binary(_))) => Err(close(close_code::UNSUPPORTED, "commands are text")),
         Some(Ok(Message::Text(text))) if text.len() > LARGEST_MESSAGE => Err(too_large()),
@@ -200,7 +205,7 @@ fn broken(error: axum::Error) -> End {
         Some(Error::Capacity(_)) => too_large(),
         Some(Error::Utf8(_)) => close(close_code::INVALID, "a text is UTF-8"),
         Some(Error::Protocol(_)) => close(close_code::PROTOCOL, "this is no WebSocket"),
-        _ => None,
+        _ => End::Gone,
     }
 }
 
@@ -215,7 +220,7 @@ fn close(code: u16, reason: &str) -> End {
         end -= 1;
     }
     let reason = reason[..end].into();
-    Some(CloseFrame { code, reason })
+    End::Told(CloseFrame { code, reason })
 }
 
 /// The renderer is gone.
