@@ -99,7 +99,7 @@ export class Renderer {
     for (;;) {
       const status = await this.status();
       if (isIt(status)) return status;
-      assert.ok(Date.now() < end, `this did not come: ${isIt}, but ${JSON.stringify(status)}`);
+      assert.ok(Date.now() < end, `this did not come: ${isIt}; it is ${status.state}, ${JSON.stringify(status.camera)}, ${status.lanes.map(({ generation, passes }) => `${generation}/${passes}`)}`);
       await sleep(100);
     }
   }
