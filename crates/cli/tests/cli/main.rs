@@ -19,4 +19,5 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+mod tev;
 mod tonemap;
