@@ -204,10 +204,12 @@ const INCOMPLETE: &str = "shares would end with passes missing";
 /// Why flags that say what a share is are refused.
 const OWN: &str = "the job sets what each share renders and keeps";
 /// The flags that are refused after `--`, and why.
-const REFUSED: [(&str, &str); 11] = [
+const REFUSED: [(&str, &str); 13] = [
     ("output", SHARED),
     ("stats", SHARED),
     ("replay", SHARED),
+    ("serve", SHARED),
+    ("display-server", SHARED),
     ("time", INCOMPLETE),
     ("noise", INCOMPLETE),
     (

@@ -138,8 +138,10 @@ impl Job<'_> {
             samples_per_pass: self.loaded.scene.film().crop.area(),
             start,
         };
+        let tev = serve::display(self.args.display_server.as_ref(), &name)?;
         let mut show = Show::new(
             server,
+            tev,
             &session,
             StageSettings {
                 name: &name,
@@ -165,6 +167,7 @@ impl Job<'_> {
         let kept = keeper.keep(&session, &header);
         let report = Report::new(name, &session, budget, course);
         let written = self.write(&session, &header, &report);
+        show.leave(&session, self.console);
         kept?;
         written?;
         self.tell(&report, &keeper);

@@ -1,13 +1,14 @@
-//! `bidir render --serve`: a render that others watch.
+//! `bidir render --serve` and `--display-server`: a render that others watch.
 
 use crate::args::ServeAddress;
-use crate::console::print;
+use crate::console::{Console, print};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::FilmHeader;
 use bidir::driver::Session;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
 use std::time::Duration;
+use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
 use viewer::{Desk, Stage, StageSettings, desk};
 
@@ -48,9 +49,19 @@ pub(crate) fn failed(error: &io::Error) -> Failure {
     )
 }
 
+/// Begins to show the render of a scene in tev, where that is asked for.
+pub(crate) fn display(address: Option<&TevAddress>, scene: &str) -> Result<Option<Tev>, Failure> {
+    let tev = address.map(|address| Tev::start(address.clone(), scene));
+    tev.transpose().map_err(|error| {
+        let message = format!("--display-server cannot start: {error}");
+        Failure::new(Exit::RenderFailed, message)
+    })
+}
+
 /// A render that is watched, where somebody asked for it.
 pub(crate) struct Show {
     stage: Option<Stage>,
+    tev: Option<Tev>,
     /// Serves as long as it is there.
     _server: Option<Server>,
 }
@@ -59,12 +70,14 @@ impl Show {
     /// Shows what `session` is going to render.
     pub(crate) fn new(
         server: Option<(Server, Desk)>,
+        tev: Option<Tev>,
         session: &Session<'_>,
         settings: StageSettings<'_>,
     ) -> Self {
         let (server, desk) = server.unzip();
         Self {
             stage: desk.map(|desk| Stage::new(desk, session, settings)),
+            tev,
             _server: server,
         }
     }
@@ -79,12 +92,24 @@ impl Show {
         if let Some(stage) = &mut self.stage {
             stage.add_pass(session, time, header);
         }
+        if let Some(tev) = &mut self.tev {
+            tev.add_pass(session.film());
+        }
     }
 
     /// Shows that all is done.
     pub(crate) fn end(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
         if let Some(stage) = &mut self.stage {
             stage.end(session, header);
+        }
+    }
+
+    /// Waits a moment until tev has the last image; a warning where it has not. When all files are
+    /// written, as it is no part of the render.
+    pub(crate) fn leave(&mut self, session: &Session<'_>, console: Console) {
+        let tev = self.tev.take();
+        if let Some(Err(error)) = tev.map(|tev| tev.end(session.film())) {
+            console.warning(format_args!("--display-server: {error}"));
         }
     }
 }

@@ -2,7 +2,7 @@
 //! waits for anybody who looks at it.
 //!
 //! [`studio`] renders what a browser plays with, a [`Stage`] shows a render that goes its own way; both
-//! put the newest of it on a [`Board`], which [`web`] serves.
+//! put the newest of it on a [`Board`], which [`web`] serves. [`tev`] sends frames to another program.
 
 mod board;
 mod command;
@@ -12,6 +12,7 @@ mod stage;
 mod status;
 
 pub mod studio;
+pub mod tev;
 pub mod web;
 
 pub use board::{Board, Desk, Link, Shown, Subject, desk};

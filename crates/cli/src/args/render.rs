@@ -15,6 +15,7 @@ use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
+use viewer::tev::TevAddress;
 
 /// What is rendered, how, for how long, and where it goes.
 #[derive(Args, Debug)]
@@ -68,6 +69,17 @@ pub(crate) struct RenderArgs {
         help_heading = "Output"
     )]
     pub(crate) serve: Option<ServeAddress>,
+    /// Show the render as it goes in the image viewer tev, which listens there [default port: 14158].
+    ///
+    /// The image is called as the scene. The render never waits for tev, which may be started later,
+    /// but for at most two seconds at the end, so that the last image arrives.
+    #[arg(
+        long,
+        value_name = "HOST[:PORT]",
+        conflicts_with = "replay",
+        help_heading = "Output"
+    )]
+    pub(crate) display_server: Option<TevAddress>,
     /// Repeat one sample instead of rendering, and tell on stdout what it did.
     ///
     /// Prints the vertices of both subpaths, the candidate connections with their strategies,

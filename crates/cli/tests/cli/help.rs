@@ -32,11 +32,11 @@ fn every_flag_is_described() {
     check_flags("", "--help --no-color --version");
     check_flags(
         "render",
-        "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --help --integrator \
+        "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --display-server --help --integrator \
          --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --mis-count --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
          --resume --sampler --samples-per-subpath --seed --serve --shadow-rays --size --spp --stats --strategies --strategy-layers \
-         --strict --threads --time --version",
+         --strict --svg --threads --time --version",
     );
     check_flags(
         "view",

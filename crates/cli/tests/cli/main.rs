@@ -19,6 +19,7 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+mod tev;
 mod tonemap;
 #[cfg(unix)]
 mod view;
