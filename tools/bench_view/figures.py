@@ -4,14 +4,20 @@ import statistics
 
 
 class Pair:
-    """Samples per second without clients and with them, measured one after the other."""
+    """Samples per second and processor seconds per sample, without clients and with them, measured one
+    after the other."""
 
     def __init__(self, alone, watched):
         self.alone = alone
         self.watched = watched
 
-    def ratio(self):
-        return self.watched / self.alone
+    def speed(self):
+        """With clients, of that without."""
+        return self.watched[0] / self.alone[0]
+
+    def cost(self):
+        """The processor time, likewise."""
+        return self.watched[1] / self.alone[1]
 
 
 def median_interval(values):
@@ -33,16 +39,21 @@ def median_interval(values):
 
 def table(pairs, memory, clients):
     """Markdown; `memory` is the server's at first, at last and at most, in bytes."""
-    ratios = [pair.ratio() for pair in pairs]
-    low, high = median_interval(ratios)
     first, last, most = ("%.0f MB" % (size / 1e6) for size in memory)
-    alone = statistics.median(pair.alone for pair in pairs)
-    watched = statistics.median(pair.watched for pair in pairs)
+    alone = statistics.median(pair.alone[0] for pair in pairs)
+    watched = statistics.median(pair.watched[0] for pair in pairs)
     rows = [
         ("clients, one of which never reads", "0", str(clients)),
         ("samples per second, median", "%.0f k" % (alone / 1e3), "%.0f k" % (watched / 1e3)),
-        ("of the pair, median", "1", "%.3f (%.3f to %.3f)" % (statistics.median(ratios), low, high)),
+        ("the same of the pair", "1", interval([pair.speed() for pair in pairs])),
+        ("processor time of the server for a sample, of the pair", "1",
+         interval([pair.cost() for pair in pairs])),
         ("memory of the server: at first; at last, at most", first, "%s, %s" % (last, most)),
     ]
     lines = ["| %d pairs | alone | watched |" % len(pairs), "|---|---:|---:|"]
     return "\n".join(lines + ["| %s | %s | %s |" % row for row in rows])
+
+
+def interval(ratios):
+    """Their median with its bounds."""
+    return "%.3f (%.3f to %.3f)" % (statistics.median(ratios), *median_interval(ratios))

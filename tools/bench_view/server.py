@@ -70,11 +70,20 @@ class View:
         raise Failed("the render makes no passes")
 
     def rate(self, seconds):
-        """Samples per second, of whole passes in about so many seconds."""
+        """Samples per second, and processor seconds per sample, of whole passes in about so many
+        seconds."""
         begin, first, samples = self.pass_end()
+        used = self.processor_time()
         time.sleep(seconds)
         end, last, _ = self.pass_end()
-        return (last - first) * samples / (end - begin)
+        count = (last - first) * samples
+        return count / (end - begin), (self.processor_time() - used) / count
+
+    def processor_time(self):
+        """Of all threads of the server, with what the system does for them. Unit: seconds."""
+        with open("/proc/%d/stat" % self.process.pid, encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def status_memory(self, name):
         with open("/proc/%d/status" % self.process.pid, encoding="ascii") as file:

@@ -29,10 +29,11 @@ class Figures(unittest.TestCase):
         self.assertEqual(figures.median_interval([2, 1]), (1, 2))
 
     def test_the_table_has_medians_of_pairs(self):
-        pairs = [figures.Pair(1e6, 1e6 * ratio) for ratio in (0.9, 0.96, 0.99)]
+        pairs = [figures.Pair((1e6, 1.0), (1e6 * ratio, 1 / ratio)) for ratio in (0.9, 0.96, 0.99)]
         table = figures.table(pairs, (1e8, 2e8, 3e8), 5)
         self.assertIn("| 3 pairs |", table)
         self.assertIn("0.960 (0.900 to 0.990)", table)
+        self.assertIn("1.042 (1.010 to 1.111)", table)
         self.assertIn("| 100 MB | 200 MB, 300 MB |", table)
 
 

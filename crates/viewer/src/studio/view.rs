@@ -135,6 +135,11 @@ impl View {
     /// To `factor` times the distance of the target.
     pub(super) fn dolly(&mut self, factor: f32) -> Result<(), Refusal> {
         self.check_is_flat("dolly")?;
+        if matches!(self.camera, Camera::Orthographic(_)) {
+            return Err(
+                "parallel rays show the same from any distance: `pan` moves them".to_owned(),
+            );
+        }
         if !(factor > 0.0 && factor.is_finite()) {
             return Err("the factor of `dolly` is a positive number".to_owned());
         }
@@ -230,5 +235,75 @@ fn coarse(film: &FilmSettings) -> FilmSettings {
             max: max.map(|edge| edge.div_ceil(COARSENESS)),
         },
         ..film.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bidir::camera::{Orthographic, OrthographicSettings, Spherical, SphericalMapping};
+    use bidir::film::Filter;
+    use bidir::light::{InfiniteLight, Light};
+    use bidir::math::Affine3A;
+    use bidir::scene::SceneBuilder;
+
+    const SIDE: f32 = 30.0;
+
+    fn film() -> FilmSettings {
+        FilmSettings::new([SIDE as u32; 2], Filter::default())
+    }
+
+    /// The view of nothing but a sky.
+    fn view(camera: Camera) -> View {
+        let mut builder = SceneBuilder::new(film());
+        builder.camera(camera);
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        View::new(&builder.build().unwrap())
+    }
+
+    #[test]
+    fn a_camera_that_sees_all_around_can_only_walk() {
+        let (place, size) = (Affine3A::IDENTITY, Vec2::splat(SIDE));
+        let camera = Spherical::new(&place, size, SphericalMapping::EqualArea).unwrap();
+        let mut view = view(Camera::Spherical(camera));
+        assert!(view.orbit(0.1, 0.0).is_err() && view.dolly(2.0).is_err());
+        assert!(view.pan(0.1, 0.0).is_err() && !view.is_preview());
+        let walk = Walk {
+            forward: 1.0,
+            ..Walk::default()
+        };
+        view.walk(walk).unwrap();
+        assert!(view.is_preview() && view.status().moved && view.text().is_some());
+    }
+
+    #[test]
+    fn parallel_rays_are_not_moved_along_themselves() {
+        let settings = OrthographicSettings {
+            world_from_camera: Affine3A::IDENTITY,
+            resolution: Vec2::splat(SIDE),
+            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+        };
+        let camera = Orthographic::new(&settings).unwrap();
+        let mut view = view(Camera::Orthographic(camera));
+        assert!(view.dolly(2.0).is_err());
+        view.orbit(0.1, 0.2).unwrap();
+        view.pan(0.3, 0.0).unwrap();
+        assert!(view.status().moved);
+        view.go_home();
+        assert!(!view.status().moved && view.text().is_none());
+    }
+
+    #[test]
+    fn a_coarse_film_has_all_of_the_crop() {
+        let film = FilmSettings {
+            crop: PixelRect {
+                min: [5, 0],
+                max: [6, 30],
+            },
+            ..film()
+        };
+        let coarse = coarse(&film);
+        assert_eq!(coarse.resolution, [8, 8]);
+        assert_eq!((coarse.crop.min, coarse.crop.max), ([1, 0], [2, 8]));
     }
 }
