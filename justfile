@@ -60,6 +60,11 @@ bench-scaling *FLAGS:
     cargo build --release
     python3 tools/bench_scaling {{FLAGS}}
 
+# What it costs a render to be watched in the browser, also by a client that never reads.
+bench-view *FLAGS:
+    cargo build --release
+    python3 tools/bench_view {{FLAGS}}
+
 # What a render over Ray costs beside the same without, in time and memory; needs the Python package.
 bench-ray *FLAGS:
     python3 tools/bench_ray {{FLAGS}}

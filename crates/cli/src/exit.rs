@@ -43,7 +43,8 @@ impl Exit {
         ),
         (
             Self::InputOutput,
-            "a file cannot be read or written, images differ in size, or a library is missing",
+            "a file cannot be read or written, a port is taken, images differ in size, or a library is \
+             missing",
         ),
         (
             Self::FilmMismatch,

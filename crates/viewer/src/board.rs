@@ -71,11 +71,11 @@ impl Shown {
         let values = self.frame.pixels.as_flattened();
         let mut message = Vec::with_capacity(4 + 4 * (head.len() + values.len()));
         message.extend_from_slice(b"BDF1");
-        head.iter()
-            .for_each(|number| message.extend_from_slice(&number.to_le_bytes()));
-        values
-            .iter()
-            .for_each(|value| message.extend_from_slice(&value.to_le_bytes()));
+        let head = head.into_iter().flat_map(u32::to_le_bytes);
+        message.extend(head);
+        for value in values {
+            message.extend_from_slice(&value.to_le_bytes());
+        }
         message
     }
 }

@@ -95,7 +95,7 @@ impl Exhibit {
 
     fn is_due(&self) -> bool {
         self.last.is_none_or(|last| {
-            let rendered = self.rendered - last.rendered;
+            let rendered = self.rendered.saturating_sub(last.rendered);
             let is_cheap = rendered >= last.cost * RENDERING_PER_FRAME;
             last.at.elapsed() >= SHORTEST_GAP && (self.rendered < YOUTH || is_cheap)
         })

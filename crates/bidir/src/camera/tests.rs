@@ -347,3 +347,37 @@ fn pixels_are_as_wide_as_their_rays_are_apart() {
         assert!((0.9..1.02).contains(&widest), "{name}: {widest}");
     }
 }
+
+#[test]
+fn a_resized_camera_sees_the_same() {
+    let examples = examples().map(|(name, camera, _)| (name, camera));
+    for (name, camera) in examples.into_iter().chain(others()) {
+        let factor = Vec2::new(0.25, 0.5);
+        let small = camera.resized(factor);
+        for raster in [Vec2::new(3.0, 4.0), Vec2::new(31.5, 12.25)] {
+            let u = || Vec2::new(0.3, 0.8);
+            let (ray, of_small) = (
+                camera.sample_ray(raster, u),
+                small.sample_ray(raster * factor, u),
+            );
+            assert!(ray.direction.distance(of_small.direction) < 1e-5, "{name}");
+            assert!(ray.origin.distance(of_small.origin) < 1e-5, "{name}");
+            let expected = camera.pdf_direction(ray.direction) * factor.x * factor.y;
+            check_close(small.pdf_direction(ray.direction), expected, 1e-5, name);
+        }
+    }
+}
+
+#[test]
+fn a_camera_moves_with_its_pose() {
+    let examples = examples().map(|(name, camera, _)| (name, camera));
+    for (name, camera) in examples.into_iter().chain(others()) {
+        let by = Vec3::new(1.0, -2.0, 0.5);
+        let moved = camera.with_pose(camera.pose().shifted(by));
+        let (raster, u) = (Vec2::new(3.0, 4.0), || Vec2::new(0.3, 0.8));
+        let (before, after) = (camera.sample_ray(raster, u), moved.sample_ray(raster, u));
+        assert!((after.origin - before.origin).distance(by) < 1e-5, "{name}");
+        assert!(after.direction.distance(before.direction) < 1e-5, "{name}");
+        assert_eq!(moved.pose(), camera.pose().shifted(by));
+    }
+}

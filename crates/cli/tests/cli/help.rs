@@ -37,6 +37,12 @@ fn every_flag_is_described() {
          --strict --svg --threads --time --version",
     );
     check_flags(
+        "view",
+        "--bind --candidates --crop --cropwindow --help --integrator --isa --lenient --light-choice --light-point \
+         --max-depth --mis --mis-count --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
+         --samples-per-subpath --seed --shadow-rays --size --spp --strategies --strict --threads --version",
+    );
+    check_flags(
         "info",
         "--help --isa --json --lenient --no-color --strict --version",
     );

@@ -21,3 +21,5 @@ mod replay;
 mod signals;
 mod tev;
 mod tonemap;
+#[cfg(unix)]
+mod view;

@@ -55,7 +55,9 @@ impl Saved {
 fn check_name(name: &str) -> Result<(), String> {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '.' | '-' | '_' | '+');
     let is_name = name.len() <= LONGEST && name.chars().all(is_plain) && !name.starts_with('.');
-    let is_exr = name.len() > 4 && name.ends_with(".exr");
+    let is_exr = name
+        .strip_suffix(".exr")
+        .is_some_and(|stem| !stem.is_empty());
     if is_name && is_exr {
         return Ok(());
     }

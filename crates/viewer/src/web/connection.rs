@@ -187,7 +187,7 @@ mod tests {
         let (stream, _) = listener.accept().await.unwrap();
         let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
         let mut stream = Patient::new(stream, place);
-        let writing = tokio::spawn(async move { stream.write_all(&[7; 1 << 24]).await });
+        let writing = tokio::spawn(async move { stream.write_all(&vec![7; 1 << 24]).await });
         let mut taken = Vec::new();
         tokio::io::AsyncReadExt::read_to_end(&mut peer, &mut taken)
             .await

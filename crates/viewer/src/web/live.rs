@@ -15,12 +15,16 @@ use axum::response::Response;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
-use tokio::time::{Instant, MissedTickBehavior, interval, sleep, sleep_until};
+use tokio::time::{Instant, MissedTickBehavior, interval, sleep, sleep_until, timeout};
 
 /// Clients at once.
 const CLIENTS: usize = 64;
 /// The largest message of a client. Unit: bytes.
 const LARGEST_MESSAGE: usize = 4 << 10;
+/// What is larger is not even read: the connection may end before the reason arrives. Unit: bytes.
+const MOST_READ: usize = 64 << 10;
+/// How long a client has to close a conversation that was ended.
+const FAREWELL: Duration = Duration::from_secs(2);
 /// The status is sent no more often.
 const STATUS_GAP: Duration = Duration::from_millis(250);
 /// A client is asked now and then whether it is there.
@@ -47,8 +51,8 @@ pub(super) async fn live(
     let full = |_| Refusal::new(StatusCode::TOO_MANY_REQUESTS, "too many clients watch");
     let place = Arc::clone(&site.live.0).try_acquire_owned().map_err(full)?;
     let upgrade = upgrade
-        .max_message_size(LARGEST_MESSAGE)
-        .max_frame_size(LARGEST_MESSAGE)
+        .max_message_size(MOST_READ)
+        .max_frame_size(MOST_READ)
         .write_buffer_size(0);
     Ok(upgrade.on_upgrade(move |socket| Client::new(socket, site, place).talk()))
 }
@@ -62,8 +66,13 @@ struct Client {
     _place: OwnedSemaphorePermit,
 }
 
-/// Why a conversation ends; without a reason where the client ended it.
-type End = Option<CloseFrame>;
+/// Why a conversation ends.
+enum End {
+    /// The client ended it, or cannot be reached.
+    Gone,
+    /// The server does, for this reason.
+    Told(CloseFrame),
+}
 
 impl Client {
     fn new(socket: WebSocket, site: Arc<Site>, place: OwnedSemaphorePermit) -> Self {
@@ -87,9 +96,12 @@ impl Client {
             // A renderer that is too busy for it shows its next frame anyway.
             let _ = self.site.link.ask(Request::Show(lane));
         }
-        if let Err(Some(reason)) = self.exchange().await {
+        if let Err(End::Told(reason)) = self.exchange().await {
             // Where it cannot be told, the connection is closed all the same.
             let _ = self.socket.send(Message::Close(Some(reason))).await;
+            // What is still on its way here would otherwise throw the reason away.
+            let rest = async { while let Some(Ok(_)) = self.socket.recv().await {} };
+            let _ = timeout(FAREWELL, rest).await;
         }
     }
 
@@ -110,7 +122,7 @@ impl Client {
                 changed = changed_after(&mut self.status, status_due) => {
                     changed.map_err(gone)?;
                     let status = self.status.borrow_and_update().clone();
-                    let text = serde_json::to_string(&*status).map_err(|_| None)?;
+                    let text = serde_json::to_string(&*status).map_err(|_| End::Gone)?;
                     self.send(Message::Text(text.into())).await?;
                     status_due = Instant::now() + STATUS_GAP;
                 }
@@ -120,7 +132,7 @@ impl Client {
     }
 
     async fn send(&mut self, message: Message) -> Result<(), End> {
-        self.socket.send(message).await.map_err(|_| None)
+        self.socket.send(message).await.map_err(|_| End::Gone)
     }
 
     async fn send_frame(
@@ -167,9 +179,10 @@ async fn changed_after(
 /// The command in a message. None: it has none, as the answer to a ping.
 fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command>, End> {
     match message {
-        None | Some(Ok(Message::Close(_))) => Err(None),
+        None | Some(Ok(Message::Close(_))) => Err(End::Gone),
         Some(Ok(Message::Ping(_) | Message::Pong(_))) => Ok(None),
         Some(Ok(Message::Binary(_))) => Err(close(close_code::UNSUPPORTED, "commands are text")),
+        Some(Ok(Message::Text(text))) if text.len() > LARGEST_MESSAGE => Err(too_large()),
         Some(Ok(Message::Text(text))) => command(&text).map(Some),
         Some(Err(error)) => Err(broken(error)),
     }
@@ -189,11 +202,15 @@ fn command(text: &str) -> Result<Command, End> {
 fn broken(error: axum::Error) -> End {
     use tungstenite::Error;
     match error.into_inner().downcast_ref::<Error>() {
-        Some(Error::Capacity(_)) => close(close_code::SIZE, "a message has 4096 bytes at most"),
+        Some(Error::Capacity(_)) => too_large(),
         Some(Error::Utf8(_)) => close(close_code::INVALID, "a text is UTF-8"),
         Some(Error::Protocol(_)) => close(close_code::PROTOCOL, "this is no WebSocket"),
-        _ => None,
+        _ => End::Gone,
     }
+}
+
+fn too_large() -> End {
+    close(close_code::SIZE, "a message has 4096 bytes at most")
 }
 
 fn close(code: u16, reason: &str) -> End {
@@ -203,7 +220,7 @@ fn close(code: u16, reason: &str) -> End {
         end -= 1;
     }
     let reason = reason[..end].into();
-    Some(CloseFrame { code, reason })
+    End::Told(CloseFrame { code, reason })
 }
 
 /// The renderer is gone.

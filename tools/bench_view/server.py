@@ -1,0 +1,178 @@
+"""A `bidir view` that runs, and clients of it."""
+
+import base64
+import json
+import os
+import re
+import selectors
+import signal
+import socket
+import struct
+import subprocess
+import threading
+import time
+import urllib.request
+
+# What may be waited for. Unit: seconds.
+PATIENCE = 60.0
+# How often it is asked whether a pass has ended. Unit: seconds.
+GAP = 0.005
+# In its first seconds a render shows itself more often than later. Unit: seconds.
+YOUTH = 4.0
+
+
+class Failed(Exception):
+    pass
+
+
+class View:
+    """A server, as long as the block lasts."""
+
+    def __init__(self, program, scene, size):
+        command = [program, "view", scene, "--size", size, "--port", "0", "-q"]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.url = self.process.stdout.readline().strip()
+        if not self.url.startswith("http://"):
+            self.process.kill()
+            raise Failed("`%s` printed no URL" % " ".join(command))
+        self.address = re.match(r"http://([^/:]+):(\d+)/", self.url).groups()
+        self.first_memory = 0
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(PATIENCE)
+
+    def lane(self):
+        """The numbers of the render, and the samples of a pass."""
+        with urllib.request.urlopen(self.url + "status", timeout=PATIENCE) as answer:
+            status = json.load(answer)
+        left, top, right, bottom = status["film"]["crop"]
+        return status["lanes"][0]["passes"], (right - left) * (bottom - top)
+
+    def settle(self):
+        """Waits until the render is as it will be."""
+        time.sleep(YOUTH)
+        self.pass_end()
+        self.first_memory = self.status_memory("VmRSS")
+
+    def pass_end(self):
+        """Waits for the end of a pass. Returns when that was, its number, and the samples of one."""
+        before, _ = self.lane()
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            passes, samples = self.lane()
+            if passes > before:
+                return time.monotonic(), passes, samples
+            time.sleep(GAP)
+        raise Failed("the render makes no passes")
+
+    def rate(self, seconds):
+        """Samples per second, of whole passes in about so many seconds."""
+        begin, first, samples = self.pass_end()
+        time.sleep(seconds)
+        end, last, _ = self.pass_end()
+        return (last - first) * samples / (end - begin)
+
+    def status_memory(self, name):
+        with open("/proc/%d/status" % self.process.pid, encoding="ascii") as file:
+            return 1024 * int(re.search(name + r":\s+(\d+) kB", file.read())[1])
+
+    def memory(self):
+        """At first, now and at most. Unit: bytes."""
+        return self.first_memory, self.status_memory("VmRSS"), self.status_memory("VmHWM")
+
+
+def connected(address):
+    """A WebSocket that was welcomed."""
+    host, port = address
+    peer = socket.create_connection((host, int(port)), PATIENCE)
+    key = base64.b64encode(os.urandom(16)).decode()
+    head = ("GET /live HTTP/1.1\r\nHost: %s:%s\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: %s\r\n\r\n" % (host, port, key))
+    peer.sendall(head.encode())
+    answer = b""
+    while not answer.endswith(b"\r\n\r\n"):
+        byte = peer.recv(1)
+        if not byte:
+            raise Failed("the server has closed a connection")
+        answer += byte
+    if b" 101 " not in answer.split(b"\r\n")[0]:
+        raise Failed("no WebSocket: %r" % answer)
+    return peer
+
+
+class Stream:
+    """What a server sends: messages are counted, and thrown away."""
+
+    def __init__(self):
+        self.head = b""
+        self.left = 0
+        self.frames = 0
+
+    def take(self, data):
+        view = memoryview(data)
+        while view:
+            if self.left:
+                eaten = min(self.left, len(view))
+                self.left -= eaten
+                view = view[eaten:]
+                continue
+            self.head += view[:1]
+            view = view[1:]
+            self.begin()
+
+    def begin(self):
+        """Begins a message where all of its head is there."""
+        if len(self.head) < 2:
+            return
+        kind, length = self.head[0] & 15, self.head[1] & 127
+        extra = {126: ">H", 127: ">Q"}.get(length)
+        if extra:
+            if len(self.head) < 2 + struct.calcsize(extra):
+                return
+            length, = struct.unpack_from(extra, self.head, 2)
+        self.frames += kind == 2
+        self.left = length
+        self.head = b""
+
+
+class Clients:
+    """Clients, as long as the block lasts, the last of which never reads."""
+
+    def __init__(self, view, count):
+        self.peers = [connected(view.address) for _ in range(count)]
+        self.streams = [Stream() for _ in self.peers[:-1]]
+        self.ended = threading.Event()
+        self.thread = threading.Thread(target=self.read)
+
+    def __enter__(self):
+        self.thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self.ended.set()
+        self.thread.join()
+        for peer in self.peers:
+            peer.close()
+
+    def read(self):
+        room = bytearray(1 << 20)
+        with selectors.DefaultSelector() as selector:
+            for peer, stream in zip(self.peers, self.streams):
+                selector.register(peer, selectors.EVENT_READ, stream)
+            while not self.ended.is_set():
+                for key, _ in selector.select(0.1):
+                    count = key.fileobj.recv_into(room)
+                    if count:
+                        key.data.take(memoryview(room)[:count])
+                    else:
+                        selector.unregister(key.fileobj)
+                if not self.streams:
+                    self.ended.wait()
+
+    def frames(self):
+        """Frames that were taken, of all clients together."""
+        return sum(stream.frames for stream in self.streams)
