@@ -180,7 +180,7 @@ impl<'a> Figure<'a> {
 /// True where a connection's light vertex is not that of the light subpath.
 fn is_foreign(light: &SubpathReport, s: usize, end: &Place) -> bool {
     let own = s.checked_sub(1).and_then(|i| light.vertices.get(i));
-    own.is_none_or(|z| z.place.position != end.position)
+    own.is_none_or(|z| z.place != *end)
 }
 
 fn joins(s: usize, t: usize, is_foreign: bool) -> String {

@@ -106,16 +106,18 @@ pub(super) fn rectangle(corner: Vec2, size: Vec2) -> Element {
 
 /// A path through each of some lines, in tenths of a pixel.
 pub(super) fn path<'a>(lines: impl Iterator<Item = &'a [Vec2]>) -> Element {
-    let mut steps = String::new();
-    for line in lines {
-        let mut last = Vec2::ZERO;
-        for (i, place) in line.iter().enumerate() {
-            let place = (place * 10.0).round() / 10.0;
-            let step = if i == 0 { "M" } else { "l" };
-            let by = place - last;
-            steps += &format!("{step}{} {}", px(by.x), px(by.y));
-            last = place;
-        }
-    }
+    let steps: String = lines.map(steps).collect();
     element("path").with("d", steps)
+}
+
+/// A line as steps from place to place.
+fn steps(line: &[Vec2]) -> String {
+    let rounded = |place: &Vec2| (place * 10.0).round() / 10.0;
+    let starts = std::iter::once(Vec2::ZERO).chain(line.iter().map(rounded));
+    let steps = starts.zip(line).enumerate().map(|(i, (from, to))| {
+        let letter = if i == 0 { "M" } else { "l" };
+        let step = rounded(to) - from;
+        format!("{letter}{} {}", px(step.x), px(step.y))
+    });
+    steps.collect()
 }

@@ -11,7 +11,7 @@ use bidir::sampler::{Domain, SampleStream, Sampler, SamplerKind};
 use bidir::scene::{Chances, Scene};
 
 /// Rays of the grid from left to right.
-const COLUMNS: usize = 320;
+const COLUMNS: usize = 240;
 /// How often the distance between two rays is halved.
 const HALVINGS: usize = 6;
 /// The least cosine between the normals of one surface.

@@ -30,7 +30,7 @@ pub(super) fn panel(figure: &Figure<'_>, scene: &Scene, frame: &Frame, near: f32
             Some(&figure.eye),
         ),
     ];
-    let dots: Vec<Vec2> = walks.iter().flat_map(|walk| walk.dots()).collect();
+    let dots: Vec<Vec2> = walks.iter().flat_map(Walk::dots).collect();
     let mut labels = Labels::new(frame, &dots);
     let title = text(frame.corner - Vec2::new(0.0, 8.0), frame.view.title).class("heading");
     let outline = path(lines.iter().map(Vec::as_slice)).class("outline");
@@ -81,7 +81,7 @@ fn ray(frame: &Frame, entry: &Entry) -> Option<Element> {
 fn stroke(entry: &Entry) -> [f32; 2] {
     let part = entry.weight.sqrt();
     match entry.fate {
-        Fate::Arrives | Fate::Blocked => [2.0 + 2.0 * part, 0.8 + 0.2 * part],
+        Fate::Arrives | Fate::Blocked => [1.6 + 3.0 * part, 0.7 + 0.3 * part],
         Fate::Untraced | Fate::Found => [1.0 + 2.0 * part, 0.4 + 0.6 * part],
         Fate::Splat | Fate::HiddenSplat => [1.0 + 0.6 * part, 0.4 + 0.3 * part],
     }
