@@ -1,7 +1,7 @@
 //! Where the surface that is seen ends, or bends: what rays of a parallel view find, as lines.
 //!
 //! A grid of rays looks at the scene; between two neighbours that see different surfaces more rays
-//! find the place, and in each cell these places are joined [marching squares]. What lies in front of
+//! find the place, and in each cell these places are joined (marching squares). What lies in front of
 //! a plane is cut away, so that one looks into rooms.
 
 use super::lines::{joined, simplified};
