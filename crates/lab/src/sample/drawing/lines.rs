@@ -56,7 +56,7 @@ fn follow(
     }
 }
 
-/// A line without the places that are within `tolerance` of it [Douglas73].
+/// A line without the places that are within `tolerance` of it \[Douglas73\].
 pub(super) fn simplified(line: &[Vec2], tolerance: f32) -> Vec<Vec2> {
     let mut keeps = vec![false; line.len()];
     let mut parts = vec![(0, line.len().saturating_sub(1))];
