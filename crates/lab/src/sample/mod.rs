@@ -2,7 +2,7 @@
 //! was in their way.
 //!
 //! A [`SampleReport`] is made of a [`Replay`](bidir::driver::Replay) of the driver. It is written as
-//! JSON, as a text (`Display`), and as a picture.
+//! JSON, as a text (`Display`), and as a [picture](SampleReport::drawing).
 
 mod drawing;
 mod report;

@@ -41,10 +41,7 @@ pub(super) fn panel(figure: &Figure<'_>, scene: &Scene, frame: &Frame, near: f32
         .into_iter()
         .chain(traced)
         .filter_map(|entry| ray(frame, entry));
-    let names: Vec<_> = walks
-        .iter()
-        .flat_map(|walk| walk.names(&mut labels))
-        .collect();
+    let names = walks.each_ref().map(|walk| walk.names(&mut labels));
     element("g")
         .child(title)
         .child(rectangle(frame.corner, frame.size()).class("paper"))
@@ -165,7 +162,7 @@ impl<'a> Walk<'a> {
             .children(dots)
     }
 
-    fn names(&self, labels: &mut Labels) -> Vec<Element> {
+    fn names(&self, labels: &mut Labels) -> Element {
         let names = self.vertices.iter().enumerate().map(|(i, at)| {
             let infinite = if self.is_finite[i] { "" } else { " \u{221e}" };
             labels.write(*at, &format!("{}{i}{infinite}", self.letter))
@@ -179,7 +176,7 @@ impl<'a> Walk<'a> {
             );
             group = group.child(labels.write(inside, "escapes"));
         }
-        vec![group]
+        group
     }
 }
 
