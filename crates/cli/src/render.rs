@@ -20,7 +20,7 @@ use bidir::film::Film;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
-use viewer::{Desk, StageSettings};
+use viewer::{Desk, StageSettings, Status};
 
 /// Renders a scene, or repeats one sample.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
@@ -55,7 +55,11 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check(args)?;
-    let server = listener.map(|listener| serve::start(listener, &loaded.warnings));
+    let first = || {
+        let name = args.scene.scene.display().to_string();
+        Status::preparing(&name, loaded.scene.film())
+    };
+    let server = listener.map(|listener| serve::start(listener, first(), &loaded.warnings));
     let server = server.transpose()?;
     Job {
         args,

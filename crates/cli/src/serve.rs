@@ -10,7 +10,7 @@ use std::net::{SocketAddr, TcpListener};
 use std::time::Duration;
 use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
-use viewer::{Desk, Stage, StageSettings, desk};
+use viewer::{Desk, Stage, StageSettings, Status, desk};
 
 /// Takes the address before anything is read.
 pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
@@ -30,9 +30,13 @@ pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failur
     })
 }
 
-/// Starts a server, and tells on stdout where it is.
-pub(crate) fn start(listener: TcpListener, warnings: &[String]) -> Result<(Server, Desk), Failure> {
-    let (desk, link) = desk();
+/// Starts a server that tells `first` until there is more to tell, and tells on stdout where it is.
+pub(crate) fn start(
+    listener: TcpListener,
+    first: Status,
+    warnings: &[String],
+) -> Result<(Server, Desk), Failure> {
+    let (desk, link) = desk(first);
     for warning in warnings {
         desk.board().log(&format!("warning: {warning}"));
     }

@@ -13,6 +13,7 @@ use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::time::Duration;
 use viewer::studio::{Studio, StudioSettings};
+use viewer::{Choices, Status};
 
 /// The port where none is asked for,
 const PORT: u16 = 8080;
@@ -31,7 +32,7 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let settings = settings::resolve(&args.estimator, loaded.settings.clone());
     // Every flag may have influence: estimators are switched.
     loaded.tell_warnings(&args.scene, 0, console)?;
-    let (server, desk) = serve::start(listener, &loaded.warnings)?;
+    let (server, desk) = serve::start(listener, first_status(args, &loaded), &loaded.warnings)?;
     let studio = studio_settings(args, loaded, settings);
     let studio = Studio::open(studio, desk).map_err(|error| serve::failed(&error))?;
     if !args.quiet {
@@ -41,6 +42,16 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     drop(server);
     tell_saved(args, studio.close())?;
     Ok(exit)
+}
+
+/// What is told before the first lane begins.
+fn first_status(args: &ViewArgs, loaded: &LoadedScene) -> Status {
+    let name = args.scene.scene.display().to_string();
+    Status {
+        controls: true,
+        choices: Choices::all(),
+        ..Status::preparing(&name, loaded.scene.film())
+    }
 }
 
 /// Waits for a signal.

@@ -115,9 +115,9 @@ pub struct Board {
 }
 
 impl Board {
-    fn new() -> Self {
+    fn new(first: Status) -> Self {
         Self {
-            status: watch::Sender::default(),
+            status: watch::Sender::new(Arc::new(first)),
             frames: [watch::Sender::default(), watch::Sender::default()],
             log: Mutex::default(),
             start: Instant::now(),
@@ -225,10 +225,12 @@ pub struct Link {
 }
 
 /// A desk with the link to it.
-pub fn desk() -> (Desk, Link) {
+///
+/// `first` is told until the renderer tells more.
+pub fn desk(first: Status) -> (Desk, Link) {
     let (sender, receiver) = sync_channel(REQUESTS);
     let link = Link {
-        board: Arc::new(Board::new()),
+        board: Arc::new(Board::new(first)),
         requests: sender,
         interrupts: Arc::default(),
     };

@@ -67,6 +67,18 @@ impl From<&FilmSettings> for FilmStatus {
     }
 }
 
+impl Status {
+    /// That of a render which has not begun: of the scene file `name` on `film`, to look at only.
+    pub fn preparing(name: &str, film: &FilmSettings) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: scene_name(name),
+            film: film.into(),
+            ..Self::default()
+        }
+    }
+}
+
 /// The name of a scene file without its folders.
 pub(crate) fn scene_name(name: &str) -> String {
     let file = Path::new(name).file_name();

@@ -11,6 +11,14 @@ struct Served {
     url: String,
 }
 
+impl Drop for Served {
+    /// Leaves nothing behind where a test fails.
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
 impl Served {
     fn new(place: &Workplace, arguments: &str) -> Self {
         let mut command = place.command(arguments);

@@ -3,9 +3,9 @@
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
-use bidir_viewer::desk;
 use bidir_viewer::studio::{Studio, StudioSettings};
 use bidir_viewer::web::{Server, listen};
+use bidir_viewer::{Status, desk};
 use serde_json::Value;
 use std::fs;
 use std::io::{Read, Write};
@@ -88,9 +88,12 @@ impl Place {
         let folder = tempfile::tempdir().unwrap();
         let listener: TcpListener = listen(address.parse().unwrap(), 0).unwrap();
         let port = listener.local_addr().unwrap().port();
-        let (desk, link) = desk();
-        let server = Server::start(listener, link).unwrap();
         let (scene, digest) = scene(size);
+        let (desk, link) = desk(Status {
+            controls: true,
+            ..Status::preparing("somewhere/room.pbrt", scene.film())
+        });
+        let server = Server::start(listener, link).unwrap();
         let studio = StudioSettings {
             name: "somewhere/room.pbrt".into(),
             digest,
