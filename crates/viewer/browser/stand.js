@@ -91,14 +91,14 @@ export class Renderer {
   }
 
   /**
-   * The state, once it is as it should be.
+   * The state, once it is as it should be; while lanes are made, those that are told are the ones before.
    * @param {(status: Status) => boolean} isIt
    */
   async until(isIt) {
     const end = Date.now() + PATIENCE;
     for (;;) {
       const status = await this.status();
-      if (isIt(status)) return status;
+      if (status.state !== "preparing" && isIt(status)) return status;
       assert.ok(Date.now() < end, `this did not come: ${isIt}; it is ${status.state}, ${JSON.stringify(status.camera)}, ${status.lanes.map(({ generation, passes }) => `${generation}/${passes}`)}`);
       await sleep(100);
     }

@@ -107,7 +107,10 @@ impl Painter {
         match request {
             Request::Command(command) => {
                 self.obey(command);
-                self.tell();
+                // Lanes that begin anew tell so themselves: those that are there are not what is wanted.
+                if !self.is_stale {
+                    self.tell();
+                }
             }
             Request::Show(lane) => {
                 if let Some(lane) = self.lanes.get_mut(lane.index()) {
