@@ -95,8 +95,8 @@ export class SampleView {
     if (!report) return [];
     const at = (/** @type {Point} */ point) => toScreen(view, point);
     return [
-      ...drawSubpath(report.light, "light-path", "y", at),
-      ...drawSubpath(report.camera, "camera-path", "z", at),
+      ...drawSubpath(report.light, "light-path", "z", at),
+      ...drawSubpath(report.camera, "camera-path", "y", at),
       ...rays(report).flatMap((ray) => {
         const [[x1, y1], [x2, y2]] = [at(ray.from), at(ray.to)];
         const hot = ray.name === this.hot ? " hot" : "";
@@ -127,8 +127,8 @@ export class SampleView {
     const most = greatest(report.candidates);
     const parts = [
       make("p", { class: "hint" }, [title]),
-      ...subpathTable("Camera subpath", report.camera, "z"),
-      ...subpathTable("Light subpath", report.light, "y"),
+      ...subpathTable("Camera subpath", report.camera, "y"),
+      ...subpathTable("Light subpath", report.light, "z"),
       ...this.terms("Connections", report.candidates.map((candidate, i) => ({
         term: candidate,
         name: `candidate-${i}`,
@@ -210,7 +210,7 @@ function drawSubpath(subpath, name, letter, at) {
  * @param {(point: Point) => Point} at
  */
 function drawNames({ camera, light }, at) {
-  return [...names(light, "y"), ...names(camera, "z")].map(({ name, at: point }) => {
+  return [...names(light, "z"), ...names(camera, "y")].map(({ name, at: point }) => {
     const [x, y] = at(point);
     return draw("text", { x: x + 7, y: y - 7 }, [name]);
   });
