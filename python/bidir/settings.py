@@ -197,4 +197,4 @@ class Lvc(_Bidirectional):
 
 @dataclass(frozen=True, kw_only=True)
 class Auto(Lvc):
-    """Path tracing or :class:`Lvc`, by what a short render before the first pass finds."""
+    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, by what a short render before the first pass finds."""

@@ -154,8 +154,9 @@ class Crew:
         try:
             while self._work.turn():
                 self._look()
-                self._assign()
                 self._wait()
+                # Before the turn, which fetches what units gave: workers do not wait for that.
+                self._assign()
         finally:
             for worker in self._workers.values():
                 ray.kill(worker.actor)

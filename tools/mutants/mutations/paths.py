@@ -211,9 +211,23 @@ PATHS = [
     (
         "light images that tell of themselves alone",
         "crates/bidir/src/driver/training/trial.rs",
-        "self.hidden += value * value / (w * (1.0 - w));",
-        "self.hidden += value * value / w;",
+        "let term = value * value / (w * (1.0 - w));",
+        "let term = value * value / w;",
         unit("light_images_tell"),
+    ),
+    (
+        "what pixels differ by taken for variance",
+        "crates/bidir/src/driver/training/trial.rs",
+        "block.differences / block.pairs.max(1.0) + self.splat_variance(i, pixels)",
+        "self.spread(i, pixels)",
+        unit("what_pixels_differ_by"),
+    ),
+    (
+        "what path tracing missed forgotten",
+        "crates/bidir/src/driver/training/plan.rs",
+        "            missed.beside(found)\n",
+        "            0.0 * missed.beside(found)\n",
+        unit("what_light_images_tell_counts"),
     ),
     (
         "correlation of the strategy at hand alone",

@@ -148,8 +148,8 @@ pub(crate) struct EstimatorArgs {
     /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
     ///
     /// path walks from the camera, light from the lights. bdpt joins the two subpaths of a sample; lvc
-    /// joins camera subpaths with light subpaths of many samples; auto tries path and lvc with a few
-    /// samples, and takes what suits the scene.
+    /// joins camera subpaths with light subpaths of many samples; auto tries path, bdpt and lvc with
+    /// a few samples, and takes what suits the scene.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
     /// Which connections between subpaths are traced (bdpt, lvc) [default: all].

@@ -7,6 +7,8 @@ use std::io::{Read, Write};
 pub(super) const PIXELS: usize = 4096;
 /// Bytes of a sum.
 const BYTES: usize = size_of::<i128>();
+/// Pixels that are transposed at a time: in the nearest cache, with rows of whole cache lines.
+const TILE: usize = 64;
 
 /// CRC-32.
 pub(super) fn checksum(bytes: &[u8]) -> u32 {
@@ -46,10 +48,18 @@ pub(super) fn read(
 fn to_planes(sums: &[i128], numbers: usize) -> Vec<u8> {
     let pixels = sums.len() / numbers;
     let mut planes = vec![0; sums.len() * BYTES];
-    for (i, &sum) in sums.iter().enumerate() {
-        let (pixel, first) = (i / numbers, i % numbers * BYTES);
-        for (b, byte) in sum.to_le_bytes().into_iter().enumerate() {
-            planes[(first + b) * pixels + pixel] = byte;
+    for (k, planes) in planes.chunks_exact_mut(pixels * BYTES).enumerate() {
+        for first in (0..pixels).step_by(TILE) {
+            let end = pixels.min(first + TILE);
+            let mut tile = [[0; BYTES]; TILE];
+            for (bytes, pixel) in tile.iter_mut().zip(first..end) {
+                *bytes = sums[pixel * numbers + k].to_le_bytes();
+            }
+            for (b, plane) in planes.chunks_exact_mut(pixels).enumerate() {
+                for (byte, bytes) in plane[first..end].iter_mut().zip(&tile) {
+                    *byte = bytes[b];
+                }
+            }
         }
     }
     planes
@@ -58,9 +68,21 @@ fn to_planes(sums: &[i128], numbers: usize) -> Vec<u8> {
 /// The inverse of [`to_planes`].
 fn from_planes(planes: &[u8], [count, numbers]: [usize; 2], sums: &mut Vec<i128>) {
     let pixels = count / numbers;
-    sums.extend((0..count).map(|i| {
-        let (pixel, first) = (i / numbers, i % numbers * BYTES);
-        let bytes = std::array::from_fn(|b| planes[(first + b) * pixels + pixel]);
-        i128::from_le_bytes(bytes)
-    }));
+    let begin = sums.len();
+    sums.resize(begin + count, 0);
+    let sums = &mut sums[begin..];
+    for (k, planes) in planes.chunks_exact(pixels * BYTES).enumerate() {
+        for first in (0..pixels).step_by(TILE) {
+            let end = pixels.min(first + TILE);
+            let mut tile = [[0; BYTES]; TILE];
+            for (b, plane) in planes.chunks_exact(pixels).enumerate() {
+                for (bytes, &byte) in tile.iter_mut().zip(&plane[first..end]) {
+                    bytes[b] = byte;
+                }
+            }
+            for (&bytes, pixel) in tile.iter().zip(first..end) {
+                sums[pixel * numbers + k] = i128::from_le_bytes(bytes);
+            }
+        }
+    }
 }

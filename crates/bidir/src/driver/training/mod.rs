@@ -142,6 +142,7 @@ impl Training {
                 ..self.connections(settings.lvc)
             },
             first: self.samples,
+            pixels: u64::MAX,
         }
     }
 

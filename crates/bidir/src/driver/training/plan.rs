@@ -5,7 +5,7 @@
 //! ones do: V / (m² + ε), with m the mean over all plans and ε a hundredth of the square of the image's.
 
 use super::probe::Probe;
-use super::trial::{BLOCKS, Trial};
+use super::trial::{self, BLOCKS, Trial};
 use super::{Settings, Training};
 use crate::integrator::{BlindSpot, IntegratorKind, SamplesPerSubpath, blind_spots};
 use crate::path::{Connections, LightPointChoice, MisHeuristic, PathRoulette};
@@ -31,6 +31,12 @@ const fn path(start: u32) -> Plan {
     }
 }
 
+const BDPT: Plan = Plan {
+    integrator: IntegratorKind::Bdpt,
+    roulette: PathRoulette::Albedo { start: 0 },
+    samples_per_subpath: SamplesPerSubpath::power_of_two(0),
+};
+
 const fn lvc(exponent: u32) -> Plan {
     Plan {
         integrator: IntegratorKind::Lvc,
@@ -39,8 +45,11 @@ const fn lvc(exponent: u32) -> Plan {
     }
 }
 
+/// Path tracing with the roulette of those that have light images.
+const ALIKE: Plan = path(0);
+
 /// All plans.
-const PLANS: [Plan; 5] = [path(1), path(2), lvc(0), lvc(1), lvc(2)];
+const PLANS: [Plan; 7] = [ALIKE, path(1), path(2), BDPT, lvc(0), lvc(1), lvc(2)];
 
 impl Default for Plan {
     /// What training is done for.
@@ -74,7 +83,7 @@ impl Plan {
 
     /// True where light subpaths are connected to the lens.
     fn has_light_images(&self) -> bool {
-        self.integrator == IntegratorKind::Lvc
+        self.integrator != IntegratorKind::Path
     }
 
     /// True where it makes all light paths that the settings ask for, and misses none that another
@@ -134,6 +143,7 @@ pub(super) fn try_all(
             settings: &settings,
             connections: plan.connections(&settings, training),
             first,
+            pixels: trial::PIXELS,
         };
         (plan, Trial::run(&probe, training.mean_luminance))
     };
@@ -148,35 +158,117 @@ pub(super) fn best(pixels: u64, mis: MisHeuristic, tried: &[Tried]) -> Plan {
     best.map_or_else(Plan::default, |(plan, _)| plan)
 }
 
-/// The product of variance and cost of each, relative to those of others. Path tracing has at least the
-/// variance that the light images of others tell of.
+/// The product of variance and cost of each, relative to those of others.
 fn products(pixels: f64, mis: MisHeuristic, tried: &[Tried]) -> Vec<f64> {
-    let means: Vec<_> = (0..BLOCKS).map(|i| mean(i, pixels, tried)).collect();
-    let whole = means.iter().sum::<f64>() / BLOCKS as f64;
-    let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
-    let sum = |variance: &dyn Fn(usize) -> f64| -> f64 {
-        let relative = |i: usize| variance(i) / (means[i] * means[i] + least);
-        (0..BLOCKS).map(relative).sum()
-    };
-    let hidden = |trial: &Trial| sum(&|i| trial.hidden_variance(i, pixels, means[i]));
-    let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
-    let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
-    let hidden: Vec<_> = with_light.map(|(_, trial)| hidden(trial)).collect();
-    let hidden = hidden.iter().sum::<f64>() / hidden.len().max(1) as f64;
+    let film = Film::new(pixels, tried);
+    let missed = Missed::new(&film, mis, tried);
     let product = |(plan, trial): &Tried| {
-        let found = sum(&|i| trial.variance(i, pixels));
-        let variance = if plan.has_light_images() {
-            found
+        let found = film.sum(|i| trial.variance(i, pixels));
+        let missed = if plan.has_light_images() {
+            0.0
         } else {
-            found.max(hidden)
+            missed.beside(found)
         };
-        variance * trial.cost(plan.integrator)
+        (found + missed) * trial.cost(plan.integrator)
     };
     tried.iter().map(product).collect()
 }
 
-/// The mean of a pixel of block number `i`, by all plans.
-fn mean(i: usize, pixels: f64, tried: &[Tried]) -> f64 {
-    let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
-    means.sum::<f64>() / tried.len() as f64
+/// What variances are relative to.
+struct Film {
+    pixels: f64,
+    /// The mean of a pixel of each block, by all plans.
+    means: Vec<f64>,
+    /// ε.
+    least: f64,
+}
+
+impl Film {
+    fn new(pixels: f64, tried: &[Tried]) -> Self {
+        let mean = |i| {
+            let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
+            means.sum::<f64>() / tried.len() as f64
+        };
+        let means: Vec<f64> = (0..BLOCKS).map(mean).collect();
+        let whole = means.iter().sum::<f64>() / BLOCKS as f64;
+        let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
+        Self {
+            pixels,
+            means,
+            least,
+        }
+    }
+
+    /// The sum over the blocks of what `variance` tells of each.
+    fn sum(&self, variance: impl Fn(usize) -> f64) -> f64 {
+        let relative = |(i, mean): (usize, &f64)| variance(i) / (mean * mean + self.least);
+        self.means.iter().enumerate().map(relative).sum()
+    }
+}
+
+/// The variance of path tracing that its samples missed and light images tell of.
+///
+/// What they tell is a bound where walks end as theirs do ([`ALIKE`]). The part of it that the samples
+/// of that plan missed is missing in all path tracing.
+#[derive(Default)]
+struct Missed {
+    /// Of [`ALIKE`].
+    missed: f64,
+    /// What its samples found.
+    found: f64,
+}
+
+impl Missed {
+    fn new(film: &Film, mis: MisHeuristic, tried: &[Tried]) -> Self {
+        let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
+        let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
+        let hidden = with_light
+            .map(|(_, trial)| film.sum(|i| trial.hidden_spread(i, film.pixels, film.means[i])));
+        // The least of several says less than it should rather than more.
+        let hidden = hidden.reduce(f64::min).unwrap_or(0.0);
+        let alike = tried.iter().find(|(plan, _)| *plan == ALIKE);
+        let of_alike = |(_, trial): &Tried| Self {
+            missed: (hidden - film.sum(|i| trial.spread(i, film.pixels))).max(0.0),
+            found: film.sum(|i| trial.variance(i, film.pixels)),
+        };
+        alike.map(of_alike).unwrap_or_default()
+    }
+
+    /// That of a plan whose samples found so much.
+    fn beside(&self, found: f64) -> f64 {
+        if self.found > 0.0 {
+            self.missed * found / self.found
+        } else {
+            self.missed
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
+    fn chosen(splats: &[[f64; 2]]) -> Plan {
+        let tried = [
+            (ALIKE, Trial::of(&[[1.0, 1.1]], &[])),
+            (path(1), Trial::of(&[[1.0, 1.1]], &[])),
+            (BDPT, Trial::of(&[[0.0, 2.0]], splats)),
+        ];
+        best(BLOCKS as u64, MisHeuristic::Balance, &tried)
+    }
+
+    #[test]
+    fn what_light_images_tell_counts_against_path_tracing() {
+        assert_eq!(chosen(&[]), ALIKE);
+        // Light images of what path tracing makes as often do not.
+        assert_eq!(chosen(&[[0.1, 0.5]; 4]), ALIKE);
+        assert_eq!(chosen(&[[1.0, 0.999]; 4]), BDPT);
+    }
+
+    #[test]
+    fn nothing_to_see_is_traced_from_the_camera() {
+        let tried = PLANS.map(|plan| (plan, Trial::of(&[[0.0; 2]], &[])));
+        assert_eq!(best(1, MisHeuristic::Balance, &tried), ALIKE);
+    }
 }

@@ -18,6 +18,8 @@ pub(super) struct Probe<'a> {
     pub(super) connections: Connections<'a>,
     /// The first sample's number.
     pub(super) first: u64,
+    /// After so many samples their pixels come again.
+    pub(super) pixels: u64,
 }
 
 /// What looks at a workspace, after a sample or after a light subpath that samples share.
@@ -73,9 +75,10 @@ impl Probe<'_> {
     pub(super) fn sample(&self, number: u64) -> Sample {
         let crop = self.scene.film().crop;
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
+        let place = self.first + (number - self.first) % self.pixels;
         Sample {
             pass: 0,
-            pixel: crop.pixel((number.wrapping_mul(STRIDE) % crop.area()) as usize),
+            pixel: crop.pixel((place.wrapping_mul(STRIDE) % crop.area()) as usize),
             camera: sampler.stream(Domain::TrainingCamera, number, 0),
             light: sampler.stream(Domain::TrainingLight, 0, number),
         }

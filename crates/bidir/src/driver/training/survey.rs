@@ -38,6 +38,7 @@ impl Survey {
             settings,
             connections: Connections::ONE_SUBPATH,
             first: 0,
+            pixels: u64::MAX,
         };
         let shares: Vec<_> = (0..SAMPLES / SHARE)
             .into_par_iter()

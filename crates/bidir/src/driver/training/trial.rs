@@ -1,12 +1,13 @@
 //! What the samples of a plan find: their variance, block by block of the film, and their cost.
 //!
-//! **Variance** is that of a pixel in one pass, in the mean over a block. For a block of B pixels, n
-//! samples, of which n_b fell into the block and have the variance v, and light images with the sum of
-//! squares Q in it, of P samples in a pass,
+//! **Variance** is that of a pixel in one pass, in the mean over a block. Samples come in pairs (a, b) of
+//! one pixel, so that what pixels differ by is no variance. For a block of B pixels with n_b of the n / 2
+//! pairs, and light images with the sum of squares Q in it, of P samples in a pass,
 //!
-//! V = v + Q / (n P B),
+//! V = Σ (a - b)² / (2 n_b) + Q / (n P B),
 //!
-//! as the light images of a pass are many, each of them rare.
+//! as the light images of a pass are many, each of them rare. The *spread* has the samples' variance within
+//! the block in place of the first part, which is V and the variance of the pixels' means.
 //!
 //! **Hidden variance.** A few thousand samples of path tracing may miss the bright rare paths that make
 //! most of its variance. Light images find them: with f the contribution of a path, p the density of the
@@ -16,14 +17,16 @@
 //!
 //! (1 / B) ∫ f² / q ≥ (1 / B) ∫ f² w / (P p (1 - w)) = Σ v² / (w (1 - w)) / (n P B)
 //!
-//! with the sum over the light images of n samples that landed in the block. Other heuristics than the
+//! with the sum over the light images of n samples that landed in the block, without its largest term, as one
+//! alone may be most of it, and tells little: less the square of the block's
+//! mean it is a bound of the spread, where walks end with the same probabilities. Other heuristics than the
 //! balance heuristic do not tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
-//! every run. They fit the times of ten scenes to 6 % (docs/performance.md).
+//! every run. They fit the times of 25 scenes to 5 % (docs/performance.md).
 
 use super::Settings;
-use super::probe::{Probe, Witness};
+use super::probe::{GROUP, Probe, Witness};
 use crate::film::PixelRect;
 use crate::integrator::{IntegratorKind, Sample, Workspace};
 use crate::path::PathContext;
@@ -31,8 +34,13 @@ use crate::spectrum::{Spectrum, luminance};
 use crate::stats::{RayCounts, Stats};
 use rayon::prelude::*;
 
+#[cfg(test)]
+mod tests;
+
 /// The groups that a plan is tried with.
 const GROUPS: u64 = 32;
+/// The samples with pixels of their own: half of them.
+pub(super) const PIXELS: u64 = GROUPS * GROUP / 2;
 /// Blocks along each side of the film.
 const SIDE: usize = 16;
 /// The blocks.
@@ -43,12 +51,14 @@ const MOST_WEIGHT: f64 = 0.9999;
 
 /// What a ray of a camera walk takes where its vertices are connected with shared light subpaths.
 const CONNECTED_CAMERA_RAY: f64 = 1.5;
+/// What a ray of a light walk takes, with the light that it begins on.
+const LIGHT_RAY: f64 = 1.5;
 /// What a connection ray takes, without what it connects.
-const CONNECTION_RAY: f64 = 0.4;
+const CONNECTION_RAY: f64 = 0.5;
 /// What evaluating a connection takes.
-const CANDIDATE: f64 = 0.3;
+const CANDIDATE: f64 = 0.4;
 /// What a light image takes, with its ray.
-const LIGHT_IMAGE: f64 = 1.1;
+const LIGHT_IMAGE: f64 = 0.8;
 
 /// What the samples of a plan found in a block.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,10 +66,13 @@ struct Block {
     samples: f64,
     own: f64,
     own_squares: f64,
+    pairs: f64,
+    /// Σ (a - b)² / 2 over pairs of samples of one pixel.
+    differences: f64,
     splats: f64,
     splat_squares: f64,
-    /// Σ v² / (w (1 - w)).
-    hidden: f64,
+    /// Σ v² / (w (1 - w)), and the largest term of it.
+    hidden: [f64; 2],
 }
 
 impl Block {
@@ -69,7 +82,9 @@ impl Block {
         self.splat_squares += value * value;
         let w = weight.min(MOST_WEIGHT);
         if w > 0.0 {
-            self.hidden += value * value / (w * (1.0 - w));
+            let term = value * value / (w * (1.0 - w));
+            self.hidden[0] += term;
+            self.hidden[1] = self.hidden[1].max(term);
         }
     }
 }
@@ -77,6 +92,8 @@ impl Block {
 /// What the samples of a plan found.
 pub(super) struct Trial {
     blocks: Vec<Block>,
+    /// The block and the value of each sample, in order.
+    values: Vec<(usize, f64)>,
     pub(super) stats: Stats,
 }
 
@@ -84,6 +101,7 @@ impl Default for Trial {
     fn default() -> Self {
         Self {
             blocks: vec![Block::default(); BLOCKS],
+            values: Vec::new(),
             stats: Stats::default(),
         }
     }
@@ -105,28 +123,19 @@ fn y(context: &PathContext<'_>, value: Spectrum) -> f64 {
 
 impl Witness for Trial {
     fn light(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
-        let film = context.scene.film();
-        for splat in &workspace.splats {
-            let Some((index, weight)) = film.pick_pixel(splat.place) else {
-                continue;
-            };
-            let value = y(context, splat.contribution.value) * f64::from(weight);
-            let block = &mut self.blocks[block(&film.crop, index as u64)];
-            block.add_splat(value, f64::from(splat.contribution.weight));
-        }
+        self.add_splats(context, workspace);
     }
 
     fn sample(&mut self, context: &PathContext<'_>, sample: &Sample, workspace: &Workspace) {
+        // Those of a light subpath of its own.
+        self.add_splats(context, workspace);
         let crop = &context.scene.film().crop;
         let [x, top] = sample.pixel.map(i64::from);
         let Some(index) = crop.index(x, top) else {
             return;
         };
         let value = y(context, workspace.value);
-        let block = &mut self.blocks[block(crop, index as u64)];
-        block.samples += 1.0;
-        block.own += value;
-        block.own_squares += value * value;
+        self.values.push((block(crop, index as u64), value));
     }
 }
 
@@ -150,10 +159,39 @@ impl Trial {
             })
             .collect();
         let mut all = Self::default();
-        for group in &groups {
+        for group in groups {
             all += group;
         }
+        all.sum_values();
         all
+    }
+
+    /// Both halves of the samples have the same pixels in the same order.
+    fn sum_values(&mut self) {
+        for &(block, value) in &self.values {
+            let block = &mut self.blocks[block];
+            block.samples += 1.0;
+            block.own += value;
+            block.own_squares += value * value;
+        }
+        let (first, second) = self.values.split_at(self.values.len() / 2);
+        for (&(block, a), &(_, b)) in first.iter().zip(second) {
+            let block = &mut self.blocks[block];
+            block.pairs += 1.0;
+            block.differences += 0.5 * (a - b) * (a - b);
+        }
+    }
+
+    fn add_splats(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
+        let film = context.scene.film();
+        for splat in &workspace.splats {
+            let Some((index, weight)) = film.pick_pixel(splat.place) else {
+                continue;
+            };
+            let value = y(context, splat.contribution.value) * f64::from(weight);
+            let block = &mut self.blocks[block(&film.crop, index as u64)];
+            block.add_splat(value, f64::from(splat.contribution.weight));
+        }
     }
 
     /// The mean of a pixel of block number `i` of a film of `pixels`.
@@ -166,16 +204,27 @@ impl Trial {
     /// The variance of a pixel of it in one pass.
     pub(super) fn variance(&self, i: usize, pixels: f64) -> f64 {
         let block = &self.blocks[i];
-        let (count, of_block) = (block.samples.max(2.0), pixels / BLOCKS as f64);
-        let squares = block.own_squares - block.own * block.own / count;
-        squares / (count - 1.0) + block.splat_squares / (self.samples() * pixels * of_block)
+        block.differences / block.pairs.max(1.0) + self.splat_variance(i, pixels)
     }
 
-    /// A lower bound of the variance of path tracing there, by what the light images of this trial
-    /// found.
-    pub(super) fn hidden_variance(&self, i: usize, pixels: f64, mean: f64) -> f64 {
+    /// The same with the variance of its pixels' means.
+    pub(super) fn spread(&self, i: usize, pixels: f64) -> f64 {
+        let block = &self.blocks[i];
+        let count = block.samples.max(2.0);
+        let squares = block.own_squares - block.own * block.own / count;
+        squares / (count - 1.0) + self.splat_variance(i, pixels)
+    }
+
+    fn splat_variance(&self, i: usize, pixels: f64) -> f64 {
         let of_block = pixels / BLOCKS as f64;
-        let square = self.blocks[i].hidden / (self.samples() * pixels * of_block);
+        self.blocks[i].splat_squares / (self.samples() * pixels * of_block)
+    }
+
+    /// A lower bound of the spread of path tracing there, by what the light images of this trial found.
+    pub(super) fn hidden_spread(&self, i: usize, pixels: f64, mean: f64) -> f64 {
+        let of_block = pixels / BLOCKS as f64;
+        let [sum, largest] = self.blocks[i].hidden;
+        let square = (sum - largest) / (self.samples() * pixels * of_block);
         (square - mean * mean).max(0.0)
     }
 
@@ -195,77 +244,22 @@ impl Trial {
             connection,
             light_image,
         } = self.stats.rays;
-        let walked = camera as f64 * camera_ray + light as f64;
+        let walked = camera as f64 * camera_ray + light as f64 * LIGHT_RAY;
         let connected = connection as f64 * CONNECTION_RAY;
         let evaluated = self.stats.candidates as f64 * CANDIDATE;
         (walked + connected + evaluated + light_image as f64 * LIGHT_IMAGE) / self.samples()
     }
 }
 
-impl std::ops::AddAssign<&Self> for Trial {
-    fn add_assign(&mut self, other: &Self) {
+impl std::ops::AddAssign for Trial {
+    fn add_assign(&mut self, other: Self) {
         self.stats += &other.stats;
+        self.values.extend(other.values);
         for (sum, block) in self.blocks.iter_mut().zip(&other.blocks) {
-            sum.samples += block.samples;
-            sum.own += block.own;
-            sum.own_squares += block.own_squares;
             sum.splats += block.splats;
             sum.splat_squares += block.splat_squares;
-            sum.hidden += block.hidden;
+            sum.hidden[0] += block.hidden[0];
+            sum.hidden[1] = sum.hidden[1].max(block.hidden[1]);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Three paths of known contribution, and densities of both ways to make them: what light images
-    /// tell is Σ f² / q.
-    #[test]
-    fn light_images_tell_of_the_second_moment_of_path_tracing() {
-        let pixels = BLOCKS as f64;
-        let paths = [(3.0, 0.25, 1e-4), (1.0, 0.5, 0.3), (2.0, 0.125, 0.02)];
-        let mut trial = Trial::default();
-        let n = 800.0;
-        trial.stats.samples = 800;
-        for (f, p, q) in paths {
-            let w = pixels * p / (pixels * p + q);
-            for _ in 0..(n * p) as u32 {
-                trial.blocks[7].add_splat(w * f / p, w);
-            }
-        }
-        let exact: f64 = paths.iter().map(|(f, _, q)| f * f / q).sum();
-        let told = trial.hidden_variance(7, pixels, 0.0);
-        // Of the first path 1 - w is less than what weights can tell.
-        let least: f64 = paths[1..].iter().map(|(f, _, q)| f * f / q).sum();
-        assert!(told > least && told < exact, "{least} {told} {exact}");
-        trial.blocks[7].add_splat(0.0, 0.0);
-        assert!((trial.hidden_variance(7, pixels, 0.0) - told).abs() < 1e-9);
-        let told_of = |(f, p, q): (f64, f64, f64)| {
-            let w = pixels * p / (pixels * p + q);
-            let known = w.min(MOST_WEIGHT);
-            f * f * w * w / (pixels * p * known * (1.0 - known))
-        };
-        let expected: f64 = paths.into_iter().map(told_of).sum();
-        assert!((told / expected - 1.0).abs() < 1e-9, "{told} {expected}");
-        assert!(trial.hidden_variance(7, pixels, 1e9) <= 0.0);
-    }
-
-    #[test]
-    fn blocks_divide_the_crop() {
-        let crop = PixelRect {
-            min: [3, 5],
-            max: [3 + 40, 5 + 20],
-        };
-        let mut counts = vec![0; BLOCKS];
-        for index in 0..crop.area() {
-            counts[block(&crop, index)] += 1;
-        }
-        assert_eq!(counts.iter().sum::<u64>(), crop.area());
-        assert!(
-            counts.iter().all(|&count| (2..=6).contains(&count)),
-            "{counts:?}"
-        );
     }
 }
