@@ -5,6 +5,8 @@ use std::io::{Read, Write};
 
 /// Pixels of a block.
 pub(super) const PIXELS: usize = 4096;
+/// How many bytes a byte of DEFLATE stands for at most: two bits can copy 258.
+pub(super) const MOST_EXPANSION: usize = 1032;
 /// Bytes of a sum.
 const BYTES: usize = size_of::<i128>();
 /// Pixels that are transposed at a time: in the nearest cache, with rows of whole cache lines.
@@ -17,31 +19,38 @@ pub(super) fn checksum(bytes: &[u8]) -> u32 {
     crc.sum()
 }
 
-/// Appends a block of pixels with `numbers` sums each.
-pub(super) fn write(sums: &[i128], numbers: usize, bytes: &mut Vec<u8>) {
-    let planes = to_planes(sums, numbers);
-    let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
-    let packed = encoder.write_all(&planes).and_then(|()| encoder.finish());
-    let packed = packed.expect("writing to memory cannot fail");
-    bytes.extend_from_slice(&(packed.len() as u32).to_le_bytes());
-    bytes.extend_from_slice(&checksum(&planes).to_le_bytes());
-    bytes.extend_from_slice(&packed);
+/// A block of a file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Packed<'a> {
+    /// Of what is unpacked.
+    pub(super) checksum: u32,
+    /// The planes, deflated.
+    pub(super) bytes: &'a [u8],
 }
 
-/// Appends the `count` sums of a block, `numbers` for each pixel. None: it is damaged.
-pub(super) fn read(
-    packed: &[u8],
-    expected: u32,
-    [count, numbers]: [usize; 2],
-    sums: &mut Vec<i128>,
-) -> Option<()> {
-    let mut planes = Vec::new();
-    let length = count * BYTES;
-    let unpacked = DeflateDecoder::new(packed)
-        .take(length as u64 + 1)
-        .read_to_end(&mut planes);
-    let fine = unpacked.ok()? == length && checksum(&planes) == expected;
-    fine.then(|| from_planes(&planes, [count, numbers], sums))
+/// The bytes of a block of pixels with `numbers` sums each.
+pub(super) fn write(sums: &[i128], numbers: usize) -> Vec<u8> {
+    let planes = to_planes(sums, numbers);
+    let mut encoder = DeflateEncoder::new(vec![0; 8], Compression::fast());
+    let packed = encoder.write_all(&planes).and_then(|()| encoder.finish());
+    let mut block = packed.expect("writing to memory cannot fail");
+    let length = block.len() as u32 - 8;
+    block[..4].copy_from_slice(&length.to_le_bytes());
+    block[4..8].copy_from_slice(&checksum(&planes).to_le_bytes());
+    block
+}
+
+impl Packed<'_> {
+    /// Unpacks the `sums` of a block, `numbers` for each pixel. None: it is damaged.
+    pub(super) fn read(&self, numbers: usize, sums: &mut [i128]) -> Option<()> {
+        let mut planes = Vec::new();
+        let length = size_of_val(sums);
+        let unpacked = DeflateDecoder::new(self.bytes)
+            .take(length as u64 + 1)
+            .read_to_end(&mut planes);
+        let fine = unpacked.ok()? == length && checksum(&planes) == self.checksum;
+        fine.then(|| from_planes(&planes, numbers, sums))
+    }
 }
 
 /// Byte b of sum k of every pixel is in plane k · [`BYTES`] + b.
@@ -66,11 +75,8 @@ fn to_planes(sums: &[i128], numbers: usize) -> Vec<u8> {
 }
 
 /// The inverse of [`to_planes`].
-fn from_planes(planes: &[u8], [count, numbers]: [usize; 2], sums: &mut Vec<i128>) {
-    let pixels = count / numbers;
-    let begin = sums.len();
-    sums.resize(begin + count, 0);
-    let sums = &mut sums[begin..];
+fn from_planes(planes: &[u8], numbers: usize, sums: &mut [i128]) {
+    let pixels = sums.len() / numbers;
     for (k, planes) in planes.chunks_exact(pixels * BYTES).enumerate() {
         for first in (0..pixels).step_by(TILE) {
             let end = pixels.min(first + TILE);

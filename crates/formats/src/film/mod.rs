@@ -41,6 +41,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use bidir::driver::Resources;
 use bidir::film::{Film, Layers};
+use block::Packed;
+use rayon::prelude::*;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -105,9 +107,9 @@ pub fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
     bytes.extend_from_slice(json.as_bytes());
     let checksum = block::checksum(&bytes);
     bytes.extend_from_slice(&checksum.to_le_bytes());
-    for sums in film.sums().chunks(block::PIXELS * numbers) {
-        block::write(sums, numbers, &mut bytes);
-    }
+    let blocks = film.sums().par_chunks(block::PIXELS * numbers);
+    let blocks: Vec<_> = blocks.map(|sums| block::write(sums, numbers)).collect();
+    bytes.extend(blocks.into_iter().flatten());
     bytes.extend_from_slice(END);
     bytes
 }
@@ -145,25 +147,36 @@ pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
     Ok(FilmFile { header, film })
 }
 
-/// Unpacks the blocks of `area` pixels.
+/// Unpacks the blocks of `area` pixels, on all threads.
 fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> {
-    // A block that is not there fails before memory is taken for it.
-    let mut sums = Vec::new();
-    let mut first = 0;
-    while first < area {
-        let packed = take_u32(rest)? as usize;
-        let checksum = take_u32(rest)?;
-        let bytes = take(rest, packed)?;
-        let pixels = (area - first).min(block::PIXELS as u64);
-        let count = pixels as usize * layers.sums();
-        block::read(bytes, checksum, [count, layers.sums()], &mut sums).ok_or_else(|| {
-            broken(format!(
-                "damaged: the checksum of the pixels from {first} on is wrong"
-            ))
-        })?;
-        first += pixels;
+    let blocks = (0..area.div_ceil(block::PIXELS as u64)).map(|_| take_block(rest));
+    let blocks = blocks.collect::<Result<Vec<_>>>()?;
+    let numbers = layers.sums();
+    let count = area as usize * numbers;
+    // Memory is taken only where there is enough to fill it.
+    let packed: usize = blocks.iter().map(|packed| packed.bytes.len()).sum();
+    if packed.saturating_mul(block::MOST_EXPANSION) < count * size_of::<i128>() {
+        return Err(broken("damaged: it is shorter than any film of its size"));
     }
-    Ok(sums)
+    let mut sums = vec![0; count];
+    let unpacked = sums.par_chunks_mut(block::PIXELS * numbers).zip(&blocks);
+    let unpacked = unpacked.map(|(sums, packed)| packed.read(numbers, sums));
+    let unpacked: Vec<_> = unpacked.collect();
+    match unpacked.iter().position(Option::is_none) {
+        None => Ok(sums),
+        Some(damaged) => Err(broken(format!(
+            "damaged: the checksum of the pixels from {} on is wrong",
+            damaged * block::PIXELS
+        ))),
+    }
+}
+
+fn take_block<'a>(rest: &mut &'a [u8]) -> Result<Packed<'a>> {
+    let packed = take_u32(rest)? as usize;
+    Ok(Packed {
+        checksum: take_u32(rest)?,
+        bytes: take(rest, packed)?,
+    })
 }
 
 /// The next `count` bytes.
