@@ -1,4 +1,4 @@
-//! What `auto` renders with, in scenes where that is plain: the next best plan takes a third more.
+//! What `auto` renders with, in scenes where that is plain: at 80 x 60 the best plan of another estimator takes twice as long.
 
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
@@ -8,7 +8,6 @@ use bidir::integrator::IntegratorKind;
 fn under_a_sky_paths_begin_at_the_camera() {
     // Light subpaths mostly miss what is seen; objects are dark, so that roulette matters.
     check("sky-alone.pbrt", IntegratorKind::Path);
-    check("around-longitude.pbrt", IntegratorKind::Path);
 }
 
 #[test]
