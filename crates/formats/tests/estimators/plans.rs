@@ -1,4 +1,5 @@
-//! What `auto` renders with, in scenes where that is plain: at 80 x 60 the best plan of another estimator takes twice as long.
+//! What `auto` renders with, in scenes where that is plain: at 80 x 60 the best plan of another
+//! estimator takes twice as long.
 
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
