@@ -4,9 +4,9 @@ use super::{ImageData, broken, check_room, check_size};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
-use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
+use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{Blocks, Compression, ReadChannels, ReadLayers, Vec2, WritableImage};
 use std::io::Cursor;
 use std::path::Path;
@@ -179,8 +179,20 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
         )?;
         let bits = 8 * header.channels.bytes_per_pixel as u64;
         check_room([width as u64, height as u64], bits, bytes)?;
+        if let BlockDescription::Tiles(tiles) = header.blocks {
+            check_tile(tiles.tile_size, bits, bytes)?;
+        }
     }
     Ok(meta)
+}
+
+/// Tiles may be larger than the image, and memory is taken for one.
+fn check_tile(Vec2(width, height): Vec2<usize>, bits: u64, bytes: &[u8]) -> Result<()> {
+    const ALWAYS_FINE: usize = 1 << 20;
+    if width.saturating_mul(height) <= ALWAYS_FINE {
+        return Ok(());
+    }
+    check_room([width as u64, height as u64], bits, bytes)
 }
 
 /// All channels of the first part that can be read.

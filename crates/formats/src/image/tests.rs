@@ -296,3 +296,45 @@ proptest! {
         }
     }
 }
+
+/// An image of 2 x 2 pixels in tiles of 4 by `rows`.
+fn tiled(rows: u32) -> Vec<u8> {
+    use ::exr::prelude::*;
+    let encoding = Encoding {
+        compression: Compression::Uncompressed,
+        blocks: Blocks::Tiles(Vec2(4, 4)),
+        line_order: LineOrder::Increasing,
+    };
+    let channels = SpecificChannels::rgb(|_| (1.0_f32, 2.0_f32, 3.0_f32));
+    let layer = Layer::new((2, 2), LayerAttributes::named("tiled"), encoding, channels);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = Image::from_layer(layer);
+    image
+        .write()
+        .non_parallel()
+        .to_buffered(&mut bytes)
+        .unwrap();
+    let mut bytes = bytes.into_inner();
+    let name = b"tiledesc\0";
+    let at = bytes
+        .windows(name.len())
+        .position(|part| part == name)
+        .unwrap();
+    // After the size of the attribute, and the columns.
+    let at = at + name.len() + 8;
+    assert_eq!(bytes[at..at + 4], 4_u32.to_le_bytes());
+    bytes[at..at + 4].copy_from_slice(&rows.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn no_memory_is_taken_for_tiles_that_the_file_has_no_bytes_for() {
+    let decode = |rows| decode(Format::Exr, &tiled(rows), None);
+    let image = decode(4).unwrap();
+    assert_eq!(image.data[..3], [1.0, 2.0, 3.0]);
+    let error = decode(1 << 26).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "broken image: it is too short for 4 × 67108864 pixels"
+    );
+}
