@@ -72,6 +72,24 @@ fn a_film_that_ends_early_is_damaged() {
 }
 
 #[test]
+fn no_memory_is_taken_for_pixels_that_the_file_has_no_bytes_for() {
+    let whole = bytes();
+    let length = u32::from_le_bytes(whole[12..PREAMBLE].try_into().unwrap()) as usize;
+    // Three blocks of no bytes, with their checksums.
+    let file = [&whole[..PREAMBLE + length + 4], &[0; 3 * 8], END].concat();
+    let message = decode(&file).unwrap_err().to_string();
+    assert!(
+        message.contains("shorter than any film of its size"),
+        "{message}"
+    );
+    // A film of nothing packs best.
+    let settings = FilmSettings::new([640, 480], Filter::default());
+    let black = Film::with_layers(settings, Layers::default(), u64::MAX).unwrap();
+    let again = decode(&encode(&header(), &black)).unwrap();
+    assert!(again.film == black);
+}
+
+#[test]
 fn a_flipped_bit_is_seen() {
     let bytes = bytes();
     for at in (0..bytes.len()).step_by(499).chain(0..64) {

@@ -7,7 +7,6 @@ use bidir::integrator::IntegratorKind;
 
 #[test]
 fn under_a_sky_paths_begin_at_the_camera() {
-    // Light subpaths mostly miss what is seen; objects are dark, so that roulette matters.
     check("sky-alone.pbrt", IntegratorKind::Path);
 }
 

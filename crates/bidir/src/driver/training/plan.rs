@@ -160,10 +160,10 @@ pub(super) fn best(pixels: u64, mis: MisHeuristic, tried: &[Tried]) -> Plan {
 
 /// The product of variance and cost of each, relative to those of others.
 fn products(pixels: f64, mis: MisHeuristic, tried: &[Tried]) -> Vec<f64> {
-    let film = Film::new(pixels, tried);
-    let missed = Missed::new(&film, mis, tried);
+    let scale = Scale::new(pixels, tried);
+    let missed = Missed::new(&scale, mis, tried);
     let product = |(plan, trial): &Tried| {
-        let found = film.sum(|i| trial.variance(i, pixels));
+        let found = scale.sum(|i| trial.variance(i, pixels));
         let missed = if plan.has_light_images() {
             0.0
         } else {
@@ -175,7 +175,7 @@ fn products(pixels: f64, mis: MisHeuristic, tried: &[Tried]) -> Vec<f64> {
 }
 
 /// What variances are relative to.
-struct Film {
+struct Scale {
     pixels: f64,
     /// The mean of a pixel of each block, by all plans.
     means: Vec<f64>,
@@ -183,7 +183,7 @@ struct Film {
     least: f64,
 }
 
-impl Film {
+impl Scale {
     fn new(pixels: f64, tried: &[Tried]) -> Self {
         let mean = |i| {
             let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
@@ -219,17 +219,17 @@ struct Missed {
 }
 
 impl Missed {
-    fn new(film: &Film, mis: MisHeuristic, tried: &[Tried]) -> Self {
+    fn new(scale: &Scale, mis: MisHeuristic, tried: &[Tried]) -> Self {
         let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
         let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
         let hidden = with_light
-            .map(|(_, trial)| film.sum(|i| trial.hidden_spread(i, film.pixels, film.means[i])));
+            .map(|(_, trial)| scale.sum(|i| trial.hidden_spread(i, scale.pixels, scale.means[i])));
         // The least of several says less than it should rather than more.
         let hidden = hidden.reduce(f64::min).unwrap_or(0.0);
         let alike = tried.iter().find(|(plan, _)| *plan == ALIKE);
         let of_alike = |(_, trial): &Tried| Self {
-            missed: (hidden - film.sum(|i| trial.spread(i, film.pixels))).max(0.0),
-            found: film.sum(|i| trial.variance(i, film.pixels)),
+            missed: (hidden - scale.sum(|i| trial.spread(i, scale.pixels))).max(0.0),
+            found: scale.sum(|i| trial.variance(i, scale.pixels)),
         };
         alike.map(of_alike).unwrap_or_default()
     }

@@ -17,10 +17,10 @@
 //!
 //! (1 / B) ∫ f² / q ≥ (1 / B) ∫ f² w / (P p (1 - w)) = Σ v² / (w (1 - w)) / (n P B)
 //!
-//! with the sum over the light images of n samples that landed in the block, without its largest term, as one
-//! alone may be most of it, and tells little: less the square of the block's
-//! mean it is a bound of the spread, where walks end with the same probabilities. Other heuristics than the
-//! balance heuristic do not tell so much, and are not asked.
+//! with the sum over the light images of n samples that landed in the block, without its largest term, as
+//! one alone may be most of it, and tells little. Less the square of the block's mean it is a bound of the
+//! spread, where walks end with the same probabilities. Other heuristics than the balance heuristic do not
+//! tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
 //! every run. They fit the times of 25 scenes to 5 % (docs/performance.md).
