@@ -5,18 +5,24 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `BIDIRFLM` |
-//! | 4 | version of the format, 2 |
+//! | 4 | version of the format, 3 |
 //! | 4 | length of the header |
 //! | … | the header, JSON ([`FilmHeader`]) |
 //! | 4 | checksum of all bytes before it |
-//! | … | blocks of 4096 pixels, the last one shorter: length of what is packed, checksum of what is unpacked, the packed bytes |
+//! | … | blocks of 4096 pixels, the last one shorter: length of what is packed, its checksum, and that |
 //! | 8 | `BIDIREND` |
 //!
-//! Numbers are little-endian, checksums CRC-32. A block unpacks (DEFLATE) to planes of bytes: first
-//! the lowest byte of the first sum of every pixel, then the second byte, and so on to the highest
-//! byte of the last sum. Sums are 128-bit two's complements, in the order of [`Film::sums`]; how many
-//! a pixel has follows from the header's layers. Most of their bytes are the same in all pixels,
-//! which is why planes pack well.
+//! Numbers are little-endian, checksums CRC-32. Sums are 128-bit two's complements, in the order of
+//! [`Film::sums`]; how many a pixel has follows from the header's layers. A block is packed by planes
+//! of bytes: first the lowest byte of the first sum of every pixel, then the second byte, and so on to
+//! the highest byte of the last sum. Most planes are one byte again and again, and some are so dense
+//! that packing would gain little. A packed block is
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 2 for each plane | 0 and the byte that all of it is; 1, 0 for a dense one; 2, 0 for any other |
+//! | 1 for each pixel of each dense plane | those planes |
+//! | … | the other planes, DEFLATE |
 //!
 //! Nothing is normalised: equal films are equal files but for the header, and adding the sums of two
 //! files of different passes is the file of both.
@@ -49,7 +55,7 @@ use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"BIDIRFLM";
 const END: &[u8; 8] = b"BIDIREND";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes of a file.
 const LARGEST_FILE: u64 = 1 << 36;
 /// Bytes of a film: what the memory of a render has room for.
@@ -154,8 +160,8 @@ fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> 
     let numbers = layers.sums();
     let count = area as usize * numbers;
     // Memory is taken only where there is enough to fill it.
-    let packed: usize = blocks.iter().map(|packed| packed.bytes.len()).sum();
-    if packed.saturating_mul(block::MOST_EXPANSION) < count * size_of::<i128>() {
+    let least = block::least_bytes(numbers);
+    if blocks.iter().any(|packed| packed.bytes.len() < least) {
         return Err(broken("damaged: it is shorter than any film of its size"));
     }
     let mut sums = vec![0; count];
