@@ -182,5 +182,5 @@ def _toml(value: object) -> str:
 
 def _setting(flag: str, value: str) -> str:
     """Return a setting as descriptions have it: numbers are numbers."""
-    numbers = {"max-depth", "candidates", "samples-per-subpath"}
+    numbers = {"max-depth", "candidates", "next-events", "samples-per-subpath"}
     return value if flag in numbers and value.isdigit() else _toml(value)

@@ -186,7 +186,9 @@ class Lvc(_Bidirectional):
     #: How many vertices of shared light subpaths are weighed for each camera vertex, 1 to 4096; two
     #: numbers are for the first vertex of a camera subpath, and for each of those behind it.
     candidates: int | tuple[int, int] | None = None
-    #: How these are chosen: each as likely as others, or by what a short render before learnt.
+    #: How many light points next-event estimation draws for each camera vertex, in the same way.
+    next_events: int | tuple[int, int] | None = None
+    #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short render before learnt.
     proposal: Proposal | None = None
     #: How many samples bring one light subpath to those that are shared: a power of two to 256.
     samples_per_subpath: int | None = None

@@ -13,6 +13,7 @@ def test_settings_are_those_of_the_flags() -> None:
     lvc = bidir.Lvc(
         shadow_rays=bidir.Budget(3),
         candidates=(8, 2),
+        next_events=(3, 1),
         proposal="uniform",
         samples_per_subpath=8,
         mis_count="resampled",
@@ -28,6 +29,7 @@ def test_settings_are_those_of_the_flags() -> None:
         "integrator": "lvc",
         "shadow-rays": "budget:3",
         "candidates": "8,2",
+        "next-events": "3,1",
         "proposal": "uniform",
         "samples-per-subpath": "8",
         "mis-count": "resampled",

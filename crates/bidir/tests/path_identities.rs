@@ -242,12 +242,15 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
 /// n_s of the film of the rooms, which has 64 pixels.
 fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     let Connections {
+        next_events,
         proposals,
         samples_per_subpath,
+        mis_count,
         ..
     } = context.connections;
     match (s, path.len() - s) {
         (_, 1) => 64.0 / samples_per_subpath,
+        (1, t) if mis_count == MisCount::Expected => next_events[usize::from(t > 2)],
         (s, t) if s > 0 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
         _ => 1.0,
     }
@@ -355,6 +358,7 @@ fn proposals_are_one_function_of_the_path() {
         let proposals = some_proposals(&scene);
         let connections = Connections {
             per_vertex: [1.7, 0.4],
+            next_events: [3.0, 2.0],
             proposals: Some(&proposals),
             samples_per_subpath: 4.0,
             mis_count: MisCount::Expected,
@@ -378,6 +382,7 @@ fn counts_are_one_function_of_the_path() {
         ] {
             let connections = Connections {
                 per_vertex: [3.0, 1.5],
+                next_events: [2.0, 1.0],
                 proposals: Some(proposals),
                 samples_per_subpath: 2.0,
                 mis_count,

@@ -177,6 +177,7 @@ fn check(scene: &Scene, pairs: u64) {
     let proposals = some_proposals(scene);
     let shared = Connections {
         per_vertex: [2.7, 0.6],
+        next_events: [3.0, 2.0],
         proposals: Some(&proposals),
         samples_per_subpath: 4.0,
         mis_count: MisCount::Expected,

@@ -17,6 +17,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     settings.integrator = args.integrator.unwrap_or(settings.integrator);
     let lvc = &mut settings.lvc;
     lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
+    lvc.next_events = args.next_events.unwrap_or(lvc.next_events);
     lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
     lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
     lvc.mis_count = args.mis_count.unwrap_or(lvc.mis_count);
@@ -56,6 +57,10 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
             estimator.light_choice.is_some() && is_light,
         ),
         ("--candidates", estimator.candidates.is_some() && !may_share),
+        (
+            "--next-events",
+            estimator.next_events.is_some() && !may_share,
+        ),
         ("--proposal", estimator.proposal.is_some() && !may_share),
         (
             "--samples-per-subpath",

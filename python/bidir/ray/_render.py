@@ -159,8 +159,8 @@ class RenderWork:
         self._tree.set_workers(workers)
         pace = worker.notes.get("pace")
         if pace is None:
-            # The first pass tells how long they take.
-            passes = 0 if worker.units else 1
+            # The first pass tells how long they take; while its film is packed, the second one renders.
+            passes = 1
         else:
             share = -(-len(self._todo) // workers)
             passes = max(1, min(round(self._seconds / pace), share))

@@ -202,6 +202,20 @@ PATHS = [
         RUNNING,
     ),
     (
+        "the first vertex's light points counted for those behind it",
+        "crates/bidir/src/path/count.rs",
+        "next_events[usize::from(t > 2)] *",
+        "next_events[0] *",
+        PATH,
+    ),
+    (
+        "several light points, each of which counts as the only one",
+        "crates/bidir/src/integrator/bdpt.rs",
+        "drawn.coverage / (drawn.pdf * f32::from(count))",
+        "drawn.coverage / drawn.pdf",
+        analytic("a_closed_sphere"),
+    ),
+    (
         "the first vertex's candidates counted for those behind it",
         "crates/bidir/src/path/running.rs",
         "share(context.count(i + 1, 3, [&walk[i], &walk[i + 1]]));",

@@ -95,9 +95,7 @@ impl<'a> Session<'a> {
         let threads = pool.current_num_threads();
         let (settings, training) = pool.install(|| prepare(&scene, settings));
         let rule = selector(&settings, training.as_ref());
-        let integrator = settings
-            .integrator
-            .integrator(rule, settings.lvc.candidates);
+        let integrator = settings.integrator.integrator(rule, &settings.lvc);
         Ok(Self {
             scene,
             settings,

@@ -2,15 +2,16 @@
 
 use super::journal::Counted;
 use super::light::{lens_vertex, light_image};
-use super::workspace::light_vertices;
+use super::workspace::own_light_vertices;
 use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
+use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{
     Escape, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
 };
-use crate::sampler::{Dimension, Purpose};
-use crate::select::{Candidate, Draws, Selector};
+use crate::sampler::{Dimension, Purpose, kronecker_point};
+use crate::select::{Candidate, Draws, LightVertex, Selector};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 
@@ -113,46 +114,60 @@ pub(super) fn light_images(context: &PathContext<'_>, sample: &Sample, workspace
 /// s ≥ 1 and t ≥ 2: evaluates every connection, before visibility.
 #[inline(never)]
 fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-    workspace
-        .next_events
-        .resize(workspace.camera.vertices.len(), None);
     for t in 2..=workspace.camera.vertices.len() {
         let y = &workspace.camera.vertices[t - 1];
         if y.is_delta() {
             continue;
         }
-        next_event(context, sample, workspace, t);
+        next_events(context, sample, workspace, t, 1);
         let longest = workspace
             .light
             .vertices
             .len()
             .min(context.settings.max_vertices() - t);
         for s in context.settings.light_point.first_walked()..=longest {
-            candidate(context, sample, workspace, Strategy::new(s, t));
+            let strategy = Strategy::new(s, t);
+            candidate(context, sample, workspace, strategy, LightVertex::Own);
         }
     }
 }
 
-/// s = 1 with a light point of its own for camera vertex number `t`, if it has one.
-pub(super) fn next_event(
+/// s = 1 with `count` light points for camera vertex number `t`, if it has its own: one of each
+/// of as many parts of the lights, at points of a sequence that fills them evenly.
+pub(super) fn next_events(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
     t: usize,
+    count: u16,
 ) {
     let is_fresh = context.settings.light_point == LightPointChoice::Fresh;
     if !is_fresh || t >= context.settings.max_vertices() || !context.takes(1, t) {
         return;
     }
     let at = |purpose| Dimension::at(t - 1, purpose);
-    let u_light = || sample.camera.get_1d(at(Purpose::NextEventLight));
+    let light_number = || sample.camera.get_1d(at(Purpose::NextEventLight));
     let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
-    let y = &workspace.camera.vertices[t - 1];
-    if let Some((light, drawn)) = sample_next_event(context, y, u_light, u) {
+    for k in 0..count {
+        let u_light =
+            || ((f32::from(k) + light_number()) / f32::from(count)).min(ONE_MINUS_EPSILON);
+        let y = &workspace.camera.vertices[t - 1];
+        let Some((light, drawn)) = sample_next_event(context, y, u_light, kronecker_point(u, k))
+        else {
+            continue;
+        };
         let mut x0 = Vertex::light(context, light, &drawn.at);
-        x0.beta = Spectrum::splat(drawn.coverage / drawn.pdf);
-        workspace.next_events[t - 1] = Some(x0);
-        candidate(context, sample, workspace, Strategy::new(1, t));
+        x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
+        let number = workspace.next_events.len() as u32;
+        workspace.next_events.push(x0);
+        let strategy = Strategy::new(1, t);
+        candidate(
+            context,
+            sample,
+            workspace,
+            strategy,
+            LightVertex::NextEvent(number),
+        );
     }
 }
 
@@ -162,15 +177,16 @@ fn candidate(
     sample: &Sample,
     workspace: &mut Workspace,
     strategy: Strategy,
+    light_vertex: LightVertex,
 ) {
-    if let Some(term) = connection(context, workspace, strategy) {
-        let counted = workspace.count(term, |workspace| Link::Connection(workspace.ends(strategy)));
-        offer(context, sample, workspace, &counted, 1.0, None);
+    if let Some(term) = connection(context, workspace, strategy, light_vertex) {
+        let link = |workspace: &Workspace| Link::Connection(workspace.ends(strategy, light_vertex));
+        let counted = workspace.count(term, link);
+        offer(context, sample, workspace, &counted, 1.0, light_vertex);
     }
 }
 
-/// Offers a term for selection, of light vertex number `cached` of the light cache or of the sample's own
-/// subpath. It is compared by its luminance times `root_visibility`, the √V̂ of its shadow ray.
+/// Offers a term for selection. It is compared by its luminance times `root_visibility`, the √V̂ of its shadow ray.
 #[inline]
 pub(super) fn offer(
     context: &PathContext<'_>,
@@ -178,15 +194,17 @@ pub(super) fn offer(
     workspace: &mut Workspace,
     counted: &Counted,
     root_visibility: f32,
-    cached: Option<u32>,
+    light_vertex: LightVertex,
 ) {
     let whole = counted.whole();
     if workspace.accepts(sample, counted.mark(), whole.value) && !whole.value.is_black() {
         let color = context.scene.color();
         let luminance = color.luminance(whole.value.map(f32::abs), &context.wavelengths);
-        workspace
-            .candidates
-            .push(Candidate::new(&whole, luminance * root_visibility, cached));
+        workspace.candidates.push(Candidate::new(
+            &whole,
+            luminance * root_visibility,
+            light_vertex,
+        ));
     }
 }
 
@@ -195,6 +213,7 @@ fn connection(
     context: &PathContext<'_>,
     workspace: &mut Workspace,
     strategy: Strategy,
+    light_vertex: LightVertex,
 ) -> Option<Term> {
     let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
     if !context.takes(s, t) {
@@ -208,7 +227,7 @@ fn connection(
         ..
     } = workspace;
     let camera = &camera.vertices[..t];
-    let light = light_vertices(light, next_events, strategy);
+    let light = own_light_vertices(light, next_events, s, light_vertex);
     let start = light[0].light?;
     let path = JoinedPath::connection(light, camera);
     let contribution = path.contribution(context);
@@ -243,7 +262,7 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];
         let contribution = candidate.contribution(chosen.prob);
-        let ends = workspace.ends_of(&candidate);
+        let ends = workspace.ends(candidate.strategy, candidate.light_vertex);
         if let Some(arrives) = workspace.trace(context.scene, contribution.mark(), &ends) {
             workspace.add(sample, contribution.behind(arrives));
         }

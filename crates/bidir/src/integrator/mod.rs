@@ -98,12 +98,9 @@ impl IntegratorKind {
         }
     }
 
-    /// The estimator; `selector` chooses the shadow rays of those that have candidates.
-    pub fn integrator(
-        self,
-        selector: Box<dyn Selector>,
-        candidates: CandidateCount,
-    ) -> Box<dyn Integrator> {
+    /// The estimator; `selector` chooses the shadow rays of those that have candidates, and `lvc` is for
+    /// those that share light subpaths.
+    pub fn integrator(self, selector: Box<dyn Selector>, lvc: &LvcSettings) -> Box<dyn Integrator> {
         match self {
             Self::Path => Box::new(PathTracer),
             Self::Light => Box::new(LightTracer),
@@ -111,7 +108,8 @@ impl IntegratorKind {
             // What is open is decided before; this is what it would most often be.
             Self::Lvc | Self::Auto => Box::new(Lvc {
                 selector,
-                candidates,
+                candidates: lvc.candidates,
+                next_events: lvc.next_events,
             }),
         }
     }

@@ -13,7 +13,7 @@ use crate::path::{
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Scene, SegmentEnd};
-use crate::select::{Candidate, Chosen};
+use crate::select::{Candidate, Chosen, LightVertex};
 use crate::spectrum::Spectrum;
 use crate::stats::{Clock, Dropped, Stage, Stats, Stopwatch};
 
@@ -104,8 +104,8 @@ pub struct Workspace {
     pub camera: Subpath,
     /// The light subpath.
     pub light: Subpath,
-    /// The light points of s = 1, by camera vertex.
-    pub next_events: Vec<Option<Vertex>>,
+    /// The light points of s = 1, in the order of the camera vertices that they were drawn for.
+    pub next_events: Vec<Vertex>,
     /// The connections that may be traced.
     pub candidates: Vec<Candidate>,
     /// The connections that were traced.
@@ -185,21 +185,14 @@ impl Workspace {
     }
 
     /// The ends of the segment that a candidate connects: light vertex and camera vertex.
-    pub(super) fn ends(&self, strategy: Strategy) -> [SegmentEnd; 2] {
-        let light = light_vertices(&self.light, &self.next_events, strategy);
-        let z = &light[usize::from(strategy.s) - 1];
-        let y = &self.camera.vertices[usize::from(strategy.t) - 1];
-        [z.segment_end(), y.segment_end()]
-    }
-
-    /// The same of a candidate, whose light vertex may be in the light cache.
-    pub(super) fn ends_of(&self, candidate: &Candidate) -> [SegmentEnd; 2] {
-        let Some(cached) = candidate.cached else {
-            return self.ends(candidate.strategy);
+    pub(super) fn ends(&self, strategy: Strategy, light_vertex: LightVertex) -> [SegmentEnd; 2] {
+        let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
+        let light = match light_vertex {
+            LightVertex::Cached(number) => self.light_cache.get(number as usize).light,
+            _ => own_light_vertices(&self.light, &self.next_events, s, light_vertex),
         };
-        let light = self.light_cache.get(cached as usize).light;
-        let y = &self.camera.vertices[usize::from(candidate.strategy.t) - 1];
-        [light[light.len() - 1].segment_end(), y.segment_end()]
+        let y = &self.camera.vertices[t - 1];
+        [light[s - 1].segment_end(), y.segment_end()]
     }
 
     /// The connections with vertices of the light cache: the cells of light and camera vertex, and what
@@ -223,7 +216,10 @@ impl Workspace {
 
     /// The cells of a candidate's vertices. None: its light vertex is not of the light cache.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let light = self.light_cache.get(candidate.cached? as usize).light;
+        let LightVertex::Cached(number) = candidate.light_vertex else {
+            return None;
+        };
+        let light = self.light_cache.get(number as usize).light;
         Some([light[light.len() - 1].cell, self.camera_cell(candidate)])
     }
 
@@ -338,16 +334,16 @@ pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraR
     (ray, weight)
 }
 
-/// The light vertices that a connection uses: s = 1 may have a light point of its own.
+/// The first `s` light vertices of a connection that uses none of the light cache.
 #[inline]
-pub(super) fn light_vertices<'a>(
+pub(super) fn own_light_vertices<'a>(
     light: &'a Subpath,
-    next_events: &'a [Option<Vertex>],
-    strategy: Strategy,
+    next_events: &'a [Vertex],
+    s: usize,
+    light_vertex: LightVertex,
 ) -> &'a [Vertex] {
-    let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
-    match &next_events[t - 1] {
-        Some(x0) if s == 1 => std::slice::from_ref(x0),
+    match light_vertex {
+        LightVertex::NextEvent(number) => std::slice::from_ref(&next_events[number as usize]),
         _ => &light.vertices[..s],
     }
 }

@@ -53,6 +53,7 @@ impl PathContext<'_> {
     pub fn count(&self, s: usize, t: usize, [z, y]: [&Vertex; 2]) -> f64 {
         let Connections {
             per_vertex,
+            next_events,
             proposals,
             samples_per_subpath,
             ..
@@ -64,7 +65,10 @@ impl PathContext<'_> {
                 let relative = |all: &LightProposals| all.relative(z.cell, y.cell);
                 per_vertex[usize::from(t > 2)] * proposals.map_or(1.0, relative)
             }
-            _ => proposals.map_or(1.0, |all| all.next_events(y.cell)),
+            _ => {
+                let counted = |all: &LightProposals| all.next_events(y.cell);
+                next_events[usize::from(t > 2)] * proposals.map_or(1.0, counted)
+            }
         }
     }
 

@@ -37,7 +37,7 @@ pub struct LightProposals {
     cumulative: Vec<f32>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
-    /// For each cell of camera vertices, n of s = 1.
+    /// For each cell of camera vertices, the part of the light points of s = 1 that n counts.
     next_events: Vec<f32>,
     /// For each pair √V̂.
     root_visibility: Vec<f32>,
@@ -143,7 +143,7 @@ impl LightProposals {
         f64::from(self.relative[Cells::pair(light, camera)])
     }
 
-    /// n of s = 1 for a camera vertex in the cell `camera`.
+    /// The part of the light points of s = 1 that n counts for a camera vertex in the cell `camera`.
     #[inline]
     pub(super) fn next_events(&self, camera: Cell) -> f64 {
         f64::from(self.next_events[camera.index()])
@@ -218,6 +218,8 @@ pub struct Connections<'a> {
     /// On average, for each light vertex of a path: the first vertex of a camera subpath (t = 2), and
     /// those behind it.
     pub per_vertex: [f64; 2],
+    /// The same for s = 1.
+    pub next_events: [f64; 2],
     /// How light vertices are chosen. None: each is as likely as others.
     pub proposals: Option<&'a LightProposals>,
     /// How many samples there are for each light subpath.
@@ -230,6 +232,7 @@ impl Connections<'_> {
     /// With every vertex of one light subpath.
     pub const ONE_SUBPATH: Self = Self {
         per_vertex: [1.0; 2],
+        next_events: [1.0; 2],
         proposals: None,
         samples_per_subpath: 1.0,
         mis_count: MisCount::Expected,

@@ -17,7 +17,7 @@ mod sobol;
 
 pub use dimension::{Dimension, Purpose};
 
-use crate::math::Vec2;
+use crate::math::{ONE_MINUS_EPSILON, Vec2};
 use hash::mix;
 use sobol::Digits;
 
@@ -49,6 +49,16 @@ pub enum Domain {
     TrainingCamera,
     /// Light subpaths of the training render, which never enter the film.
     TrainingLight,
+}
+
+/// Point number `k` of the Kronecker sequence that begins with `u`: u + k (1 ∕ φ, 1 ∕ φ²) modulo 1, where
+/// φ³ = φ + 1. If `u` is uniform each of them is, and together they fill the square evenly.
+#[inline]
+pub fn kronecker_point(u: Vec2, k: u16) -> Vec2 {
+    const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+    let moved = |x: f32, step: f64| (f64::from(x) + f64::from(k) * step).fract() as f32;
+    let moved = Vec2::new(moved(u.x, STEP[0]), moved(u.y, STEP[1]));
+    moved.min(Vec2::splat(ONE_MINUS_EPSILON))
 }
 
 /// The source of all streams of a render.

@@ -43,14 +43,25 @@ pub struct Candidate {
     pub weight: f32,
     /// The number of its term within the sample.
     pub term: u32,
-    /// Its light vertex, by number in the light cache. None: it is of the sample's own subpath.
-    pub cached: Option<u32>,
+    /// Where its light vertex is.
+    pub light_vertex: LightVertex,
+}
+
+/// Where the light vertex of a candidate is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightVertex {
+    /// The last of the first s of the sample's own light subpath.
+    Own,
+    /// The light point of next-event estimation with this number.
+    NextEvent(u32),
+    /// The vertex of the light cache with this number.
+    Cached(u32),
 }
 
 impl Candidate {
     /// A candidate for what is certain to be traced, which is not black and is compared by `score`.
     #[inline]
-    pub fn new(whole: &Contribution, score: f32, cached: Option<u32>) -> Self {
+    pub fn new(whole: &Contribution, score: f32, light_vertex: LightVertex) -> Self {
         Self {
             value: whole.value,
             // What underflows must keep a chance.
@@ -59,7 +70,7 @@ impl Candidate {
             light: whole.light,
             weight: whole.weight,
             term: whole.term,
-            cached,
+            light_vertex,
         }
     }
 

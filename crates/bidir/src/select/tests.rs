@@ -9,7 +9,7 @@ fn candidate(s: usize, t: usize, score: f32) -> Candidate {
         light: 0,
         weight: 1.0,
         term: 0,
-        cached: None,
+        light_vertex: LightVertex::Own,
     }
 }
 

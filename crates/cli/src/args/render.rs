@@ -166,7 +166,13 @@ pub(crate) struct EstimatorArgs {
     /// One number is for all vertices.
     #[arg(long, value_name = "M[,N]")]
     pub(crate) candidates: Option<CandidateCount>,
-    /// How these vertices are chosen (lvc) [default: learned].
+    /// How many light points next-event estimation draws for the first vertex of a camera subpath, and for
+    /// each of those behind it, up to 4096 (lvc) [default: 2,1].
+    ///
+    /// One number is for all vertices.
+    #[arg(long, value_name = "M[,N]")]
+    pub(crate) next_events: Option<CandidateCount>,
+    /// How vertices of shared light subpaths are chosen (lvc) [default: learned].
     ///
     /// learned: by what connections between places contributed in a short render before the first
     /// pass. uniform: each is as likely as others.
@@ -318,6 +324,7 @@ mod tests {
         let path = &settings.path;
         check_default("shadow-rays", settings.shadow_rays);
         check_default("candidates", settings.lvc.candidates);
+        check_default("next-events", settings.lvc.next_events);
         check_default("samples-per-subpath", settings.lvc.samples_per_subpath);
         check_default(
             "proposal",

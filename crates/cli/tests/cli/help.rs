@@ -33,7 +33,7 @@ fn every_flag_is_described() {
     check_flags(
         "render",
         "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --display-server --help --integrator \
-         --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --mis-count --no-color --noise \
+         --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --mis-count --next-events --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
          --resume --sampler --samples-per-subpath --seed --serve --shadow-rays --size --spp --stats --strategies --strategy-layers \
          --strict --svg --threads --time --version",
@@ -41,7 +41,7 @@ fn every_flag_is_described() {
     check_flags(
         "view",
         "--bind --candidates --crop --cropwindow --help --integrator --isa --lenient --light-choice --light-point \
-         --max-depth --mis --mis-count --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
+         --max-depth --mis --mis-count --next-events --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
          --samples-per-subpath --seed --shadow-rays --size --spp --strategies --strict --threads --version",
     );
     check_flags(

@@ -32,7 +32,9 @@ pub struct SettingsText {
     /// The cached light vertices that are candidates for the first vertex of a camera subpath and for those
     /// behind it.
     pub candidates: String,
-    /// How they are chosen.
+    /// The light points that are drawn for these.
+    pub next_events: String,
+    /// How cached light vertices are chosen.
     pub proposal: &'static str,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: u16,
@@ -88,6 +90,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
         },
         lvc: LvcSettings {
             candidates: parse(flag("candidates")?)?,
+            next_events: parse(flag("next-events")?)?,
             proposal: named(&ProposalKind::NAMES, flag("proposal")?)?,
             samples_per_subpath: parse(flag("samples-per-subpath")?)?,
             mis_count: named(&MisCount::NAMES, flag("mis-count")?)?,
@@ -159,6 +162,7 @@ impl From<&Settings> for SettingsText {
         } = path;
         let LvcSettings {
             candidates,
+            next_events,
             proposal,
             samples_per_subpath,
             mis_count,
@@ -173,6 +177,7 @@ impl From<&Settings> for SettingsText {
             path_roulette: roulette.to_string(),
             max_depth: *max_depth,
             candidates: candidates.to_string(),
+            next_events: next_events.to_string(),
             proposal: name_of(&ProposalKind::NAMES, *proposal),
             samples_per_subpath: samples_per_subpath.get(),
             mis_count: name_of(&MisCount::NAMES, *mis_count),

@@ -171,6 +171,27 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
     }
 }
 
+/// Several light points for each camera vertex, as many for the first as for those behind it or more.
+#[test]
+fn several_light_points_for_each_camera_vertex() {
+    for (name, passes, efforts) in [
+        ("red-light-blue-surfaces", 768, [4, 1]),
+        ("separated", 512, [4, 2]),
+    ] {
+        let loaded = open(&format!("{name}.pbrt"));
+        let case = Case::new(&loaded, passes);
+        let [path, lvc] = efforts.map(|effort| case.with_effort(effort));
+        let reference = path.path();
+        for (first, deeper) in [(3, 1), (2, 4)] {
+            let result = lvc.render(IntegratorKind::Lvc, |settings| {
+                settings.lvc.next_events = CandidateCount::new(first, deeper);
+            });
+            let name = format!("{name}, {first} and {deeper} light points");
+            check_agree(&name, &result, &reference, QUARTERS);
+        }
+    }
+}
+
 /// Two of many candidates are traced: what counts as a sample depends on how weights count.
 #[test]
 fn weights_that_count_samples_in_other_ways() {

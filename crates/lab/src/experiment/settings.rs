@@ -23,7 +23,9 @@ pub struct Changes {
     pub shadow_rays: Option<ShadowRays>,
     /// The cached light vertices that are candidates for each camera vertex.
     pub candidates: Option<CandidateCount>,
-    /// How they are chosen.
+    /// How many light points are drawn for each camera vertex.
+    pub next_events: Option<CandidateCount>,
+    /// How cached light vertices are chosen.
     pub proposal: Option<ProposalKind>,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: Option<SamplesPerSubpath>,
@@ -47,10 +49,11 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 13] = [
+    pub const NAMES: [&'static str; 14] = [
         "integrator",
         "shadow-rays",
         "candidates",
+        "next-events",
         "proposal",
         "samples-per-subpath",
         "mis-count",
@@ -71,6 +74,7 @@ impl Changes {
             "integrator" => self.integrator = Some(named(&IntegratorKind::NAMES, value)?),
             "shadow-rays" => self.shadow_rays = Some(parsed(value)?),
             "candidates" => self.candidates = Some(parsed(value)?),
+            "next-events" => self.next_events = Some(parsed(value)?),
             "samples-per-subpath" => self.samples_per_subpath = Some(parsed(value)?),
             "proposal" => self.proposal = Some(named(&ProposalKind::NAMES, value)?),
             "mis-count" => self.mis_count = Some(named(&MisCount::NAMES, value)?),
@@ -96,6 +100,7 @@ impl Changes {
             integrator: self.integrator.or(defaults.integrator),
             shadow_rays: self.shadow_rays.or(defaults.shadow_rays),
             candidates: self.candidates.or(defaults.candidates),
+            next_events: self.next_events.or(defaults.next_events),
             proposal: self.proposal.or(defaults.proposal),
             samples_per_subpath: self.samples_per_subpath.or(defaults.samples_per_subpath),
             mis_count: self.mis_count.or(defaults.mis_count),
@@ -115,6 +120,7 @@ impl Changes {
         settings.integrator = self.integrator.unwrap_or(settings.integrator);
         let lvc = &mut settings.lvc;
         lvc.candidates = self.candidates.unwrap_or(lvc.candidates);
+        lvc.next_events = self.next_events.unwrap_or(lvc.next_events);
         lvc.proposal = self.proposal.unwrap_or(lvc.proposal);
         lvc.samples_per_subpath = self.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
         lvc.mis_count = self.mis_count.unwrap_or(lvc.mis_count);

@@ -6,7 +6,7 @@
 
 use crate::statistics::{Interval, mean_interval};
 use bidir::driver::Settings;
-use bidir::integrator::{CandidateCount, IntegratorKind, Journal, Link, Sample, Workspace};
+use bidir::integrator::{IntegratorKind, Journal, Link, LvcSettings, Sample, Workspace};
 use bidir::path::{Connections, PathContext};
 use bidir::sampler::{Domain, Sampler};
 use bidir::scene::Scene;
@@ -82,7 +82,7 @@ fn pass_of(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
         connections: Connections::ONE_SUBPATH,
     };
     let integrator =
-        IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
+        IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), &LvcSettings::default());
     let mut workspace = Workspace::default();
     workspace.journal = Some(Journal::default());
     let mut terms = Vec::new();

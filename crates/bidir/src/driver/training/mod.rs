@@ -94,9 +94,14 @@ impl Training {
 
     /// How many connections a camera vertex makes, where each sample has a light subpath.
     pub(super) fn connections(&self, settings: LvcSettings) -> Connections<'_> {
+        let next_events = settings.next_events.get().map(f64::from);
         match self.light_vertices {
-            0.0 => Connections::ONE_SUBPATH,
+            0.0 => Connections {
+                next_events,
+                ..Connections::ONE_SUBPATH
+            },
             vertices => Connections {
+                next_events,
                 per_vertex: settings
                     .candidates
                     .get()

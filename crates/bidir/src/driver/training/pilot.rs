@@ -2,7 +2,7 @@
 //! share light subpaths as those of the image do.
 
 use super::probe::{GROUP, Probe, Witness};
-use crate::integrator::{CandidateCount, IntegratorKind, Sample, Workspace};
+use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, Sample, Workspace};
 use crate::path::{Cells, PairSums, PathContext};
 use crate::select::ShadowRays;
 use crate::spectrum::luminance;
@@ -42,7 +42,11 @@ pub(super) fn run(probe: &Probe<'_>, sums: &mut PairSums) -> RayCounts {
         .map_init(Workspace::default, |workspace, group| {
             let mut found = Found::default();
             let selector = ShadowRays::All.selector(0.0);
-            let integrator = IntegratorKind::Lvc.integrator(selector, CANDIDATES);
+            let lvc = LvcSettings {
+                candidates: CANDIDATES,
+                ..probe.settings.lvc
+            };
+            let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
             probe.group(&*integrator, group, workspace, &mut found);
             (found, std::mem::take(&mut workspace.stats).rays)
         })

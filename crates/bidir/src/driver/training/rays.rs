@@ -104,9 +104,7 @@ fn of_group<'a>(
     };
     let settings = probe.settings;
     let rule = settings.shadow_rays.selector(mean);
-    let integrator = settings
-        .integrator
-        .integrator(rule, settings.lvc.candidates);
+    let integrator = settings.integrator.integrator(rule, &settings.lvc);
     probe.group(&*integrator, group, workspace, &mut found);
     found
 }

@@ -3,7 +3,7 @@
 
 use super::Settings;
 use super::probe::Probe;
-use crate::integrator::{CandidateCount, Integrator, IntegratorKind, Workspace, connectable};
+use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
 use crate::math::Vec3;
 use crate::path::{Cells, Connections, PairSums, PathContext};
 use crate::scene::Scene;
@@ -31,8 +31,8 @@ pub(super) struct Survey {
 
 impl Survey {
     pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
-        let integrator = IntegratorKind::Bdpt
-            .integrator(ShadowRays::All.selector(0.0), CandidateCount::default());
+        let integrator =
+            IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), &LvcSettings::default());
         let probe = Probe {
             scene,
             settings,

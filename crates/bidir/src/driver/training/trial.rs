@@ -152,7 +152,7 @@ impl Trial {
             .into_par_iter()
             .map_init(Workspace::default, |workspace, group| {
                 let mut trial = Self::default();
-                let integrator = integrator.integrator(shadow_rays.selector(mean), lvc.candidates);
+                let integrator = integrator.integrator(shadow_rays.selector(mean), lvc);
                 probe.group(&*integrator, group, workspace, &mut trial);
                 trial.stats = std::mem::take(&mut workspace.stats);
                 trial

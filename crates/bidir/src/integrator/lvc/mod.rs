@@ -7,7 +7,8 @@
 //! M / κ, with κ the mean of K / N in a training render
 //! ([`PathContext::connections`](crate::path::PathContext::connections)).
 //!
-//! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt).
+//! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt), but that a camera vertex may have several
+//! light points.
 
 mod cache;
 mod settings;
@@ -17,12 +18,12 @@ mod tests;
 pub(crate) use cache::{LightCache, connectable};
 pub use settings::{CandidateCount, CountError, LvcSettings, ProposalKind, SamplesPerSubpath};
 
-use super::bdpt::{choose_and_trace, hits, light_images, next_event, offer};
+use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};
 use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
 use crate::path::{Connections, JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
-use crate::select::Selector;
+use crate::select::{LightVertex, Selector};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use cache::{Cached, Draw};
@@ -41,6 +42,8 @@ pub struct Lvc {
     pub selector: Box<dyn Selector>,
     /// M: how many vertices of the cache are candidates for a camera vertex.
     pub candidates: CandidateCount,
+    /// How many light points are drawn for a camera vertex.
+    pub next_events: CandidateCount,
 }
 
 impl Integrator for Lvc {
@@ -94,15 +97,12 @@ impl Lvc {
         sample: &Sample,
         workspace: &mut Workspace,
     ) {
-        workspace
-            .next_events
-            .resize(workspace.camera.vertices.len(), None);
         let proposals = context.connections.proposals;
         for t in 2..=workspace.camera.vertices.len() {
             if workspace.camera.vertices[t - 1].is_delta() {
                 continue;
             }
-            next_event(context, sample, workspace, t);
+            next_events(context, sample, workspace, t, self.next_events.at(t));
             let at = Dimension::at(t - 1, Purpose::CachedVertex);
             let u = f64::from(sample.camera.get_1d(at));
             // One of each of as many parts of the cache.
@@ -138,14 +138,14 @@ impl Lvc {
         let proposals = context.connections.proposals;
         let root_visibility = proposals.map_or(1.0, |all| all.root_visibility(z, y));
         let counted = workspace.count(term, |_| Link::Connection(ends));
-        let cached = Some(draw.entry as u32);
+        let light_vertex = LightVertex::Cached(draw.entry as u32);
         offer(
             context,
             sample,
             workspace,
             &counted,
             root_visibility,
-            cached,
+            light_vertex,
         );
     }
 

@@ -5,16 +5,30 @@ use std::fmt;
 use std::str::FromStr;
 
 /// What [`Lvc`](super::Lvc) can be told.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LvcSettings {
     /// M: how many vertices of the cache are candidates for each camera vertex.
     pub candidates: CandidateCount,
-    /// How they are chosen.
+    /// How many light points next-event estimation draws for each camera vertex.
+    pub next_events: CandidateCount,
+    /// How vertices of the cache are chosen.
     pub proposal: ProposalKind,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: SamplesPerSubpath,
     /// What weights take for the number of samples of a strategy.
     pub mis_count: MisCount,
+}
+
+impl Default for LvcSettings {
+    fn default() -> Self {
+        Self {
+            candidates: CandidateCount::new(8, 1),
+            next_events: CandidateCount::new(2, 1),
+            proposal: ProposalKind::default(),
+            samples_per_subpath: SamplesPerSubpath::default(),
+            mis_count: MisCount::default(),
+        }
+    }
 }
 
 /// How vertices of the cache are proposed to camera vertices.
@@ -33,7 +47,7 @@ impl ProposalKind {
         [("uniform", Self::Uniform), ("learned", Self::Learned)];
 }
 
-/// How many candidates the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
+/// How many candidates or light points the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
 /// first vertex of a subpath, which the pixel's noise depends on most, and those behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CandidateCount {
@@ -75,12 +89,6 @@ impl CandidateCount {
     /// M of the first vertex, and of those behind it.
     pub fn get(self) -> [u16; 2] {
         [self.first, self.deeper]
-    }
-}
-
-impl Default for CandidateCount {
-    fn default() -> Self {
-        Self::new(8, 1)
     }
 }
 
