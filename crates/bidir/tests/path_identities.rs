@@ -16,7 +16,7 @@ use bidir::path::{
 };
 use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
-use common::walks::{for_each_pair, for_some_pairs, some_inclusion, some_proposals};
+use common::walks::{for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals};
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {
@@ -191,13 +191,14 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
     let index = path[0].light.expect("x_0 is on a light");
     let (light, lights) = (context.scene.light(index), context.scene.light_context());
     let at = path[0].light_point();
-    let by_power = context.scene.light_choice().prob(index as usize);
+    let by_power = context.scene.light_choice();
+    let emission = context.connections.emission.unwrap_or(by_power);
     if context.settings.light_point == LightPointChoice::Shared || path.len() == 2 {
-        return by_power * light.pdf_position(&lights, &at);
+        return emission.prob(index as usize) * light.pdf_position(&lights, &at);
     }
     let x1 = &path[1];
     let (part, prob) = match context.settings.light_choice {
-        LightChoiceKind::Power => (Part::Whole, by_power),
+        LightChoiceKind::Power => (Part::Whole, by_power.prob(index as usize)),
         LightChoiceKind::Tree => {
             // Light leaves on the side that it goes on at.
             let receiver = || x1.receiver(path[2].point - x1.point);
@@ -356,10 +357,12 @@ fn lamps_are_one_function_of_the_path_however_they_are_chosen() {
 fn proposals_are_one_function_of_the_path() {
     for scene in [common::room(0.1), common::gallery(0.1)] {
         let proposals = some_proposals(&scene);
+        let emission = some_emission(&scene);
         let connections = Connections {
             per_vertex: [1.7, 0.4],
             next_events: [3.0, 2.0],
             proposals: Some(&proposals),
+            emission: Some(&emission),
             samples_per_subpath: 4.0,
             mis_count: MisCount::Expected,
         };
@@ -384,6 +387,7 @@ fn counts_are_one_function_of_the_path() {
                 per_vertex: [3.0, 1.5],
                 next_events: [2.0, 1.0],
                 proposals: Some(proposals),
+                emission: None,
                 samples_per_subpath: 2.0,
                 mis_count,
             };

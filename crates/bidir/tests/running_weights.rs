@@ -14,7 +14,7 @@ use bidir::path::{
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
-use common::walks::{for_some_pairs, some_inclusion, some_proposals};
+use common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
 const TOLERANCE: f32 = 1e-6;
@@ -175,10 +175,12 @@ fn describe(settings: &PathSettings) -> String {
 fn check(scene: &Scene, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
+    let emission = some_emission(scene);
     let shared = Connections {
         per_vertex: [2.7, 0.6],
         next_events: [3.0, 2.0],
         proposals: Some(&proposals),
+        emission: Some(&emission),
         samples_per_subpath: 4.0,
         mis_count: MisCount::Expected,
     };

@@ -202,6 +202,20 @@ PATHS = [
         RUNNING,
     ),
     (
+        "weights that take lights to be chosen by power where they are not",
+        "crates/bidir/src/path/vertex.rs",
+        "context.emission().prob(light as usize)",
+        "scene.light_choice().prob(light as usize)",
+        PATH,
+    ),
+    (
+        "lights that are learnt by the squares themselves",
+        "crates/bidir/src/driver/training/emission.rs",
+        "prob * mean.sqrt()",
+        "prob * mean",
+        unit("training::emission"),
+    ),
+    (
         "the first vertex's light points counted for those behind it",
         "crates/bidir/src/path/count.rs",
         "next_events[usize::from(t > 2)] *",
@@ -331,8 +345,8 @@ PATHS = [
     (
         "a cut-out lamp that next-event estimation takes for whole",
         "crates/bidir/src/integrator/bdpt.rs",
-        "Spectrum::splat(drawn.coverage / drawn.pdf)",
-        "Spectrum::splat(1.0 / drawn.pdf)",
+        "Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)))",
+        "Spectrum::splat(1.0 / (drawn.pdf * f32::from(count)))",
         coverage("lamps_cut_out"),
     ),
     (

@@ -199,18 +199,15 @@ impl Workspace {
     /// arrived, if anything.
     pub(crate) fn cached_connections(
         &self,
-    ) -> impl Iterator<Item = (Cell, Cell, Option<Spectrum>)> {
+    ) -> impl Iterator<Item = (&Candidate, [Cell; 2], Option<Spectrum>)> {
         let mut contributions = self.contributions.iter().peekable();
         self.candidates.iter().filter_map(move |candidate| {
             // Both are in the order of terms; hits are no candidates.
             while contributions.next_if(|c| c.term < candidate.term).is_some() {}
             let arrived = contributions.next_if(|c| c.term == candidate.term);
-            let [light, camera] = self.cells_of(candidate)?;
-            Some((
-                light,
-                camera,
-                arrived.map(|contribution| contribution.value),
-            ))
+            let cells = self.cells_of(candidate)?;
+            let arrived = arrived.map(|contribution| contribution.value);
+            Some((candidate, cells, arrived))
         })
     }
 

@@ -1,24 +1,32 @@
-//! P(light) = power / Σ power, by luminance. It does not know the receiver: a dim light nearby is
-//! chosen no more often than one far away.
+//! P(light) = power / Σ power, by luminance, or as was learnt of what light subpaths contribute. It does
+//! not know the receiver: a dim light nearby is chosen no more often than one far away.
 
 use super::{Light, LightContext};
 use crate::math::Distribution1d;
 
-/// The choice of one light: by power, the same for light subpaths and for next-event estimation.
+/// The choice of one light, whoever it is for: by power, or else for light subpaths alone.
 #[derive(Clone, Debug)]
 pub struct LightChoice {
-    by_power: Distribution1d,
+    lights: Distribution1d,
     count: usize,
 }
 
 impl LightChoice {
-    /// The choice among `lights`.
+    /// The choice among `lights`, by power.
     pub fn new(lights: &[Light], context: &LightContext<'_>) -> Self {
-        let by_power = Distribution1d::new(lights.iter().map(|light| light.power(context)));
-        Self {
-            by_power,
-            count: lights.len(),
-        }
+        Self::with_weights(lights.iter().map(|light| light.power(context)))
+    }
+
+    /// The choice in proportion to `weights`, one for each light.
+    pub fn with_weights(weights: impl ExactSizeIterator<Item = f32>) -> Self {
+        let count = weights.len();
+        let lights = Distribution1d::new(weights);
+        Self { lights, count }
+    }
+
+    /// The number of lights.
+    pub fn count(&self) -> usize {
+        self.count
     }
 
     /// Draws a light: its index and its probability. None: there are none. The number `u` is asked for
@@ -29,7 +37,7 @@ impl LightChoice {
             0 => None,
             1 => Some((0, 1.0)),
             _ => {
-                let (light, prob, _) = self.by_power.sample(u());
+                let (light, prob, _) = self.lights.sample(u());
                 Some((light, prob))
             }
         }
@@ -38,6 +46,6 @@ impl LightChoice {
     /// The probability of light `i`. Unitless.
     #[inline]
     pub fn prob(&self, i: usize) -> f32 {
-        self.by_power.prob(i)
+        self.lights.prob(i)
     }
 }

@@ -56,7 +56,7 @@ impl Cells {
 
     /// The cell of a number.
     #[inline]
-    pub(super) fn cell(index: usize) -> Cell {
+    pub(crate) fn cell(index: usize) -> Cell {
         Cell(index as u16)
     }
 

@@ -7,7 +7,7 @@ use super::{
     Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Vertex, mis_weight,
 };
 use crate::bsdf::TransportMode;
-use crate::light::{ChosenEmitter, LightPoint, LightSample, Part};
+use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -182,6 +182,13 @@ impl PathContext<'_> {
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {
         self.settings.strategies.contains(s, t)
+    }
+
+    /// How light subpaths choose the light that they begin on.
+    #[inline]
+    pub(super) fn emission(&self) -> &LightChoice {
+        let learnt = self.connections.emission;
+        learnt.unwrap_or_else(|| self.scene.light_choice())
     }
 
     /// The cell of a vertex with the unit normal `n`, where anything is learnt for cells.

@@ -20,6 +20,7 @@
 
 use super::MisCount;
 use super::cells::{Cell, Cells};
+use crate::light::LightChoice;
 
 /// ε: how often what was learnt is not asked. What training did not see costs no more than 1/ε times
 /// as much as without it.
@@ -222,6 +223,8 @@ pub struct Connections<'a> {
     pub next_events: [f64; 2],
     /// How light vertices are chosen. None: each is as likely as others.
     pub proposals: Option<&'a LightProposals>,
+    /// How light subpaths choose the light that they begin on. None: by power.
+    pub emission: Option<&'a LightChoice>,
     /// How many samples there are for each light subpath.
     pub samples_per_subpath: f64,
     /// What weights take for how many there are.
@@ -234,6 +237,7 @@ impl Connections<'_> {
         per_vertex: [1.0; 2],
         next_events: [1.0; 2],
         proposals: None,
+        emission: None,
         samples_per_subpath: 1.0,
         mis_count: MisCount::Expected,
     };

@@ -112,7 +112,7 @@ impl Vertex {
     /// A point on light number `light`, which light subpaths draw with density `pdf_fwd`.
     pub fn light(context: &PathContext<'_>, light: u32, at: &LightPoint) -> Self {
         let scene = context.scene;
-        let prob = scene.light_choice().prob(light as usize);
+        let prob = context.emission().prob(light as usize);
         let pdf_position = scene.light(light).pdf_position(&scene.light_context(), at);
         Self::on_light(context, light, at, prob * pdf_position)
     }

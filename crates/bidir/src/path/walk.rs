@@ -117,7 +117,7 @@ fn draw_emission(
     let scene = context.scene;
     let at = |purpose| Dimension::at(0, purpose);
     let u_light = || stream.get_1d(at(Purpose::Light));
-    let (light, prob) = scene.light_choice().sample(u_light)?;
+    let (light, prob) = context.emission().sample(u_light)?;
     let u_position = stream.get_2d(at(Purpose::LightPosition));
     let u_direction = stream.get_2d(at(Purpose::LightDirection));
     let lights = scene.light_context();

@@ -1,5 +1,6 @@
 //! Pairs of subpaths, walked in a scene.
 
+use bidir::light::LightChoice;
 use bidir::path::{
     Cells, Connections, Inclusion, LightProposals, PairSums, PathContext, PathSettings, Subpath,
     camera_subpath, light_subpath,
@@ -51,6 +52,12 @@ pub(crate) fn some_proposals(scene: &Scene) -> LightProposals {
         arrived: vec![[0; 2]; Cells::COUNT * Cells::COUNT],
     };
     LightProposals::new(Cells::new(&mut points), &sums)
+}
+
+/// Another choice of lights than by power.
+pub(crate) fn some_emission(scene: &Scene) -> LightChoice {
+    let lights = 0..scene.light_choice().count();
+    LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
 }
 
 /// Chances to be traced that are another for every pair of cells.

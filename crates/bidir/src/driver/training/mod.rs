@@ -3,6 +3,7 @@
 //! pixel i·STRIDE modulo the number of pixels; the first are of the full estimator that traces every
 //! connection.
 
+mod emission;
 mod pilot;
 mod plan;
 mod probe;
@@ -15,6 +16,7 @@ pub use plan::Plan;
 use super::Settings;
 use super::session::path_context;
 use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
+use crate::light::LightChoice;
 use crate::path::{Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
@@ -32,6 +34,8 @@ pub struct Training {
     pub light_vertices: f64,
     /// How light vertices are chosen, where that is learnt.
     pub proposals: Option<LightProposals>,
+    /// How light subpaths choose their light, where that is learnt.
+    pub emission: Option<LightChoice>,
     /// What is rendered with, where that was to be found out.
     pub plan: Option<Plan>,
     /// The samples it took.
@@ -82,6 +86,7 @@ impl Training {
             mean_luminance: (survey.luminance / survey::SAMPLES as f64) as f32,
             light_vertices: survey.light.len() as f64 / survey::SAMPLES as f64,
             proposals: None,
+            emission: None,
             plan: None,
             samples: survey::SAMPLES,
             rays: survey.rays,
@@ -107,19 +112,32 @@ impl Training {
                     .get()
                     .map(|count| f64::from(count) / vertices),
                 proposals: self.proposals.as_ref(),
+                emission: self.emission.as_ref(),
                 samples_per_subpath: 1.0,
                 mis_count: settings.mis_count,
             },
         }
     }
 
-    /// Learns which light vertices to propose, which of them are visible, and which are chosen.
+    /// Learns where light subpaths shall begin, which of their vertices to propose, which are visible, and
+    /// which are chosen.
     fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
-        let (cells, mut sums) = survey.cells();
+        let cells = survey.cells();
+        let mut sums = survey.pair_sums(&cells, |_| 1.0);
         let mut proposals = LightProposals::new(cells.clone(), &sums);
         if settings.lvc.proposal == ProposalKind::Learned {
-            let rays = pilot::run(&self.probe(scene, settings, &proposals), &mut sums);
+            let (found, rays) = pilot::run(&self.probe(scene, settings, &proposals));
             self.count(pilot::SAMPLES, rays);
+            self.emission = emission::learnt(scene.light_choice(), &found);
+            let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
+            sums = survey.pair_sums(&cells, gain);
+            self.light_vertices = sums.light_vertices.iter().sum();
+            for connection in &found {
+                let square = connection
+                    .square
+                    .map(|square| square / gain(connection.light));
+                sums.add(connection.pair(), square);
+            }
             proposals = LightProposals::new(cells, &sums);
         }
         let some_are_traced = settings.shadow_rays != ShadowRays::All;

@@ -3,7 +3,7 @@
 
 use super::probe::{GROUP, Probe, Witness};
 use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, Sample, Workspace};
-use crate::path::{Cells, PairSums, PathContext};
+use crate::path::{Cell, Cells, PathContext};
 use crate::select::ShadowRays;
 use crate::spectrum::luminance;
 use crate::stats::RayCounts;
@@ -12,31 +12,51 @@ use rayon::prelude::*;
 const GROUPS: u64 = 64;
 /// For each camera vertex.
 const CANDIDATES: CandidateCount = CandidateCount::of(16);
-/// The samples of all groups.
+/// The samples of all groups, each of which brings a light subpath.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 
-/// A pair of cells, by number, and the square of what arrived by a connection, if anything.
+/// A connection that was traced.
+#[derive(Clone, Copy)]
+pub(super) struct Connection {
+    /// The light that its path begins on.
+    pub(super) light: u32,
+    /// The cells of its light vertex and of its camera vertex.
+    pub(super) cells: [Cell; 2],
+    /// The square of what arrived. None: it was blocked.
+    pub(super) square: Option<f64>,
+}
+
+impl Connection {
+    /// The number of its pair of cells.
+    pub(super) fn pair(&self) -> usize {
+        Cells::pair(self.cells[0], self.cells[1])
+    }
+}
+
 #[derive(Default)]
-struct Found(Vec<(u32, Option<f64>)>);
+struct Found(Vec<Connection>);
 
 impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
 
     fn sample(&mut self, context: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
         let color = context.scene.color();
-        let connections = workspace.cached_connections();
         let square = |value| {
             let y = f64::from(luminance(color.to_rgb(value, &context.wavelengths)));
             y * y
         };
-        self.0.extend(connections.map(|(light, camera, arrived)| {
-            (Cells::pair(light, camera) as u32, arrived.map(square))
-        }));
+        let connections = workspace.cached_connections();
+        self.0
+            .extend(connections.map(|(candidate, cells, arrived)| Connection {
+                light: candidate.light,
+                cells,
+                square: arrived.map(square),
+            }));
     }
 }
 
-/// Adds to `sums` what connections contribute, and how many arrive. Returns the rays that it took.
-pub(super) fn run(probe: &Probe<'_>, sums: &mut PairSums) -> RayCounts {
+/// The connections of all groups in their order, and the rays that it took.
+pub(super) fn run(probe: &Probe<'_>) -> (Vec<Connection>, RayCounts) {
     let groups = (0..GROUPS).into_par_iter();
     let found: Vec<_> = groups
         .map_init(Workspace::default, |workspace, group| {
@@ -48,16 +68,13 @@ pub(super) fn run(probe: &Probe<'_>, sums: &mut PairSums) -> RayCounts {
             };
             let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
             probe.group(&*integrator, group, workspace, &mut found);
-            (found, std::mem::take(&mut workspace.stats).rays)
+            (found.0, std::mem::take(&mut workspace.stats).rays)
         })
         .collect();
-    let mut rays = RayCounts::default();
-    // In the order of the groups, whichever threads had them.
-    for (Found(found), of_group) in found {
-        for (pair, square) in found {
-            sums.add(pair as usize, square);
-        }
+    let (mut connections, mut rays) = (Vec::new(), RayCounts::default());
+    for (found, of_group) in found {
+        connections.extend(found);
         rays += of_group;
     }
-    rays
+    (connections, rays)
 }

@@ -17,13 +17,22 @@ pub(super) const SAMPLES: u64 = 1 << 14;
 /// Those that one thread takes together.
 const SHARE: u64 = 256;
 
+/// A light vertex that can be connected.
+#[derive(Clone, Copy)]
+pub(super) struct LightVertex {
+    /// Point and normal.
+    place: [Vec3; 2],
+    /// The light that its subpath begins on.
+    light: u32,
+}
+
 /// What the samples of every connection found.
 #[derive(Default)]
 pub(super) struct Survey {
     /// The sum of luminances that samples add to the mean pixel.
     pub(super) luminance: f64,
-    /// The light vertices that can be connected: points and normals.
-    pub(super) light: Vec<[Vec3; 2]>,
+    /// The light vertices that can be connected.
+    pub(super) light: Vec<LightVertex>,
     /// The camera vertices that can be, by their points.
     camera: Vec<Vec3>,
     pub(super) rays: RayCounts,
@@ -79,22 +88,33 @@ impl Survey {
     fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
         let light = &workspace.light.vertices;
         let connectable = connectable(context.settings.light_point, light);
-        self.light.extend(connectable.map(|i| light[i].place()));
+        let vertex = |i: usize| {
+            Some(LightVertex {
+                place: light[i].place(),
+                light: light[0].light?,
+            })
+        };
+        self.light.extend(connectable.filter_map(vertex));
         let camera = workspace.camera.vertices.iter().skip(1);
         let camera = camera.filter(|y| !y.is_delta());
         self.camera.extend(camera.map(|y| y.point));
     }
 
-    /// Cells that suit the vertices, with how many light vertices each has.
-    pub(super) fn cells(&self) -> (Cells, PairSums) {
-        let light = self.light.iter().map(|[point, _]| *point);
+    /// Cells that suit the vertices.
+    pub(super) fn cells(&self) -> Cells {
+        let light = self.light.iter().map(|vertex| vertex.place[0]);
         let mut points: Vec<_> = light.chain(self.camera.iter().copied()).collect();
-        let cells = Cells::new(&mut points);
+        Cells::new(&mut points)
+    }
+
+    /// How many light vertices each cell has where a light begins `gain` times as many subpaths as here.
+    pub(super) fn pair_sums(&self, cells: &Cells, gain: impl Fn(u32) -> f64) -> PairSums {
         let mut light_vertices = vec![0.0; Cells::COUNT];
-        for &[point, n] in &self.light {
-            light_vertices[cells.of(point, n).index()] += 1.0 / SAMPLES as f64;
+        for vertex in &self.light {
+            let [point, n] = vertex.place;
+            light_vertices[cells.of(point, n).index()] += gain(vertex.light) / SAMPLES as f64;
         }
-        (cells, PairSums::uniform(light_vertices))
+        PairSums::uniform(light_vertices)
     }
 }
 

@@ -1,0 +1,130 @@
+//! q_l, how often light subpaths begin on light l: less often where what they bring to the picture is
+//! in other rooms.
+//!
+//! With probabilities p_l the connections of the subpaths that begin on l have a second moment of p_l m_l,
+//! and with q_l of (p_l² / q_l) m_l, which is least in all where q_l ∝ p_l √m_l. m_l is relative to the
+//! second moment of all connections of the same cell of camera vertices: a dark corner counts as much as
+//! what is bright.
+
+use super::pilot::{self, Connection};
+use crate::light::LightChoice;
+use crate::path::Cells;
+
+/// How often what was learnt is not asked.
+const POWER_PART: f64 = 0.1;
+/// As many subpaths as this tell no more of a light than what is known of all.
+const PRIOR: f64 = 16.0;
+
+/// The choice that suits what `found` connections contribute, whose subpaths chose by `power`. None: it is
+/// that one.
+pub(super) fn learnt(power: &LightChoice, found: &[Connection]) -> Option<LightChoice> {
+    let moments = relative_moments(power.count(), found);
+    let all: f64 = moments.iter().sum();
+    if power.count() < 2 || all == 0.0 {
+        return None;
+    }
+    let subpaths = pilot::SAMPLES as f64;
+    let wanted = |(light, moment): (usize, &f64)| {
+        let prob = f64::from(power.prob(light));
+        let mean = (moment + PRIOR * all / subpaths) / (prob * subpaths + PRIOR);
+        prob * mean.sqrt()
+    };
+    let wanted: Vec<f64> = moments.iter().enumerate().map(wanted).collect();
+    let sum: f64 = wanted.iter().sum();
+    let weight = |(light, wanted): (usize, &f64)| {
+        let prob = f64::from(power.prob(light));
+        (POWER_PART * prob + (1.0 - POWER_PART) * wanted / sum) as f32
+    };
+    Some(LightChoice::with_weights(
+        wanted.iter().enumerate().map(weight),
+    ))
+}
+
+/// How much more often than by `power` subpaths begin on a light.
+pub(super) fn gain(power: &LightChoice, learnt: Option<&LightChoice>, light: u32) -> f64 {
+    let light = light as usize;
+    learnt.map_or(1.0, |learnt| {
+        f64::from(learnt.prob(light)) / f64::from(power.prob(light))
+    })
+}
+
+/// For each light the sum of the squares of its connections, each divided by the mean square of its cell
+/// of camera vertices.
+fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
+    let mut of_cells = vec![[0.0, 0.0]; Cells::COUNT];
+    for connection in found {
+        let [sum, count] = &mut of_cells[connection.cells[1].index()];
+        *sum += connection.square.unwrap_or(0.0);
+        *count += 1.0;
+    }
+    let mut moments = vec![0.0; lights];
+    for connection in found {
+        let [sum, count] = of_cells[connection.cells[1].index()];
+        if let Some(square) = connection.square.filter(|square| *square > 0.0) {
+            moments[connection.light as usize] += square * count / sum;
+        }
+    }
+    moments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn by_power(weights: &[f32]) -> LightChoice {
+        LightChoice::with_weights(weights.iter().copied())
+    }
+
+    fn connection(light: u32, camera: usize, square: Option<f64>) -> Connection {
+        Connection {
+            light,
+            cells: [0, camera].map(Cells::cell),
+            square,
+        }
+    }
+
+    fn probs(power: &LightChoice, found: &[Connection]) -> Vec<f64> {
+        let learnt = learnt(power, found).expect("there is something to learn");
+        (0..power.count())
+            .map(|light| f64::from(learnt.prob(light)))
+            .collect()
+    }
+
+    #[test]
+    fn lights_in_other_rooms_begin_few_subpaths() {
+        let power = by_power(&[1.0, 1.0]);
+        let seen = [
+            connection(0, 3, Some(2.0)),
+            connection(1, 3, None),
+            connection(1, 3, Some(0.0)),
+        ];
+        let probs = probs(&power, &seen);
+        // Of 8192 subpaths none brought anything: as if 16 of all had.
+        let hidden = libm::sqrt(16.0 / (16384.0 + 16.0));
+        let expected = 0.05 + 0.9 * hidden / (1.0 + hidden);
+        assert!((probs[1] - expected).abs() < 1e-4, "{probs:?}");
+        let gain = gain(&power, learnt(&power, &seen).as_ref(), 1);
+        assert!((gain - 2.0 * expected).abs() < 2e-4);
+    }
+
+    #[test]
+    fn a_dark_corner_counts_as_much_as_what_is_bright() {
+        let power = by_power(&[1.0, 1.0]);
+        let seen = [connection(0, 3, Some(1e6)), connection(1, 5, Some(1e-6))];
+        assert!((probs(&power, &seen)[0] - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn of_a_light_that_hardly_began_a_subpath_nothing_is_known() {
+        let power = by_power(&[1.0, 1e-4]);
+        let probs = probs(&power, &[connection(0, 3, Some(1.0))]);
+        assert!((0.9e-4..1.0e-4).contains(&probs[1]), "{probs:?}");
+    }
+
+    #[test]
+    fn where_there_is_no_choice_nothing_is_learnt() {
+        assert!(learnt(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))]).is_none());
+        assert!(learnt(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)]).is_none());
+        assert!((gain(&by_power(&[1.0]), None, 0) - 1.0).abs() < 1e-12);
+    }
+}
