@@ -32,6 +32,7 @@ Mis: TypeAlias = Literal["balance", "power", "uniform"]
 LightChoice: TypeAlias = Literal["power", "tree"]
 LightPoint: TypeAlias = Literal["fresh", "shared"]
 Proposal: TypeAlias = Literal["uniform", "learned"]
+Emission: TypeAlias = Literal["power", "learned"]
 MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 
 
@@ -190,6 +191,8 @@ class Lvc(_Bidirectional):
     next_events: int | tuple[int, int] | None = None
     #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short render before learnt.
     proposal: Proposal | None = None
+    #: How light subpaths choose their light: by power, or by what the same render found to reach the picture.
+    emission: Emission | None = None
     #: How many samples bring one light subpath to those that are shared: a power of two to 256.
     samples_per_subpath: int | None = None
     #: What weights take for the number of samples of a strategy whose light subpaths are shared: how

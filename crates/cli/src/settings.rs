@@ -19,6 +19,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
     lvc.next_events = args.next_events.unwrap_or(lvc.next_events);
     lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
+    lvc.emission = args.emission.unwrap_or(lvc.emission);
     lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
     lvc.mis_count = args.mis_count.unwrap_or(lvc.mis_count);
     let path = &mut settings.path;
@@ -62,6 +63,7 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
             estimator.next_events.is_some() && !may_share,
         ),
         ("--proposal", estimator.proposal.is_some() && !may_share),
+        ("--emission", estimator.emission.is_some() && !may_share),
         (
             "--samples-per-subpath",
             estimator.samples_per_subpath.is_some() && !is_lvc,

@@ -20,7 +20,7 @@ pub use training::{Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
-use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
 use crate::path::{MisCount, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
@@ -51,8 +51,9 @@ pub struct Settings {
 impl Settings {
     /// True where the estimator learns about connections before the first pass.
     fn learns(&self) -> bool {
-        let learns =
-            self.lvc.proposal == ProposalKind::Learned || self.lvc.mis_count == MisCount::Resampled;
+        let learns = self.lvc.proposal == ProposalKind::Learned
+            || self.lvc.emission == EmissionKind::Learned
+            || self.lvc.mis_count == MisCount::Resampled;
         self.integrator == IntegratorKind::Lvc && learns
     }
 }

@@ -18,7 +18,9 @@ pub use bdpt::Bdpt;
 pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
-pub use lvc::{CandidateCount, CountError, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath};
+pub use lvc::{
+    CandidateCount, CountError, EmissionKind, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath,
+};
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub use workspace::{Contribution, Sample, Splat, Workspace};

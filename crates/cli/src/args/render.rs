@@ -7,7 +7,9 @@ use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, na
 use super::view::ServeAddress;
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
-use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
+use bidir::integrator::{
+    CandidateCount, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
+};
 use bidir::path::{
     LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
 };
@@ -178,6 +180,11 @@ pub(crate) struct EstimatorArgs {
     /// pass. uniform: each is as likely as others.
     #[arg(long, value_parser = named(ProposalKind::NAMES))]
     pub(crate) proposal: Option<ProposalKind>,
+    /// How shared light subpaths choose the light that they begin on (lvc) [default: learned].
+    ///
+    /// learned: by what the same short render found to reach what is seen. power: by power alone.
+    #[arg(long, value_parser = named(EmissionKind::NAMES))]
+    pub(crate) emission: Option<EmissionKind>,
     /// How many samples bring one light subpath to those that are shared (lvc): a power of two, up to
     /// 256 [default: 2].
     #[arg(long, value_name = "K")]
@@ -290,7 +297,8 @@ pub(crate) struct FilmArgs {
 #[cfg(test)]
 mod tests {
     use super::{
-        IntegratorKind, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, ProposalKind,
+        EmissionKind, IntegratorKind, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic,
+        ProposalKind,
     };
     use crate::args::Cli;
     use crate::settings::name_of;
@@ -329,6 +337,10 @@ mod tests {
         check_default(
             "proposal",
             name_of(&ProposalKind::NAMES, settings.lvc.proposal),
+        );
+        check_default(
+            "emission",
+            name_of(&EmissionKind::NAMES, settings.lvc.emission),
         );
         check_default(
             "mis-count",

@@ -77,6 +77,7 @@ fn settings_change_the_image() {
         "--integrator lvc --proposal uniform",
         "--integrator lvc --samples-per-subpath 4",
         "--integrator lvc --next-events 1",
+        "--integrator lvc --emission power",
         "--integrator lvc --candidates 8 --mis-count correlated",
         "--integrator lvc --shadow-rays budget:2 --mis-count resampled",
         "--mis uniform",

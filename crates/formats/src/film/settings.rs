@@ -2,7 +2,7 @@
 
 use bidir::driver::Settings;
 use bidir::film::{Aov, StrategyImages};
-use bidir::integrator::{IntegratorKind, LvcSettings, ProposalKind};
+use bidir::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathSettings};
 use bidir::sampler::SamplerKind;
 use serde::Serialize;
@@ -36,6 +36,8 @@ pub struct SettingsText {
     pub next_events: String,
     /// How cached light vertices are chosen.
     pub proposal: &'static str,
+    /// How light subpaths choose the light that they begin on.
+    pub emission: &'static str,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: u16,
     /// What weights take for the number of samples of a strategy whose light subpaths are shared.
@@ -92,6 +94,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             candidates: parse(flag("candidates")?)?,
             next_events: parse(flag("next-events")?)?,
             proposal: named(&ProposalKind::NAMES, flag("proposal")?)?,
+            emission: named(&EmissionKind::NAMES, flag("emission")?)?,
             samples_per_subpath: parse(flag("samples-per-subpath")?)?,
             mis_count: named(&MisCount::NAMES, flag("mis-count")?)?,
         },
@@ -164,6 +167,7 @@ impl From<&Settings> for SettingsText {
             candidates,
             next_events,
             proposal,
+            emission,
             samples_per_subpath,
             mis_count,
         } = lvc;
@@ -179,6 +183,7 @@ impl From<&Settings> for SettingsText {
             candidates: candidates.to_string(),
             next_events: next_events.to_string(),
             proposal: name_of(&ProposalKind::NAMES, *proposal),
+            emission: name_of(&EmissionKind::NAMES, *emission),
             samples_per_subpath: samples_per_subpath.get(),
             mis_count: name_of(&MisCount::NAMES, *mis_count),
             sampler: name_of(&SamplerKind::NAMES, *sampler),

@@ -62,6 +62,8 @@ const fn variant(
 }
 
 const PROPOSALS: &str = "Proposals, uniform or learnt";
+const EMISSION: &str = "Where light subpaths begin, by power instead of what is learnt";
+const LIGHT_POINTS: &str = "Light points for the first camera vertex and those behind it";
 const SUBPATHS: &str = "Samples for each light subpath";
 const CANDIDATES: &str = "Candidates for the first camera vertex and those behind it";
 const SELECTORS: &str = "Shadow-ray selectors";
@@ -83,6 +85,11 @@ const VARIANTS: &[Variant] = &[
 
     variant(PROPOSALS, SHARED, "lvc uniform", &[("integrator", "lvc"), ("proposal", "uniform")]),
     variant(PROPOSALS, SHARED, "lvc learned", &[("integrator", "lvc"), ("proposal", "learned")]),
+
+    variant(EMISSION, SHARED, "lvc emission by power", &[("integrator", "lvc"), ("emission", "power")]),
+
+    variant(LIGHT_POINTS, SHARED, "lvc 1 light point", &[("integrator", "lvc"), ("next-events", "1")]),
+    variant(LIGHT_POINTS, SHARED, "lvc 4 light points, then 1", &[("integrator", "lvc"), ("next-events", "4,1")]),
 
     variant(SUBPATHS, SHARED, "lvc 1 sample", &[("integrator", "lvc"), ("samples-per-subpath", "1")]),
     variant(SUBPATHS, SHARED, "lvc 2 samples", &[("integrator", "lvc"), ("samples-per-subpath", "2")]),

@@ -3,7 +3,9 @@
 
 use super::names::nearest;
 use bidir::driver::Settings;
-use bidir::integrator::{CandidateCount, IntegratorKind, ProposalKind, SamplesPerSubpath};
+use bidir::integrator::{
+    CandidateCount, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
+};
 use bidir::path::{
     LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
 };
@@ -27,6 +29,8 @@ pub struct Changes {
     pub next_events: Option<CandidateCount>,
     /// How cached light vertices are chosen.
     pub proposal: Option<ProposalKind>,
+    /// How light subpaths choose the light that they begin on.
+    pub emission: Option<EmissionKind>,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: Option<SamplesPerSubpath>,
     /// What weights take for the number of samples of a strategy whose light subpaths are shared.
@@ -49,12 +53,13 @@ pub struct Changes {
 
 impl Changes {
     /// The names of all settings.
-    pub const NAMES: [&'static str; 14] = [
+    pub const NAMES: [&'static str; 15] = [
         "integrator",
         "shadow-rays",
         "candidates",
         "next-events",
         "proposal",
+        "emission",
         "samples-per-subpath",
         "mis-count",
         "mis",
@@ -77,6 +82,7 @@ impl Changes {
             "next-events" => self.next_events = Some(parsed(value)?),
             "samples-per-subpath" => self.samples_per_subpath = Some(parsed(value)?),
             "proposal" => self.proposal = Some(named(&ProposalKind::NAMES, value)?),
+            "emission" => self.emission = Some(named(&EmissionKind::NAMES, value)?),
             "mis-count" => self.mis_count = Some(named(&MisCount::NAMES, value)?),
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),
@@ -102,6 +108,7 @@ impl Changes {
             candidates: self.candidates.or(defaults.candidates),
             next_events: self.next_events.or(defaults.next_events),
             proposal: self.proposal.or(defaults.proposal),
+            emission: self.emission.or(defaults.emission),
             samples_per_subpath: self.samples_per_subpath.or(defaults.samples_per_subpath),
             mis_count: self.mis_count.or(defaults.mis_count),
             mis: self.mis.or(defaults.mis),
@@ -122,6 +129,7 @@ impl Changes {
         lvc.candidates = self.candidates.unwrap_or(lvc.candidates);
         lvc.next_events = self.next_events.unwrap_or(lvc.next_events);
         lvc.proposal = self.proposal.unwrap_or(lvc.proposal);
+        lvc.emission = self.emission.unwrap_or(lvc.emission);
         lvc.samples_per_subpath = self.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
         lvc.mis_count = self.mis_count.unwrap_or(lvc.mis_count);
         let path = &mut settings.path;
@@ -184,7 +192,9 @@ mod tests {
             "light",
             "per-pair",
             "9,2",
+            "3,1",
             "uniform",
+            "power",
             "4",
             "correlated",
             "uniform",

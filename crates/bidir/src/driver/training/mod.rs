@@ -15,12 +15,13 @@ pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
 use crate::light::LightChoice;
-use crate::path::{Connections, LightProposals, MisCount, PathRoulette};
+use crate::path::{Cells, Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
+use pilot::Connection;
 use probe::Probe;
 use survey::Survey;
 
@@ -122,32 +123,64 @@ impl Training {
     /// Learns where light subpaths shall begin, which of their vertices to propose, which are visible, and
     /// which are chosen.
     fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
-        let cells = survey.cells();
-        let mut sums = survey.pair_sums(&cells, |_| 1.0);
-        let mut proposals = LightProposals::new(cells.clone(), &sums);
-        if settings.lvc.proposal == ProposalKind::Learned {
-            let (found, rays) = pilot::run(&self.probe(scene, settings, &proposals));
-            self.count(pilot::SAMPLES, rays);
+        let (lvc, cells) = (&settings.lvc, survey.cells());
+        let found = self.explore(scene, settings, survey, &cells);
+        if lvc.emission == EmissionKind::Learned {
             self.emission = emission::learnt(scene.light_choice(), &found);
-            let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
-            sums = survey.pair_sums(&cells, gain);
-            self.light_vertices = sums.light_vertices.iter().sum();
+        }
+        let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
+        let mut sums = survey.pair_sums(&cells, gain);
+        self.light_vertices = sums.light_vertices.iter().sum();
+        if lvc.proposal == ProposalKind::Learned {
             for connection in &found {
+                // Of a light that begins g times as many subpaths each contributes 1/g.
                 let square = connection
                     .square
                     .map(|square| square / gain(connection.light));
                 sums.add(connection.pair(), square);
             }
-            proposals = LightProposals::new(cells, &sums);
         }
-        let some_are_traced = settings.shadow_rays != ShadowRays::All;
-        if settings.lvc.mis_count == MisCount::Resampled && some_are_traced {
-            let probe = self.probe(scene, settings, &proposals);
-            let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
-            self.count(rays::SAMPLES, rays);
-            proposals = proposals.counting_rays(&inclusion);
+        let proposals = self.counting_rays(scene, settings, LightProposals::new(cells, &sums));
+        let is_uniform =
+            lvc.proposal == ProposalKind::Uniform && lvc.mis_count != MisCount::Resampled;
+        self.proposals = (!is_uniform).then_some(proposals);
+    }
+
+    /// Connections with light vertices that are chosen by nothing, where somebody learns from them.
+    fn explore(
+        &mut self,
+        scene: &Scene,
+        settings: &Settings,
+        survey: &Survey,
+        cells: &Cells,
+    ) -> Vec<Connection> {
+        let LvcSettings {
+            proposal, emission, ..
+        } = settings.lvc;
+        if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
+            return Vec::new();
         }
-        self.proposals = Some(proposals);
+        let uniform = LightProposals::new(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
+        let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));
+        self.count(pilot::SAMPLES, rays);
+        found
+    }
+
+    /// The proposals with counts of traced rays, where weights take these and not all are traced.
+    fn counting_rays(
+        &mut self,
+        scene: &Scene,
+        settings: &Settings,
+        proposals: LightProposals,
+    ) -> LightProposals {
+        let all_are_traced = settings.shadow_rays == ShadowRays::All;
+        if settings.lvc.mis_count != MisCount::Resampled || all_are_traced {
+            return proposals;
+        }
+        let probe = self.probe(scene, settings, &proposals);
+        let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
+        self.count(rays::SAMPLES, rays);
+        proposals.counting_rays(&inclusion)
     }
 
     /// More samples, where `proposals` are all that is known.

@@ -16,7 +16,9 @@ mod settings;
 mod tests;
 
 pub(crate) use cache::{LightCache, connectable};
-pub use settings::{CandidateCount, CountError, LvcSettings, ProposalKind, SamplesPerSubpath};
+pub use settings::{
+    CandidateCount, CountError, EmissionKind, LvcSettings, ProposalKind, SamplesPerSubpath,
+};
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};
 use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};

@@ -13,6 +13,8 @@ pub struct LvcSettings {
     pub next_events: CandidateCount,
     /// How vertices of the cache are chosen.
     pub proposal: ProposalKind,
+    /// How light subpaths choose the light that they begin on.
+    pub emission: EmissionKind,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: SamplesPerSubpath,
     /// What weights take for the number of samples of a strategy.
@@ -25,6 +27,7 @@ impl Default for LvcSettings {
             candidates: CandidateCount::new(8, 1),
             next_events: CandidateCount::new(2, 1),
             proposal: ProposalKind::default(),
+            emission: EmissionKind::default(),
             samples_per_subpath: SamplesPerSubpath::default(),
             mis_count: MisCount::default(),
         }
@@ -45,6 +48,22 @@ impl ProposalKind {
     /// Every kind with its name on the command line.
     pub const NAMES: [(&'static str, Self); 2] =
         [("uniform", Self::Uniform), ("learned", Self::Learned)];
+}
+
+/// How light subpaths choose the light that they begin on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EmissionKind {
+    /// By power.
+    Power,
+    /// By what training found subpaths to contribute.
+    #[default]
+    Learned,
+}
+
+impl EmissionKind {
+    /// Every kind with its name on the command line.
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("power", Self::Power), ("learned", Self::Learned)];
 }
 
 /// How many candidates or light points the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
