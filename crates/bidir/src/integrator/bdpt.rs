@@ -186,7 +186,8 @@ fn candidate(
     }
 }
 
-/// Offers a term for selection. It is compared by its luminance times `root_visibility`, the √V̂ of its shadow ray.
+/// Offers a term for selection. It is compared by its luminance times `root_visibility`, the √V̂ of its
+/// shadow ray.
 #[inline]
 pub(super) fn offer(
     context: &PathContext<'_>,

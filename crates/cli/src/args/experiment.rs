@@ -109,7 +109,7 @@ pub(crate) struct BeyondArgs {
     /// How many seeds: gains have intervals from 2 on [default: 10, --quick 3].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
-    /// Samples per pixel of references, of each of their two estimators [default: 4096, --quick 256].
+    /// Samples per pixel of references, of each of their two estimators [default: 4096, --quick 1024].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
     pub(crate) reference_spp: Option<u64>,
 }

@@ -68,7 +68,7 @@ impl Amounts {
                 rays: 2000.0,
             },
             seeds: 3,
-            reference_spp: 256,
+            reference_spp: 1024,
         }
     }
 }
