@@ -189,9 +189,11 @@ class Lvc(_Bidirectional):
     candidates: int | tuple[int, int] | None = None
     #: How many light points next-event estimation draws for each camera vertex, in the same way.
     next_events: int | tuple[int, int] | None = None
-    #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short render before learnt.
+    #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short
+    #: render before learnt.
     proposal: Proposal | None = None
-    #: How light subpaths choose their light: by power, or by what the same render found to reach the picture.
+    #: How light subpaths choose their light: by power, or by what the same render found to reach
+    #: what is seen.
     emission: Emission | None = None
     #: How many samples bring one light subpath to those that are shared: a power of two to 256.
     samples_per_subpath: int | None = None

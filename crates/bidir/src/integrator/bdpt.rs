@@ -145,30 +145,39 @@ pub(super) fn next_events(
     if !is_fresh || t >= context.settings.max_vertices() || !context.takes(1, t) {
         return;
     }
-    let at = |purpose| Dimension::at(t - 1, purpose);
-    let light_number = || sample.camera.get_1d(at(Purpose::NextEventLight));
-    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
     for k in 0..count {
-        let u_light =
-            || ((f32::from(k) + light_number()) / f32::from(count)).min(ONE_MINUS_EPSILON);
         let y = &workspace.camera.vertices[t - 1];
-        let Some((light, drawn)) = sample_next_event(context, y, u_light, kronecker_point(u, k))
-        else {
+        let Some(x0) = light_point(context, sample, y, t, [k, count]) else {
             continue;
         };
-        let mut x0 = Vertex::light(context, light, &drawn.at);
-        x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
-        let number = workspace.next_events.len() as u32;
+        let light_vertex = LightVertex::NextEvent(workspace.next_events.len() as u32);
         workspace.next_events.push(x0);
-        let strategy = Strategy::new(1, t);
         candidate(
             context,
             sample,
             workspace,
-            strategy,
-            LightVertex::NextEvent(number),
+            Strategy::new(1, t),
+            light_vertex,
         );
     }
+}
+
+/// Light point number `k` of `count` for `y`, camera vertex number `t`. Each counts 1 / `count`.
+fn light_point(
+    context: &PathContext<'_>,
+    sample: &Sample,
+    y: &Vertex,
+    t: usize,
+    [k, count]: [u16; 2],
+) -> Option<Vertex> {
+    let at = |purpose| Dimension::at(t - 1, purpose);
+    let part = |u: f32| ((f32::from(k) + u) / f32::from(count)).min(ONE_MINUS_EPSILON);
+    let u_light = || part(sample.camera.get_1d(at(Purpose::NextEventLight)));
+    let u = sample.camera.get_2d(at(Purpose::NextEventPosition));
+    let (light, drawn) = sample_next_event(context, y, u_light, kronecker_point(u, k))?;
+    let mut x0 = Vertex::light(context, light, &drawn.at);
+    x0.beta = Spectrum::splat(drawn.coverage / (drawn.pdf * f32::from(count)));
+    Some(x0)
 }
 
 /// Evaluates the connection (s, t), and offers it for selection.
