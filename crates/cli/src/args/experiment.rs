@@ -67,7 +67,7 @@ pub(crate) struct ExperimentArgs {
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references. Of
     /// `paper`: all claims with wider intervals, in five minutes of two cores instead of forty. Of
-    /// `beyond`: 3 seeds of small images, 2 seconds, in twenty minutes instead of a day.
+    /// `beyond`: 3 seeds of small images, 2 seconds, in half an hour instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Run on the nodes of a Ray cluster, each with all of its threads: `auto` finds the one that runs

@@ -102,6 +102,30 @@ fn a_flipped_bit_is_seen() {
     }
 }
 
+/// Whoever writes a checksum may have meant what it is of.
+#[test]
+fn what_no_film_is_packed_to_is_damaged_whatever_its_checksum() {
+    let bytes = bytes();
+    let header = u32::from_le_bytes(bytes[12..PREAMBLE].try_into().unwrap()) as usize;
+    let block = PREAMBLE + header + 4;
+    let length = u32::from_le_bytes(bytes[block..block + 4].try_into().unwrap()) as usize;
+    let packed = block + 8..block + 8 + length;
+    let mut refused = 0;
+    for at in packed.clone().take(300).chain(packed.clone().step_by(2111)) {
+        for value in [2, 255] {
+            let mut forged = bytes.clone();
+            forged[at] = value;
+            let checksum = block::checksum(&forged[packed.clone()]);
+            forged[block + 4..block + 8].copy_from_slice(&checksum.to_le_bytes());
+            if let Err(error) = decode(&forged) {
+                assert_eq!(error.kind(), ErrorKind::Data, "{at}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 100, "{refused} were refused");
+}
+
 #[test]
 fn other_files_and_versions_are_told() {
     let check = |bytes: &[u8], text: &str| {

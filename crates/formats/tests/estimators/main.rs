@@ -11,7 +11,7 @@ mod plans;
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
 
-use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::integrator::{CandidateCount, EmissionKind, IntegratorKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette};
 use bidir::select::ShadowRays;
 use bidir_formats::pbrt::Crop;
@@ -188,6 +188,23 @@ fn several_light_points_for_each_camera_vertex() {
             });
             let name = format!("{name}, {first} and {deeper} light points");
             check_agree(&name, &result, &reference, QUARTERS);
+        }
+    }
+}
+
+/// Lamps of many places, and lights of every kind: what is learnt of them is far from their power.
+#[test]
+fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
+    for (name, passes, effort) in [("lamps", 1536, 4), ("lights", 4608, 1)] {
+        let loaded = open(&format!("{name}.pbrt"));
+        let case = Case::new(&loaded, passes);
+        let reference = case.with_effort(effort).path();
+        for (kind, emission) in EmissionKind::NAMES {
+            let result = case.render(IntegratorKind::Lvc, |settings| {
+                settings.lvc.emission = emission;
+            });
+            let name = format!("{name}, emission {kind}");
+            check_agree(&name, &result, &reference, PIXELS);
         }
     }
 }

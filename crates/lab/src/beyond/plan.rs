@@ -55,7 +55,7 @@ impl Amounts {
         }
     }
 
-    /// Small pictures, short budgets, three seeds: about twenty minutes on two cores.
+    /// Small pictures, short budgets, three seeds: about three minutes a scene on two cores.
     pub fn quick() -> Self {
         Self {
             size: None,
