@@ -60,11 +60,11 @@ fn rewalk(
             let before = walk[i - 1];
             let segment = before.segment_to(&vertex);
             vertex.wo = -segment.w;
-            vertex.pdf_fwd = before.pdf_direction(context, before.wo, segment.w) * segment.to_b;
+            vertex.pdf_fwd = before.turn(before.wo, segment.w).pdf(context) * segment.to_b;
             vertex.to_previous = segment.to_a;
             let roulette = survival(context, i, &before);
             density = f64::from(vertex.pdf_fwd * roulette);
-            let scatter = before.scatter(context, before.wo, -vertex.wo, mode);
+            let scatter = before.turn(before.wo, -vertex.wo).scatter(context, mode);
             let step = segment.geometry_term / (vertex.pdf_fwd * roulette);
             // The first camera density counts samples per pixel, and so does importance.
             vertex.beta = before.beta * scatter * step;
@@ -78,7 +78,7 @@ fn rewalk(
         let (next, vertex) = (walk[i + 1], walk[i]);
         if let Some(after) = walk.get(i + 2).copied() {
             let (wi, back) = (next.segment_to(&after).w, next.segment_to(&vertex));
-            walk[i].pdf_rev = next.pdf_direction(context, wi, back.w) * back.to_b;
+            walk[i].pdf_rev = next.turn(wi, back.w).pdf(context) * back.to_b;
             walk[i + 1].albedo_rev = next.bsdf.albedo(next.shading.to_local(wi)).max_lane();
         }
     }
@@ -223,7 +223,8 @@ fn strategies(context: &PathContext<'_>, path: &[Vertex]) -> Vec<(usize, f32, Sp
             let mut x0 = path[0];
             x0.pdf_rev = camera[n - 1].pdf_fwd;
             let w = JoinedPath::hit(&x0, &camera[..n - 1]).weight(context, &mut densities);
-            let emitted = x0.scatter(context, x0.wo, camera[n - 1].wo, TransportMode::Importance);
+            let turn = x0.turn(x0.wo, camera[n - 1].wo);
+            let emitted = turn.scatter(context, TransportMode::Importance);
             result.push((s, w, camera[n - 1].beta * emitted));
             continue;
         }

@@ -144,7 +144,7 @@ pub enum Bsdf {
 impl Bsdf {
     /// f for light that goes from one direction to the other, without Dirac lobes. Unit: 1/sr.
     ///
-    /// Only [`Vertex::scatter`](crate::path::Vertex::scatter) calls this.
+    /// Only [`Turn::scatter`](crate::path::Turn::scatter) calls this.
     #[inline]
     pub(crate) fn eval(&self, wo: Vec3, wi: Vec3, mode: TransportMode) -> Spectrum {
         match self {

@@ -76,7 +76,7 @@ fn hit(
     if !context.takes(0, i + 1) {
         return;
     }
-    let contribution = x0.beta * x0.scatter(context, x0.wo, x0.wo, TransportMode::Importance);
+    let contribution = x0.beta * x0.turn(x0.wo, x0.wo).scatter(context, TransportMode::Importance);
     if contribution == Spectrum::ZERO {
         return;
     }
@@ -191,7 +191,11 @@ fn candidate(
     if let Some(term) = connection(context, workspace, strategy, light_vertex) {
         let link = |workspace: &Workspace| Link::Connection(workspace.ends(strategy, light_vertex));
         let counted = workspace.count(term, link);
-        offer(context, sample, workspace, &counted, 1.0, light_vertex);
+        let v = match light_vertex { LightVertex::NextEvent(k) => {
+            let z = &workspace.next_events[k as usize];
+            let y = &workspace.camera.vertices[usize::from(strategy.t) - 1];
+            context.connections.proposals.filter(|_| !z.is_infinite).map_or(1.0, |p| p.root_visibility(z.cell, y.cell)) }, _ => 1.0 };
+        offer(context, sample, workspace, &counted, v, light_vertex);
     }
 }
 

@@ -6,7 +6,7 @@ use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::{LightPoint, LightSample};
 use crate::math::Vec3;
-use crate::path::{PathContext, Segment, Strategy, Vertex, next_event_pdf, sample_next_event};
+use crate::path::{PathContext, Segment, Strategy, Turn, next_event_pdf, sample_next_event};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -97,14 +97,15 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     };
     let ends = [x0.at.segment_end(), vertex.segment_end()];
     let segment = Segment::between(&ends[0], &ends[1]);
-    let contribution = arriving(context, vertex, light, &x0, &segment);
+    let turn = vertex.turn(vertex.wo, -segment.w);
+    let contribution = arriving(context, &turn, light, &x0, &segment);
     if contribution == Spectrum::ZERO {
         return;
     }
     let p = if context.scene.light(light).is_delta() {
         0.0
     } else {
-        vertex.pdf_direction(context, vertex.wo, -segment.w) * segment.to_a
+        turn.pdf(context) * segment.to_a
     };
     let term = Term {
         strategy: Strategy::new(1, i + 1),
@@ -120,12 +121,12 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     }
 }
 
-/// L_e · G · scatter · β / q: what of the light point x_0, drawn with density q, arrives by `vertex`,
-/// before weight and visibility.
+/// L_e · G · scatter · β / q: what of the light point x_0, drawn with density q, arrives by the vertex of
+/// `turn`, before weight and visibility.
 #[inline]
 fn arriving(
     context: &PathContext<'_>,
-    vertex: &Vertex,
+    turn: &Turn<'_>,
     light: u32,
     x0: &LightSample,
     segment: &Segment,
@@ -138,9 +139,7 @@ fn arriving(
     if emitted.is_black() {
         return Spectrum::ZERO;
     }
-    let wi = -segment.w;
-    let scatter = vertex.scatter(context, vertex.wo, wi, TransportMode::Radiance);
-    emitted * scatter * vertex.beta * factor
+    emitted * turn.scatter(context, TransportMode::Radiance) * turn.vertex().beta * factor
 }
 
 /// Adds the lights at infinity that the walk escaped to.

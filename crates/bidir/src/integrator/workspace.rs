@@ -213,11 +213,12 @@ impl Workspace {
 
     /// The cells of a candidate's vertices. None: its light vertex is not of the light cache.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let LightVertex::Cached(number) = candidate.light_vertex else {
-            return None;
+        let z = match candidate.light_vertex {
+            LightVertex::Cached(number) => self.light_cache.get(number as usize).light.last()?,
+            LightVertex::NextEvent(number) => &self.next_events[number as usize],
+            LightVertex::Own => return None,
         };
-        let light = self.light_cache.get(number as usize).light;
-        Some([light[light.len() - 1].cell, self.camera_cell(candidate)])
+        Some([z.cell, self.camera_cell(candidate)])
     }
 
     /// The cell of a candidate's camera vertex.

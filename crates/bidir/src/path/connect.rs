@@ -4,7 +4,7 @@
 //! No ray is traced here: visibility is the caller's to ask for.
 
 use super::{
-    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Vertex, mis_weight,
+    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Turn, Vertex, mis_weight,
 };
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
@@ -33,6 +33,8 @@ pub struct JoinedPath<'a> {
     pub junction: Junction,
     /// From the last light vertex, z, to the last camera vertex, y.
     pub segment: Segment,
+    /// z and y, each between the vertex before it and the other.
+    turns: [Turn<'a>; 2],
 }
 
 impl<'a> JoinedPath<'a> {
@@ -50,12 +52,14 @@ impl<'a> JoinedPath<'a> {
 
     #[inline]
     fn new(light: &'a [Vertex], camera: &'a [Vertex], junction: Junction) -> Self {
-        let segment = light[light.len() - 1].segment_to(&camera[camera.len() - 1]);
+        let (z, y) = (&light[light.len() - 1], &camera[camera.len() - 1]);
+        let segment = z.segment_to(y);
         Self {
             light,
             camera,
             junction,
             segment,
+            turns: [z.turn(z.wo, segment.w), y.turn(y.wo, -segment.w)],
         }
     }
 
@@ -69,6 +73,12 @@ impl<'a> JoinedPath<'a> {
     #[inline]
     pub(super) fn y(&self) -> &'a Vertex {
         &self.camera[self.camera.len() - 1]
+    }
+
+    /// z and y, each between the vertex before it and the other.
+    #[inline]
+    pub(super) fn turns(&self) -> &[Turn<'a>; 2] {
+        &self.turns
     }
 
     /// x_i.
@@ -93,17 +103,16 @@ impl<'a> JoinedPath<'a> {
     #[inline]
     pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
         let (z, y) = (self.z(), self.y());
-        let Segment {
-            w, geometry_term, ..
-        } = self.segment;
+        let geometry_term = self.segment.geometry_term;
         if geometry_term == 0.0 || z.is_delta() || y.is_delta() {
             return Spectrum::ZERO;
         }
-        let at_light = z.scatter(context, z.wo, w, TransportMode::Importance);
+        let [at_z, at_y] = self.turns();
+        let at_light = at_z.scatter(context, TransportMode::Importance);
         if at_light.is_black() {
             return Spectrum::ZERO;
         }
-        let at_camera = y.scatter(context, y.wo, -w, TransportMode::Radiance);
+        let at_camera = at_y.scatter(context, TransportMode::Radiance);
         z.beta * at_light * at_camera * y.beta * geometry_term
     }
 

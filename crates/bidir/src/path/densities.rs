@@ -120,9 +120,8 @@ impl JoinedPath<'_> {
     pub(super) fn reversed(&self, context: &PathContext<'_>) -> Reversed {
         let (s, t) = (self.light.len(), self.camera.len());
         let (z, y, segment) = (self.z(), self.y(), &self.segment);
-        let w = segment.w;
-        let a_s =
-            z.pdf_direction(context, z.wo, w) * segment.to_b * factor(context, s, || z.albedo_fwd);
+        let [at_z, at_y] = self.turns();
+        let a_s = at_z.pdf(context) * segment.to_b * factor(context, s, || z.albedo_fwd);
         if self.junction == Junction::Hit {
             return Reversed {
                 z: z.pdf_rev * factor(context, t, || y.albedo_fwd),
@@ -132,16 +131,18 @@ impl JoinedPath<'_> {
         }
         let mut before = [0.0; 2];
         if s > 1 {
-            let survival = factor(context, t + 1, || z.albedo_from(w));
-            before[0] = z.pdf_direction(context, w, z.wo) * z.to_previous * survival;
+            let back = at_z.reversed();
+            let survival = factor(context, t + 1, || back.albedo());
+            before[0] = back.pdf(context) * z.to_previous * survival;
         }
         if t > 1 {
-            let survival = factor(context, s + 1, || y.albedo_from(-w));
-            before[1] = y.pdf_direction(context, -w, y.wo) * y.to_previous * survival;
+            let back = at_y.reversed();
+            let survival = factor(context, s + 1, || back.albedo());
+            before[1] = back.pdf(context) * y.to_previous * survival;
         }
         let survival = factor(context, t, || y.albedo_fwd);
         Reversed {
-            z: y.pdf_direction(context, y.wo, -w) * segment.to_a * survival,
+            z: at_y.pdf(context) * segment.to_a * survival,
             y: a_s,
             before,
         }

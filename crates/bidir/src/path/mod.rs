@@ -41,6 +41,7 @@ pub(crate) use proposals::CellDraw;
 pub use proposals::{Connections, Inclusion, LightProposals, PairSums};
 pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
+pub use scatter::Turn;
 pub use segment::Segment;
 pub use strategy::{LightChoiceKind, LightPointChoice, Strategies, Strategy};
 pub use vertex::{Vertex, VertexKind};

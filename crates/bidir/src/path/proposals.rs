@@ -30,12 +30,18 @@ const UNIFORM_PART: f32 = 0.2;
 /// as if all had arrived.
 const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
+/// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
+/// may lead to.
+const PARTS: usize = 64;
+
 /// How light vertices of a cache are proposed to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
     /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
     cumulative: Vec<f32>,
+    /// For each cell of camera vertices the first cell c that numbers of each part lead to.
+    first: Vec<u8>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
     /// For each cell of camera vertices, the part of the light points of s = 1 that n counts.
@@ -96,6 +102,7 @@ impl LightProposals {
     /// The proposals that suit `sums`.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
         let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
+        let mut first = Vec::with_capacity(Cells::COUNT * PARTS);
         let mut relative = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
         let kappa = &sums.light_vertices;
         let all: f64 = kappa.iter().sum();
@@ -103,6 +110,7 @@ impl LightProposals {
             let begin = cumulative.len();
             accumulate(kappa, squares, &mut cumulative);
             let ends = &cumulative[begin..];
+            first.extend((0..PARTS).map(|part| first_end_beyond(ends, part)));
             let of_cell = |(&kappa, ends): (&f64, &[f32])| match kappa {
                 0.0 => UNIFORM_PART,
                 kappa => {
@@ -115,6 +123,7 @@ impl LightProposals {
         Self {
             cells,
             cumulative,
+            first,
             relative,
             next_events: vec![1.0; Cells::COUNT],
             root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
@@ -165,7 +174,11 @@ impl LightProposals {
         }
         let u = (u - part) / (1.0 - part);
         let row = self.row(camera);
-        let cell = row[1..Cells::COUNT].partition_point(|&end| f64::from(end) <= u);
+        let part = camera.index() * PARTS + ((u * PARTS as f64) as usize).min(PARTS - 1);
+        let mut cell = usize::from(self.first[part]);
+        while cell + 1 < Cells::COUNT && f64::from(row[cell + 1]) <= u {
+            cell += 1;
+        }
         let [from, to] = [row[cell], row[cell + 1]].map(f64::from);
         CellDraw::One(Cells::cell(cell), (u - from) / (to - from))
     }
@@ -184,6 +197,13 @@ impl LightProposals {
         let begin = camera.index() * (Cells::COUNT + 1);
         &self.cumulative[begin..=begin + Cells::COUNT]
     }
+}
+
+/// The first of the cells that end at `ends[1..]` that holds a number of this part or ends behind it.
+fn first_end_beyond(ends: &[f32], part: usize) -> u8 {
+    let begin = part as f64 / PARTS as f64;
+    let cell = ends[1..Cells::COUNT].partition_point(|&end| f64::from(end) <= begin);
+    cell as u8
 }
 
 /// √V̂ where so many connections were traced and arrived. What training did not see counts as

@@ -18,13 +18,75 @@ pub(super) struct Scattered {
     pub(super) pdf: f32,
     /// The same of drawing `wo` by a walk that arrives along `wi`.
     pub(super) pdf_reverse: f32,
+    /// The largest lane of the albedo that such a walk meets.
+    pub(super) albedo_reverse: f32,
     /// True where a Dirac lobe was drawn.
     pub(super) is_delta: bool,
 }
 
-impl Vertex {
-    /// The value of this vertex in the measurement contribution: scattering, emission or
-    /// importance between `wo` (towards the previous vertex) and `wi` (towards the next).
+/// A vertex with the directions towards both of its neighbours on a path.
+///
+/// `wo` is where a walk came from and `wi` where it goes on; whatever is asked of the two shares
+/// their local coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'a> {
+    vertex: &'a Vertex,
+    wo: Side,
+    wi: Side,
+}
+
+/// A unit direction at a vertex.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    world: Vec3,
+    /// In the shading frame of a surface.
+    local: Vec3,
+    /// The cosine to its geometric normal.
+    cos_g: f32,
+}
+
+impl Side {
+    #[inline]
+    fn new(vertex: &Vertex, world: Vec3) -> Self {
+        Self {
+            world,
+            local: vertex.shading.to_local(world),
+            cos_g: vertex.n_g.dot(world),
+        }
+    }
+
+    /// True where both normals see it on the same side.
+    #[inline]
+    fn agrees(&self) -> bool {
+        self.local.z * self.cos_g > 0.0
+    }
+
+    /// |ω·n_s| / |ω·n_g|.
+    #[inline]
+    fn normal_ratio(&self) -> f32 {
+        (self.local.z / self.cos_g).abs()
+    }
+}
+
+impl<'a> Turn<'a> {
+    /// The vertex.
+    #[inline]
+    pub fn vertex(&self) -> &'a Vertex {
+        self.vertex
+    }
+
+    /// The same path from its other end.
+    #[inline]
+    pub(super) fn reversed(self) -> Self {
+        Self {
+            wo: self.wi,
+            wi: self.wo,
+            ..self
+        }
+    }
+
+    /// The value of the vertex in the measurement contribution: scattering, emission or
+    /// importance.
     ///
     /// The whole integrand is Π scatter · Π G over **geometric** cosines, so scattering carries
     /// |ω·n_s| / |ω·n_g| with ω the direction that light comes from: `wi` for radiance, `wo` for
@@ -34,28 +96,62 @@ impl Vertex {
     ///
     /// This is the only caller of `Bsdf::eval`.
     #[inline]
-    pub fn scatter(
-        &self,
-        context: &PathContext<'_>,
-        wo: Vec3,
-        wi: Vec3,
-        mode: TransportMode,
-    ) -> Spectrum {
-        match (self.kind, self.light) {
-            (VertexKind::Camera, _) => Spectrum::splat(context.scene.camera().importance(wi)),
-            (VertexKind::Light, Some(light)) => context.emitted(light, &self.light_point(), wi),
+    pub fn scatter(&self, context: &PathContext<'_>, mode: TransportMode) -> Spectrum {
+        let Self { vertex, wo, wi } = self;
+        match (vertex.kind, vertex.light) {
+            (VertexKind::Camera, _) => Spectrum::splat(context.scene.camera().importance(wi.world)),
+            (VertexKind::Light, Some(light)) => {
+                context.emitted(light, &vertex.light_point(), wi.world)
+            }
             (VertexKind::Light, None) => Spectrum::ZERO,
             (VertexKind::Surface, _) => {
-                if !self.sides_agree(wo) || !self.sides_agree(wi) {
+                if !wo.agrees() || !wi.agrees() {
                     return Spectrum::ZERO;
                 }
-                let (local_o, local_i) = (self.shading.to_local(wo), self.shading.to_local(wi));
-                let f = self.bsdf.eval(local_o, local_i, mode);
-                f * match mode {
-                    TransportMode::Radiance => self.normal_ratio(wi),
-                    TransportMode::Importance => self.normal_ratio(wo),
-                }
+                let from = match mode {
+                    TransportMode::Radiance => wi,
+                    TransportMode::Importance => wo,
+                };
+                vertex.bsdf.eval(wo.local, wi.local, mode) * from.normal_ratio()
             }
+        }
+    }
+
+    /// Density of drawing `wi` by a walk that came along -`wo`. Measure: solid angle, 1/sr; from a
+    /// light at infinity area of the disk that its rays cross, 1/m². Dirac lobes are no part of it but
+    /// for the probability that they take.
+    #[inline]
+    pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
+        let (scene, vertex) = (context.scene, self.vertex);
+        match (vertex.kind, vertex.light) {
+            (VertexKind::Camera, _) => scene.camera().pdf_direction(self.wi.world),
+            (VertexKind::Light, Some(light)) => {
+                let (light, at) = (scene.light(light), vertex.light_point());
+                light.pdf_direction(&scene.light_context(), &at, self.wi.world)
+            }
+            (VertexKind::Light, None) => 0.0,
+            (VertexKind::Surface, _) => vertex.bsdf.pdf(self.wo.local, self.wi.local),
+        }
+    }
+
+    /// The largest lane of the albedo that a walk along -`wo` meets here.
+    #[inline]
+    pub(super) fn albedo(&self) -> f32 {
+        match self.vertex.kind {
+            VertexKind::Surface => self.vertex.bsdf.albedo(self.wo.local).max_lane(),
+            VertexKind::Camera | VertexKind::Light => 1.0,
+        }
+    }
+}
+
+impl Vertex {
+    /// The vertex of a walk that came along -`wo` and goes on along `wi`.
+    #[inline]
+    pub fn turn(&self, wo: Vec3, wi: Vec3) -> Turn<'_> {
+        Turn {
+            vertex: self,
+            wo: Side::new(self, wo),
+            wi: Side::new(self, wi),
         }
     }
 
@@ -67,10 +163,14 @@ impl Vertex {
         u_lobe: impl FnOnce() -> f32,
         u: Vec2,
     ) -> Option<Scattered> {
-        let wo = self.shading.to_local(self.wo);
-        let sample = self.bsdf.sample(wo, mode, u_lobe, u)?;
-        let wi = self.shading.to_world(sample.wi);
-        if !self.sides_agree(self.wo) || !self.sides_agree(wi) {
+        let wo = Side::new(self, self.wo);
+        let sample = self.bsdf.sample(wo.local, mode, u_lobe, u)?;
+        let turn = Turn {
+            vertex: self,
+            wo,
+            wi: Side::new(self, self.shading.to_world(sample.wi)),
+        };
+        if !turn.wo.agrees() || !turn.wi.agrees() {
             return None;
         }
         // `sample.weight` has the shading cosine of `wi`: for radiance that is `scatter` times the
@@ -78,58 +178,17 @@ impl Vertex {
         let weight = match mode {
             TransportMode::Radiance => sample.weight,
             TransportMode::Importance => {
-                sample.weight * (self.normal_ratio(self.wo) / self.normal_ratio(wi))
+                sample.weight * (turn.wo.normal_ratio() / turn.wi.normal_ratio())
             }
         };
         Some(Scattered {
-            wi,
+            wi: turn.wi.world,
             weight,
             pdf: sample.pdf,
             pdf_reverse: sample.pdf_reverse,
+            albedo_reverse: turn.reversed().albedo(),
             is_delta: sample.is_delta,
         })
-    }
-
-    /// |w·n_s| / |w·n_g|.
-    #[inline]
-    fn normal_ratio(&self, w: Vec3) -> f32 {
-        (self.shading.z.dot(w) / self.n_g.dot(w)).abs()
-    }
-
-    /// True where both normals see `w` on the same side.
-    #[inline]
-    fn sides_agree(&self, w: Vec3) -> bool {
-        self.shading.z.dot(w) * self.n_g.dot(w) > 0.0
-    }
-
-    /// Density of drawing the direction `wi` here by a walk that came along `-wo`. Measure: solid
-    /// angle, 1/sr; from a light at infinity area of the disk that its rays cross, 1/m². Dirac lobes
-    /// are no part of it but for the probability that they take.
-    #[inline]
-    pub fn pdf_direction(&self, context: &PathContext<'_>, wo: Vec3, wi: Vec3) -> f32 {
-        let scene = context.scene;
-        match (self.kind, self.light) {
-            (VertexKind::Camera, _) => scene.camera().pdf_direction(wi),
-            (VertexKind::Light, Some(light)) => {
-                let at = self.light_point();
-                scene
-                    .light(light)
-                    .pdf_direction(&scene.light_context(), &at, wi)
-            }
-            (VertexKind::Light, None) => 0.0,
-            (VertexKind::Surface, _) => self
-                .bsdf
-                .pdf(self.shading.to_local(wo), self.shading.to_local(wi)),
-        }
-    }
-
-    /// The largest lane of the albedo that a walk along `-wo` meets here.
-    #[inline]
-    pub(super) fn albedo_from(&self, wo: Vec3) -> f32 {
-        match self.kind {
-            VertexKind::Surface => self.bsdf.albedo(self.shading.to_local(wo)).max_lane(),
-            VertexKind::Camera | VertexKind::Light => 1.0,
-        }
     }
 }
 

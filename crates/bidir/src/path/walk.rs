@@ -194,7 +194,7 @@ impl Walker<'_> {
         let scattered = vertex.sample_scatter(self.mode, u_lobe, u)?;
         previous.pdf_rev = scattered.pdf_reverse * vertex.to_previous;
         vertex.went_by_delta = scattered.is_delta;
-        vertex.albedo_rev = vertex.albedo_from(scattered.wi);
+        vertex.albedo_rev = scattered.albedo_reverse;
         let beta = vertex.beta * scattered.weight;
         let survival = self.context.settings.roulette.survival_prob(
             index - 1,

@@ -126,7 +126,8 @@ impl Training {
         let (lvc, cells) = (&settings.lvc, survey.cells());
         let found = self.explore(scene, settings, survey, &cells);
         if lvc.emission == EmissionKind::Learned {
-            self.emission = emission::learnt(scene.light_choice(), &found);
+            let f: Vec<Connection> = found.iter().filter(|c| !c.is_direct).copied().collect();
+            self.emission = emission::learnt(scene.light_choice(), &f);
         }
         let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
@@ -137,7 +138,8 @@ impl Training {
                 let square = connection
                     .square
                     .map(|square| square / gain(connection.light));
-                sums.add(connection.pair(), square);
+                if connection.is_direct { let [a, b] = &mut sums.arrived[connection.pair()]; *a += 1; *b += u32::from(square.is_some()); } else {
+                sums.add(connection.pair(), square); }
             }
         }
         let proposals = self.counting_rays(scene, settings, LightProposals::new(cells, &sums));

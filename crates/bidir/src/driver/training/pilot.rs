@@ -20,6 +20,7 @@ pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 pub(super) struct Connection {
     /// The light that its path begins on.
     pub(super) light: u32,
+    pub(super) is_direct: bool,
     /// The cells of its light vertex and of its camera vertex.
     pub(super) cells: [Cell; 2],
     /// The square of what arrived. None: it was blocked.
@@ -49,6 +50,7 @@ impl Witness for Found {
         self.0
             .extend(connections.map(|(candidate, cells, arrived)| Connection {
                 light: candidate.light,
+                is_direct: candidate.strategy.s == 1,
                 cells,
                 square: arrived.map(square),
             }));

@@ -3,7 +3,7 @@
 //!
 //! The frame is a function of the point and of the camera, so that the integrand stays one function of
 //! the path; what the two normals disagree on is dealt with where light scatters
-//! ([`Vertex::scatter`](crate::path::Vertex::scatter)).
+//! ([`Turn::scatter`](crate::path::Turn::scatter)).
 
 use super::{Material, Mixture};
 use crate::math::{Frame, Vec2, Vec3};
