@@ -76,7 +76,9 @@ fn hit(
     if !context.takes(0, i + 1) {
         return;
     }
-    let contribution = x0.beta * x0.turn(x0.wo, x0.wo).scatter(context, TransportMode::Importance);
+    let contribution = x0.beta
+        * x0.turn(x0.wo, x0.wo)
+            .scatter(context, TransportMode::Importance);
     if contribution == Spectrum::ZERO {
         return;
     }
@@ -191,29 +193,25 @@ fn candidate(
     if let Some(term) = connection(context, workspace, strategy, light_vertex) {
         let link = |workspace: &Workspace| Link::Connection(workspace.ends(strategy, light_vertex));
         let counted = workspace.count(term, link);
-        let v = match light_vertex { LightVertex::NextEvent(k) => {
-            let z = &workspace.next_events[k as usize];
-            let y = &workspace.camera.vertices[usize::from(strategy.t) - 1];
-            context.connections.proposals.filter(|_| !z.is_infinite).map_or(1.0, |p| p.root_visibility(z.cell, y.cell)) }, _ => 1.0 };
-        offer(context, sample, workspace, &counted, v, light_vertex);
+        offer(context, sample, workspace, &counted, light_vertex);
     }
 }
 
-/// Offers a term for selection. It is compared by its luminance times `root_visibility`, the √V̂ of its
-/// shadow ray.
+/// Offers a term for selection. It is compared by its luminance times the √V̂ of its shadow ray.
 #[inline]
 pub(super) fn offer(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
     counted: &Counted,
-    root_visibility: f32,
     light_vertex: LightVertex,
 ) {
     let whole = counted.whole();
     if workspace.accepts(sample, counted.mark(), whole.value) && !whole.value.is_black() {
         let color = context.scene.color();
         let luminance = color.luminance(whole.value.map(f32::abs), &context.wavelengths);
+        let [z, y] = workspace.vertices(counted.term.strategy, light_vertex);
+        let root_visibility = context.root_visibility(z, y);
         workspace.candidates.push(Candidate::new(
             &whole,
             luminance * root_visibility,

@@ -184,41 +184,40 @@ impl Workspace {
         self.stopwatch.end(Stage::Walk);
     }
 
-    /// The ends of the segment that a candidate connects: light vertex and camera vertex.
-    pub(super) fn ends(&self, strategy: Strategy, light_vertex: LightVertex) -> [SegmentEnd; 2] {
+    /// What a candidate connects: light vertex and camera vertex.
+    #[inline]
+    pub(super) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let light = match light_vertex {
             LightVertex::Cached(number) => self.light_cache.get(number as usize).light,
             _ => own_light_vertices(&self.light, &self.next_events, s, light_vertex),
         };
-        let y = &self.camera.vertices[t - 1];
-        [light[s - 1].segment_end(), y.segment_end()]
+        [&light[s - 1], &self.camera.vertices[t - 1]]
     }
 
-    /// The connections with vertices of the light cache: the cells of light and camera vertex, and what
-    /// arrived, if anything.
-    pub(crate) fn cached_connections(
-        &self,
-    ) -> impl Iterator<Item = (&Candidate, [Cell; 2], Option<Spectrum>)> {
+    /// The ends of the segment that a candidate connects.
+    #[inline]
+    pub(super) fn ends(&self, strategy: Strategy, light_vertex: LightVertex) -> [SegmentEnd; 2] {
+        let vertices = self.vertices(strategy, light_vertex);
+        vertices.map(Vertex::segment_end)
+    }
+
+    /// The candidates, each with what of it arrived, if anything.
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<Spectrum>)> {
         let mut contributions = self.contributions.iter().peekable();
-        self.candidates.iter().filter_map(move |candidate| {
+        self.candidates.iter().map(move |candidate| {
             // Both are in the order of terms; hits are no candidates.
             while contributions.next_if(|c| c.term < candidate.term).is_some() {}
             let arrived = contributions.next_if(|c| c.term == candidate.term);
-            let cells = self.cells_of(candidate)?;
-            let arrived = arrived.map(|contribution| contribution.value);
-            Some((candidate, cells, arrived))
+            (candidate, arrived.map(|contribution| contribution.value))
         })
     }
 
-    /// The cells of a candidate's vertices. None: its light vertex is not of the light cache.
+    /// The cells of a candidate's vertices. None: its light vertex has no place that is learnt about.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let z = match candidate.light_vertex {
-            LightVertex::Cached(number) => self.light_cache.get(number as usize).light.last()?,
-            LightVertex::NextEvent(number) => &self.next_events[number as usize],
-            LightVertex::Own => return None,
-        };
-        Some([z.cell, self.camera_cell(candidate)])
+        let [z, y] = self.vertices(candidate.strategy, candidate.light_vertex);
+        let is_placed = candidate.light_vertex != LightVertex::Own && !z.is_infinite;
+        is_placed.then_some([z.cell, y.cell])
     }
 
     /// The cell of a candidate's camera vertex.

@@ -4,7 +4,8 @@
 //! No ray is traced here: visibility is the caller's to ask for.
 
 use super::{
-    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Turn, Vertex, mis_weight,
+    Cell, LightChoiceKind, LightProposals, PathContext, PathDensities, Segment, Turn, Vertex,
+    mis_weight,
 };
 use crate::bsdf::TransportMode;
 use crate::light::{ChosenEmitter, LightChoice, LightPoint, LightSample, Part};
@@ -198,6 +199,15 @@ impl PathContext<'_> {
     pub(super) fn emission(&self) -> &LightChoice {
         let learnt = self.connections.emission;
         learnt.unwrap_or_else(|| self.scene.light_choice())
+    }
+
+    /// √V̂ of the shadow ray between a light vertex `z` and a camera vertex `y`: 1 where nothing is learnt, and
+    /// at infinity, where there are no places.
+    #[inline]
+    pub(crate) fn root_visibility(&self, z: &Vertex, y: &Vertex) -> f32 {
+        let of_cells = |all: &LightProposals| all.root_visibility(z.cell, y.cell);
+        let proposals = self.connections.proposals.filter(|_| !z.is_infinite);
+        proposals.map_or(1.0, of_cells)
     }
 
     /// The cell of a vertex with the unit normal `n`, where anything is learnt for cells.

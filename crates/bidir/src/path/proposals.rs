@@ -33,6 +33,10 @@ const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 /// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
 /// may lead to.
 const PARTS: usize = 64;
+const _: () = assert!(
+    Cells::COUNT <= 1 << u8::BITS,
+    "numbers of cells take a byte"
+);
 
 /// How light vertices of a cache are proposed to camera vertices.
 #[derive(Clone, Debug)]
@@ -82,10 +86,15 @@ impl PairSums {
 
     /// Adds a connection of pair number `pair`, by the square of what arrived. None: it was blocked.
     pub(crate) fn add(&mut self, pair: usize, square: Option<f64>) {
+        self.see(pair, square.is_some());
+        self.squares[pair] += square.unwrap_or(0.0);
+    }
+
+    /// Adds to what is known of the visibility of pair number `pair` alone.
+    pub(crate) fn see(&mut self, pair: usize, has_arrived: bool) {
         let [traced, arrived] = &mut self.arrived[pair];
         *traced += 1;
-        *arrived += u32::from(square.is_some());
-        self.squares[pair] += square.unwrap_or(0.0);
+        *arrived += u32::from(has_arrived);
     }
 }
 
@@ -161,7 +170,7 @@ impl LightProposals {
 
     /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
     #[inline]
-    pub(crate) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
+    pub(super) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
         self.root_visibility[Cells::pair(light, camera)]
     }
 

@@ -21,7 +21,7 @@ use crate::path::{Cells, Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
-use pilot::Connection;
+use pilot::Found;
 use probe::Probe;
 use survey::Survey;
 
@@ -126,20 +126,21 @@ impl Training {
         let (lvc, cells) = (&settings.lvc, survey.cells());
         let found = self.explore(scene, settings, survey, &cells);
         if lvc.emission == EmissionKind::Learned {
-            let f: Vec<Connection> = found.iter().filter(|c| !c.is_direct).copied().collect();
-            self.emission = emission::learnt(scene.light_choice(), &f);
+            self.emission = emission::learnt(scene.light_choice(), &found.connections);
         }
         let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
         self.light_vertices = sums.light_vertices.iter().sum();
         if lvc.proposal == ProposalKind::Learned {
-            for connection in &found {
+            for connection in &found.connections {
                 // Of a light that begins g times as many subpaths each contributes 1/g.
                 let square = connection
                     .square
                     .map(|square| square / gain(connection.light));
-                if connection.is_direct { let [a, b] = &mut sums.arrived[connection.pair()]; *a += 1; *b += u32::from(square.is_some()); } else {
-                sums.add(connection.pair(), square); }
+                sums.add(connection.pair(), square);
+            }
+            for next_event in &found.next_events {
+                sums.see(next_event.pair, next_event.has_arrived);
             }
         }
         let proposals = self.counting_rays(scene, settings, LightProposals::new(cells, &sums));
@@ -155,12 +156,12 @@ impl Training {
         settings: &Settings,
         survey: &Survey,
         cells: &Cells,
-    ) -> Vec<Connection> {
+    ) -> Found {
         let LvcSettings {
             proposal, emission, ..
         } = settings.lvc;
         if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
-            return Vec::new();
+            return Found::default();
         }
         let uniform = LightProposals::new(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
         let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));

@@ -4,7 +4,7 @@
 use super::probe::{GROUP, Probe, Witness};
 use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, Sample, Workspace};
 use crate::path::{Cell, Cells, PathContext};
-use crate::select::ShadowRays;
+use crate::select::{LightVertex, ShadowRays};
 use crate::spectrum::luminance;
 use crate::stats::RayCounts;
 use rayon::prelude::*;
@@ -15,12 +15,11 @@ const CANDIDATES: CandidateCount = CandidateCount::of(16);
 /// The samples of all groups, each of which brings a light subpath.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 
-/// A connection that was traced.
+/// A connection with a vertex of the light cache that was traced.
 #[derive(Clone, Copy)]
 pub(super) struct Connection {
     /// The light that its path begins on.
     pub(super) light: u32,
-    pub(super) is_direct: bool,
     /// The cells of its light vertex and of its camera vertex.
     pub(super) cells: [Cell; 2],
     /// The square of what arrived. None: it was blocked.
@@ -34,8 +33,23 @@ impl Connection {
     }
 }
 
+/// A connection with a light point of next-event estimation that was traced.
+#[derive(Clone, Copy)]
+pub(super) struct NextEvent {
+    /// The number of its pair of cells.
+    pub(super) pair: usize,
+    /// Whether anything arrived.
+    pub(super) has_arrived: bool,
+}
+
+/// What was traced.
 #[derive(Default)]
-struct Found(Vec<Connection>);
+pub(super) struct Found {
+    /// With vertices of the light cache.
+    pub(super) connections: Vec<Connection>,
+    /// With light points, but for those at infinity.
+    pub(super) next_events: Vec<NextEvent>,
+}
 
 impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
@@ -46,19 +60,27 @@ impl Witness for Found {
             let y = f64::from(luminance(color.to_rgb(value, &context.wavelengths)));
             y * y
         };
-        let connections = workspace.cached_connections();
-        self.0
-            .extend(connections.map(|(candidate, cells, arrived)| Connection {
-                light: candidate.light,
-                is_direct: candidate.strategy.s == 1,
-                cells,
-                square: arrived.map(square),
-            }));
+        for (candidate, arrived) in workspace.connections() {
+            let Some(cells) = workspace.cells_of(candidate) else {
+                continue;
+            };
+            match candidate.light_vertex {
+                LightVertex::NextEvent(_) => self.next_events.push(NextEvent {
+                    pair: Cells::pair(cells[0], cells[1]),
+                    has_arrived: arrived.is_some(),
+                }),
+                _ => self.connections.push(Connection {
+                    light: candidate.light,
+                    cells,
+                    square: arrived.map(square),
+                }),
+            }
+        }
     }
 }
 
-/// The connections of all groups in their order, and the rays that it took.
-pub(super) fn run(probe: &Probe<'_>) -> (Vec<Connection>, RayCounts) {
+/// What all groups found, in their order, and the rays that it took.
+pub(super) fn run(probe: &Probe<'_>) -> (Found, RayCounts) {
     let groups = (0..GROUPS).into_par_iter();
     let found: Vec<_> = groups
         .map_init(Workspace::default, |workspace, group| {
@@ -70,13 +92,14 @@ pub(super) fn run(probe: &Probe<'_>) -> (Vec<Connection>, RayCounts) {
             };
             let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
             probe.group(&*integrator, group, workspace, &mut found);
-            (found.0, std::mem::take(&mut workspace.stats).rays)
+            (found, std::mem::take(&mut workspace.stats).rays)
         })
         .collect();
-    let (mut connections, mut rays) = (Vec::new(), RayCounts::default());
-    for (found, of_group) in found {
-        connections.extend(found);
-        rays += of_group;
+    let (mut all, mut rays) = (Found::default(), RayCounts::default());
+    for (of_group, rays_of_group) in found {
+        all.connections.extend(of_group.connections);
+        all.next_events.extend(of_group.next_events);
+        rays += rays_of_group;
     }
-    (connections, rays)
+    (all, rays)
 }

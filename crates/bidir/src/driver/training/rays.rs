@@ -4,7 +4,7 @@
 use super::probe::{GROUP, Probe, Witness};
 use crate::integrator::{Sample, Workspace};
 use crate::path::{Cells, Inclusion, PathContext};
-use crate::select::Selector;
+use crate::select::{LightVertex, Selector};
 use crate::stats::RayCounts;
 use rayon::prelude::*;
 
@@ -48,12 +48,12 @@ impl Witness for Found<'_> {
     fn sample(&mut self, _: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
         let probs = self.selector.probabilities(&workspace.candidates);
         for (candidate, prob) in workspace.candidates.iter().zip(probs) {
-            if let Some([light, camera]) = workspace.cells_of(candidate) {
-                let pair = Cells::pair(light, camera) as u32;
-                self.connections.push((pair, prob));
-            } else {
+            if let LightVertex::NextEvent(_) = candidate.light_vertex {
                 let camera = workspace.camera_cell(candidate).index() as u32;
                 self.next_events.push((camera, prob));
+            } else if let Some([light, camera]) = workspace.cells_of(candidate) {
+                let pair = Cells::pair(light, camera) as u32;
+                self.connections.push((pair, prob));
             }
         }
     }

@@ -132,23 +132,9 @@ impl Lvc {
         let Some((term, ends)) = self.connection(context, workspace, t, draw) else {
             return;
         };
-        let light = workspace.light_cache.get(draw.entry).light;
-        let [z, y] = [
-            light[light.len() - 1].cell,
-            workspace.camera.vertices[t - 1].cell,
-        ];
-        let proposals = context.connections.proposals;
-        let root_visibility = proposals.map_or(1.0, |all| all.root_visibility(z, y));
         let counted = workspace.count(term, |_| Link::Connection(ends));
         let light_vertex = LightVertex::Cached(draw.entry as u32);
-        offer(
-            context,
-            sample,
-            workspace,
-            &counted,
-            root_visibility,
-            light_vertex,
-        );
+        offer(context, sample, workspace, &counted, light_vertex);
     }
 
     /// The term of such a connection, with the ends of its shadow ray. None: it is zero.
