@@ -14,7 +14,7 @@ pub(crate) use formats::film::{SettingsText, name_of};
 /// The settings of a render; `scene` holds what the scene file says, over the defaults.
 pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     let mut settings = scene;
-    settings.integrator = args.integrator.unwrap_or(settings.integrator);
+    settings.set_integrator(args.integrator.unwrap_or(settings.integrator));
     let lvc = &mut settings.lvc;
     lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
     lvc.next_events = args.next_events.unwrap_or(lvc.next_events);
@@ -26,7 +26,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     path.mis = args.mis.unwrap_or(path.mis);
     path.light_point = args.light_point.unwrap_or(path.light_point);
     path.light_choice = args.light_choice.unwrap_or(path.light_choice);
-    path.roulette = args.path_roulette.unwrap_or(settings.integrator.roulette());
+    path.roulette = args.path_roulette.unwrap_or(path.roulette);
     if let Some(depth) = args.max_depth {
         path.max_depth = (depth > 0).then_some(depth);
     }

@@ -14,14 +14,13 @@ pub(crate) type Texts = BTreeMap<String, String>;
 /// What the file of a scene says, over the defaults.
 pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
     let mut settings = Settings {
-        integrator: scene.integrator,
         sampler: scene.sampler,
         seed: scene.seed.unwrap_or_default(),
         layers: Layers::new(&scene.aovs, &[], 0),
         ..Settings::default()
     };
     settings.path.max_depth = Some(scene.max_depth);
-    settings.path.roulette = settings.integrator.roulette();
+    settings.set_integrator(scene.integrator);
     settings
 }
 

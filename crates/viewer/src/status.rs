@@ -108,6 +108,7 @@ impl Choices {
             ShadowRays::PerCameraVertex,
             ShadowRays::PerPair,
             ShadowRays::Budget(2),
+            IntegratorKind::Lvc.shadow_rays(),
             ShadowRays::RayRoulette(ShadowRays::DEFAULT_ROULETTE),
         ];
         Self {

@@ -49,6 +49,13 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Takes an estimator, with the path roulette and the choice of shadow rays that suit it.
+    pub fn set_integrator(&mut self, integrator: IntegratorKind) {
+        self.integrator = integrator;
+        self.path.roulette = integrator.roulette();
+        self.shadow_rays = integrator.shadow_rays();
+    }
+
     /// True where the estimator learns about connections before the first pass.
     fn learns(&self) -> bool {
         let learns = self.lvc.proposal == ProposalKind::Learned

@@ -27,7 +27,7 @@ pub use workspace::{Contribution, Sample, Splat, Workspace};
 pub(crate) use workspace::{LightImages, camera_ray};
 
 use crate::path::{Connections, PathContext, PathRoulette};
-use crate::select::Selector;
+use crate::select::{Selector, ShadowRays};
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length
 /// that its strategies can make.
@@ -97,6 +97,16 @@ impl IntegratorKind {
             Self::Path => PathRoulette::Albedo { start: 1 },
             Self::Light => PathRoulette::Albedo { start: 2 },
             Self::Auto => PathRoulette::Suited,
+        }
+    }
+
+    /// The choice of shadow rays that suits the estimator, likewise. Where many candidates are weighed
+    /// for a few rays, those that matter pay.
+    pub fn shadow_rays(self) -> ShadowRays {
+        match self {
+            Self::Path | Self::Light | Self::Bdpt => ShadowRays::All,
+            Self::Lvc => ShadowRays::Budget(6),
+            Self::Auto => ShadowRays::Suited,
         }
     }
 

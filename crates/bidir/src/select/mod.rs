@@ -124,8 +124,10 @@ pub trait Selector: Sync + Send {
 /// The rules by name, with their settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ShadowRays {
-    /// Every candidate.
+    /// What suits the estimator: decided before the first pass. A selector takes it for `all`.
     #[default]
+    Suited,
+    /// Every candidate.
     All,
     /// One for each light vertex: optimisation 1 of \[Lafortune95\].
     PerLightVertex,
@@ -147,7 +149,7 @@ impl ShadowRays {
     /// The rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
     pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
         match self {
-            Self::All => Box::new(All),
+            Self::All | Self::Suited => Box::new(All),
             Self::PerLightVertex => Box::new(OnePerGroup {
                 group: Group::LightVertex,
             }),
@@ -178,6 +180,7 @@ impl ShadowRays {
 impl fmt::Display for ShadowRays {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Suited => write!(f, "suited"),
             Self::All => write!(f, "all"),
             Self::PerLightVertex => write!(f, "per-light-vertex"),
             Self::PerCameraVertex => write!(f, "per-camera-vertex"),
@@ -192,8 +195,8 @@ impl fmt::Display for ShadowRays {
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 #[error(
     "`{0}` is no choice of shadow rays: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
-     `per-pair`, `ray-roulette[:PART]` (a positive part of the image's mean) or `budget:K` \
-     (a positive number of rays)"
+     `per-pair`, `ray-roulette[:PART]` (a positive part of the image's mean), `budget:K` \
+     (a positive number of rays) or `suited`"
 )]
 pub struct ShadowRaysError(String);
 
@@ -206,6 +209,7 @@ impl FromStr for ShadowRays {
             None => (text, None),
         };
         let rule = match (name, value) {
+            ("suited", None) => Some(Self::Suited),
             ("all", None) => Some(Self::All),
             ("per-light-vertex", None) => Some(Self::PerLightVertex),
             ("per-camera-vertex", None) => Some(Self::PerCameraVertex),

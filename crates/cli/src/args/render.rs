@@ -154,16 +154,17 @@ pub(crate) struct EstimatorArgs {
     /// a few samples, and takes what suits the scene.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
-    /// Which connections between subpaths are traced (bdpt, lvc) [default: all].
+    /// Which connections between subpaths are traced (bdpt, lvc) [default: what suits the integrator].
     ///
+    /// By default all for bdpt, budget:6 for lvc and suited for auto.
     /// all: every one. per-light-vertex, per-camera-vertex, per-pair: one for each light vertex, for
     /// each camera vertex, for each pair of subpaths, drawn by unshadowed contribution.
     /// ray-roulette[:PART]: each by chance, where it adds less than PART of the image's mean (0.1).
-    /// budget:K: at most K for each pair of subpaths.
+    /// budget:K: at most K for each sample. suited: what suits the integrator.
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
     /// How many vertices of shared light subpaths are weighed for the first vertex of a camera subpath and
-    /// for each of those behind it (lvc), up to 4096 [default: 8,1].
+    /// for each of those behind it (lvc), up to 4096 [default: 12,1].
     ///
     /// One number is for all vertices.
     #[arg(long, value_name = "M[,N]")]
@@ -330,7 +331,6 @@ mod tests {
     fn the_help_tells_the_true_defaults() {
         let settings = Settings::default();
         let path = &settings.path;
-        check_default("shadow-rays", settings.shadow_rays);
         check_default("candidates", settings.lvc.candidates);
         check_default("next-events", settings.lvc.next_events);
         check_default("samples-per-subpath", settings.lvc.samples_per_subpath);
@@ -351,6 +351,12 @@ mod tests {
         for (name, integrator) in IntegratorKind::NAMES {
             let roulette = integrator.roulette();
             assert!(help.contains(&format!("{roulette} for {name}")), "{help}");
+        }
+        let help = help_of("shadow-rays");
+        let names = IntegratorKind::NAMES.into_iter();
+        for (name, integrator) in names.filter(|(_, integrator)| integrator.has_candidates()) {
+            let rays = integrator.shadow_rays();
+            assert!(help.contains(&format!("{rays} for {name}")), "{help}");
         }
         check_default("mis", name_of(&MisHeuristic::NAMES, path.mis));
         check_default(

@@ -70,9 +70,6 @@ const SELECTORS: &str = "Shadow-ray selectors";
 const COUNTS: &str = "What weights count as a sample";
 const LIGHTS: &str = "Choice of the light, by power instead of the tree";
 
-/// The variant whose many candidates selectors choose from.
-const MANY: &str = "lvc 8 candidates";
-
 /// All variants; a base stands before its variants.
 #[rustfmt::skip]
 const VARIANTS: &[Variant] = &[
@@ -97,10 +94,11 @@ const VARIANTS: &[Variant] = &[
 
     variant(CANDIDATES, SHARED, "lvc 1 candidate", &[("integrator", "lvc"), ("candidates", "1")]),
     variant(CANDIDATES, SHARED, "lvc 2 candidates", &[("integrator", "lvc"), ("candidates", "2")]),
-    variant(CANDIDATES, SHARED, "lvc 4 candidates", &[("integrator", "lvc"), ("candidates", "4")]),
     variant(CANDIDATES, SHARED, "lvc 4, then 1", &[("integrator", "lvc"), ("candidates", "4,1")]),
     variant(CANDIDATES, SHARED, "lvc 8, then 1", &[("integrator", "lvc"), ("candidates", "8,1")]),
-    variant(CANDIDATES, SHARED, MANY, &[("integrator", "lvc"), ("candidates", "8")]),
+    variant(CANDIDATES, SHARED, "lvc 12, then 1", &[("integrator", "lvc"), ("candidates", "12,1")]),
+    variant(CANDIDATES, SHARED, "lvc 24, then 1", &[("integrator", "lvc"), ("candidates", "24,1")]),
+    variant(CANDIDATES, SHARED, "lvc 12 candidates", &[("integrator", "lvc"), ("candidates", "12")]),
 
     variant(SELECTORS, BASELINE, "bdpt per-light-vertex", &[("integrator", "bdpt"), ("shadow-rays", "per-light-vertex")]),
     variant(SELECTORS, BASELINE, "bdpt per-camera-vertex", &[("integrator", "bdpt"), ("shadow-rays", "per-camera-vertex")]),
@@ -108,13 +106,17 @@ const VARIANTS: &[Variant] = &[
     variant(SELECTORS, BASELINE, "bdpt ray-roulette", &[("integrator", "bdpt"), ("shadow-rays", "ray-roulette")]),
     variant(SELECTORS, BASELINE, "bdpt budget:1", &[("integrator", "bdpt"), ("shadow-rays", "budget:1")]),
     variant(SELECTORS, BASELINE, "bdpt budget:2", &[("integrator", "bdpt"), ("shadow-rays", "budget:2")]),
-    variant(SELECTORS, MANY, "lvc 8 per-camera-vertex", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "per-camera-vertex")]),
-    variant(SELECTORS, MANY, "lvc 8 ray-roulette", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "ray-roulette")]),
-    variant(SELECTORS, MANY, "lvc 8 budget:1", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:1")]),
-    variant(SELECTORS, MANY, "lvc 8 budget:2", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:2")]),
+    variant(SELECTORS, SHARED, "lvc all", &[("integrator", "lvc"), ("shadow-rays", "all")]),
+    variant(SELECTORS, SHARED, "lvc per-camera-vertex", &[("integrator", "lvc"), ("shadow-rays", "per-camera-vertex")]),
+    variant(SELECTORS, SHARED, "lvc ray-roulette", &[("integrator", "lvc"), ("shadow-rays", "ray-roulette")]),
+    variant(SELECTORS, SHARED, "lvc budget:1", &[("integrator", "lvc"), ("shadow-rays", "budget:1")]),
+    variant(SELECTORS, SHARED, "lvc budget:2", &[("integrator", "lvc"), ("shadow-rays", "budget:2")]),
+    variant(SELECTORS, SHARED, "lvc budget:4", &[("integrator", "lvc"), ("shadow-rays", "budget:4")]),
+    variant(SELECTORS, SHARED, "lvc budget:6", &[("integrator", "lvc"), ("shadow-rays", "budget:6")]),
+    variant(SELECTORS, SHARED, "lvc budget:8", &[("integrator", "lvc"), ("shadow-rays", "budget:8")]),
 
-    variant(COUNTS, MANY, "lvc 8 correlated", &[("integrator", "lvc"), ("candidates", "8"), ("mis-count", "correlated")]),
-    variant(COUNTS, "lvc 8 budget:2", "lvc 8 budget:2 resampled", &[("integrator", "lvc"), ("candidates", "8"), ("shadow-rays", "budget:2"), ("mis-count", "resampled")]),
+    variant(COUNTS, SHARED, "lvc correlated", &[("integrator", "lvc"), ("mis-count", "correlated")]),
+    variant(COUNTS, SHARED, "lvc resampled", &[("integrator", "lvc"), ("mis-count", "resampled")]),
 
     variant(LIGHTS, PATH, "path by power", &[("integrator", "path"), ("light-choice", "power")]),
     variant(LIGHTS, BASELINE, "bdpt all by power", &[("integrator", "bdpt"), ("shadow-rays", "all"), ("light-choice", "power")]),

@@ -124,7 +124,10 @@ impl Changes {
     /// The settings of a scene with these changes.
     pub fn apply(&self, scene: &Settings) -> Settings {
         let mut settings = scene.clone();
-        settings.integrator = self.integrator.unwrap_or(settings.integrator);
+        // Another integrator brings what suits it.
+        if let Some(integrator) = self.integrator {
+            settings.set_integrator(integrator);
+        }
         let lvc = &mut settings.lvc;
         lvc.candidates = self.candidates.unwrap_or(lvc.candidates);
         lvc.next_events = self.next_events.unwrap_or(lvc.next_events);
@@ -136,9 +139,7 @@ impl Changes {
         path.mis = self.mis.unwrap_or(path.mis);
         path.light_point = self.light_point.unwrap_or(path.light_point);
         path.light_choice = self.light_choice.unwrap_or(path.light_choice);
-        // Another integrator brings the roulette that suits it.
-        let brought = self.integrator.map(IntegratorKind::roulette);
-        path.roulette = self.path_roulette.or(brought).unwrap_or(path.roulette);
+        path.roulette = self.path_roulette.unwrap_or(path.roulette);
         if let Some(depth) = self.max_depth {
             path.max_depth = (depth > 0).then_some(depth);
         }

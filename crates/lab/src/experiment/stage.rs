@@ -46,12 +46,11 @@ impl<'a> Stage<'a> {
         };
         let loaded = formats::scene::load_from(&spec.path, &options, files)?;
         let mut settings = Settings {
-            integrator: loaded.settings.integrator,
             sampler: loaded.settings.sampler,
             ..Settings::default()
         };
+        settings.set_integrator(loaded.settings.integrator);
         settings.path.max_depth = Some(loaded.settings.max_depth);
-        settings.path.roulette = settings.integrator.roulette();
         Ok(Self {
             spec,
             scene: loaded.scene,

@@ -171,10 +171,10 @@ impl Painter {
             )
         })?;
         let mut settings = settings.clone();
-        settings.integrator = *integrator;
+        settings.set_integrator(*integrator);
         let rays: Result<ShadowRays, ShadowRaysError> = rays.parse();
         settings.shadow_rays = rays.map_err(|error| error.to_string())?;
-        settings.path.roulette = self.roulette.unwrap_or(integrator.roulette());
+        settings.path.roulette = self.roulette.unwrap_or(settings.path.roulette);
         Ok(settings)
     }
 }

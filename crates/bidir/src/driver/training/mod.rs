@@ -60,6 +60,9 @@ pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Tr
     if settings.path.roulette == PathRoulette::Suited {
         settings.path.roulette = settings.integrator.roulette();
     }
+    if settings.shadow_rays == ShadowRays::Suited {
+        settings.shadow_rays = settings.integrator.shadow_rays();
+    }
     let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
     let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
     let training = needs_training.then(|| Training::run(scene, &settings));

@@ -10,6 +10,7 @@ use super::{Settings, Training};
 use crate::integrator::{BlindSpot, IntegratorKind, SamplesPerSubpath, blind_spots};
 use crate::path::{Connections, LightPointChoice, MisHeuristic, PathRoulette};
 use crate::scene::Scene;
+use crate::select::ShadowRays;
 use std::fmt;
 
 /// What is rendered with.
@@ -59,13 +60,16 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// `settings` with this plan; a roulette that they name stays.
+    /// `settings` with this plan; a roulette and a choice of shadow rays that they name stay.
     pub(super) fn apply(&self, settings: &Settings) -> Settings {
         let mut settings = settings.clone();
         settings.integrator = self.integrator;
         settings.lvc.samples_per_subpath = self.samples_per_subpath;
         if settings.path.roulette == PathRoulette::Suited {
             settings.path.roulette = self.roulette;
+        }
+        if settings.shadow_rays == ShadowRays::Suited {
+            settings.shadow_rays = self.integrator.shadow_rays();
         }
         settings
     }

@@ -29,10 +29,11 @@ struct Start {
 }
 
 /// A vertex that can be connected.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Entry {
     vertex: u32,
     subpath: u32,
+    cell: Cell,
 }
 
 /// A vertex that was drawn from the cache.
@@ -84,6 +85,7 @@ impl LightCache {
         self.unsorted.extend(connectable.map(|i| Entry {
             vertex: (first + i) as u32,
             subpath: number,
+            cell: subpath.vertices[i].cell,
         }));
     }
 
@@ -93,24 +95,17 @@ impl LightCache {
             std::mem::swap(&mut self.entries, &mut self.unsorted);
             return;
         }
-        let cell = |entry: &Entry| self.vertices[entry.vertex as usize].cell.index();
         self.begins.resize(Cells::COUNT + 1, 0);
         for entry in &self.unsorted {
-            self.begins[cell(entry) + 1] += 1;
+            self.begins[entry.cell.index() + 1] += 1;
         }
         for i in 0..Cells::COUNT {
             self.begins[i + 1] += self.begins[i];
         }
         let mut next = self.begins.clone();
-        self.entries.resize(
-            self.unsorted.len(),
-            Entry {
-                vertex: 0,
-                subpath: 0,
-            },
-        );
+        self.entries.resize(self.unsorted.len(), Entry::default());
         for entry in &self.unsorted {
-            let place = &mut next[cell(entry)];
+            let place = &mut next[entry.cell.index()];
             self.entries[*place as usize] = *entry;
             *place += 1;
         }
@@ -135,7 +130,7 @@ impl LightCache {
             CellDraw::All(u) => pick(&all, u),
             CellDraw::One(cell, u) => pick(&self.of_cell(cell), u),
         }?;
-        let cell = self.vertices[self.entries[entry].vertex as usize].cell;
+        let cell = self.entries[entry].cell;
         let counts = [all.len(), self.of_cell(cell).len()];
         let share = 1.0 / (subpaths * proposals.prob(cell, y.cell, counts));
         Some(Draw { entry, share })
@@ -151,7 +146,9 @@ impl LightCache {
     /// Number `i` of the vertices that can be connected.
     #[inline]
     pub(crate) fn get(&self, i: usize) -> Cached<'_> {
-        let Entry { vertex, subpath } = self.entries[i];
+        let Entry {
+            vertex, subpath, ..
+        } = self.entries[i];
         let start = &self.subpaths[subpath as usize];
         let range = start.vertex as usize..vertex as usize + 1;
         Cached {

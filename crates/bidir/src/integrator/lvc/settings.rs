@@ -24,7 +24,7 @@ pub struct LvcSettings {
 impl Default for LvcSettings {
     fn default() -> Self {
         Self {
-            candidates: CandidateCount::new(8, 1),
+            candidates: CandidateCount::new(12, 1),
             next_events: CandidateCount::new(2, 1),
             proposal: ProposalKind::default(),
             emission: EmissionKind::default(),
