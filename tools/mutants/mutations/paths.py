@@ -28,15 +28,15 @@ PATHS = [
     (
         "no correction of shading normals",
         "crates/bidir/src/path/scatter.rs",
-        "(self.shading.z.dot(w) / self.n_g.dot(w)).abs()",
+        "(self.local.z / self.cos_g).abs()",
         "1.0",
         PATH,
     ),
     (
         "correction of shading normals for one mode only",
         "crates/bidir/src/path/scatter.rs",
-        "TransportMode::Importance => self.normal_ratio(wo),",
-        "TransportMode::Importance => self.normal_ratio(wi),",
+        "TransportMode::Importance => wo,",
+        "TransportMode::Importance => wi,",
         PATH,
     ),
     # --- path: densities and weights ------------------------------------------------------
@@ -59,8 +59,8 @@ PATHS = [
     (
         "old direction at the junction",
         "crates/bidir/src/path/densities.rs",
-        "before[0] = z.pdf_direction(context, w, z.wo)",
-        "before[0] = z.pdf_direction(context, z.wo, z.wo)",
+        "before[0] = back.pdf(context)",
+        "before[0] = at_z.pdf(context)",
         PATH,
     ),
     (
@@ -274,9 +274,23 @@ PATHS = [
     (
         "blocked connections counted as those that arrive",
         "crates/bidir/src/path/proposals.rs",
-        "*arrived += u32::from(square.is_some());",
+        "*arrived += u32::from(has_arrived);",
         "*arrived += 1;",
         unit("visibility_is_what_arrives"),
+    ),
+    (
+        "draws of a cell that begin behind it",
+        "crates/bidir/src/path/proposals.rs",
+        "let begin = part as f64 / PARTS as f64;",
+        "let begin = (part as f64 + 0.5) / PARTS as f64;",
+        unit("every_number_leads_to_the_cell_that_holds_it"),
+    ),
+    (
+        "light points that teach which cells to propose",
+        "crates/bidir/src/path/proposals.rs",
+        "        *arrived += u32::from(has_arrived);\n",
+        "        *arrived += u32::from(has_arrived);\n        self.squares[pair] += 1.0;\n",
+        unit("what_is_seen_of_light_points_changes_visibility_alone"),
     ),
     (
         "light images of fewer subpaths not made up for",

@@ -213,7 +213,8 @@ impl Workspace {
         })
     }
 
-    /// The cells of a candidate's vertices. None: its light vertex has no place that is learnt about.
+    /// The cells of a candidate's vertices. None: nothing is learnt about connections with such a light
+    /// vertex.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
         let [z, y] = self.vertices(candidate.strategy, candidate.light_vertex);
         let is_placed = candidate.light_vertex != LightVertex::Own && !z.is_infinite;

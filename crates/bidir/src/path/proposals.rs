@@ -44,7 +44,8 @@ pub struct LightProposals {
     cells: Cells,
     /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
     cumulative: Vec<f32>,
-    /// For each cell of camera vertices the first cell c that numbers of each part lead to.
+    /// For each cell of camera vertices the first cell c that numbers of each part lead to: draws begin
+    /// there instead of at the first cell of all.
     first: Vec<u8>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
@@ -292,6 +293,45 @@ mod tests {
         assert!((root(seen) - libm::sqrt(0.26)).abs() < 1e-6);
         assert!((root(hidden) - 0.25).abs() < 1e-6, "not hidden for sure");
         assert!((root(unknown) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_seen_of_light_points_changes_visibility_alone() {
+        let cells = Cells::new(&mut []);
+        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
+        let [z, y] = [3, 5].map(Cells::cell);
+        sums.add(Cells::pair(y, y), Some(1.0));
+        let before = LightProposals::new(cells.clone(), &sums);
+        for i in 0..99 {
+            sums.see(Cells::pair(z, y), i % 4 == 0);
+        }
+        let after = LightProposals::new(cells, &sums);
+        assert!((f64::from(after.root_visibility(z, y)) - libm::sqrt(0.26)).abs() < 1e-6);
+        assert_eq!(after.cumulative, before.cumulative);
+        assert_eq!(after.relative, before.relative);
+    }
+
+    #[test]
+    fn every_number_leads_to_the_cell_that_holds_it() {
+        let cells = Cells::new(&mut []);
+        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
+        let y = Cells::cell(5);
+        // Some cells take most of the numbers, others none.
+        for light in (0..Cells::COUNT).filter(|light| light % 7 > 2) {
+            let square = (light % 7 * light % 11) as f64;
+            sums.add(Cells::pair(Cells::cell(light), y), Some(square));
+        }
+        let proposals = LightProposals::new(cells, &sums);
+        let row = proposals.row(y);
+        let uniform = f64::from(UNIFORM_PART);
+        for i in 0..4096 {
+            let u = (f64::from(i) + 0.5) / 4096.0;
+            let CellDraw::One(cell, _) = proposals.draw(y, uniform + (1.0 - uniform) * u) else {
+                panic!("the part of all vertices ends at {uniform}");
+            };
+            let [from, to] = [row[cell.index()], row[cell.index() + 1]].map(f64::from);
+            assert!(from <= u && u < to, "{u} leads to {from} .. {to}");
+        }
     }
 
     #[test]
