@@ -42,12 +42,9 @@ pub const SIZE: [u32; 2] = [48, 32];
 
 /// How the scene is rendered.
 pub fn settings() -> Settings {
-    let mut settings = Settings {
-        integrator: IntegratorKind::Bdpt,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default();
+    settings.set_integrator(IntegratorKind::Bdpt);
     settings.path.max_depth = Some(4);
-    settings.path.roulette = settings.integrator.roulette();
     settings
 }
 
