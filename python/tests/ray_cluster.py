@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
 import tempfile
 import time
 from collections.abc import Callable
@@ -105,6 +107,7 @@ class Journal:
     def __init__(self) -> None:
         """Begin an empty journal."""
         self.folder = Path(tempfile.mkdtemp(prefix="bidir-test-"))
+        atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
 
     def open_gate(self) -> None:
         """Let actors begin ranges of the second half."""

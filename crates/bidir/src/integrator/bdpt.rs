@@ -76,9 +76,8 @@ fn hit(
     if !context.takes(0, i + 1) {
         return;
     }
-    let contribution = x0.beta
-        * x0.turn(x0.wo, x0.wo)
-            .scatter(context, TransportMode::Importance);
+    let at_x0 = x0.turn(x0.wo, x0.wo);
+    let contribution = x0.beta * at_x0.scatter(context, TransportMode::Importance);
     if contribution == Spectrum::ZERO {
         return;
     }

@@ -33,10 +33,7 @@ const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 /// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
 /// may lead to.
 const PARTS: usize = 64;
-const _: () = assert!(
-    Cells::COUNT <= 1 << u8::BITS,
-    "numbers of cells take a byte"
-);
+const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 
 /// How light vertices of a cache are proposed to camera vertices.
 #[derive(Clone, Debug)]
