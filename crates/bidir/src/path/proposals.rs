@@ -31,7 +31,7 @@ const UNIFORM_PART: f32 = 0.2;
 const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 
 /// Into how many parts the numbers of a draw are divided, each of which knows the first cell that it
-/// may lead to.
+/// may lead to: a guide table \[Chen74\].
 const PARTS: usize = 64;
 const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 

@@ -4,6 +4,7 @@
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::IntegratorKind;
+use bidir::select::ShadowRays;
 
 #[test]
 fn under_a_sky_paths_begin_at_the_camera() {
@@ -18,6 +19,38 @@ fn what_few_vertices_make_needs_few_connections() {
 #[test]
 fn where_light_comes_by_bounces_its_subpaths_are_shared() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
+}
+
+/// A choice of shadow rays that nobody named is the estimator's, and one that was named stays.
+#[test]
+fn shadow_rays_are_those_that_suit_the_estimator() {
+    let scene = open("narrow-spot.pbrt").scene;
+    for (name, integrator) in IntegratorKind::NAMES {
+        let choose = |shadow_rays| {
+            let settings = Settings {
+                integrator,
+                shadow_rays,
+                ..Settings::default()
+            };
+            let resources = Resources::default();
+            Session::new(&scene, settings, &resources).expect("the film is small")
+        };
+        assert_eq!(
+            choose(ShadowRays::PerPair).settings().shadow_rays,
+            ShadowRays::PerPair,
+            "{name}"
+        );
+        let mut session = choose(ShadowRays::Suited);
+        let suited = session.settings().integrator.shadow_rays();
+        assert_ne!(suited, ShadowRays::Suited, "{name}");
+        assert_eq!(session.settings().shadow_rays, suited, "{name}");
+        if let ShadowRays::Budget(rays) = suited {
+            assert!(session.step(&()), "nobody stops it");
+            let stats = session.stats();
+            assert!(stats.rays.connection <= u64::from(rays) * stats.samples);
+            assert!(stats.candidates > stats.rays.connection, "{name}: no choice");
+        }
+    }
 }
 
 #[track_caller]

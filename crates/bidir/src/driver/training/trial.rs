@@ -23,7 +23,7 @@
 //! tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
-//! every run. They fit the times of 25 scenes to 5 % (docs/performance.md).
+//! every run. They fit the times of 41 scenes to 8 % (docs/performance.md).
 
 use super::Settings;
 use super::probe::{GROUP, Probe, Witness};
