@@ -48,7 +48,10 @@ fn shadow_rays_are_those_that_suit_the_estimator() {
             assert!(session.step(&()), "nobody stops it");
             let stats = session.stats();
             assert!(stats.rays.connection <= u64::from(rays) * stats.samples);
-            assert!(stats.candidates > stats.rays.connection, "{name}: no choice");
+            assert!(
+                stats.candidates > stats.rays.connection,
+                "{name}: no choice"
+            );
         }
     }
 }
