@@ -186,7 +186,8 @@ class Lvc(_Bidirectional):
 
     #: How many vertices of shared light subpaths are weighed for each camera vertex, 1 to 4096; two
     #: numbers are for the first vertex of a camera subpath, and for each of those behind it.
-    candidates: int | tuple[int, int] | None = None
+    #: ``"suited"`` is what suits the estimator.
+    candidates: int | tuple[int, int] | Literal["suited"] | None = None
     #: How many light points next-event estimation draws for each camera vertex, in the same way.
     next_events: int | tuple[int, int] | None = None
     #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short

@@ -4,7 +4,7 @@ mod common;
 
 use bidir::driver::Settings;
 use bidir::film::{Filter, FilterKind};
-use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::integrator::{CandidateCount, Candidates, IntegratorKind};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{MisCount, PathRoulette, PathSettings};
@@ -255,7 +255,7 @@ fn counts_of_weights_keep_the_closed_sphere() {
     for (name, mis_count) in MisCount::NAMES {
         let mut settings = settings(IntegratorKind::Lvc, Some(8));
         settings.shadow_rays = ShadowRays::Budget(2);
-        settings.lvc.candidates = CandidateCount::of(8);
+        settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
         settings.lvc.mis_count = mis_count;
         let result = replicates(&scene, &settings, 1024);
         check_expectation(name, &result, 1.0 - halved(9));

@@ -49,11 +49,13 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Takes an estimator, with the path roulette and the choice of shadow rays that suit it.
+    /// Takes an estimator, with the path roulette, the choice of shadow rays and the candidates that
+    /// suit it.
     pub fn set_integrator(&mut self, integrator: IntegratorKind) {
         self.integrator = integrator;
         self.path.roulette = integrator.roulette();
         self.shadow_rays = integrator.shadow_rays();
+        self.lvc.candidates = integrator.candidates();
     }
 
     /// True where the estimator learns about connections before the first pass.

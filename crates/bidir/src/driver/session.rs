@@ -263,10 +263,12 @@ impl<'a> Session<'a> {
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
         let [x, y] = film.crop.pixel(pixel as usize);
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
+        let camera = sampler.stream(Domain::Camera, stream, pass);
         Sample {
             pass,
             pixel: [x, y],
-            camera: sampler.stream(Domain::Camera, stream, pass),
+            ray: camera,
+            camera,
             light: sampler.member(Domain::Light, pixel / self.samples_per_subpath(), pass),
         }
     }

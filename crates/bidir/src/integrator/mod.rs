@@ -19,7 +19,8 @@ pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::{
-    CandidateCount, CountError, EmissionKind, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath,
+    CandidateCount, Candidates, CountError, EmissionKind, Lvc, LvcSettings, ProposalKind,
+    SamplesPerSubpath,
 };
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
@@ -110,6 +111,16 @@ impl IntegratorKind {
         }
     }
 
+    /// The number of candidates that suits the estimator, where light subpaths are shared, likewise.
+    pub fn candidates(self) -> Candidates {
+        match self {
+            Self::Path | Self::Light | Self::Bdpt | Self::Lvc => {
+                Candidates::Of(CandidateCount::FEW)
+            }
+            Self::Auto => Candidates::Suited,
+        }
+    }
+
     /// The estimator; `selector` chooses the shadow rays of those that have candidates, and `lvc` is for
     /// those that share light subpaths.
     pub fn integrator(self, selector: Box<dyn Selector>, lvc: &LvcSettings) -> Box<dyn Integrator> {
@@ -120,7 +131,7 @@ impl IntegratorKind {
             // What is open is decided before; this is what it would most often be.
             Self::Lvc | Self::Auto => Box::new(Lvc {
                 selector,
-                candidates: lvc.candidates,
+                candidates: lvc.candidates.count(),
                 next_events: lvc.next_events,
             }),
         }

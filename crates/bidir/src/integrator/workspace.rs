@@ -24,7 +24,9 @@ pub struct Sample {
     pub pass: u64,
     /// The pixel.
     pub pixel: [u32; 2],
-    /// The random numbers of the camera subpath and of its connections.
+    /// The random numbers of the camera ray.
+    pub ray: SampleStream,
+    /// Those of the camera subpath behind it, and of its connections.
     pub camera: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
@@ -322,7 +324,7 @@ impl Workspace {
 
 /// The ray of a camera sample, and the weight of its film position.
 pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
-    let get = |purpose| sample.camera.get_2d(Dimension::at(0, purpose));
+    let get = |purpose| sample.ray.get_2d(Dimension::at(0, purpose));
     let (offset, weight) = context.scene.film().filter.sample(get(Purpose::Film));
     let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
     let ray = context

@@ -8,7 +8,7 @@ use super::view::ServeAddress;
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
 use bidir::integrator::{
-    CandidateCount, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
+    CandidateCount, Candidates, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
 };
 use bidir::path::{
     LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
@@ -164,11 +164,12 @@ pub(crate) struct EstimatorArgs {
     #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
     pub(crate) shadow_rays: Option<ShadowRays>,
     /// How many vertices of shared light subpaths are weighed for the first vertex of a camera subpath and
-    /// for each of those behind it (lvc), up to 4096 [default: 12,1].
+    /// for each of those behind it (lvc), up to 4096 [default: what suits the integrator].
     ///
-    /// One number is for all vertices.
+    /// By default 12,1 for lvc and suited for auto, which then tries more of them, too, with more shadow
+    /// rays. One number is for all vertices; suited is what suits the integrator.
     #[arg(long, value_name = "M[,N]")]
-    pub(crate) candidates: Option<CandidateCount>,
+    pub(crate) candidates: Option<Candidates>,
     /// How many light points next-event estimation draws for the first vertex of a camera subpath, and for
     /// each of those behind it, up to 4096 (lvc) [default: 2,1].
     ///
@@ -331,7 +332,6 @@ mod tests {
     fn the_help_tells_the_true_defaults() {
         let settings = Settings::default();
         let path = &settings.path;
-        check_default("candidates", settings.lvc.candidates);
         check_default("next-events", settings.lvc.next_events);
         check_default("samples-per-subpath", settings.lvc.samples_per_subpath);
         check_default(
@@ -351,6 +351,12 @@ mod tests {
         for (name, integrator) in IntegratorKind::NAMES {
             let roulette = integrator.roulette();
             assert!(help.contains(&format!("{roulette} for {name}")), "{help}");
+        }
+        let help = help_of("candidates");
+        for integrator in [IntegratorKind::Lvc, IntegratorKind::Auto] {
+            let name = name_of(&IntegratorKind::NAMES, integrator);
+            let candidates = integrator.candidates();
+            assert!(help.contains(&format!("{candidates} for {name}")), "{help}");
         }
         let help = help_of("shadow-rays");
         let names = IntegratorKind::NAMES.into_iter();

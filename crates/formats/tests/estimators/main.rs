@@ -11,7 +11,7 @@ mod plans;
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
 
-use bidir::integrator::{CandidateCount, EmissionKind, IntegratorKind};
+use bidir::integrator::{CandidateCount, Candidates, EmissionKind, IntegratorKind};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette};
 use bidir::select::ShadowRays;
 use bidir_formats::pbrt::Crop;
@@ -223,7 +223,7 @@ fn weights_that_count_samples_in_other_ways() {
         for (count_name, mis_count) in MisCount::NAMES {
             let result = lvc.render(IntegratorKind::Lvc, |settings| {
                 settings.shadow_rays = ShadowRays::Budget(2);
-                settings.lvc.candidates = CandidateCount::of(8);
+                settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
                 settings.lvc.mis_count = mis_count;
             });
             check_agree(

@@ -3,7 +3,7 @@
 
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{CandidateCount, Candidates, IntegratorKind};
 use bidir::select::ShadowRays;
 
 #[test]
@@ -19,6 +19,29 @@ fn what_few_vertices_make_needs_few_connections() {
 #[test]
 fn where_light_comes_by_bounces_its_subpaths_are_shared() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
+}
+
+/// Candidates that nobody named are those of the plan, or the estimator's own, and named ones stay.
+#[test]
+fn candidates_are_those_that_suit_the_estimator() {
+    let scene = open("narrow-spot.pbrt").scene;
+    for (name, integrator) in IntegratorKind::NAMES {
+        let choose = |candidates| {
+            let mut settings = Settings::default();
+            settings.set_integrator(integrator);
+            settings.lvc.candidates = candidates;
+            Session::new(&scene, settings, &Resources::default()).expect("the film is small")
+        };
+        let named = Candidates::Of(CandidateCount::new(5, 2));
+        assert_eq!(choose(named).settings().lvc.candidates, named, "{name}");
+        let session = choose(Candidates::Suited);
+        let plan = session.training().and_then(|training| training.plan);
+        let suited = plan.map_or(integrator.candidates(), |plan| {
+            Candidates::Of(plan.candidates)
+        });
+        assert_ne!(suited, Candidates::Suited, "{name}");
+        assert_eq!(session.settings().lvc.candidates, suited, "{name}");
+    }
 }
 
 /// A choice of shadow rays that nobody named is the estimator's, and one that was named stays.
@@ -41,7 +64,8 @@ fn shadow_rays_are_those_that_suit_the_estimator() {
             "{name}"
         );
         let mut session = choose(ShadowRays::Suited);
-        let suited = session.settings().integrator.shadow_rays();
+        let plan = session.training().and_then(|training| training.plan);
+        let suited = plan.map_or(integrator.shadow_rays(), |plan| plan.shadow_rays);
         assert_ne!(suited, ShadowRays::Suited, "{name}");
         assert_eq!(session.settings().shadow_rays, suited, "{name}");
         if let ShadowRays::Budget(rays) = suited {

@@ -99,6 +99,8 @@ const VARIANTS: &[Variant] = &[
     variant(CANDIDATES, SHARED, "lvc 12, then 1", &[("integrator", "lvc"), ("candidates", "12,1")]),
     variant(CANDIDATES, SHARED, "lvc 24, then 1", &[("integrator", "lvc"), ("candidates", "24,1")]),
     variant(CANDIDATES, SHARED, "lvc 12 candidates", &[("integrator", "lvc"), ("candidates", "12")]),
+    variant(CANDIDATES, SHARED, "lvc 20, then 3, budget:8", &[("integrator", "lvc"), ("candidates", "20,3"), ("shadow-rays", "budget:8")]),
+    variant(CANDIDATES, SHARED, "lvc 24, then 4, budget:10, 1 sample", &[("integrator", "lvc"), ("candidates", "24,4"), ("shadow-rays", "budget:10"), ("samples-per-subpath", "1")]),
 
     variant(SELECTORS, BASELINE, "bdpt per-light-vertex", &[("integrator", "bdpt"), ("shadow-rays", "per-light-vertex")]),
     variant(SELECTORS, BASELINE, "bdpt per-camera-vertex", &[("integrator", "bdpt"), ("shadow-rays", "per-camera-vertex")]),

@@ -4,7 +4,7 @@
 use super::names::nearest;
 use bidir::driver::Settings;
 use bidir::integrator::{
-    CandidateCount, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
+    CandidateCount, Candidates, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
 };
 use bidir::path::{
     LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
@@ -24,7 +24,7 @@ pub struct Changes {
     /// Which connections are traced.
     pub shadow_rays: Option<ShadowRays>,
     /// The cached light vertices that are candidates for each camera vertex.
-    pub candidates: Option<CandidateCount>,
+    pub candidates: Option<Candidates>,
     /// How many light points are drawn for each camera vertex.
     pub next_events: Option<CandidateCount>,
     /// How cached light vertices are chosen.

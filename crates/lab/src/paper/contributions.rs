@@ -87,10 +87,12 @@ fn pass_of(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
     workspace.journal = Some(Journal::default());
     let mut terms = Vec::new();
     for i in 0..film.crop.area() {
+        let camera = sampler.stream(Domain::Camera, i, pass);
         let sample = Sample {
             pass,
             pixel: film.crop.pixel(i as usize),
-            camera: sampler.stream(Domain::Camera, i, pass),
+            ray: camera,
+            camera,
             light: sampler.stream(Domain::Light, 0, pass * film.light_paths() + i),
         };
         integrator.sample(&context, &sample, &mut workspace);

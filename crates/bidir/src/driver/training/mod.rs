@@ -3,6 +3,7 @@
 //! pixel i·STRIDE modulo the number of pixels; the first are of the full estimator that traces every
 //! connection.
 
+mod choice;
 mod emission;
 mod pilot;
 mod plan;
@@ -15,7 +16,7 @@ pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{Candidates, EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
 use crate::light::LightChoice;
 use crate::path::{Cells, Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
@@ -63,6 +64,9 @@ pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Tr
     if settings.shadow_rays == ShadowRays::Suited {
         settings.shadow_rays = settings.integrator.shadow_rays();
     }
+    if settings.lvc.candidates == Candidates::Suited {
+        settings.lvc.candidates = settings.integrator.candidates();
+    }
     let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
     let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
     let training = needs_training.then(|| Training::run(scene, &settings));
@@ -72,13 +76,14 @@ pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Tr
 impl Training {
     /// Finds what to render with, and trains for it.
     fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
-        let mut training = Self::run(scene, &Plan::default().apply(settings));
+        let default = Plan::default().keeping(settings);
+        let mut training = Self::run(scene, &default.apply(settings));
         let tried = plan::try_all(scene, settings, &training, training.samples);
         for (_, trial) in &tried {
             training.rays += trial.stats.rays;
             training.samples += trial.stats.samples;
         }
-        let plan = plan::best(scene.film().crop.area(), settings.path.mis, &tried);
+        let plan = choice::best(scene.film().crop.area(), settings, &tried);
         training.plan = Some(plan);
         (plan, training)
     }
@@ -113,6 +118,7 @@ impl Training {
                 next_events,
                 per_vertex: settings
                     .candidates
+                    .count()
                     .get()
                     .map(|count| f64::from(count) / vertices),
                 proposals: self.proposals.as_ref(),

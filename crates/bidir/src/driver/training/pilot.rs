@@ -2,7 +2,9 @@
 //! share light subpaths as those of the image do.
 
 use super::probe::{GROUP, Probe, Witness};
-use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, Sample, Workspace};
+use crate::integrator::{
+    CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
+};
 use crate::path::{Cell, Cells, PathContext};
 use crate::select::{LightVertex, ShadowRays};
 use crate::spectrum::luminance;
@@ -11,7 +13,7 @@ use rayon::prelude::*;
 
 const GROUPS: u64 = 64;
 /// For each camera vertex.
-const CANDIDATES: CandidateCount = CandidateCount::of(16);
+const CANDIDATES: Candidates = Candidates::Of(CandidateCount::of(16));
 /// The samples of all groups, each of which brings a light subpath.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 

@@ -18,7 +18,7 @@ pub(super) struct Probe<'a> {
     pub(super) connections: Connections<'a>,
     /// The first sample's number.
     pub(super) first: u64,
-    /// After so many samples their pixels come again.
+    /// After so many samples their pixels come again; the first time with the same camera rays.
     pub(super) pixels: u64,
 }
 
@@ -75,10 +75,15 @@ impl Probe<'_> {
     pub(super) fn sample(&self, number: u64) -> Sample {
         let crop = self.scene.film().crop;
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
-        let place = self.first + (number - self.first) % self.pixels;
+        let (round, place) = {
+            let number = number - self.first;
+            (number / self.pixels, self.first + number % self.pixels)
+        };
+        let ray = if round == 1 { place } else { number };
         Sample {
             pass: 0,
             pixel: crop.pixel((place.wrapping_mul(STRIDE) % crop.area()) as usize),
+            ray: sampler.stream(Domain::TrainingCamera, ray, 0),
             camera: sampler.stream(Domain::TrainingCamera, number, 0),
             light: sampler.stream(Domain::TrainingLight, 0, number),
         }

@@ -1,13 +1,15 @@
 //! What the samples of a plan find: their variance, block by block of the film, and their cost.
 //!
-//! **Variance** is that of a pixel in one pass, in the mean over a block. Samples come in pairs (a, b) of
-//! one pixel, so that what pixels differ by is no variance. For a block of B pixels with n_b of the n / 2
-//! pairs, and light images with the sum of squares Q in it, of P samples in a pass,
+//! **Variance** is that of a pixel in one pass, in the mean over a block. Three samples (a, b, c) are taken of
+//! a pixel, so that what pixels differ by is no variance. For a block of B pixels with n_b of the n / 3
+//! triples, and light images with the sum of squares Q in it, of P samples in a pass,
 //!
-//! V = Σ (a - b)² / (2 n_b) + Q / (n P B),
+//! V = Σ (a - c)² / (2 n_b) + Q / (n P B),
 //!
-//! as the light images of a pass are many, each of them rare. The *spread* has the samples' variance within
-//! the block in place of the first part, which is V and the variance of the pixels' means.
+//! as the light images of a pass are many, each of them rare. As a and b have a camera ray in common, (a - b)²
+//! in place of (a - c)² tells what is left *behind the rays*, without what the pixel varies by. The *spread*
+//! has the samples' variance within the block in place of the first part, which is V and the variance of the
+//! pixels' means.
 //!
 //! **Hidden variance.** A few thousand samples of path tracing may miss the bright rare paths that make
 //! most of its variance. Light images find them: with f the contribution of a path, p the density of the
@@ -23,7 +25,7 @@
 //! tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
-//! every run. They fit the times of 41 scenes to 8 % (docs/performance.md).
+//! every run. They fit the times of 41 scenes to 7 % (docs/performance.md).
 
 use super::Settings;
 use super::probe::{GROUP, Probe, Witness};
@@ -38,9 +40,9 @@ use rayon::prelude::*;
 mod tests;
 
 /// The groups that a plan is tried with.
-const GROUPS: u64 = 32;
-/// The samples with pixels of their own: half of them.
-pub(super) const PIXELS: u64 = GROUPS * GROUP / 2;
+const GROUPS: u64 = 48;
+/// The pixels: a third of the samples.
+pub(super) const PIXELS: u64 = GROUPS * GROUP / 3;
 /// Blocks along each side of the film.
 const SIDE: usize = 16;
 /// The blocks.
@@ -50,15 +52,15 @@ pub(super) const BLOCKS: usize = SIDE * SIDE;
 const MOST_WEIGHT: f64 = 0.9999;
 
 /// What a ray of a camera walk takes where its vertices are connected with shared light subpaths.
-const CONNECTED_CAMERA_RAY: f64 = 1.5;
+const CONNECTED_CAMERA_RAY: f64 = 1.8;
 /// What a ray of a light walk takes, with the light that it begins on.
-const LIGHT_RAY: f64 = 1.5;
+const LIGHT_RAY: f64 = 1.75;
 /// What a connection ray takes, without what it connects.
-const CONNECTION_RAY: f64 = 0.5;
+const CONNECTION_RAY: f64 = 0.55;
 /// What evaluating a connection takes.
 const CANDIDATE: f64 = 0.4;
 /// What a light image takes, with its ray.
-const LIGHT_IMAGE: f64 = 0.8;
+const LIGHT_IMAGE: f64 = 1.0;
 
 /// What the samples of a plan found in a block.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,9 +68,11 @@ struct Block {
     samples: f64,
     own: f64,
     own_squares: f64,
-    pairs: f64,
-    /// Σ (a - b)² / 2 over pairs of samples of one pixel.
+    triples: f64,
+    /// Σ (a - c)² / 2 over triples of samples of one pixel.
     differences: f64,
+    /// Σ (a - b)² / 2.
+    behind: f64,
     splats: f64,
     splat_squares: f64,
     /// Σ v² / (w (1 - w)), and the largest term of it.
@@ -90,6 +94,7 @@ impl Block {
 }
 
 /// What the samples of a plan found.
+#[derive(Clone)]
 pub(super) struct Trial {
     blocks: Vec<Block>,
     /// The block and the value of each sample, in order.
@@ -166,7 +171,7 @@ impl Trial {
         all
     }
 
-    /// Both halves of the samples have the same pixels in the same order.
+    /// All thirds of the samples have the same pixels in the same order.
     fn sum_values(&mut self) {
         for &(block, value) in &self.values {
             let block = &mut self.blocks[block];
@@ -174,11 +179,15 @@ impl Trial {
             block.own += value;
             block.own_squares += value * value;
         }
-        let (first, second) = self.values.split_at(self.values.len() / 2);
-        for (&(block, a), &(_, b)) in first.iter().zip(second) {
+        let count = self.values.len() / 3;
+        let half_square = |x: f64| 0.5 * x * x;
+        for i in 0..count {
+            let [(block, a), (_, b), (_, c)] =
+                [0, 1, 2].map(|third| self.values[third * count + i]);
             let block = &mut self.blocks[block];
-            block.pairs += 1.0;
-            block.differences += 0.5 * (a - b) * (a - b);
+            block.triples += 1.0;
+            block.differences += half_square(a - c);
+            block.behind += half_square(a - b);
         }
     }
 
@@ -204,7 +213,13 @@ impl Trial {
     /// The variance of a pixel of it in one pass.
     pub(super) fn variance(&self, i: usize, pixels: f64) -> f64 {
         let block = &self.blocks[i];
-        block.differences / block.pairs.max(1.0) + self.splat_variance(i, pixels)
+        block.differences / block.triples.max(1.0) + self.splat_variance(i, pixels)
+    }
+
+    /// The same of what is behind the camera rays.
+    pub(super) fn behind(&self, i: usize, pixels: f64) -> f64 {
+        let block = &self.blocks[i];
+        block.behind / block.triples.max(1.0) + self.splat_variance(i, pixels)
     }
 
     /// The same with the variance of its pixels' means.

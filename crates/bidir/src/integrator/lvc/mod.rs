@@ -17,7 +17,8 @@ mod tests;
 
 pub(crate) use cache::{LightCache, connectable};
 pub use settings::{
-    CandidateCount, CountError, EmissionKind, LvcSettings, ProposalKind, SamplesPerSubpath,
+    CandidateCount, Candidates, CountError, EmissionKind, LvcSettings, ProposalKind,
+    SamplesPerSubpath,
 };
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};

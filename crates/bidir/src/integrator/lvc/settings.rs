@@ -8,7 +8,7 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LvcSettings {
     /// M: how many vertices of the cache are candidates for each camera vertex.
-    pub candidates: CandidateCount,
+    pub candidates: Candidates,
     /// How many light points next-event estimation draws for each camera vertex.
     pub next_events: CandidateCount,
     /// How vertices of the cache are chosen.
@@ -24,7 +24,7 @@ pub struct LvcSettings {
 impl Default for LvcSettings {
     fn default() -> Self {
         Self {
-            candidates: CandidateCount::new(12, 1),
+            candidates: Candidates::default(),
             next_events: CandidateCount::new(2, 1),
             proposal: ProposalKind::default(),
             emission: EmissionKind::default(),
@@ -66,6 +66,28 @@ impl EmissionKind {
         [("power", Self::Power), ("learned", Self::Learned)];
 }
 
+/// How many candidates the vertices of camera subpaths have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Candidates {
+    /// So many.
+    Of(CandidateCount),
+    /// What suits the estimator: decided before the first pass. A sample takes it for
+    /// [`CandidateCount::FEW`].
+    #[default]
+    Suited,
+}
+
+impl Candidates {
+    /// M.
+    #[inline]
+    pub fn count(self) -> CandidateCount {
+        match self {
+            Self::Of(count) => count,
+            Self::Suited => CandidateCount::FEW,
+        }
+    }
+}
+
 /// How many candidates or light points the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
 /// first vertex of a subpath, which the pixel's noise depends on most, and those behind it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +99,8 @@ pub struct CandidateCount {
 impl CandidateCount {
     /// The most: candidates of a sample are in memory together, M for each of its camera vertices.
     pub const MAX: u16 = 4096;
+    /// What suits most scenes.
+    pub const FEW: Self = Self::new(12, 1);
 
     /// `first` and `deeper`, brought into the range.
     pub const fn new(first: u16, deeper: u16) -> Self {
@@ -169,6 +193,20 @@ impl FromStr for CandidateCount {
     }
 }
 
+impl FromStr for Candidates {
+    type Err = CountError;
+
+    fn from_str(text: &str) -> Result<Self, CountError> {
+        if text == "suited" {
+            return Ok(Self::Suited);
+        }
+        text.parse().map(Self::Of).map_err(|error| CountError {
+            expected: "a whole number from 1 to 4096, two of them as in `8,1`, or `suited`",
+            ..error
+        })
+    }
+}
+
 impl FromStr for SamplesPerSubpath {
     type Err = CountError;
 
@@ -187,6 +225,15 @@ impl fmt::Display for CandidateCount {
         match *self {
             Self { first, deeper } if first == deeper => write!(f, "{first}"),
             Self { first, deeper } => write!(f, "{first},{deeper}"),
+        }
+    }
+}
+
+impl fmt::Display for Candidates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Of(count) => count.fmt(f),
+            Self::Suited => write!(f, "suited"),
         }
     }
 }
@@ -234,7 +281,10 @@ mod tests {
             "8,1,1",
             "8, 1",
         ];
-        check::<CandidateCount>(&["1", "3", "4096", "8,1", "1,4096"], &bad, "from 1 to 4096");
+        let good = ["1", "3", "4096", "8,1", "1,4096"];
+        check::<CandidateCount>(&good, &bad, "from 1 to 4096");
+        check::<Candidates>(&good, &bad, "`suited`");
+        check::<Candidates>(&["suited"], &["Suited"], "from 1 to 4096");
         let bad = ["", "0", "-2", "3", "512", "65536", "x"];
         check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, "from 1 to 256");
     }

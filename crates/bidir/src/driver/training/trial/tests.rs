@@ -1,11 +1,20 @@
 use super::*;
+use crate::camera::{Camera, Perspective, PerspectiveSettings};
+use crate::film::{FilmSettings, Filter, FilterKind};
+use crate::light::EmissionSides;
+use crate::material::Material;
+use crate::math::{Affine3A, Vec2, Vec3};
+use crate::path::Connections;
+use crate::scene::{Emission, Scene, SceneBuilder};
+use crate::shape::{Orientation, Shape, Sphere};
+use crate::texture::ColorTexture;
 
 impl Trial {
-    /// Of pairs of samples, each in a block of its own, that took a camera ray each; and of light images
-    /// in the first block: value and weight.
+    /// Of pairs of samples, each in a block of its own, that took a camera ray each, the second of them
+    /// twice; and of light images in the first block: value and weight.
     pub(in crate::driver::training) fn of(pairs: &[[f64; 2]], splats: &[[f64; 2]]) -> Self {
         let mut trial = Self::default();
-        for half in 0..2 {
+        for half in [0, 1, 1] {
             let values = pairs.iter().enumerate();
             trial.values.extend(values.map(|(i, pair)| (i, pair[half])));
         }
@@ -17,6 +26,12 @@ impl Trial {
         trial.stats.rays.camera = trial.stats.samples;
         trial
     }
+
+    /// As if what is behind the camera rays of block number `i` varied so much.
+    pub(in crate::driver::training) fn set_behind(&mut self, i: usize, variance: f64) {
+        let block = &mut self.blocks[i];
+        block.behind = variance * block.triples;
+    }
 }
 
 #[test]
@@ -24,6 +39,7 @@ fn what_pixels_differ_by_is_no_variance() {
     // Two pixels of block 3, and one of block 5.
     let values = [
         [(3, 1.0), (3, 7.0), (5, 2.0)],
+        [(3, 1.0), (3, 7.0), (5, 3.0)],
         [(3, 1.0), (3, 7.0), (5, 4.0)],
     ]
     .concat();
@@ -32,11 +48,13 @@ fn what_pixels_differ_by_is_no_variance() {
         ..Trial::default()
     };
     trial.sum_values();
-    trial.stats.samples = 6;
+    trial.stats.samples = 9;
     let pixels = BLOCKS as f64;
     let variances = [3, 5].map(|i| trial.variance(i, pixels));
+    let behind = [3, 5].map(|i| trial.behind(i, pixels));
+    assert_eq!((variances, behind), ([0.0, 2.0], [0.0, 0.5]));
     let spreads = [3, 5].map(|i| trial.spread(i, pixels));
-    assert_eq!((variances, spreads), ([0.0, 2.0], [12.0, 2.0]));
+    assert!((spreads[0] - 10.8).abs() < 1e-9 && (spreads[1] - 1.0).abs() < 1e-9);
     assert!((trial.mean(3, pixels) - 4.0).abs() < 1e-12);
 }
 
@@ -89,4 +107,51 @@ fn blocks_divide_the_crop() {
         counts.iter().all(|&count| (2..=6).contains(&count)),
         "{counts:?}"
     );
+}
+
+/// A black lamp before nothing.
+fn lamp() -> Scene {
+    let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
+    let mut builder = SceneBuilder::new(FilmSettings::new([16; 2], filter));
+    let camera = Perspective::new(&PerspectiveSettings {
+        world_from_camera: Affine3A::IDENTITY,
+        resolution: Vec2::splat(16.0),
+        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+        lens_radius: 0.1,
+        focal_distance: 2.0,
+    });
+    builder.camera(Camera::Perspective(camera.expect("a rigid camera")));
+    let black = builder.material(Material::Diffuse {
+        reflectance: ColorTexture::Constant([0.0; 3]),
+    });
+    let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, 3.0));
+    let sphere = Shape::Sphere(Sphere::new(place, 1.5, Orientation::Natural));
+    let light = Emission {
+        radiance: [2.0; 3],
+        pattern: None,
+        sides: EmissionSides::Front,
+    };
+    builder.shape(sphere, black, Some(light));
+    builder.build().expect("the scene is valid")
+}
+
+#[test]
+fn two_of_three_samples_share_their_camera_ray() {
+    let settings = Settings {
+        integrator: IntegratorKind::Path,
+        ..Settings::default()
+    };
+    let probe = Probe {
+        scene: &lamp(),
+        settings: &settings,
+        connections: Connections::ONE_SUBPATH,
+        first: 77,
+        pixels: PIXELS,
+    };
+    let trial = Trial::run(&probe, 0.0);
+    let sum = |of_block: &dyn Fn(usize) -> f64| (0..BLOCKS).map(of_block).sum::<f64>();
+    // What is seen depends on the ray alone, and differs from ray to ray along the lamp's edge.
+    assert!(sum(&|i| trial.mean(i, 256.0)) > 1.0);
+    assert!(sum(&|i| trial.variance(i, 256.0)) > 1.0);
+    assert!(sum(&|i| trial.behind(i, 256.0)) <= 0.0);
 }

@@ -1,0 +1,144 @@
+//! The best plan: the one with the least product of variance and cost, both of training samples
+//! [Veach97, §10.3.2; Grittmann22].
+//!
+//! Variances count relative to the square of a block's mean m, so that dark corners matter as bright
+//! ones do: V / (m² + ε), with m the mean over all plans and ε a hundredth of the square of the image's.
+//! What neighbouring pixels have in common by shared light subpaths is not in V: of plans that are nearly
+//! as good, one without them is taken.
+//!
+//! Plans that share light subpaths are compared once more, among themselves, by what varies behind the
+//! camera rays: what a pixel varies by is the same with all of them, and points of a sequence even it out.
+
+use super::Settings;
+use super::plan::{Plan, Tried};
+use super::trial::BLOCKS;
+use crate::integrator::IntegratorKind;
+use crate::path::MisHeuristic;
+use crate::sampler::SamplerKind;
+
+#[cfg(test)]
+mod tests;
+
+/// By so much shared light subpaths have to be better, as the noise of neighbours is alike.
+const COMMON_NOISE: f64 = 1.1;
+
+/// The best of the plans that were tried with `settings`, on a film of `pixels`.
+pub(super) fn best(pixels: u64, settings: &Settings, tried: &[Tried]) -> Plan {
+    let scale = Scale::new(pixels as f64, tried);
+    let missed = Missed::new(&scale, settings.path.mis, tried);
+    let product = |tried: &Tried| product(&scale, &missed, tried);
+    let best = least(tried.iter(), product);
+    let is_even = settings.sampler == SamplerKind::Sobol;
+    let best = match best {
+        Some((plan, _)) if is_shared(plan) && is_even => {
+            let shared = tried.iter().filter(|(plan, _)| is_shared(plan));
+            least(shared, |tried| product_behind(&scale, tried))
+        }
+        best => best,
+    };
+    best.map_or_else(Plan::default, |(plan, _)| *plan)
+}
+
+/// The plan of which `product` is least.
+fn least<'a>(
+    tried: impl Iterator<Item = &'a Tried>,
+    product: impl Fn(&Tried) -> f64,
+) -> Option<&'a Tried> {
+    let products = tried.map(|tried| (tried, product(tried)));
+    let least = products.min_by(|a, b| a.1.total_cmp(&b.1));
+    least.map(|(tried, _)| tried)
+}
+
+/// True where light subpaths are shared.
+fn is_shared(plan: &Plan) -> bool {
+    plan.integrator == IntegratorKind::Lvc
+}
+
+/// The product of what varies behind camera rays and of cost.
+fn product_behind(scale: &Scale, (plan, trial): &Tried) -> f64 {
+    scale.sum(|i| trial.behind(i, scale.pixels)) * trial.cost(plan.integrator)
+}
+
+/// The product of variance and cost, relative to those of others.
+fn product(scale: &Scale, missed: &Missed, (plan, trial): &Tried) -> f64 {
+    let found = scale.sum(|i| trial.variance(i, scale.pixels));
+    let missed = if plan.has_light_images() {
+        0.0
+    } else {
+        missed.beside(found)
+    };
+    let common = if is_shared(plan) { COMMON_NOISE } else { 1.0 };
+    (found + missed) * common * trial.cost(plan.integrator)
+}
+
+/// What variances are relative to.
+struct Scale {
+    pixels: f64,
+    /// The mean of a pixel of each block, by all plans.
+    means: Vec<f64>,
+    /// ε.
+    least: f64,
+}
+
+impl Scale {
+    fn new(pixels: f64, tried: &[Tried]) -> Self {
+        let mean = |i| {
+            let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
+            means.sum::<f64>() / tried.len() as f64
+        };
+        let means: Vec<f64> = (0..BLOCKS).map(mean).collect();
+        let whole = means.iter().sum::<f64>() / BLOCKS as f64;
+        let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
+        Self {
+            pixels,
+            means,
+            least,
+        }
+    }
+
+    /// The sum over the blocks of what `variance` tells of each.
+    fn sum(&self, variance: impl Fn(usize) -> f64) -> f64 {
+        let relative = |(i, mean): (usize, &f64)| variance(i) / (mean * mean + self.least);
+        self.means.iter().enumerate().map(relative).sum()
+    }
+}
+
+/// The variance of path tracing that its samples missed and light images tell of.
+///
+/// What they tell is a bound where walks end as theirs do. The part of it that the samples of path tracing
+/// with that roulette missed is missing in all path tracing.
+#[derive(Default)]
+struct Missed {
+    /// With that roulette.
+    missed: f64,
+    /// What its samples found.
+    found: f64,
+}
+
+impl Missed {
+    fn new(scale: &Scale, mis: MisHeuristic, tried: &[Tried]) -> Self {
+        let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
+        let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
+        let roulette = with_light.clone().next().map(|(plan, _)| plan.roulette);
+        let hidden = with_light
+            .map(|(_, trial)| scale.sum(|i| trial.hidden_spread(i, scale.pixels, scale.means[i])));
+        // The least of several says less than it should rather than more.
+        let hidden = hidden.reduce(f64::min).unwrap_or(0.0);
+        let is_alike = |plan: &Plan| !plan.has_light_images() && Some(plan.roulette) == roulette;
+        let alike = tried.iter().find(|(plan, _)| is_alike(plan));
+        let of_alike = |(_, trial): &Tried| Self {
+            missed: (hidden - scale.sum(|i| trial.spread(i, scale.pixels))).max(0.0),
+            found: scale.sum(|i| trial.variance(i, scale.pixels)),
+        };
+        alike.map(of_alike).unwrap_or_default()
+    }
+
+    /// That of a plan whose samples found so much.
+    fn beside(&self, found: f64) -> f64 {
+        if self.found > 0.0 {
+            self.missed * found / self.found
+        } else {
+            self.missed
+        }
+    }
+}

@@ -1,0 +1,79 @@
+use super::*;
+use crate::driver::training::plan::{BDPT, LVC, MANY, PLANS, path};
+use crate::driver::training::trial::Trial;
+use crate::path::PathRoulette;
+
+/// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
+fn chosen(splats: &[[f64; 2]]) -> Plan {
+    let tried = [
+        (path(0), Trial::of(&[[1.0, 1.1]], &[])),
+        (path(1), Trial::of(&[[1.0, 1.1]], &[])),
+        (BDPT, Trial::of(&[[0.0, 2.0]], splats)),
+    ];
+    best(BLOCKS as u64, &Settings::default(), &tried)
+}
+
+#[test]
+fn what_light_images_tell_counts_against_path_tracing() {
+    assert_eq!(chosen(&[]), path(0));
+    // Light images of what path tracing makes as often do not.
+    assert_eq!(chosen(&[[0.1, 0.5]; 8]), path(0));
+    assert_eq!(chosen(&[[1.0, 0.999]; 8]), BDPT);
+}
+
+#[test]
+fn what_light_images_tell_is_beside_path_tracing_of_their_roulette() {
+    let keeping = |plan: Plan| Plan {
+        roulette: PathRoulette::Off,
+        ..plan
+    };
+    let tried = [
+        (keeping(path(0)), Trial::of(&[[1.0, 1.1]], &[])),
+        (path(1), Trial::of(&[[1.0, 1.1]], &[])),
+        (keeping(BDPT), Trial::of(&[[0.0, 2.0]], &[[1.0, 0.999]; 8])),
+    ];
+    let plan = best(BLOCKS as u64, &Settings::default(), &tried);
+    assert_eq!(plan.integrator, IntegratorKind::Bdpt);
+}
+
+#[test]
+fn of_plans_that_are_as_good_one_without_common_noise_is_taken() {
+    let cost = |integrator| Trial::of(&[[0.0; 2]], &[]).cost(integrator);
+    let ratio = cost(IntegratorKind::Path) / cost(IntegratorKind::Lvc);
+    // With so much of the product of path tracing.
+    let best_beside = |product: f64| {
+        let difference = (product * ratio).sqrt();
+        let tried = [
+            (path(0), Trial::of(&[[1.0, 2.0]], &[])),
+            (LVC, Trial::of(&[[1.0, 1.0 + difference]], &[])),
+        ];
+        best(BLOCKS as u64, &Settings::default(), &tried)
+    };
+    assert_eq!([0.95, 0.85].map(best_beside), [path(0), LVC]);
+}
+
+/// Candidates pay where most of the variance is behind the camera rays, and those are points of a sequence.
+#[test]
+fn what_a_pixel_varies_by_is_the_same_for_all_that_share_light_subpaths() {
+    let with_pixel = |behind: f64| {
+        let mut trial = Trial::of(&[[0.0, 4.0]], &[]);
+        trial.set_behind(0, behind);
+        trial
+    };
+    let mut many = with_pixel(0.5);
+    many.stats.rays.camera *= 2;
+    for (sampler, expected) in [(SamplerKind::Sobol, MANY), (SamplerKind::Independent, LVC)] {
+        let settings = Settings {
+            sampler,
+            ..Settings::default()
+        };
+        let tried = [(LVC, with_pixel(2.0)), (MANY, many.clone())];
+        assert_eq!(best(BLOCKS as u64, &settings, &tried), expected);
+    }
+}
+
+#[test]
+fn nothing_to_see_is_traced_from_the_camera() {
+    let tried = PLANS.map(|plan| (plan, Trial::of(&[[0.0; 2]], &[])));
+    assert_eq!(best(1, &Settings::default(), &tried), path(0));
+}

@@ -1,0 +1,35 @@
+use super::*;
+
+/// Settings of `auto` that name nothing.
+fn open() -> Settings {
+    let mut settings = Settings::default();
+    settings.set_integrator(IntegratorKind::Auto);
+    settings
+}
+
+#[test]
+fn every_plan_is_open_where_nothing_is_named() {
+    assert_eq!(open_plans(&open()), PLANS);
+    for plan in PLANS {
+        let applied = plan.apply(&open());
+        assert_eq!(applied.integrator, plan.integrator);
+        assert_eq!(plan.keeping(&applied), plan);
+    }
+}
+
+#[test]
+fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
+    let mut settings = open();
+    settings.path.roulette = PathRoulette::Off;
+    settings.shadow_rays = ShadowRays::PerPair;
+    settings.lvc.candidates = Candidates::Of(CandidateCount::of(5));
+    let plans = open_plans(&settings);
+    // Path tracing, bidirectional path tracing, and three numbers of samples for a light subpath.
+    assert_eq!(plans.len(), 5, "{plans:?}");
+    for plan in plans {
+        let applied = plan.apply(&settings);
+        assert_eq!(applied.path.roulette, PathRoulette::Off);
+        assert_eq!(applied.shadow_rays, ShadowRays::PerPair);
+        assert_eq!(applied.lvc.candidates, settings.lvc.candidates);
+    }
+}
