@@ -260,8 +260,8 @@ PATHS = [
     (
         "what path tracing missed forgotten",
         "crates/bidir/src/driver/training/choice.rs",
-        "            missed.beside(found)\n",
-        "            0.0 * missed.beside(found)\n",
+        "        missed.beside(found)\n",
+        "        0.0 * missed.beside(found)\n",
         unit("what_light_images_tell_counts"),
     ),
     (

@@ -33,3 +33,12 @@ fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
         assert_eq!(applied.lvc.candidates, settings.lvc.candidates);
     }
 }
+
+#[test]
+fn a_plan_is_what_the_estimator_does_by_default() {
+    let mut settings = Settings::default();
+    settings.set_integrator(LVC.integrator);
+    assert_eq!(LVC.keeping(&settings), LVC);
+    assert_eq!(LVC.roulette, settings.path.roulette);
+    assert_eq!(LVC.samples_per_subpath, settings.lvc.samples_per_subpath);
+}
