@@ -275,7 +275,7 @@ PATHS = [
         "light images that tell of path tracing with another roulette",
         "crates/bidir/src/driver/training/choice.rs",
         "Some(plan.roulette) == roulette",
-        "*plan == path(0) && roulette.is_some()",
+        "plan.roulette == Default::default() && roulette.is_some()",
         unit("what_light_images_tell_is_beside"),
     ),
     (
