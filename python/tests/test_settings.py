@@ -45,6 +45,10 @@ def test_settings_are_those_of_the_flags() -> None:
     }
 
 
+def test_candidates_may_be_those_that_suit() -> None:
+    assert bidir.Auto(candidates="suited").flags() == {"integrator": "auto", "candidates": "suited"}
+
+
 @pytest.mark.parametrize(
     "rule",
     [
