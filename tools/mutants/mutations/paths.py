@@ -246,15 +246,29 @@ PATHS = [
     (
         "light images that tell of themselves alone",
         "crates/bidir/src/driver/training/trial.rs",
-        "let term = value * value / (w * (1.0 - w));",
-        "let term = value * value / w;",
+        "square: value * value / (w * (1.0 - w)),",
+        "square: value * value / w,",
         unit("light_images_tell"),
+    ),
+    (
+        "light images that tell what samples have shown",
+        "crates/bidir/src/driver/training/trial.rs",
+        "value * value * relative(told.block) > most",
+        "value * value * relative(told.block) > 0.0 * most",
+        unit("light_images_tell"),
+    ),
+    (
+        "one light image that tells all",
+        "crates/bidir/src/driver/training/choice.rs",
+        "(sum - largest) / count",
+        "(sum - 0.0 * largest) / count",
+        unit("one_light_image_alone"),
     ),
     (
         "what pixels differ by taken for variance",
         "crates/bidir/src/driver/training/trial.rs",
-        "block.differences / block.triples.max(1.0) + self.splat_variance(i, pixels)",
-        "self.spread(i, pixels)",
+        "block.differences += half_square(a - c);",
+        "block.differences += half_square(a) + half_square(c);",
         unit("what_pixels_differ_by"),
     ),
     (

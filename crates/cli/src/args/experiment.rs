@@ -26,6 +26,7 @@ A description:
   file = \"room.pbrt\"                     # relative to the description; name and size if you like
   reference = \"references/room\"          # a folder of `bidir reference`, or an image; or
   # reference-spp = 4096                 # made first, with reference-strategies = \"all\"
+  # reference-witness = \"lvc\"            # what it has to agree with, instead of path
 
   [[method]]                             # ratios are relative to the first
   name = \"all\"

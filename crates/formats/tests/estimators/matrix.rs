@@ -1,9 +1,11 @@
-//! Every integrator with every choice of shadow rays, on every scene: a part of it always, all of it at
-//! night.
+//! Every integrator with every choice of shadow rays, and `auto` with what it may choose besides, on
+//! every scene: a part of it always, all of it at night.
 
 use crate::case::{Case, PIXELS, QUARTERS, open};
 use crate::statistics::{Replicates, check_agree, disagree};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{
+    CandidateCount, Candidates, IntegratorKind, LvcSettings, SamplesPerSubpath,
+};
 use bidir::select::ShadowRays;
 
 /// The rules of `--shadow-rays`.
@@ -15,6 +17,10 @@ const RULES: [&str; 6] = [
     "ray-roulette",
     "budget:2",
 ];
+
+/// Plans of `auto` that are no integrator's default: candidates of a camera vertex, shadow rays of a
+/// sample, and the binary logarithm of the samples for each light subpath.
+const PLANS: [([u16; 2], u32, u32); 2] = [([20, 3], 8, 1), ([24, 4], 10, 0)];
 
 /// A scene of `scenes/torture`.
 struct World {
@@ -91,20 +97,27 @@ struct Entrant {
     name: String,
     integrator: IntegratorKind,
     rays: ShadowRays,
+    lvc: LvcSettings,
     /// It takes this many times the passes.
     effort: u64,
     blocks: &'static [usize],
 }
 
 impl World {
-    /// Compares the bidirectional path tracers under each of `rules`, and the light tracer where it
-    /// sees all, with the path tracer.
+    /// Compares the bidirectional path tracers under each of `rules`, the light tracer where it sees
+    /// all, `auto`, and those of its `plans`, with the path tracer.
     #[track_caller]
-    fn check(&self, rules: impl IntoIterator<Item = &'static str>) {
+    fn check(
+        &self,
+        rules: impl IntoIterator<Item = &'static str>,
+        plans: impl IntoIterator<Item = usize>,
+    ) {
         let loaded = open(&format!("{}.pbrt", self.name));
         let case = Case::new(&loaded, self.passes);
         let reference = self.reference(case);
-        for entrant in self.entrants(rules) {
+        let planned = plans.into_iter().map(|i| self.planned(i));
+        let entrants = self.entrants(rules).into_iter().chain(planned);
+        for entrant in entrants.chain([self.auto()]) {
             self.compare(case, &entrant, &reference);
         }
     }
@@ -119,6 +132,7 @@ impl World {
                 name: format!("{}, {integrator:?}, {rule}", self.name),
                 integrator,
                 rays: rule.parse().expect("a rule"),
+                lvc: LvcSettings::default(),
                 effort: 1,
                 blocks: if rule == "all" { self.blocks } else { QUARTERS },
             })
@@ -129,11 +143,40 @@ impl World {
                 name: format!("{}, light", self.name),
                 integrator: IntegratorKind::Light,
                 rays: ShadowRays::All,
+                lvc: LvcSettings::default(),
                 effort,
                 blocks: QUARTERS,
             }),
         };
         connected.chain(light).collect()
+    }
+
+    /// Number `i` of the plans.
+    fn planned(&self, i: usize) -> Entrant {
+        let ([first, deeper], rays, exponent) = PLANS[i];
+        Entrant {
+            name: format!("{}, plan {:?}", self.name, PLANS[i]),
+            integrator: IntegratorKind::Lvc,
+            rays: ShadowRays::Budget(rays),
+            lvc: LvcSettings {
+                candidates: Candidates::Of(CandidateCount::new(first, deeper)),
+                samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
+                ..LvcSettings::default()
+            },
+            effort: 1,
+            blocks: QUARTERS,
+        }
+    }
+
+    fn auto(&self) -> Entrant {
+        Entrant {
+            name: format!("{}, auto", self.name),
+            integrator: IntegratorKind::Auto,
+            rays: ShadowRays::Suited,
+            lvc: LvcSettings::default(),
+            effort: 1,
+            blocks: QUARTERS,
+        }
     }
 
     /// Of hundreds of comparisons some look different by chance: these are made again, with other random
@@ -144,6 +187,7 @@ impl World {
             let case = case.with_effort(entrant.effort);
             case.render(entrant.integrator, |settings| {
                 settings.shadow_rays = entrant.rays;
+                settings.lvc = entrant.lvc;
             })
         };
         let result = render(case);
@@ -157,12 +201,13 @@ impl World {
     }
 }
 
-/// A scene with all shadow rays, and with one of the other rules.
+/// A scene with all shadow rays, with one of the other rules, and with one of the plans.
 #[track_caller]
 fn check(name: &str) {
     let is_meant = |world: &World| world.name == name;
     let i = WORLDS.iter().position(is_meant).expect("a world");
-    WORLDS[i].check(["all", RULES[1 + i % (RULES.len() - 1)]]);
+    let rule = RULES[1 + i % (RULES.len() - 1)];
+    WORLDS[i].check(["all", rule], [i % PLANS.len()]);
 }
 
 #[test]
@@ -207,13 +252,13 @@ fn a_sky_over_nothing() {
 
 /// One test for each world, so that they run side by side and each tells of itself.
 mod every_choice_of_shadow_rays {
-    use super::{OTHERS, RULES, WORLDS};
+    use super::{OTHERS, PLANS, RULES, WORLDS};
 
     #[track_caller]
     fn check(name: &str) {
         let mut worlds = WORLDS.iter().chain(&OTHERS);
         let world = worlds.find(|world| world.name.replace('-', "_") == name);
-        world.expect("a world").check(RULES);
+        world.expect("a world").check(RULES, 0..PLANS.len());
     }
 
     /// A test with the name of each world.

@@ -221,14 +221,16 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
+    let witness = section.take("reference-witness");
     match (image, spp) {
-        (Some(image), None) => match strategies {
+        (Some(image), None) => match strategies.or(witness) {
             Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),
             None => Ok(ReferenceSpec::There(folder.join(image.text()?))),
         },
         (None, Some(spp)) => Ok(ReferenceSpec::Make {
             spp: spp.whole(1)?,
             changes: Box::new(reference_changes(strategies, defaults)?),
+            witness: witness.map(witness_of).transpose()?,
         }),
         (Some(_), Some(spp)) => Err(spp.fault("there is a `reference` already")),
         (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
@@ -246,6 +248,19 @@ fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Changes) -> Resul
         entry.read(|value| changes.set("strategies", value))?;
     }
     Ok(changes)
+}
+
+/// An estimator that can contradict that of the picture.
+fn witness_of(entry: Entry<'_>) -> Result<IntegratorKind> {
+    let mut changes = Changes::default();
+    entry.read(|value| changes.set("integrator", value))?;
+    match changes.integrator {
+        Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
+            "this witness may be the estimator of the reference itself".to_owned(),
+            "references are made by `bdpt`: take path, light or lvc".to_owned(),
+        )),
+        Some(witness) => Ok(witness),
+    }
 }
 
 fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {

@@ -110,8 +110,8 @@ impl ExperimentError {
                 error: reference::Error::Disagree { .. },
                 ..
             } => Some(
-                "it stays where it is; see what more samples say (`reference-spp`), or name as \
-                 `reference` one of other estimators, by `bidir reference --estimator … --against …`",
+                "it stays where it is; see what more samples say (`reference-spp`), or another witness \
+                 (`reference-witness`), or name as `reference` one of other estimators, by `bidir reference --estimator … --against …`",
             ),
             Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),

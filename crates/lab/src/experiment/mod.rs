@@ -61,6 +61,7 @@ pub use settings::{Changes, texts};
 
 use crate::metric::Metric;
 use crate::results::BudgetKind;
+use bidir::integrator::IntegratorKind;
 use std::path::PathBuf;
 
 /// What is compared.
@@ -134,6 +135,9 @@ pub enum ReferenceSpec {
         spp: u64,
         /// Settings on which the expectation depends, such as the strategies that take part.
         changes: Box<Changes>,
+        /// The estimator of the witness. None: path tracing, which shares least with the other, but for
+        /// references without some strategies.
+        witness: Option<IntegratorKind>,
     },
 }
 

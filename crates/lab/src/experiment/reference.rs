@@ -64,11 +64,17 @@ fn obtain(
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    let ReferenceSpec::Make { spp, changes } = &stage.spec.reference else {
+    let ReferenceSpec::Make {
+        spp,
+        changes,
+        witness,
+    } = &stage.spec.reference
+    else {
         let copied = given.map(|reference| copied(stage, reference, setup));
         return copied.transpose();
     };
-    make(stage, &plan(stage, *spp, changes), setup, threads, observer)
+    let plan = plan(stage, *spp, changes, *witness);
+    make(stage, &plan, setup, threads, observer)
 }
 
 /// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
@@ -150,15 +156,17 @@ fn stored_mse(path: &Path) -> Option<f64> {
     variance.mean().filter(|mse| mse.is_finite())
 }
 
-/// How a reference is made: as usual, where all strategies take part. Else paths may be missing, which
-/// path tracing has: the witness then has the same strategies under other weights. Those of the power
+/// How a reference is made: as usual, or with another witness, where all strategies take part. Else paths
+/// may be missing, which path tracing has: unless another is named, the witness then has the same strategies under other weights. Those of the power
 /// heuristic have light tails; uniform ones would be more different, but have infinite variance near
 /// edges, and a witness whose mean is skewed is refused more often than the level says.
-fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes) -> Plan {
+fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes, named: Option<IntegratorKind>) -> Plan {
     let mut plan = Plan::usual(&stage.settings, spp);
     plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
     let [picture, witness] = &mut plan.estimators;
-    if picture.path.strategies != Strategies::default() {
+    if let Some(named) = named {
+        witness.set_integrator(named);
+    } else if picture.path.strategies != Strategies::default() {
         witness.integrator = IntegratorKind::Bdpt;
         picture.path.mis = MisHeuristic::Balance;
         witness.path.mis = MisHeuristic::Power;

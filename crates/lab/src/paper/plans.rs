@@ -143,6 +143,7 @@ fn scene(name: &str, path: PathBuf, spp: u64) -> SceneSpec {
     let reference = ReferenceSpec::Make {
         spp,
         changes: Box::new(reference_changes()),
+        witness: None,
     };
     scenes::spec(name, path, reference)
 }

@@ -121,7 +121,12 @@ fn methods_have_the_common_settings() {
         experiment.budgets,
         [BudgetSpec::new(BudgetKind::Rays, 50.5)]
     );
-    let ReferenceSpec::Make { spp: 16, changes } = &experiment.scenes[0].reference else {
+    let ReferenceSpec::Make {
+        spp: 16,
+        changes,
+        witness: None,
+    } = &experiment.scenes[0].reference
+    else {
         panic!("{:?}", experiment.scenes);
     };
     assert_eq!(changes.strategies.as_ref().unwrap().to_string(), "all,-t1");

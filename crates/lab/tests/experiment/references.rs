@@ -123,8 +123,7 @@ fn noise_is_told_where_it_is_known() {
 }
 
 /// A mirror throws the light of a point on the floor, which path tracing never finds.
-#[test]
-fn nothing_is_compared_with_a_reference_whose_estimators_disagree() {
+fn beneath_a_mirror() -> Workplace {
     let place = Workplace::new();
     let begin = SCENE.find("AttributeBegin").unwrap();
     let light = "LightSource \"point\" \"rgb I\" [9 8 7] \"point3 from\" [0 2 0.3]\n";
@@ -133,6 +132,34 @@ fn nothing_is_compared_with_a_reference_whose_estimators_disagree() {
         "Material \"conductor\"\nShape \"sphere\"",
     );
     fs::write(place.path("room.pbrt"), scene + light).unwrap();
+    place
+}
+
+#[test]
+fn a_witness_that_finds_all_light_can_be_named() {
+    let text = format!("{DESCRIPTION}{BUDGET}");
+    let naming = |witness: &str| {
+        let named = format!("reference-spp = 1024\nreference-witness = \"{witness}\"");
+        text.replace(MADE, &named)
+    };
+    let place = beneath_a_mirror();
+    let results = place.complete(&naming("lvc"), "out");
+    assert!(results.scenes[0].reference_image.is_some());
+    let folder = fs::read_dir(place.path("out/references")).unwrap().next();
+    let provenance = folder.unwrap().unwrap().path().join("provenance.json");
+    let provenance = fs::read_to_string(provenance).unwrap();
+    assert!(
+        provenance.contains("\"integrator\": \"lvc\""),
+        "{provenance}"
+    );
+    let error = place.refusal(&naming("bdpt"), "other");
+    assert!(error.to_string().contains(":7:21: "), "{error}");
+    assert!(error.hint().unwrap().contains("path, light or lvc"));
+}
+
+#[test]
+fn nothing_is_compared_with_a_reference_whose_estimators_disagree() {
+    let place = beneath_a_mirror();
     let text = format!("{DESCRIPTION}{BUDGET}").replace(MADE, "reference-spp = 1024");
     // The second time it is there already.
     for _ in 0..2 {

@@ -1,5 +1,5 @@
 //! The best plan: the one with the least product of variance and cost, both of training samples
-//! [Veach97, §10.3.2; Grittmann22].
+//! [Veach97, §10.3.2; Grittmann22] (docs/derivations/choosing-a-plan.md).
 //!
 //! Variances count relative to the square of a block's mean m, so that dark corners matter as bright
 //! ones do: V / (m² + ε), with m the mean over all plans and ε a hundredth of the square of the image's.
@@ -11,7 +11,7 @@
 
 use super::Settings;
 use super::plan::{Plan, Tried};
-use super::trial::BLOCKS;
+use super::trial::{BLOCKS, Trial};
 use crate::integrator::IntegratorKind;
 use crate::path::MisHeuristic;
 use crate::sampler::SamplerKind;
@@ -98,15 +98,26 @@ impl Scale {
 
     /// The sum over the blocks of what `variance` tells of each.
     fn sum(&self, variance: impl Fn(usize) -> f64) -> f64 {
-        let relative = |(i, mean): (usize, &f64)| variance(i) / (mean * mean + self.least);
-        self.means.iter().enumerate().map(relative).sum()
+        let relative = |i| variance(i) * self.relative(i);
+        (0..self.means.len()).map(relative).sum()
+    }
+
+    /// What the light images of `trial` tell of path tracing beyond squares of `most`, and the largest term.
+    fn hidden(&self, trial: &Trial, most: f64) -> [f64; 2] {
+        trial.hidden(most, self.pixels, |i| self.relative(i))
+    }
+
+    /// 1 / (m² + ε) of block number `i`.
+    fn relative(&self, i: usize) -> f64 {
+        let mean = self.means[i];
+        1.0 / (mean * mean + self.least)
     }
 }
 
 /// The variance of path tracing that its samples missed and light images tell of.
 ///
-/// What they tell is a bound where walks end as theirs do. The part of it that the samples of path tracing
-/// with that roulette missed is missing in all path tracing.
+/// They tell of values that no sample of path tracing reached whose walks end as theirs do. What these
+/// samples missed is missing in all path tracing.
 #[derive(Default)]
 struct Missed {
     /// With that roulette.
@@ -118,17 +129,19 @@ struct Missed {
 impl Missed {
     fn new(scale: &Scale, mis: MisHeuristic, tried: &[Tried]) -> Self {
         let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
-        let with_light = tried.iter().filter(|(plan, _)| is_told(plan));
-        let roulette = with_light.clone().next().map(|(plan, _)| plan.roulette);
-        let hidden = with_light
-            .map(|(_, trial)| scale.sum(|i| trial.hidden_spread(i, scale.pixels, scale.means[i])));
-        // The least of several says less than it should rather than more.
-        let hidden = hidden.reduce(f64::min).unwrap_or(0.0);
+        let with_light: Vec<_> = tried.iter().filter(|(plan, _)| is_told(plan)).collect();
+        let roulette = with_light.first().map(|(plan, _)| plan.roulette);
         let is_alike = |plan: &Plan| !plan.has_light_images() && Some(plan.roulette) == roulette;
         let alike = tried.iter().find(|(plan, _)| is_alike(plan));
-        let of_alike = |(_, trial): &Tried| Self {
-            missed: (hidden - scale.sum(|i| trial.spread(i, scale.pixels))).max(0.0),
-            found: scale.sum(|i| trial.variance(i, scale.pixels)),
+        let of_alike = |(_, trial): &Tried| {
+            let most = trial.largest_square(|i| scale.relative(i));
+            let hidden = with_light
+                .iter()
+                .map(|(_, trial)| scale.hidden(trial, most));
+            Self {
+                missed: mean_but_largest(hidden),
+                found: scale.sum(|i| trial.variance(i, scale.pixels)),
+            }
         };
         alike.map(of_alike).unwrap_or_default()
     }
@@ -141,4 +154,13 @@ impl Missed {
             self.missed
         }
     }
+}
+
+/// The mean of sums without the largest term of all, as one alone may be most of it, and tells little.
+fn mean_but_largest(sums: impl ExactSizeIterator<Item = [f64; 2]>) -> f64 {
+    let count = sums.len() as f64;
+    let [sum, largest] = sums.fold([0.0, 0.0], |[sum, largest]: [f64; 2], [s, l]| {
+        [sum + s, largest.max(l)]
+    });
+    (sum - largest) / count
 }

@@ -7,22 +7,20 @@
 //! V = Σ (a - c)² / (2 n_b) + Q / (n P B),
 //!
 //! as the light images of a pass are many, each of them rare. As a and b have a camera ray in common, (a - b)²
-//! in place of (a - c)² tells what is left *behind the rays*, without what the pixel varies by. The *spread*
-//! has the samples' variance within the block in place of the first part, which is V and the variance of the
-//! pixels' means.
+//! in place of (a - c)² tells what is left *behind the rays*, without what the pixel varies by.
 //!
 //! **Hidden variance.** A few thousand samples of path tracing may miss the bright rare paths that make
 //! most of its variance. Light images find them: with f the contribution of a path, p the density of the
 //! light image, of which there are P in a pass, and q that of path tracing, the weight w of a light image
-//! of value v = w f / p tells that P p (1 - w) / w is what all others take, of which q is a part. So the
-//! second moment of path tracing, in the mean over a block, is not below
+//! of value v = w f / p tells that r = P p (1 - w) / w is what all others take, of which q is a part, where
+//! walks end with the same probabilities. So path tracing adds f / q ≥ f / r = v / (P (1 - w)) to a pixel,
+//! and its second moment beyond a value that none of its samples reached is, in the mean over a block, not
+//! below
 //!
-//! (1 / B) ∫ f² / q ≥ (1 / B) ∫ f² w / (P p (1 - w)) = Σ v² / (w (1 - w)) / (n P B)
+//! (1 / B) ∫ f² / r = Σ v² / (w (1 - w)) / (n P B),
 //!
-//! with the sum over the light images of n samples that landed in the block, without its largest term, as
-//! one alone may be most of it, and tells little. Less the square of the block's mean it is a bound of the
-//! spread, where walks end with the same probabilities. Other heuristics than the balance heuristic do not
-//! tell so much, and are not asked.
+//! with the sum over the light images of n samples that landed in the block and tell of more than that value.
+//! Other heuristics than the balance heuristic do not tell so much, and are not asked.
 //!
 //! **Cost** is a sum over what was counted, with constant weights: the same on every machine, in
 //! every run. They fit the times of 41 scenes to 7 % (docs/performance.md).
@@ -67,7 +65,6 @@ const LIGHT_IMAGE: f64 = 1.0;
 struct Block {
     samples: f64,
     own: f64,
-    own_squares: f64,
     triples: f64,
     /// Σ (a - c)² / 2 over triples of samples of one pixel.
     differences: f64,
@@ -75,21 +72,28 @@ struct Block {
     behind: f64,
     splats: f64,
     splat_squares: f64,
-    /// Σ v² / (w (1 - w)), and the largest term of it.
-    hidden: [f64; 2],
 }
 
-impl Block {
-    /// Adds a light image of which its strategy has the share `weight`, by the balance heuristic.
-    fn add_splat(&mut self, value: f64, weight: f64) {
-        self.splats += value;
-        self.splat_squares += value * value;
+/// What a light image tells of path tracing.
+#[derive(Clone, Copy, Debug)]
+struct Told {
+    block: usize,
+    /// v / (1 - w): P times what path tracing adds to a pixel, or less.
+    value: f64,
+    /// v² / (w (1 - w)).
+    square: f64,
+}
+
+impl Told {
+    /// Of a light image that landed in a block, of which its strategy has the share `weight`, by the
+    /// balance heuristic. None: it has nothing.
+    fn new(block: usize, value: f64, weight: f64) -> Option<Self> {
         let w = weight.min(MOST_WEIGHT);
-        if w > 0.0 {
-            let term = value * value / (w * (1.0 - w));
-            self.hidden[0] += term;
-            self.hidden[1] = self.hidden[1].max(term);
-        }
+        (w > 0.0).then(|| Self {
+            block,
+            value: value / (1.0 - w),
+            square: value * value / (w * (1.0 - w)),
+        })
     }
 }
 
@@ -99,6 +103,7 @@ pub(super) struct Trial {
     blocks: Vec<Block>,
     /// The block and the value of each sample, in order.
     values: Vec<(usize, f64)>,
+    told: Vec<Told>,
     pub(super) stats: Stats,
 }
 
@@ -107,6 +112,7 @@ impl Default for Trial {
         Self {
             blocks: vec![Block::default(); BLOCKS],
             values: Vec::new(),
+            told: Vec::new(),
             stats: Stats::default(),
         }
     }
@@ -177,7 +183,6 @@ impl Trial {
             let block = &mut self.blocks[block];
             block.samples += 1.0;
             block.own += value;
-            block.own_squares += value * value;
         }
         let count = self.values.len() / 3;
         let half_square = |x: f64| 0.5 * x * x;
@@ -198,9 +203,15 @@ impl Trial {
                 continue;
             };
             let value = y(context, splat.contribution.value) * f64::from(weight);
-            let block = &mut self.blocks[block(&film.crop, index as u64)];
-            block.add_splat(value, f64::from(splat.contribution.weight));
+            let block = block(&film.crop, index as u64);
+            self.add_splat(block, value, f64::from(splat.contribution.weight));
         }
+    }
+
+    fn add_splat(&mut self, block: usize, value: f64, weight: f64) {
+        self.blocks[block].splats += value;
+        self.blocks[block].splat_squares += value * value;
+        self.told.extend(Told::new(block, value, weight));
     }
 
     /// The mean of a pixel of block number `i` of a film of `pixels`.
@@ -222,25 +233,37 @@ impl Trial {
         block.behind / block.triples.max(1.0) + self.splat_variance(i, pixels)
     }
 
-    /// The same with the variance of its pixels' means.
-    pub(super) fn spread(&self, i: usize, pixels: f64) -> f64 {
-        let block = &self.blocks[i];
-        let count = block.samples.max(2.0);
-        let squares = block.own_squares - block.own * block.own / count;
-        squares / (count - 1.0) + self.splat_variance(i, pixels)
-    }
-
     fn splat_variance(&self, i: usize, pixels: f64) -> f64 {
         let of_block = pixels / BLOCKS as f64;
         self.blocks[i].splat_squares / (self.samples() * pixels * of_block)
     }
 
-    /// A lower bound of the spread of path tracing there, by what the light images of this trial found.
-    pub(super) fn hidden_spread(&self, i: usize, pixels: f64, mean: f64) -> f64 {
+    /// The largest square of a sample, times `relative` of its block.
+    pub(super) fn largest_square(&self, relative: impl Fn(usize) -> f64) -> f64 {
+        let squares = self.values.iter();
+        let squares = squares.map(|&(block, value)| value * value * relative(block));
+        squares.fold(0.0, f64::max)
+    }
+
+    /// The second moment of path tracing beyond squares of `most`, both times `relative` of each block, in
+    /// the sum over the blocks: a lower bound by the light images of this trial, and its largest term.
+    pub(super) fn hidden(
+        &self,
+        most: f64,
+        pixels: f64,
+        relative: impl Fn(usize) -> f64,
+    ) -> [f64; 2] {
         let of_block = pixels / BLOCKS as f64;
-        let [sum, largest] = self.blocks[i].hidden;
-        let square = (sum - largest) / (self.samples() * pixels * of_block);
-        (square - mean * mean).max(0.0)
+        let is_beyond = |told: &&Told| {
+            let value = told.value / pixels;
+            value * value * relative(told.block) > most
+        };
+        let beyond = self.told.iter().filter(is_beyond);
+        let terms = beyond.map(|told| told.square * relative(told.block));
+        let sums = terms.fold([0.0, 0.0], |[sum, largest]: [f64; 2], term| {
+            [sum + term, largest.max(term)]
+        });
+        sums.map(|sum| sum / (self.samples() * pixels * of_block))
     }
 
     fn samples(&self) -> f64 {
@@ -270,11 +293,10 @@ impl std::ops::AddAssign for Trial {
     fn add_assign(&mut self, other: Self) {
         self.stats += &other.stats;
         self.values.extend(other.values);
+        self.told.extend(other.told);
         for (sum, block) in self.blocks.iter_mut().zip(&other.blocks) {
             sum.splats += block.splats;
             sum.splat_squares += block.splat_squares;
-            sum.hidden[0] += block.hidden[0];
-            sum.hidden[1] = sum.hidden[1].max(block.hidden[1]);
         }
     }
 }

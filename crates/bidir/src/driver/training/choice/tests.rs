@@ -22,6 +22,12 @@ fn what_light_images_tell_counts_against_path_tracing() {
 }
 
 #[test]
+fn one_light_image_alone_tells_nothing() {
+    assert_eq!(chosen(&[[3.0, 0.999]; 1]), path(0));
+    assert_eq!(chosen(&[[3.0, 0.999]; 2]), BDPT);
+}
+
+#[test]
 fn what_light_images_tell_is_beside_path_tracing_of_their_roulette() {
     let keeping = |plan: Plan| Plan {
         roulette: PathRoulette::Off,

@@ -20,7 +20,7 @@ impl Trial {
         }
         trial.sum_values();
         for &[value, weight] in splats {
-            trial.blocks[0].add_splat(value, weight);
+            trial.add_splat(0, value, weight);
         }
         trial.stats.samples = trial.values.len() as u64;
         trial.stats.rays.camera = trial.stats.samples;
@@ -53,8 +53,8 @@ fn what_pixels_differ_by_is_no_variance() {
     let variances = [3, 5].map(|i| trial.variance(i, pixels));
     let behind = [3, 5].map(|i| trial.behind(i, pixels));
     assert_eq!((variances, behind), ([0.0, 2.0], [0.0, 0.5]));
-    let spreads = [3, 5].map(|i| trial.spread(i, pixels));
-    assert!((spreads[0] - 10.8).abs() < 1e-9 && (spreads[1] - 1.0).abs() < 1e-9);
+    let largest = trial.largest_square(|i| if i == 3 { 0.5 } else { 2.0 });
+    assert!((largest - 32.0).abs() < 1e-12, "{largest}");
     assert!((trial.mean(3, pixels) - 4.0).abs() < 1e-12);
 }
 
@@ -70,26 +70,35 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
     for (f, p, q) in paths {
         let w = pixels * p / (pixels * p + q);
         for _ in 0..(n * p) as u32 {
-            trial.blocks[7].add_splat(w * f / p, w);
+            trial.add_splat(7, w * f / p, w);
         }
     }
-    let exact: f64 = paths.iter().map(|(f, _, q)| f * f / q).sum();
-    let told = trial.hidden_spread(7, pixels, 0.0);
-    // Of the first path 1 - w is less than what weights can tell.
-    let least: f64 = paths[1..].iter().map(|(f, _, q)| f * f / q).sum();
-    assert!(told > least && told < exact, "{least} {told} {exact}");
-    trial.blocks[7].add_splat(0.0, 0.0);
-    assert!((trial.hidden_spread(7, pixels, 0.0) - told).abs() < 1e-9);
+    trial.add_splat(7, 0.0, 0.0);
+    let told_beyond = |value: f64| trial.hidden(4.0 * value * value, pixels, |_| 4.0);
     let told_of = |(f, p, q): (f64, f64, f64)| {
         let w = pixels * p / (pixels * p + q);
+        // Of the first path 1 - w is less than what weights can tell.
         let known = w.min(MOST_WEIGHT);
-        f * f * w * w / (pixels * p * known * (1.0 - known))
+        4.0 * f * f * w * w / (pixels * p * known * (1.0 - known))
     };
-    let all: f64 = paths.into_iter().map(told_of).sum();
-    // One of the 200 light images of the first path is left out.
-    let expected = all - told_of(paths[0]) / 200.0;
-    assert!((told / expected - 1.0).abs() < 1e-9, "{told} {expected}");
-    assert!(trial.hidden_spread(7, pixels, 1e9) <= 0.0);
+    let [first, second, third] = paths.map(told_of);
+    let exact = paths.map(|(f, _, q)| 4.0 * f * f / q);
+    assert!(first < exact[0] && (second / exact[1] - 1.0).abs() < 1e-9);
+    // Path tracing makes the second path of value 10 / 3, the third of 100, the first of 30 000.
+    for (value, expected) in [
+        (0.0, first + second + third),
+        (50.0, first + third),
+        (200.0, first),
+        (1e5, 0.0),
+    ] {
+        let [told, largest] = told_beyond(value);
+        assert!(
+            (told - expected).abs() < 1e-9 * exact[0],
+            "beyond {value}: {told} {expected}"
+        );
+        let largest_expected = if expected > 0.0 { first / 200.0 } else { 0.0 };
+        assert!((largest - largest_expected).abs() < 1e-9 * exact[0]);
+    }
 }
 
 #[test]
