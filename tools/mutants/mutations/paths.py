@@ -258,6 +258,13 @@ PATHS = [
         unit("light_images_tell"),
     ),
     (
+        "a plan that is as likely as others before any trial",
+        "crates/bidir/src/driver/training/choice.rs",
+        "(found + missed) * handicap(plan) * trial",
+        "(found + missed) * trial",
+        unit("walks_that_end_at_once"),
+    ),
+    (
         "one light image that tells all",
         "crates/bidir/src/driver/training/choice.rs",
         "(sum - largest) / count",
