@@ -93,6 +93,7 @@ const OTHERS: [World; 13] = [
 ];
 
 /// An estimator of a scene, and how it is compared.
+#[derive(Clone)]
 struct Entrant {
     name: String,
     integrator: IntegratorKind,
@@ -105,19 +106,17 @@ struct Entrant {
 
 impl World {
     /// Compares the bidirectional path tracers under each of `rules`, the light tracer where it sees
-    /// all, `auto`, and those of its `plans`, with the path tracer.
+    /// all, and those of `others`, with the path tracer.
     #[track_caller]
     fn check(
         &self,
         rules: impl IntoIterator<Item = &'static str>,
-        plans: impl IntoIterator<Item = usize>,
+        others: impl IntoIterator<Item = Entrant>,
     ) {
         let loaded = open(&format!("{}.pbrt", self.name));
         let case = Case::new(&loaded, self.passes);
         let reference = self.reference(case);
-        let planned = plans.into_iter().map(|i| self.planned(i));
-        let entrants = self.entrants(rules).into_iter().chain(planned);
-        for entrant in entrants.chain([self.auto()]) {
+        for entrant in self.entrants(rules).into_iter().chain(others) {
             self.compare(case, &entrant, &reference);
         }
     }
@@ -151,11 +150,18 @@ impl World {
         connected.chain(light).collect()
     }
 
-    /// Number `i` of the plans.
-    fn planned(&self, i: usize) -> Entrant {
-        let ([first, deeper], rays, exponent) = PLANS[i];
-        Entrant {
-            name: format!("{}, plan {:?}", self.name, PLANS[i]),
+    /// `auto`, and its plans that are no integrator's default.
+    fn planned(&self) -> Vec<Entrant> {
+        let auto = Entrant {
+            name: format!("{}, auto", self.name),
+            integrator: IntegratorKind::Auto,
+            rays: ShadowRays::Suited,
+            lvc: LvcSettings::default(),
+            effort: 1,
+            blocks: QUARTERS,
+        };
+        let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
+            name: format!("{}, {first},{deeper} candidates, budget:{rays}", self.name),
             integrator: IntegratorKind::Lvc,
             rays: ShadowRays::Budget(rays),
             lvc: LvcSettings {
@@ -163,20 +169,9 @@ impl World {
                 samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
                 ..LvcSettings::default()
             },
-            effort: 1,
-            blocks: QUARTERS,
-        }
-    }
-
-    fn auto(&self) -> Entrant {
-        Entrant {
-            name: format!("{}, auto", self.name),
-            integrator: IntegratorKind::Auto,
-            rays: ShadowRays::Suited,
-            lvc: LvcSettings::default(),
-            effort: 1,
-            blocks: QUARTERS,
-        }
+            ..auto.clone()
+        });
+        plans.into_iter().chain([auto]).collect()
     }
 
     /// Of hundreds of comparisons some look different by chance: these are made again, with other random
@@ -201,13 +196,15 @@ impl World {
     }
 }
 
-/// A scene with all shadow rays, with one of the other rules, and with one of the plans.
+/// A scene with all shadow rays, with one of the other rules, and with `auto` or one of its plans.
 #[track_caller]
 fn check(name: &str) {
     let is_meant = |world: &World| world.name == name;
     let i = WORLDS.iter().position(is_meant).expect("a world");
     let rule = RULES[1 + i % (RULES.len() - 1)];
-    WORLDS[i].check(["all", rule], [i % PLANS.len()]);
+    let mut planned = WORLDS[i].planned();
+    let one = i % planned.len();
+    WORLDS[i].check(["all", rule], planned.drain(one..=one));
 }
 
 #[test]
@@ -252,13 +249,14 @@ fn a_sky_over_nothing() {
 
 /// One test for each world, so that they run side by side and each tells of itself.
 mod every_choice_of_shadow_rays {
-    use super::{OTHERS, PLANS, RULES, WORLDS};
+    use super::{OTHERS, RULES, WORLDS};
 
     #[track_caller]
     fn check(name: &str) {
         let mut worlds = WORLDS.iter().chain(&OTHERS);
         let world = worlds.find(|world| world.name.replace('-', "_") == name);
-        world.expect("a world").check(RULES, 0..PLANS.len());
+        let world = world.expect("a world");
+        world.check(RULES, world.planned());
     }
 
     /// A test with the name of each world.

@@ -230,7 +230,7 @@ fn reference(
         (None, Some(spp)) => Ok(ReferenceSpec::Make {
             spp: spp.whole(1)?,
             changes: Box::new(reference_changes(strategies, defaults)?),
-            witness: witness.map(witness_of).transpose()?,
+            witness: witness.as_ref().map(witness_of).transpose()?,
         }),
         (Some(_), Some(spp)) => Err(spp.fault("there is a `reference` already")),
         (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
@@ -251,7 +251,7 @@ fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Changes) -> Resul
 }
 
 /// An estimator that can contradict that of the picture.
-fn witness_of(entry: Entry<'_>) -> Result<IntegratorKind> {
+fn witness_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
     let mut changes = Changes::default();
     entry.read(|value| changes.set("integrator", value))?;
     match changes.integrator {
