@@ -293,6 +293,13 @@ PATHS = [
         unit("two_of_three_samples_share"),
     ),
     (
+        "light images that tell what counts of traced rays do not",
+        "crates/bidir/src/driver/training/choice.rs",
+        "MisHeuristic::Balance && !is_by_rays",
+        "MisHeuristic::Balance || is_by_rays",
+        unit("light_images_tell_where"),
+    ),
+    (
         "light images that tell of path tracing with another roulette",
         "crates/bidir/src/driver/training/choice.rs",
         "Some(plan.roulette) == roulette",

@@ -13,7 +13,7 @@ use super::Settings;
 use super::plan::{Plan, Tried};
 use super::trial::{BLOCKS, Trial};
 use crate::integrator::IntegratorKind;
-use crate::path::{MisHeuristic, PathRoulette};
+use crate::path::{MisCount, MisHeuristic, PathRoulette};
 use crate::sampler::SamplerKind;
 
 #[cfg(test)]
@@ -29,7 +29,7 @@ const EARLY_END: f64 = 1.2;
 /// The best of the plans that were tried with `settings`, on a film of `pixels`.
 pub(super) fn best(pixels: u64, settings: &Settings, tried: &[Tried]) -> Plan {
     let scale = Scale::new(pixels as f64, tried);
-    let missed = Missed::new(&scale, settings.path.mis, tried);
+    let missed = Missed::new(&scale, settings, tried);
     let product = |tried: &Tried| product(&scale, &missed, tried);
     let best = least(tried.iter(), product);
     let is_even = settings.sampler == SamplerKind::Sobol;
@@ -126,6 +126,13 @@ impl Scale {
     }
 }
 
+/// True where weights of light images tell how often all others make a path: by the balance heuristic, and
+/// where path tracing's strategies count in full. By traced rays next-event estimation counts less.
+fn is_told(settings: &Settings, plan: &Plan) -> bool {
+    let is_by_rays = is_shared(plan) && settings.lvc.mis_count == MisCount::Resampled;
+    plan.has_light_images() && settings.path.mis == MisHeuristic::Balance && !is_by_rays
+}
+
 /// The variance of path tracing that its samples missed and light images tell of.
 ///
 /// They tell of values that no sample of path tracing reached whose walks end as theirs do. What these
@@ -139,9 +146,9 @@ struct Missed {
 }
 
 impl Missed {
-    fn new(scale: &Scale, mis: MisHeuristic, tried: &[Tried]) -> Self {
-        let is_told = |plan: &Plan| mis == MisHeuristic::Balance && plan.has_light_images();
-        let with_light: Vec<_> = tried.iter().filter(|(plan, _)| is_told(plan)).collect();
+    fn new(scale: &Scale, settings: &Settings, tried: &[Tried]) -> Self {
+        let with_light = tried.iter().filter(|(plan, _)| is_told(settings, plan));
+        let with_light: Vec<_> = with_light.collect();
         let roulette = with_light.first().map(|(plan, _)| plan.roulette);
         let is_alike = |plan: &Plan| !plan.has_light_images() && Some(plan.roulette) == roulette;
         let alike = tried.iter().find(|(plan, _)| is_alike(plan));

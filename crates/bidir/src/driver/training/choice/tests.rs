@@ -32,6 +32,31 @@ fn what_light_images_tell_counts_against_path_tracing() {
 }
 
 #[test]
+fn light_images_tell_where_their_weights_count_all_that_path_tracing_takes() {
+    let tried = |plan| {
+        let silent = Trial::of(&[[1.0, 1.1]], &[]);
+        [
+            (path(0), silent),
+            (plan, Trial::of(&[[0.0, 2.0]], &[[1.0, 0.999]; 8])),
+        ]
+    };
+    let missed = |settings: Settings, plan| {
+        let tried = tried(plan);
+        let missed = Missed::new(&Scale::new(BLOCKS as f64, &tried), &settings, &tried);
+        missed.missed > 0.0
+    };
+    let with = |mis, mis_count| {
+        let mut settings = Settings::default();
+        (settings.path.mis, settings.lvc.mis_count) = (mis, mis_count);
+        [BDPT, LVC].map(|plan| missed(settings.clone(), plan))
+    };
+    let balance = MisHeuristic::Balance;
+    assert_eq!(with(balance, MisCount::Expected), [true, true]);
+    assert_eq!(with(balance, MisCount::Resampled), [true, false]);
+    assert_eq!(with(MisHeuristic::Uniform, MisCount::Expected), [false; 2]);
+}
+
+#[test]
 fn one_light_image_alone_tells_nothing() {
     assert_eq!(chosen(&[[3.0, 0.999]; 1]), path(1));
     assert_eq!(chosen(&[[3.0, 0.999]; 2]), BDPT);
