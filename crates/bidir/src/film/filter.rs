@@ -151,6 +151,10 @@ impl Axis {
         // always reaches exactly one.
         let first = (x - 0.5 - self.radius).floor() as i64 + 1;
         let last = (x - 0.5 + self.radius).floor() as i64;
+        if first == last {
+            let value = self.eval(x - 0.5 - first as f32);
+            return (value != 0.0).then_some((first, value));
+        }
         let mut values = [0.0f32; MAX_PIXELS];
         let values = &mut values[..usize::try_from(last - first + 1).ok()?.min(MAX_PIXELS)];
         let mut sum = 0.0;
@@ -203,7 +207,9 @@ impl Shape {
         Self { kind, radius, rim }
     }
 
-    #[inline]
+    /// Never inlined: a loop around it would begin with the arithmetic on parameters of all kinds, and where
+    /// a kind has none their bits are anything, often subnormal numbers, which take a hundred cycles each.
+    #[inline(never)]
     fn eval(&self, x: f32) -> f32 {
         let x = x.abs();
         // The box includes its rim: which pixel a rim belongs to is decided by the caller.
