@@ -17,6 +17,7 @@ METHODS = {
     "light": ["--integrator", "light"],
     "bdpt": ["--integrator", "bdpt", "--shadow-rays", "all"],
     "bdpt per-pair": ["--integrator", "bdpt", "--shadow-rays", "per-pair"],
+    "lvc": ["--integrator", "lvc"],
 }
 # The row whose stages and functions are told apart.
 PROFILED = ("room-indirect", "bdpt")
