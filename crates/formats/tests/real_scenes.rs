@@ -10,13 +10,13 @@ mod statistics;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathSettings;
-use bidir_formats::scene::{LoadOptions, Loaded, load};
-use statistics::{Replicates, WHOLE, check_agree, replicates};
+use bidir_formats::scene::{Crop, LoadOptions, Loaded, load};
+use statistics::{Replicates, WHOLE, check_agree, check_means, replicates, suspects};
 use std::path::PathBuf;
 
-/// Loads a scene with a film of `size` × `size` pixels. None: the tests are skipped, which is
-/// said.
-fn open(name: &str, size: u32) -> Option<Loaded> {
+/// Loads a scene with a film of `size` × `size` pixels, of which `crop` is rendered, or all. None: the tests
+/// are skipped, which is said.
+fn open_part(name: &str, size: u32, crop: Option<Crop>) -> Option<Loaded> {
     let Some(folder) = std::env::var_os("BIDIR_SCENES") else {
         eprintln!("skipped: BIDIR_SCENES is not set");
         return None;
@@ -24,12 +24,27 @@ fn open(name: &str, size: u32) -> Option<Loaded> {
     let file = PathBuf::from(folder).join(name);
     let options = LoadOptions {
         resolution: Some([size; 2]),
+        crop,
         ..LoadOptions::default()
     };
     Some(load(&file, &options).expect("the scene is supported"))
 }
 
+fn open(name: &str, size: u32) -> Option<Loaded> {
+    open_part(name, size, None)
+}
+
 fn estimate(loaded: &Loaded, integrator: IntegratorKind, passes: u64) -> Replicates {
+    estimate_anew(loaded, integrator, passes, 0)
+}
+
+/// The same with random numbers number `seed`.
+fn estimate_anew(
+    loaded: &Loaded,
+    integrator: IntegratorKind,
+    passes: u64,
+    seed: u64,
+) -> Replicates {
     let path = PathSettings {
         max_depth: Some(loaded.settings.max_depth),
         ..PathSettings::default()
@@ -37,6 +52,7 @@ fn estimate(loaded: &Loaded, integrator: IntegratorKind, passes: u64) -> Replica
     let settings = Settings {
         integrator,
         path,
+        seed,
         ..Settings::default()
     };
     replicates(&loaded.scene, &settings, passes)
@@ -92,19 +108,50 @@ fn gltf_flight_helmet() {
     check("gltf/FlightHelmet/FlightHelmet.gltf", 128, 2);
 }
 
+/// The film of a large comparison.
+const LARGE: u32 = 192;
+/// The blocks in which it is looked at.
+const BLOCK: usize = 16;
+/// Samples per pixel of bidirectional path tracing and of path tracing there.
+const PASSES: [u64; 2] = [64, 1024];
+/// How many times as many where these differ.
+const AGAIN: u64 = 64;
+
 /// 64 samples per pixel of one estimator against 1024 of the other, sixteen times the samples of
 /// the noisiest small test: blocks of 16 × 16 pixels agree, and means are within 1 %.
+///
+/// Caustics seen in mirrors are found by rare hits of a lamp, by both estimators: in a block with such
+/// the means of 32 replicates are skewed, most of them too dark and alike, which looks like a bias. Blocks
+/// that differ are rendered again with 64 times as many samples: a bias stays, a skewed mean does not.
 #[track_caller]
 fn check_large(name: &str) {
-    let Some(loaded) = open(name, 192) else {
+    let Some(loaded) = open(name, LARGE) else {
         return;
     };
-    let bdpt = estimate(&loaded, IntegratorKind::Bdpt, 64);
-    let path = estimate(&loaded, IntegratorKind::Path, 1024);
+    let bdpt = estimate(&loaded, IntegratorKind::Bdpt, PASSES[0]);
+    let path = estimate(&loaded, IntegratorKind::Path, PASSES[1]);
     let ratio = bdpt.mean() / path.mean();
     eprintln!("{name}: mean ratio {ratio:.5}");
     assert!((ratio - 1.0).abs() < 0.01, "the means differ: {ratio}");
-    check_agree(name, &bdpt, &path, &[WHOLE, 16]);
+    check_means(name, &bdpt, &path, BLOCK);
+    for block in suspects(&bdpt, &path, BLOCK) {
+        check_again(name, block);
+    }
+}
+
+/// Compares the two in these pixels alone.
+#[track_caller]
+fn check_again(name: &str, [left, top, right, bottom]: [u32; 4]) {
+    let crop = Crop::Pixels([left, right, top, bottom]);
+    let loaded = open_part(name, LARGE, Some(crop)).expect("it was there before");
+    let [bdpt, path] = [
+        (IntegratorKind::Bdpt, PASSES[0]),
+        (IntegratorKind::Path, PASSES[1]),
+    ]
+    .map(|(integrator, passes)| estimate_anew(&loaded, integrator, AGAIN * passes, 1));
+    let name = format!("{name}, again from {left}, {top}");
+    eprintln!("{name}: {:.5}, {:.5}", bdpt.mean(), path.mean());
+    check_agree(&name, &bdpt, &path, &[WHOLE]);
 }
 
 #[test]

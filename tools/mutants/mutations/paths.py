@@ -293,10 +293,24 @@ PATHS = [
         unit("two_of_three_samples_share"),
     ),
     (
+        "a plan that found nothing, and so does not vary",
+        "crates/bidir/src/driver/training/choice.rs",
+        "scale.part_found(trial) < LEAST_FOUND",
+        "scale.part_found(trial) < 0.0",
+        unit("a_plan_that_finds_nothing"),
+    ),
+    (
+        "training samples along a diagonal",
+        "crates/bidir/src/driver/training/probe.rs",
+        "0x91e1_0da5_c79e_7b1d",
+        "0xc13f_a9a9_02a6_328f",
+        unit("samples_are_spread_over_films"),
+    ),
+    (
         "light images that tell what counts of traced rays do not",
         "crates/bidir/src/driver/training/choice.rs",
-        "MisHeuristic::Balance && !is_by_rays",
-        "MisHeuristic::Balance || is_by_rays",
+        "is_in_densities && !is_by_rays",
+        "is_in_densities || is_by_rays",
         unit("light_images_tell_where"),
     ),
     (

@@ -1,6 +1,6 @@
 //! Rendering: passes of samples into a film.
 //!
-//! A pass is one sample of every pixel and one light subpath for each. [`Session`] renders pass by
+//! A pass is one sample of every pixel and a light subpath for each or for several of them. [`Session`] renders pass by
 //! pass for hosts that want to look, stop and go on; [`render`] does all at once. The state is
 //! (settings, next pass, film, counters) and nothing hidden. Whatever the number of threads, the
 //! same passes give the same bits.

@@ -47,7 +47,8 @@ pub struct ReplayedTerm {
 /// How a candidate was chosen from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Selection {
-    /// What candidates are compared by: the luminance of the weighted contribution.
+    /// What candidates are compared by: the luminance of the weighted contribution, times √V̂ where
+    /// visibility is learnt.
     pub score: f32,
     /// The probability π of being traced.
     pub prob: f64,

@@ -89,8 +89,8 @@ impl FilmSettings {
         Some((self.crop.index(x, y)?, weight))
     }
 
-    /// Light subpaths of a pass: one for each pixel that is rendered. Weights and the light image
-    /// are normalised by this number alone.
+    /// Light subpaths of a pass where each sample has its own: one for each pixel that is rendered. Where
+    /// k samples share one there are 1/k as many, and weights and the light image count with that.
     pub fn light_paths(&self) -> u64 {
         self.crop.area()
     }

@@ -207,8 +207,7 @@ pub(super) fn offer(
 ) {
     let whole = counted.whole();
     if workspace.accepts(sample, counted.mark(), whole.value) && !whole.value.is_black() {
-        let color = context.scene.color();
-        let luminance = color.luminance(whole.value.map(f32::abs), &context.wavelengths);
+        let luminance = context.luminance(whole.value.map(f32::abs));
         let [z, y] = workspace.vertices(counted.term.strategy, light_vertex);
         let root_visibility = context.root_visibility(z, y);
         workspace.candidates.push(Candidate::new(

@@ -7,6 +7,7 @@
 //! not be one function of the path.
 
 use crate::math::Vec3;
+use std::cmp::Ordering;
 
 /// A cell, by number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +30,9 @@ const NORMALS: usize = 6;
 
 /// The part of the vertices, on either side of the median, among which a gap is looked for.
 const NEAR_MEDIAN: f64 = 0.15;
+
+/// How far points of one wall may lie apart by rounding, as a part of the coordinate.
+const ROUNDING: f32 = 4e-6;
 
 /// A division of space and normals into cells.
 #[derive(Clone, Debug)]
@@ -94,7 +98,13 @@ fn divide(points: &mut [Vec3], i: usize, planes: &mut [Plane]) {
         return;
     }
     let axis = longest(points);
-    points.sort_unstable_by(|a, b| a[axis].total_cmp(&b[axis]));
+    // By all coordinates, so that the order is one whatever sorts.
+    let by = |p: &Vec3| [axis, (axis + 1) % 3, (axis + 2) % 3].map(|axis| p[axis]);
+    points.sort_unstable_by(|a, b| {
+        let pairs = by(a).into_iter().zip(by(b));
+        let orders = pairs.map(|(a, b)| a.total_cmp(&b));
+        orders.fold(Ordering::Equal, Ordering::then)
+    });
     let middle = widest_gap(points, axis);
     let at = 0.5 * (points[middle.saturating_sub(1)][axis] + points[middle][axis]);
     planes[i] = Plane {
@@ -119,14 +129,25 @@ fn longest(points: &[Vec3]) -> usize {
     }
 }
 
-/// The number of the first point behind the widest gap near the median of sorted `points`.
+/// The number of the first point behind the widest gap of sorted `points` near their median; where a wall
+/// takes all of that, behind the gap that is nearest to it.
 fn widest_gap(points: &[Vec3], axis: usize) -> usize {
     let count = points.len() as f64;
     let end = |part: f64| ((count * part) as usize).clamp(1, points.len());
-    let (from, to) = (end(0.5 - NEAR_MEDIAN), end(0.5 + NEAR_MEDIAN));
     let gap = |i: usize| points[i][axis] - points[i - 1][axis];
-    let widest = (from..to).max_by(|&a, &b| gap(a).total_cmp(&gap(b)));
-    widest.unwrap_or(points.len() / 2)
+    let largest = points[0][axis]
+        .abs()
+        .max(points[points.len() - 1][axis].abs());
+    let is_wide = |&i: &usize| gap(i) > ROUNDING * largest;
+    let near_median = end(0.5 - NEAR_MEDIAN)..end(0.5 + NEAR_MEDIAN);
+    let widest = near_median.max_by(|&a, &b| gap(a).total_cmp(&gap(b)));
+    let middle = points.len() / 2;
+    let nearest = || {
+        (1..points.len())
+            .filter(is_wide)
+            .min_by_key(|&i| i.abs_diff(middle))
+    };
+    widest.filter(is_wide).or_else(nearest).unwrap_or(middle)
 }
 
 #[cfg(test)]
@@ -171,6 +192,17 @@ mod tests {
             let [below, above] = [-1e-5, 1e-5].map(|z| cells.of(p + Vec3::Z * z, Vec3::Z));
             assert_eq!(below, above, "{p}");
         }
+    }
+
+    /// Most vertices lie on a tabletop, so that the median is amid them.
+    #[test]
+    fn no_plane_divides_what_lies_in_one() {
+        let grid = (0..100).map(|i| Vec3::new((i % 10) as f32, (i / 10) as f32, 0.0) * 0.01);
+        let floor = grid.clone().take(30);
+        let mut points: Vec<_> = grid.map(|p| p + Vec3::Z * 0.75).chain(floor).collect();
+        let mut planes = vec![Plane { axis: 0, at: 0.0 }; BOXES];
+        divide(&mut points, 1, &mut planes);
+        assert_eq!((planes[1].axis, planes[1].at), (2, 0.375));
     }
 
     #[test]

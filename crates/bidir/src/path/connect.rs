@@ -100,7 +100,8 @@ impl<'a> JoinedPath<'a> {
     }
 
     /// The contribution of a connection, before weight and visibility:
-    /// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering.
+    /// β_L · scatter(z) · G(z, y) · scatter(y) · β_C. Zero where either end is a Dirac scattering. Unit: that
+    /// of a pixel's radiance.
     #[inline]
     pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
         let (z, y) = (self.z(), self.y());
@@ -192,6 +193,12 @@ impl PathContext<'_> {
     #[inline]
     pub fn takes(&self, s: usize, t: usize) -> bool {
         self.settings.strategies.contains(s, t)
+    }
+
+    /// The luminance of light at the wavelengths of the sample.
+    #[inline]
+    pub(crate) fn luminance(&self, light: Spectrum) -> f32 {
+        self.scene.color().luminance(light, &self.wavelengths)
     }
 
     /// How light subpaths choose the light that they begin on.

@@ -10,8 +10,9 @@
 //! camera rays: what a pixel varies by is the same with all of them, and points of a sequence even it out.
 
 use super::Settings;
+use super::blocks::{BLOCKS, Blocks};
 use super::plan::{Plan, Tried};
-use super::trial::{BLOCKS, Trial};
+use super::trial::Trial;
 use crate::integrator::IntegratorKind;
 use crate::path::{MisCount, MisHeuristic, PathRoulette};
 use crate::sampler::SamplerKind;
@@ -26,9 +27,13 @@ const COMMON_NOISE: f64 = 1.1;
 /// in five, and points of a sequence even out less of it than of others.
 const EARLY_END: f64 = 1.2;
 
-/// The best of the plans that were tried with `settings`, on a film of `pixels`.
-pub(super) fn best(pixels: u64, settings: &Settings, tried: &[Tried]) -> Plan {
-    let scale = Scale::new(pixels as f64, tried);
+/// A plan that finds less than this part of what is there varies by what it has not found yet: what its
+/// samples tell of its variance is next to nothing.
+const LEAST_FOUND: f64 = 1.0 / 16.0;
+
+/// The best of the plans that were tried with `settings`, on a film of these blocks.
+pub(super) fn best(blocks: Blocks, settings: &Settings, tried: &[Tried]) -> Plan {
+    let scale = Scale::new(blocks, tried);
     let missed = Missed::new(&scale, settings, tried);
     let product = |tried: &Tried| product(&scale, &missed, tried);
     let best = least(tried.iter(), product);
@@ -60,12 +65,15 @@ fn is_shared(plan: &Plan) -> bool {
 
 /// The product of what varies behind camera rays and of cost.
 fn product_behind(scale: &Scale, (plan, trial): &Tried) -> f64 {
-    scale.sum(|i| trial.behind(i, scale.pixels)) * trial.cost(plan.integrator)
+    scale.sum(|i| trial.behind(i, &scale.blocks)) * trial.cost(plan.integrator)
 }
 
 /// The product of variance and cost, relative to those of others.
 fn product(scale: &Scale, missed: &Missed, (plan, trial): &Tried) -> f64 {
-    let found = scale.sum(|i| trial.variance(i, scale.pixels));
+    if scale.part_found(trial) < LEAST_FOUND {
+        return f64::INFINITY;
+    }
+    let found = scale.sum(|i| trial.variance(i, &scale.blocks));
     let missed = if plan.has_light_images() {
         0.0
     } else {
@@ -85,7 +93,7 @@ fn handicap(plan: &Plan) -> f64 {
 
 /// What variances are relative to.
 struct Scale {
-    pixels: f64,
+    blocks: Blocks,
     /// The mean of a pixel of each block, by all plans.
     means: Vec<f64>,
     /// ε.
@@ -93,16 +101,16 @@ struct Scale {
 }
 
 impl Scale {
-    fn new(pixels: f64, tried: &[Tried]) -> Self {
+    fn new(blocks: Blocks, tried: &[Tried]) -> Self {
         let mean = |i| {
-            let means = tried.iter().map(|(_, trial)| trial.mean(i, pixels));
+            let means = tried.iter().map(|(_, trial)| trial.mean(i, &blocks));
             means.sum::<f64>() / tried.len() as f64
         };
         let means: Vec<f64> = (0..BLOCKS).map(mean).collect();
         let whole = means.iter().sum::<f64>() / BLOCKS as f64;
         let least = 0.01 * whole * whole + f64::MIN_POSITIVE;
         Self {
-            pixels,
+            blocks,
             means,
             least,
         }
@@ -114,9 +122,18 @@ impl Scale {
         (0..self.means.len()).map(relative).sum()
     }
 
+    /// The part of what all plans find that a trial found, by the mean over the blocks that have anything:
+    /// a single bright sample of another plan is in one of them.
+    fn part_found(&self, trial: &Trial) -> f64 {
+        let bright = (0..self.means.len()).filter(|&i| self.means[i] > 0.0);
+        let parts = bright.map(|i| (trial.mean(i, &self.blocks) / self.means[i]).min(1.0));
+        let [sum, count] = parts.fold([0.0, 0.0], |[sum, count], part| [sum + part, count + 1.0]);
+        if count > 0.0 { sum / count } else { 1.0 }
+    }
+
     /// What the light images of `trial` tell of path tracing beyond squares of `most`, and the largest term.
     fn hidden(&self, trial: &Trial, most: f64) -> [f64; 2] {
-        trial.hidden(most, self.pixels, |i| self.relative(i))
+        trial.hidden(most, &self.blocks, |i| self.relative(i))
     }
 
     /// 1 / (m² + ε) of block number `i`.
@@ -126,11 +143,14 @@ impl Scale {
     }
 }
 
-/// True where weights of light images tell how often all others make a path: by the balance heuristic, and
-/// where path tracing's strategies count in full. By traced rays next-event estimation counts less.
+/// True where weights of light images tell how often all others make a path: by the balance heuristic,
+/// where path tracing's strategies count in full, and densities have the roulette in them. By traced rays
+/// next-event estimation counts less.
 fn is_told(settings: &Settings, plan: &Plan) -> bool {
     let is_by_rays = is_shared(plan) && settings.lvc.mis_count == MisCount::Resampled;
-    plan.has_light_images() && settings.path.mis == MisHeuristic::Balance && !is_by_rays
+    let is_in_densities = !matches!(plan.roulette, PathRoulette::Throughput { .. });
+    let has_weights = settings.path.mis == MisHeuristic::Balance && is_in_densities && !is_by_rays;
+    plan.has_light_images() && has_weights
 }
 
 /// The variance of path tracing that its samples missed and light images tell of.
@@ -159,7 +179,7 @@ impl Missed {
                 .map(|(_, trial)| scale.hidden(trial, most));
             Self {
                 missed: mean_but_largest(hidden),
-                found: scale.sum(|i| trial.variance(i, scale.pixels)),
+                found: scale.sum(|i| trial.variance(i, &scale.blocks)),
             }
         };
         alike.map(of_alike).unwrap_or_default()

@@ -1,8 +1,8 @@
 //! The render before the first pass: the mean luminance of the image, by which shadow-ray roulette
-//! sets its threshold, what is learnt about connections, and what `auto` renders with. Sample i is at
-//! pixel i·STRIDE modulo the number of pixels; the first are of the full estimator that traces every
-//! connection.
+//! sets its threshold, what is learnt about connections, and what `auto` renders with. Samples are spread
+//! evenly over the film; the first are of the full estimator that traces every connection.
 
+mod blocks;
 mod choice;
 mod emission;
 mod pilot;
@@ -22,6 +22,7 @@ use crate::path::{Cells, Connections, LightProposals, MisCount, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
+use blocks::Blocks;
 use pilot::Found;
 use probe::Probe;
 use survey::Survey;
@@ -30,7 +31,7 @@ use survey::Survey;
 /// samples have random numbers of their own and never enter the film.
 #[derive(Clone, Debug)]
 pub struct Training {
-    /// The mean luminance of the image.
+    /// The mean luminance of the image, before sensor and exposure. Unit: W/(m² sr) of scene units.
     pub mean_luminance: f32,
     /// The mean number of vertices of a light subpath that camera vertices can be connected with.
     pub light_vertices: f64,
@@ -45,10 +46,6 @@ pub struct Training {
     /// The rays it cost.
     pub rays: RayCounts,
 }
-
-/// The distance between the pixels of successive samples: a prime above any number of pixels, so
-/// that they spread evenly.
-const STRIDE: u64 = 2_654_435_761;
 
 /// The settings with everything decided that they leave open, and what was learnt, where anything had
 /// to be.
@@ -83,7 +80,7 @@ impl Training {
             training.rays += trial.stats.rays;
             training.samples += trial.stats.samples;
         }
-        let plan = choice::best(scene.film().crop.area(), settings, &tried);
+        let plan = choice::best(Blocks::new(scene.film().crop), settings, &tried);
         training.plan = Some(plan);
         (plan, training)
     }
@@ -152,7 +149,11 @@ impl Training {
                 sums.see(next_event.pair, next_event.has_arrived);
             }
         }
-        let proposals = self.counting_rays(scene, settings, LightProposals::new(cells, &sums));
+        let proposals = match lvc.proposal {
+            ProposalKind::Learned => LightProposals::new(cells, &sums),
+            ProposalKind::Uniform => LightProposals::uniform(cells, &sums),
+        };
+        let proposals = self.counting_rays(scene, settings, proposals);
         let is_uniform =
             lvc.proposal == ProposalKind::Uniform && lvc.mis_count != MisCount::Resampled;
         self.proposals = (!is_uniform).then_some(proposals);
@@ -172,7 +173,7 @@ impl Training {
         if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
             return Found::default();
         }
-        let uniform = LightProposals::new(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
+        let uniform = LightProposals::uniform(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
         let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));
         self.count(pilot::SAMPLES, rays);
         found

@@ -1,15 +1,13 @@
 //! What is learnt about connections: uniform candidates, all of them traced, of groups of samples that
 //! share light subpaths as those of the image do.
 
-use super::probe::{GROUP, Probe, Witness};
+use super::probe::{GROUP, Probe, Witness, groups};
 use crate::integrator::{
     CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
 };
 use crate::path::{Cell, Cells, PathContext};
 use crate::select::{LightVertex, ShadowRays};
-use crate::spectrum::luminance;
 use crate::stats::RayCounts;
-use rayon::prelude::*;
 
 const GROUPS: u64 = 64;
 /// For each camera vertex.
@@ -57,9 +55,8 @@ impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
 
     fn sample(&mut self, context: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
-        let color = context.scene.color();
         let square = |value| {
-            let y = f64::from(luminance(color.to_rgb(value, &context.wavelengths)));
+            let y = f64::from(context.luminance(value));
             y * y
         };
         for (candidate, arrived) in workspace.connections() {
@@ -83,25 +80,22 @@ impl Witness for Found {
 
 /// What all groups found, in their order, and the rays that it took.
 pub(super) fn run(probe: &Probe<'_>) -> (Found, RayCounts) {
-    let groups = (0..GROUPS).into_par_iter();
-    let found: Vec<_> = groups
-        .map_init(Workspace::default, |workspace, group| {
-            let mut found = Found::default();
-            let selector = ShadowRays::All.selector(0.0);
-            let lvc = LvcSettings {
-                candidates: CANDIDATES,
-                ..probe.settings.lvc
-            };
-            let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
-            probe.group(&*integrator, group, workspace, &mut found);
-            (found, std::mem::take(&mut workspace.stats).rays)
-        })
-        .collect();
+    let groups = groups(GROUPS, |group, workspace| {
+        let mut found = Found::default();
+        let selector = ShadowRays::All.selector(0.0);
+        let lvc = LvcSettings {
+            candidates: CANDIDATES,
+            ..probe.settings.lvc
+        };
+        let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
+        probe.group(&*integrator, group, workspace, &mut found);
+        found
+    });
     let (mut all, mut rays) = (Found::default(), RayCounts::default());
-    for (of_group, rays_of_group) in found {
-        all.connections.extend(of_group.connections);
-        all.next_events.extend(of_group.next_events);
-        rays += rays_of_group;
+    for (found, stats) in groups {
+        all.connections.extend(found.connections);
+        all.next_events.extend(found.next_events);
+        rays += stats.rays;
     }
     (all, rays)
 }

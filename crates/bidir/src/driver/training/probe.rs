@@ -1,10 +1,13 @@
 //! Groups of training samples, taken as the image takes its own.
 
-use super::{STRIDE, Settings, path_context};
+use super::{Settings, path_context};
+use crate::film::PixelRect;
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::{Connections, PathContext};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
+use crate::stats::Stats;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// The samples of a group.
@@ -29,6 +32,38 @@ pub(super) trait Witness {
 
     /// After a sample.
     fn sample(&mut self, context: &PathContext<'_>, sample: &Sample, workspace: &Workspace);
+}
+
+/// Where samples lie on the film: point number i of the additive recurrence by 1/ρ and 1/ρ², ρ being the
+/// root of ρ³ = ρ + 1 \[Roberts18\], which spreads evenly over both sides whatever their lengths are, as
+/// steps through the pixels row by row do not. Unit: 2⁻⁶⁴ of a side.
+const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
+
+/// Pixel number `i`.
+fn pixel(crop: &PixelRect, i: u64) -> [u32; 2] {
+    let along = |step: u64, size: u32| {
+        let part = i.wrapping_mul(step) >> 32;
+        ((part * u64::from(size)) >> 32) as u32
+    };
+    let [x, y] = [
+        along(STEPS[0], crop.width()),
+        along(STEPS[1], crop.height()),
+    ];
+    [crop.min[0] + x, crop.min[1] + y]
+}
+
+/// What `of_group` finds of each of so many groups, with what was counted, in their order, whichever threads
+/// had them.
+pub(super) fn groups<T: Send>(
+    count: u64,
+    of_group: impl Fn(u64, &mut Workspace) -> T + Sync,
+) -> Vec<(T, Stats)> {
+    let groups = (0..count).into_par_iter();
+    let found = groups.map_init(Workspace::default, |workspace, group| {
+        let found = of_group(group, workspace);
+        (found, std::mem::take(&mut workspace.stats))
+    });
+    found.collect()
 }
 
 impl Probe<'_> {
@@ -82,7 +117,7 @@ impl Probe<'_> {
         let ray = if round == 1 { place } else { number };
         Sample {
             pass: 0,
-            pixel: crop.pixel((place.wrapping_mul(STRIDE) % crop.area()) as usize),
+            pixel: pixel(&crop, place),
             ray: sampler.stream(Domain::TrainingCamera, ray, 0),
             camera: sampler.stream(Domain::TrainingCamera, number, 0),
             light: sampler.stream(Domain::TrainingLight, 0, number),
@@ -91,5 +126,35 @@ impl Probe<'_> {
 
     pub(super) fn context(&self, sample: &Sample) -> PathContext<'_> {
         path_context(self.scene, self.settings, self.connections, sample)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::training::blocks::{BLOCKS, Blocks};
+
+    #[test]
+    fn samples_are_spread_over_films_of_all_sizes() {
+        let sizes = [
+            [2560, 1440],
+            [920, 680],
+            [720, 480],
+            [1920, 1080],
+            [320, 240],
+            [4096, 64],
+        ];
+        for max in sizes {
+            let crop = PixelRect { min: [0; 2], max };
+            let blocks = Blocks::new(crop);
+            let mut counts = [0; BLOCKS];
+            for i in 0..16 * BLOCKS as u64 {
+                let [x, y] = pixel(&crop, 32_768 + i).map(i64::from);
+                counts[blocks.of(crop.index(x, y).expect("a pixel of the film"))] += 1;
+            }
+            let most = counts.iter().max().copied().unwrap_or(0);
+            let least = counts.iter().min().copied().unwrap_or(0);
+            assert!(least >= 8 && most <= 24, "{max:?}: {least} to {most}");
+        }
     }
 }

@@ -1,12 +1,11 @@
 //! What is learnt about chosen rays: how likely connections from cell to cell are to be traced, under the
 //! rule and with the candidates of the image.
 
-use super::probe::{GROUP, Probe, Witness};
+use super::probe::{GROUP, Probe, Witness, groups};
 use crate::integrator::{Sample, Workspace};
 use crate::path::{Cells, Inclusion, PathContext};
 use crate::select::{LightVertex, Selector};
 use crate::stats::RayCounts;
-use rayon::prelude::*;
 
 const GROUPS: u64 = 64;
 /// The samples of all groups.
@@ -63,25 +62,20 @@ impl Witness for Found<'_> {
 /// it took.
 pub(super) fn run(probe: &Probe<'_>, mean: f32) -> (Inclusion, RayCounts) {
     let selector = probe.settings.shadow_rays.selector(mean);
-    let groups: Vec<_> = (0..GROUPS)
-        .into_par_iter()
-        .map_init(Workspace::default, |workspace, group| {
-            let found = of_group(probe, &*selector, mean, group, workspace);
-            (found, std::mem::take(&mut workspace.stats).rays)
-        })
-        .collect();
+    let groups = groups(GROUPS, |group, workspace| {
+        of_group(probe, &*selector, mean, group, workspace)
+    });
     let mut connections = vec![Mean::default(); Cells::COUNT * Cells::COUNT];
     let mut next_events = vec![Mean::default(); Cells::COUNT];
     let mut rays = RayCounts::default();
-    // In the order of the groups, whichever threads had them.
-    for (found, of_group) in groups {
+    for (found, stats) in groups {
         for (pair, prob) in found.connections {
             connections[pair as usize].add(prob);
         }
         for (cell, prob) in found.next_events {
             next_events[cell as usize].add(prob);
         }
-        rays += of_group;
+        rays += stats.rays;
     }
     let inclusion = Inclusion {
         connections: means(&connections),

@@ -2,20 +2,16 @@
 //! image is, and where vertices are.
 
 use super::Settings;
-use super::probe::Probe;
+use super::probe::{GROUP, Probe, groups};
 use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
 use crate::math::Vec3;
 use crate::path::{Cells, Connections, PairSums, PathContext};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
-use crate::spectrum::luminance;
 use crate::stats::RayCounts;
-use rayon::prelude::*;
 
 /// Enough for the mean luminance to within a few percent in most scenes.
 pub(super) const SAMPLES: u64 = 1 << 14;
-/// Those that one thread takes together.
-const SHARE: u64 = 256;
 
 /// A light vertex that can be connected.
 #[derive(Clone, Copy)]
@@ -49,21 +45,19 @@ impl Survey {
             first: 0,
             pixels: u64::MAX,
         };
-        let shares: Vec<_> = (0..SAMPLES / SHARE)
-            .into_par_iter()
-            .map_init(Workspace::default, |workspace, share| {
-                let mut survey = Self::default();
-                for number in share * SHARE..(share + 1) * SHARE {
-                    survey.sample(&probe, &*integrator, number, workspace);
-                }
-                survey.rays = std::mem::take(&mut workspace.stats).rays;
-                survey
-            })
-            .collect();
+        let groups = groups(SAMPLES / GROUP, |group, workspace| {
+            let mut survey = Self::default();
+            for number in group * GROUP..(group + 1) * GROUP {
+                survey.sample(&probe, &*integrator, number, workspace);
+            }
+            survey
+        });
         let mut all = Self::default();
-        // In the order of the samples, whichever threads had them.
-        for share in shares {
-            all += share;
+        for (group, stats) in groups {
+            all.luminance += group.luminance;
+            all.light.extend(group.light);
+            all.camera.extend(group.camera);
+            all.rays += stats.rays;
         }
         all
     }
@@ -78,7 +72,7 @@ impl Survey {
         let (scene, sample) = (probe.scene, probe.sample(number));
         let context = probe.context(&sample);
         integrator.sample(&context, &sample, workspace);
-        let y = |light| f64::from(luminance(scene.color().to_rgb(light, &context.wavelengths)));
+        let y = |light| f64::from(context.luminance(light));
         let splats = workspace.splats.iter();
         let splats: f64 = splats.map(|splat| y(splat.contribution.value)).sum();
         self.luminance += y(workspace.value) + splats / scene.film().crop.area() as f64;
@@ -115,14 +109,5 @@ impl Survey {
             light_vertices[cells.of(point, n).index()] += gain(vertex.light) / SAMPLES as f64;
         }
         PairSums::uniform(light_vertices)
-    }
-}
-
-impl std::ops::AddAssign for Survey {
-    fn add_assign(&mut self, other: Self) {
-        self.luminance += other.luminance;
-        self.light.extend(other.light);
-        self.camera.extend(other.camera);
-        self.rays += other.rays;
     }
 }

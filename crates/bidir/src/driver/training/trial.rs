@@ -26,25 +26,19 @@
 //! every run. They fit the times of 41 scenes to 7 % (docs/performance.md).
 
 use super::Settings;
-use super::probe::{GROUP, Probe, Witness};
-use crate::film::PixelRect;
+use super::blocks::{BLOCKS, Blocks};
+use super::probe::{GROUP, Probe, Witness, groups};
 use crate::integrator::{IntegratorKind, Sample, Workspace};
 use crate::path::PathContext;
-use crate::spectrum::{Spectrum, luminance};
 use crate::stats::{RayCounts, Stats};
-use rayon::prelude::*;
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 /// The groups that a plan is tried with.
 const GROUPS: u64 = 48;
 /// The pixels: a third of the samples.
 pub(super) const PIXELS: u64 = GROUPS * GROUP / 3;
-/// Blocks along each side of the film.
-const SIDE: usize = 16;
-/// The blocks.
-pub(super) const BLOCKS: usize = SIDE * SIDE;
 
 /// Above this a weight says no more than that others are rare: 1 - w is a difference of rounded numbers.
 const MOST_WEIGHT: f64 = 0.9999;
@@ -100,7 +94,7 @@ impl Told {
 /// What the samples of a plan found.
 #[derive(Clone)]
 pub(super) struct Trial {
-    blocks: Vec<Block>,
+    found: Vec<Block>,
     /// The block and the value of each sample, in order.
     values: Vec<(usize, f64)>,
     told: Vec<Told>,
@@ -110,7 +104,7 @@ pub(super) struct Trial {
 impl Default for Trial {
     fn default() -> Self {
         Self {
-            blocks: vec![Block::default(); BLOCKS],
+            found: vec![Block::default(); BLOCKS],
             values: Vec::new(),
             told: Vec::new(),
             stats: Stats::default(),
@@ -118,21 +112,13 @@ impl Default for Trial {
     }
 }
 
-/// The block of pixel number `index` of the crop.
-fn block(crop: &PixelRect, index: u64) -> usize {
-    let [width, rows] = [u64::from(crop.width()), crop.area()].map(|size| size.max(1));
-    let rows = rows.div_ceil(width);
-    let part = |i: u64, size: u64| i * SIDE as u64 / size;
-    (part(index / width, rows) * SIDE as u64 + part(index % width, width)) as usize
+/// The samples of a group, as they come.
+struct Trying<'a> {
+    blocks: &'a Blocks,
+    trial: Trial,
 }
 
-fn y(context: &PathContext<'_>, value: Spectrum) -> f64 {
-    f64::from(luminance(
-        context.scene.color().to_rgb(value, &context.wavelengths),
-    ))
-}
-
-impl Witness for Trial {
+impl Witness for Trying<'_> {
     fn light(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
         self.add_splats(context, workspace);
     }
@@ -145,8 +131,22 @@ impl Witness for Trial {
         let Some(index) = crop.index(x, top) else {
             return;
         };
-        let value = y(context, workspace.value);
-        self.values.push((block(crop, index as u64), value));
+        let value = f64::from(context.luminance(workspace.value));
+        self.trial.values.push((self.blocks.of(index), value));
+    }
+}
+
+impl Trying<'_> {
+    fn add_splats(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
+        let film = context.scene.film();
+        for splat in &workspace.splats {
+            let Some((index, weight)) = film.pick_pixel(splat.place) else {
+                continue;
+            };
+            let value = context.luminance(splat.contribution.value) * weight;
+            let [value, weight] = [value, splat.contribution.weight].map(f64::from);
+            self.trial.add_splat(self.blocks.of(index), value, weight);
+        }
     }
 }
 
@@ -159,28 +159,39 @@ impl Trial {
             lvc,
             ..
         } = probe.settings;
-        let groups: Vec<_> = (0..GROUPS)
-            .into_par_iter()
-            .map_init(Workspace::default, |workspace, group| {
-                let mut trial = Self::default();
-                let integrator = integrator.integrator(shadow_rays.selector(mean), lvc);
-                probe.group(&*integrator, group, workspace, &mut trial);
-                trial.stats = std::mem::take(&mut workspace.stats);
-                trial
-            })
-            .collect();
+        let blocks = Blocks::new(probe.scene.film().crop);
+        let groups = groups(GROUPS, |group, workspace| {
+            let mut trying = Trying {
+                blocks: &blocks,
+                trial: Self::default(),
+            };
+            let integrator = integrator.integrator(shadow_rays.selector(mean), lvc);
+            probe.group(&*integrator, group, workspace, &mut trying);
+            trying.trial
+        });
         let mut all = Self::default();
-        for group in groups {
-            all += group;
+        for (trial, stats) in groups {
+            all.add(trial, &stats);
         }
         all.sum_values();
         all
     }
 
+    /// Adds those of the next group.
+    fn add(&mut self, group: Self, stats: &Stats) {
+        self.stats += stats;
+        self.values.extend(group.values);
+        self.told.extend(group.told);
+        for (sum, found) in self.found.iter_mut().zip(&group.found) {
+            sum.splats += found.splats;
+            sum.splat_squares += found.splat_squares;
+        }
+    }
+
     /// All thirds of the samples have the same pixels in the same order.
     fn sum_values(&mut self) {
         for &(block, value) in &self.values {
-            let block = &mut self.blocks[block];
+            let block = &mut self.found[block];
             block.samples += 1.0;
             block.own += value;
         }
@@ -189,53 +200,40 @@ impl Trial {
         for i in 0..count {
             let [(block, a), (_, b), (_, c)] =
                 [0, 1, 2].map(|third| self.values[third * count + i]);
-            let block = &mut self.blocks[block];
+            let block = &mut self.found[block];
             block.triples += 1.0;
             block.differences += half_square(a - c);
             block.behind += half_square(a - b);
         }
     }
 
-    fn add_splats(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
-        let film = context.scene.film();
-        for splat in &workspace.splats {
-            let Some((index, weight)) = film.pick_pixel(splat.place) else {
-                continue;
-            };
-            let value = y(context, splat.contribution.value) * f64::from(weight);
-            let block = block(&film.crop, index as u64);
-            self.add_splat(block, value, f64::from(splat.contribution.weight));
-        }
-    }
-
     fn add_splat(&mut self, block: usize, value: f64, weight: f64) {
-        self.blocks[block].splats += value;
-        self.blocks[block].splat_squares += value * value;
+        self.found[block].splats += value;
+        self.found[block].splat_squares += value * value;
         self.told.extend(Told::new(block, value, weight));
     }
 
-    /// The mean of a pixel of block number `i` of a film of `pixels`.
-    pub(super) fn mean(&self, i: usize, pixels: f64) -> f64 {
-        let block = &self.blocks[i];
-        let of_block = pixels / BLOCKS as f64;
-        block.own / block.samples.max(1.0) + block.splats / (self.samples() * of_block)
+    /// The mean of a pixel of block number `i` of these.
+    pub(super) fn mean(&self, i: usize, blocks: &Blocks) -> f64 {
+        let found = &self.found[i];
+        found.own / found.samples.max(1.0) + found.splats / (self.samples() * blocks.size(i))
     }
 
     /// The variance of a pixel of it in one pass.
-    pub(super) fn variance(&self, i: usize, pixels: f64) -> f64 {
-        let block = &self.blocks[i];
-        block.differences / block.triples.max(1.0) + self.splat_variance(i, pixels)
+    pub(super) fn variance(&self, i: usize, blocks: &Blocks) -> f64 {
+        let found = &self.found[i];
+        found.differences / found.triples.max(1.0) + self.splat_variance(i, blocks)
     }
 
     /// The same of what is behind the camera rays.
-    pub(super) fn behind(&self, i: usize, pixels: f64) -> f64 {
-        let block = &self.blocks[i];
-        block.behind / block.triples.max(1.0) + self.splat_variance(i, pixels)
+    pub(super) fn behind(&self, i: usize, blocks: &Blocks) -> f64 {
+        let found = &self.found[i];
+        found.behind / found.triples.max(1.0) + self.splat_variance(i, blocks)
     }
 
-    fn splat_variance(&self, i: usize, pixels: f64) -> f64 {
-        let of_block = pixels / BLOCKS as f64;
-        self.blocks[i].splat_squares / (self.samples() * pixels * of_block)
+    fn splat_variance(&self, i: usize, blocks: &Blocks) -> f64 {
+        let squares = self.found[i].splat_squares;
+        squares / (self.samples() * blocks.pixels() * blocks.size(i))
     }
 
     /// The largest square of a sample, times `relative` of its block.
@@ -250,20 +248,20 @@ impl Trial {
     pub(super) fn hidden(
         &self,
         most: f64,
-        pixels: f64,
+        blocks: &Blocks,
         relative: impl Fn(usize) -> f64,
     ) -> [f64; 2] {
-        let of_block = pixels / BLOCKS as f64;
+        let pixels = blocks.pixels();
         let is_beyond = |told: &&Told| {
             let value = told.value / pixels;
             value * value * relative(told.block) > most
         };
         let beyond = self.told.iter().filter(is_beyond);
-        let terms = beyond.map(|told| told.square * relative(told.block));
+        let terms = beyond.map(|told| told.square * relative(told.block) / blocks.size(told.block));
         let sums = terms.fold([0.0, 0.0], |[sum, largest]: [f64; 2], term| {
             [sum + term, largest.max(term)]
         });
-        sums.map(|sum| sum / (self.samples() * pixels * of_block))
+        sums.map(|sum| sum / (self.samples() * pixels))
     }
 
     fn samples(&self) -> f64 {
@@ -286,17 +284,5 @@ impl Trial {
         let connected = connection as f64 * CONNECTION_RAY;
         let evaluated = self.stats.candidates as f64 * CANDIDATE;
         (walked + connected + evaluated + light_image as f64 * LIGHT_IMAGE) / self.samples()
-    }
-}
-
-impl std::ops::AddAssign for Trial {
-    fn add_assign(&mut self, other: Self) {
-        self.stats += &other.stats;
-        self.values.extend(other.values);
-        self.told.extend(other.told);
-        for (sum, block) in self.blocks.iter_mut().zip(&other.blocks) {
-            sum.splats += block.splats;
-            sum.splat_squares += block.splat_squares;
-        }
     }
 }

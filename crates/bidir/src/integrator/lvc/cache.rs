@@ -19,6 +19,8 @@ pub(crate) struct LightCache {
     unsorted: Vec<Entry>,
     /// For each cell where its entries begin, and where the last ones end. Empty: there are no cells.
     begins: Vec<u32>,
+    /// For each cell, where its next entry goes while they are sorted.
+    next: Vec<u32>,
 }
 
 /// How a subpath begins.
@@ -102,10 +104,10 @@ impl LightCache {
         for i in 0..Cells::COUNT {
             self.begins[i + 1] += self.begins[i];
         }
-        let mut next = self.begins.clone();
+        self.next.clone_from(&self.begins);
         self.entries.resize(self.unsorted.len(), Entry::default());
         for entry in &self.unsorted {
-            let place = &mut next[entry.cell.index()];
+            let place = &mut self.next[entry.cell.index()];
             self.entries[*place as usize] = *entry;
             *place += 1;
         }

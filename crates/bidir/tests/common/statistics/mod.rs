@@ -253,6 +253,33 @@ pub(crate) fn check_agree_to(
     );
 }
 
+/// The blocks of `block` × `block` pixels in which two estimators look different at the level of one
+/// comparison: left, top, right, bottom.
+pub(crate) fn suspects(a: &Replicates, b: &Replicates, block: usize) -> Vec<[u32; 4]> {
+    let means: Vec<_> = a.moments(block).into_iter().zip(b.moments(block)).collect();
+    let differs = |(x, y): &(Moments, Moments)| corrected(welch(*x, *y), means.len()) <= level();
+    let columns = a.width.div_ceil(block);
+    let differing = (0..means.len()).filter(|&i| differs(&means[i]));
+    // Of a mean of each channel.
+    let mut blocks: Vec<_> = differing.map(|i| i / 3).collect();
+    blocks.dedup();
+    let rect = |i: usize| {
+        let [left, top] = [i % columns * block, i / columns * block];
+        let [right, bottom] = [(left + block).min(a.width), (top + block).min(a.height)];
+        [left, top, right, bottom].map(|at| at as u32)
+    };
+    blocks.into_iter().map(rect).collect()
+}
+
+/// Checks that the means of whole films agree, and that blocks of this size would show [`BIAS`].
+#[track_caller]
+pub(crate) fn check_means(name: &str, a: &Replicates, b: &Replicates, block: usize) {
+    let verdict = compare(a, b, &[WHOLE]);
+    assert!(verdict.p > level(), "{name}: {verdict:?}");
+    let biased = compare(&a.scaled(1.0 + BIAS), b, &[WHOLE, block]);
+    assert!(biased.p < level(), "{name}: blind to {BIAS}: {biased:?}");
+}
+
 /// The smallest relative bias, to a tenth of itself, that a comparison would see.
 fn smallest_seen(a: &Replicates, b: &Replicates, blocks: &[usize]) -> f64 {
     let mut bias = 1e-4;

@@ -1,6 +1,7 @@
 use super::*;
 use crate::driver::training::plan::{BDPT, LVC, MANY, PLANS, path};
 use crate::driver::training::trial::Trial;
+use crate::driver::training::trial::tests::square;
 use crate::path::PathRoulette;
 
 /// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
@@ -10,7 +11,7 @@ fn chosen(splats: &[[f64; 2]]) -> Plan {
         (path(1), Trial::of(&[[1.0, 1.1]], &[])),
         (BDPT, Trial::of(&[[0.0, 2.0]], splats)),
     ];
-    best(BLOCKS as u64, &Settings::default(), &tried)
+    best(square(), &Settings::default(), &tried)
 }
 
 #[test]
@@ -18,7 +19,7 @@ fn walks_that_end_at_once_have_to_be_better() {
     let difference = |variance: f64| Trial::of(&[[1.0, 1.0 + variance.sqrt()]], &[]);
     let best_beside = |variance: f64| {
         let tried = [(path(0), difference(variance)), (path(1), difference(1.0))];
-        best(BLOCKS as u64, &Settings::default(), &tried)
+        best(square(), &Settings::default(), &tried)
     };
     assert_eq!([0.9, 0.75].map(best_beside), [path(1), path(0)]);
 }
@@ -42,7 +43,7 @@ fn light_images_tell_where_their_weights_count_all_that_path_tracing_takes() {
     };
     let missed = |settings: Settings, plan| {
         let tried = tried(plan);
-        let missed = Missed::new(&Scale::new(BLOCKS as f64, &tried), &settings, &tried);
+        let missed = Missed::new(&Scale::new(square(), &tried), &settings, &tried);
         missed.missed > 0.0
     };
     let with = |mis, mis_count| {
@@ -54,6 +55,28 @@ fn light_images_tell_where_their_weights_count_all_that_path_tracing_takes() {
     assert_eq!(with(balance, MisCount::Expected), [true, true]);
     assert_eq!(with(balance, MisCount::Resampled), [true, false]);
     assert_eq!(with(MisHeuristic::Uniform, MisCount::Expected), [false; 2]);
+}
+
+#[test]
+fn light_images_tell_nothing_of_roulette_that_no_density_has() {
+    let with = |roulette| {
+        let mut settings = Settings::default();
+        settings.path.roulette = roulette;
+        is_told(&settings, &BDPT.keeping(&settings))
+    };
+    assert!(with(PathRoulette::Albedo { start: 1 }));
+    assert!(!with(PathRoulette::Throughput { start: 1 }));
+}
+
+/// Path tracing hit the lamp in none of its samples, so that they do not vary.
+#[test]
+fn a_plan_that_finds_nothing_of_what_is_there_is_not_taken() {
+    let everywhere = |value: f64| Trial::of(&[[value, 1.5 * value]; BLOCKS], &[]);
+    for (found, expected) in [(0.0, BDPT), (0.01, BDPT), (0.5, path(1))] {
+        let tried = [(path(1), everywhere(found)), (BDPT, everywhere(1.0))];
+        let plan = best(square(), &Settings::default(), &tried);
+        assert_eq!(plan, expected, "{found}");
+    }
 }
 
 #[test]
@@ -73,7 +96,7 @@ fn what_light_images_tell_is_beside_path_tracing_of_their_roulette() {
         (path(1), Trial::of(&[[1.0, 1.1]], &[])),
         (keeping(BDPT), Trial::of(&[[0.0, 2.0]], &[[1.0, 0.999]; 8])),
     ];
-    let plan = best(BLOCKS as u64, &Settings::default(), &tried);
+    let plan = best(square(), &Settings::default(), &tried);
     assert_eq!(plan.integrator, IntegratorKind::Bdpt);
 }
 
@@ -88,7 +111,7 @@ fn of_plans_that_are_as_good_one_without_common_noise_is_taken() {
             (path(1), Trial::of(&[[1.0, 2.0]], &[])),
             (LVC, Trial::of(&[[1.0, 1.0 + difference]], &[])),
         ];
-        best(BLOCKS as u64, &Settings::default(), &tried)
+        best(square(), &Settings::default(), &tried)
     };
     assert_eq!([0.95, 0.85].map(best_beside), [path(1), LVC]);
 }
@@ -109,12 +132,12 @@ fn what_a_pixel_varies_by_is_the_same_for_all_that_share_light_subpaths() {
             ..Settings::default()
         };
         let tried = [(LVC, with_pixel(2.0)), (MANY, many.clone())];
-        assert_eq!(best(BLOCKS as u64, &settings, &tried), expected);
+        assert_eq!(best(square(), &settings, &tried), expected);
     }
 }
 
 #[test]
 fn nothing_to_see_is_traced_from_the_camera() {
     let tried = PLANS.map(|plan| (plan, Trial::of(&[[0.0; 2]], &[])));
-    assert_eq!(best(1, &Settings::default(), &tried), path(0));
+    assert_eq!(best(square(), &Settings::default(), &tried), path(0));
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
-use crate::film::{FilmSettings, Filter, FilterKind};
+use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::light::EmissionSides;
 use crate::material::Material;
 use crate::math::{Affine3A, Vec2, Vec3};
@@ -8,6 +8,14 @@ use crate::path::Connections;
 use crate::scene::{Emission, Scene, SceneBuilder};
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::ColorTexture;
+
+/// Blocks of a pixel each.
+pub(in crate::driver::training) fn square() -> Blocks {
+    Blocks::new(PixelRect {
+        min: [0; 2],
+        max: [16; 2],
+    })
+}
 
 impl Trial {
     /// Of pairs of samples, each in a block of its own, that took a camera ray each, the second of them
@@ -29,7 +37,7 @@ impl Trial {
 
     /// As if what is behind the camera rays of block number `i` varied so much.
     pub(in crate::driver::training) fn set_behind(&mut self, i: usize, variance: f64) {
-        let block = &mut self.blocks[i];
+        let block = &mut self.found[i];
         block.behind = variance * block.triples;
     }
 }
@@ -49,20 +57,20 @@ fn what_pixels_differ_by_is_no_variance() {
     };
     trial.sum_values();
     trial.stats.samples = 9;
-    let pixels = BLOCKS as f64;
-    let variances = [3, 5].map(|i| trial.variance(i, pixels));
-    let behind = [3, 5].map(|i| trial.behind(i, pixels));
+    let blocks = square();
+    let variances = [3, 5].map(|i| trial.variance(i, &blocks));
+    let behind = [3, 5].map(|i| trial.behind(i, &blocks));
     assert_eq!((variances, behind), ([0.0, 2.0], [0.0, 0.5]));
     let largest = trial.largest_square(|i| if i == 3 { 0.5 } else { 2.0 });
     assert!((largest - 32.0).abs() < 1e-12, "{largest}");
-    assert!((trial.mean(3, pixels) - 4.0).abs() < 1e-12);
+    assert!((trial.mean(3, &blocks) - 4.0).abs() < 1e-12);
 }
 
 /// Three paths of known contribution, and densities of both ways to make them: what light images
 /// tell is Σ f² / q.
 #[test]
 fn light_images_tell_of_the_second_moment_of_path_tracing() {
-    let pixels = BLOCKS as f64;
+    let (blocks, pixels) = (square(), BLOCKS as f64);
     let paths = [(3.0, 0.25, 1e-4), (1.0, 0.5, 0.3), (2.0, 0.125, 0.02)];
     let mut trial = Trial::default();
     let n = 800.0;
@@ -74,7 +82,7 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
         }
     }
     trial.add_splat(7, 0.0, 0.0);
-    let told_beyond = |value: f64| trial.hidden(4.0 * value * value, pixels, |_| 4.0);
+    let told_beyond = |value: f64| trial.hidden(4.0 * value * value, &blocks, |_| 4.0);
     let told_of = |(f, p, q): (f64, f64, f64)| {
         let w = pixels * p / (pixels * p + q);
         // Of the first path 1 - w is less than what weights can tell.
@@ -99,23 +107,6 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
         let largest_expected = if expected > 0.0 { first / 200.0 } else { 0.0 };
         assert!((largest - largest_expected).abs() < 1e-9 * exact[0]);
     }
-}
-
-#[test]
-fn blocks_divide_the_crop() {
-    let crop = PixelRect {
-        min: [3, 5],
-        max: [3 + 40, 5 + 20],
-    };
-    let mut counts = vec![0; BLOCKS];
-    for index in 0..crop.area() {
-        counts[block(&crop, index)] += 1;
-    }
-    assert_eq!(counts.iter().sum::<u64>(), crop.area());
-    assert!(
-        counts.iter().all(|&count| (2..=6).contains(&count)),
-        "{counts:?}"
-    );
 }
 
 /// A black lamp before nothing.
@@ -160,7 +151,7 @@ fn two_of_three_samples_share_their_camera_ray() {
     let trial = Trial::run(&probe, 0.0);
     let sum = |of_block: &dyn Fn(usize) -> f64| (0..BLOCKS).map(of_block).sum::<f64>();
     // What is seen depends on the ray alone, and differs from ray to ray along the lamp's edge.
-    assert!(sum(&|i| trial.mean(i, 256.0)) > 1.0);
-    assert!(sum(&|i| trial.variance(i, 256.0)) > 1.0);
-    assert!(sum(&|i| trial.behind(i, 256.0)) <= 0.0);
+    assert!(sum(&|i| trial.mean(i, &square())) > 1.0);
+    assert!(sum(&|i| trial.variance(i, &square())) > 1.0);
+    assert!(sum(&|i| trial.behind(i, &square())) <= 0.0);
 }

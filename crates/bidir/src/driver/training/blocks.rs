@@ -1,0 +1,90 @@
+//! The film in blocks, for each of which variance is estimated.
+
+use crate::film::PixelRect;
+
+/// Blocks along each side of the film.
+const SIDE: usize = 16;
+/// The blocks.
+pub(super) const BLOCKS: usize = SIDE * SIDE;
+
+/// The division of a crop into 16 × 16 blocks as equal as pixels allow; of a small one some have none.
+#[derive(Clone, Debug)]
+pub(super) struct Blocks {
+    crop: PixelRect,
+    /// The pixels of each.
+    sizes: Vec<f64>,
+}
+
+impl Blocks {
+    pub(super) fn new(crop: PixelRect) -> Self {
+        let [columns, rows] = [crop.width(), crop.height()].map(sizes);
+        let sizes = rows
+            .iter()
+            .flat_map(|row| columns.map(|column| row * column));
+        Self {
+            crop,
+            sizes: sizes.collect(),
+        }
+    }
+
+    /// The block of pixel number `index` of the crop.
+    pub(super) fn of(&self, index: usize) -> usize {
+        let [width, height] = [self.crop.width(), self.crop.height()].map(|size| size as usize);
+        part(index / width, height) * SIDE + part(index % width, width)
+    }
+
+    /// The pixels of block number `i`; of none it counts as one.
+    pub(super) fn size(&self, i: usize) -> f64 {
+        self.sizes[i].max(1.0)
+    }
+
+    /// The pixels of all.
+    pub(super) fn pixels(&self) -> f64 {
+        self.crop.area() as f64
+    }
+}
+
+/// The part of a side of `size` pixels that pixel number `i` is in.
+fn part(i: usize, size: usize) -> usize {
+    i * SIDE / size
+}
+
+/// How many pixels the parts of a side have.
+fn sizes(size: u32) -> [f64; SIDE] {
+    let mut sizes = [0.0; SIDE];
+    for i in 0..size as usize {
+        sizes[part(i, size as usize)] += 1.0;
+    }
+    sizes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(width: u32, height: u32) -> Blocks {
+        let min = [3, 5];
+        let max = [min[0] + width, min[1] + height];
+        let blocks = Blocks::new(PixelRect { min, max });
+        let mut counts = [0.0; BLOCKS];
+        for index in 0..(width * height) as usize {
+            counts[blocks.of(index)] += 1.0;
+        }
+        assert_eq!(counts.as_slice(), blocks.sizes);
+        assert!((counts.iter().sum::<f64>() - blocks.pixels()).abs() < 1e-9);
+        blocks
+    }
+
+    #[test]
+    fn blocks_divide_the_crop() {
+        let blocks = check(40, 20);
+        assert!(blocks.sizes.iter().all(|size| (2.0..=6.0).contains(size)));
+    }
+
+    #[test]
+    fn of_a_small_film_some_blocks_have_no_pixels() {
+        let blocks = check(3, 1);
+        let sizes = (0..BLOCKS).map(|i| blocks.size(i));
+        assert!(sizes.into_iter().all(|size| (size - 1.0).abs() < 1e-9));
+    }
+}
