@@ -119,14 +119,14 @@ const BY_PATH: (IntegratorKind, u64) = (IntegratorKind::Path, 16 * PASSES);
 /// For scenes of which path tracing finds most light by rare hits of small lamps.
 const BY_LVC: (IntegratorKind, u64) = (IntegratorKind::Lvc, PASSES);
 /// How many times as many where these differ.
-const AGAIN: u64 = 64;
+const AGAIN: u64 = 256;
 
 /// 64 samples per pixel of bidirectional path tracing against those of a witness, for path tracing sixteen
 /// times the samples of the noisiest small test: blocks of 16 × 16 pixels agree, and means are within 1 %.
 ///
 /// Caustics seen in mirrors are found by rare hits of a lamp, by both estimators: in a block with such
 /// the means of 32 replicates are skewed, most of them too dark and alike, which looks like a bias. Blocks
-/// that differ are rendered again with 64 times as many samples: a bias stays, a skewed mean does not.
+/// that differ are rendered again with 256 times as many samples: a bias stays, a skewed mean does not.
 #[track_caller]
 fn check_large(name: &str, witness: (IntegratorKind, u64)) {
     let Some(loaded) = open(name, LARGE) else {
