@@ -2,7 +2,7 @@
 
 use crate::film::{Layers, PassBuffer};
 use crate::integrator::{Contribution, Splat, Workspace};
-use crate::path::PathContext;
+use crate::path::{PathContext, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
 
@@ -65,23 +65,38 @@ impl Deposit<'_> {
     fn strategies(&self, workspace: &mut Workspace) {
         let Workspace {
             contributions,
+            luminances,
             splats,
             stats,
             ..
         } = workspace;
-        // Environments that a walk escapes to come one after the other, all by one strategy.
-        for group in contributions.chunk_by(|a, b| a.strategy == b.strategy) {
-            let luminances = group.iter().map(|one| self.luminance(one));
-            self.count_square(&group[0], luminances.sum(), stats);
-            for contribution in group {
-                let raw = self.raw(contribution, stats);
-                if let Some((part, value)) = raw {
-                    self.buffer.add_to_part(self.pixel, part, value);
-                }
+        luminances.clear();
+        for contribution in contributions.iter() {
+            self.add_luminance(contribution, luminances);
+            if let Some((part, value)) = self.raw(contribution, stats) {
+                self.buffer.add_to_part(self.pixel, part, value);
             }
+        }
+        for &(strategy, luminance) in luminances.iter() {
+            stats.add_square(strategy, luminance);
         }
         for splat in splats.iter() {
             self.splat(splat, stats);
+        }
+    }
+
+    /// Adds to what a sample gives the weighted image of a strategy, if there is one. A strategy may
+    /// contribute often, and others in between: by several light points, by several vertices of a light
+    /// cache, by each environment that a walk escapes to.
+    fn add_luminance(&self, contribution: &Contribution, sums: &mut Vec<(Strategy, f64)>) {
+        let strategy = contribution.strategy;
+        if self.layers.weighted_part(strategy).is_none() {
+            return;
+        }
+        let luminance = self.luminance(contribution);
+        match sums.iter_mut().find(|(known, _)| *known == strategy) {
+            Some((_, sum)) => *sum += luminance,
+            None => sums.push((strategy, luminance)),
         }
     }
 
@@ -91,8 +106,11 @@ impl Deposit<'_> {
         let Some((_, weight)) = film.pick_pixel(splat.place) else {
             return;
         };
-        let luminance = self.luminance(contribution) * f64::from(weight);
-        self.count_square(contribution, luminance, stats);
+        // A light subpath has one splat by each strategy.
+        if self.layers.weighted_part(contribution.strategy).is_some() {
+            let luminance = self.luminance(contribution) * f64::from(weight);
+            stats.add_square(contribution.strategy, luminance);
+        }
         if let Some((part, value)) = self.raw(contribution, stats) {
             self.buffer.splat_to_part(film, splat.place, value, part);
         }
@@ -100,14 +118,6 @@ impl Deposit<'_> {
 
     fn luminance(&self, contribution: &Contribution) -> f64 {
         f64::from(luminance(self.rgb(contribution.value)))
-    }
-
-    /// Counts the square of what a sample adds to a weighted image, if there is one.
-    fn count_square(&self, contribution: &Contribution, luminance: f64, stats: &mut Stats) {
-        let strategy = contribution.strategy;
-        if self.layers.weighted_part(strategy).is_some() {
-            stats.add_square(strategy, luminance);
-        }
     }
 
     /// What a contribution adds to which raw image. None: it has none, or the value is counted as
@@ -129,7 +139,7 @@ mod tests {
     use crate::film::{Film, FilmSettings, Filter, SplatPlace};
     use crate::light::{InfiniteLight, Light};
     use crate::math::{Affine3A, Vec2};
-    use crate::path::{Connections, PathSettings, Strategy};
+    use crate::path::{Connections, PathSettings};
     use crate::scene::{Scene, SceneBuilder};
     use crate::spectrum::Wavelengths;
 
@@ -215,15 +225,17 @@ mod tests {
     }
 
     #[test]
-    fn environments_of_one_escape_are_one_square() {
-        let two = [2.0, 3.0].map(|value| contribution((0, 3), value, 1.0));
+    fn all_that_a_strategy_adds_to_a_sample_is_one_square() {
+        let [a, b] = [2.0, 3.0].map(|value| contribution((0, 3), value, 1.0));
         let other = contribution((1, 2), 4.0, 1.0);
-        let (_, stats) = deposit(&[two[0], two[1], other], contribution((2, 1), 5.0, 1.0));
-        for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
-            let counts = stats
-                .strategy_images
-                .get(Strategy::new(strategy.0, strategy.1));
-            assert!((counts.squares() - square).abs() < 1e-5, "{strategy:?}");
+        let splat = contribution((2, 1), 5.0, 1.0);
+        for order in [[a, b, other], [a, other, b]] {
+            let (_, stats) = deposit(&order, splat);
+            for (strategy, square) in [((0, 3), 25.0), ((1, 2), 16.0), ((2, 1), 25.0)] {
+                let strategy = Strategy::new(strategy.0, strategy.1);
+                let found = stats.strategy_images.get(strategy).squares();
+                assert!((found - square).abs() < 1e-5, "{strategy}: {found}");
+            }
         }
     }
 

@@ -218,7 +218,7 @@ impl<'a> Session<'a> {
     }
 
     /// How many connections a camera vertex makes.
-    fn connections(&self) -> Connections<'_> {
+    pub(super) fn connections(&self) -> Connections<'_> {
         match (self.settings.integrator, &self.training) {
             (IntegratorKind::Lvc, Some(training)) => {
                 let pixels = self.scene.film().light_paths();

@@ -5,11 +5,13 @@
 //! samples of this session, m is the pixel of the strategy's image of all P passes.
 //!
 //! - t ≥ 2: a sample adds y to its own pixel alone, so V = Σ y² / n - mean m².
-//! - t = 1: each of the pass's N light paths adds y/N to one of the N pixels, so the mean of E\[y²\]
-//!   over pixels is Σ y² / (n N) for each path, and V = (Σ y² / (n N) - mean m²) / N.
+//! - t = 1: a pass has L = N/k light paths, N pixels and k samples for each light path. A path adds
+//!   y/N, k being in y already, to one of the pixels. The nL/N paths of the session have the mean
+//!   E\[y²\] = k Σ y² / n, of which each pixel has 1/N on average, so
+//!   V = L (k Σ y² / (n N³) - mean (m/L)²) = (Σ y² / (n N k) - mean m²) / L.
 //!
-//! Both are one formula, with N = 1 for t ≥ 2. The mean m̂ of the image has the variance V/P, so
-//! that m̂² is too large by it on average, and the result is divided by 1 - 1/(P N). Stratified
+//! Both are one formula, with N = k = L = 1 for t ≥ 2. The mean m̂ of the image has the variance V/P,
+//! so that m̂² is too large by it on average, and the result is divided by 1 - 1/(P L). Stratified
 //! passes are taken as independent, so V is rather too large than too small.
 
 use super::Session;
@@ -57,11 +59,15 @@ impl Session<'_> {
         let exposure = f64::from(film.exposure);
         let squares = self.stats().strategy_images.get(strategy).squares();
         let of_sample = squares * exposure * exposure / samples as f64;
-        let paths = match strategy.t {
-            1 => film.light_paths().max(1) as f64,
-            _ => 1.0,
+        let (pixels, samples_per_path) = match strategy.t {
+            1 => {
+                let pixels = film.light_paths().max(1) as f64;
+                (pixels, self.connections().samples_per_subpath)
+            }
+            _ => (1.0, 1.0),
         };
-        let variance = (of_sample / paths - mean_square) / paths;
+        let paths = pixels / samples_per_path;
+        let variance = (of_sample / (pixels * samples_per_path) - mean_square) / paths;
         let of_estimate = 1.0 - 1.0 / (passes as f64 * paths);
         Some((variance / of_estimate).max(0.0))
     }

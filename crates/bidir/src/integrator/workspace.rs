@@ -118,6 +118,9 @@ pub struct Workspace {
     pub value: Spectrum,
     /// The contributions to the light image.
     pub splats: Vec<Splat>,
+    /// What the sample adds to its own pixel by each strategy that the film keeps an image of. Unit:
+    /// luminance.
+    pub(crate) luminances: Vec<(Strategy, f64)>,
     /// The number of terms so far.
     terms: u32,
     /// What was counted.

@@ -5,9 +5,12 @@ use crate::lit_room::{LAMPS, lit_room};
 use crate::{film, settings};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Film, Layers};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{
+    CandidateCount, Candidates, IntegratorKind, LvcSettings, SamplesPerSubpath,
+};
 use bidir::path::Strategy;
 use bidir::sampler::SamplerKind;
+use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use bidir::spectrum::{Rgb, luminance};
 
@@ -68,45 +71,59 @@ fn what_has_all_the_weight_is_its_raw_image() {
     }
 }
 
-#[test]
-fn strategies_vary_as_their_images_do_from_pass_to_pass() {
-    const PASSES: u64 = 512;
-    let scene = lit_room(4, &LAMPS);
+/// The film of each of so many passes, rendered one by one.
+fn passes(scene: &Scene, settings: &Settings, count: u64) -> Vec<Film> {
+    let session = Session::new(scene, settings.clone(), &Resources::default());
+    let mut session = session.expect("the film is small");
+    let pass = |pass| {
+        session.start_at(pass);
+        assert!(session.step(&()));
+        session.take_film().0
+    };
+    (0..count).map(pass).collect()
+}
+
+/// The means over pixels of the luminance of a strategy's weighted image, and of how much it varies
+/// from film to film.
+fn mean_and_variance(films: &[Film], strategy: Strategy) -> [f64; 2] {
+    let image = |film: &Film| {
+        let pixels = pixels(film, film.layers().weighted_part(strategy)).into_iter();
+        let luminances = pixels.map(|pixel| f64::from(luminance(pixel)));
+        luminances.collect::<Vec<_>>()
+    };
+    let images: Vec<_> = films.iter().map(image).collect();
+    let (n, size) = (films.len() as f64, images[0].len());
+    let of_pixel = |i: usize| {
+        let mean = images.iter().map(|image| image[i]).sum::<f64>() / n;
+        let squares = images
+            .iter()
+            .map(|image| (image[i] - mean) * (image[i] - mean));
+        [mean, squares.sum::<f64>() / (n - 1.0)]
+    };
+    let moments: Vec<_> = (0..size).map(of_pixel).collect();
+    [0, 1].map(|k| moments.iter().map(|moment| moment[k]).sum::<f64>() / size as f64)
+}
+
+/// Compares what a session tells of each strategy with its films, pass by pass. Variances of light
+/// images, whose paths meet in pixels, may be wrong by the part `tolerance`.
+#[track_caller]
+fn check_moments(scene: &Scene, settings: Settings, count: u64, tolerance: f64) {
     let settings = Settings {
         sampler: SamplerKind::Independent,
-        ..with_raw("all")
+        ..settings
     };
-    let session = |first: u64, passes: u64| {
-        let resources = Resources::default();
-        let session = Session::new(&scene, settings.clone(), &resources);
-        let mut session = session.expect("the film is small");
-        session.start_at(first);
-        (0..passes).for_each(|_| assert!(session.step(&())));
-        session
-    };
-    let images: Vec<Film> = (0..PASSES)
-        .map(|pass| session(pass, 1).into_film())
-        .collect();
-    for told in session(0, PASSES).strategy_moments() {
-        let values = images.iter().map(|film| {
-            let pixels = pixels(film, film.layers().weighted_part(told.strategy));
-            let values = pixels.into_iter().map(|pixel| f64::from(luminance(pixel)));
-            values.collect::<Vec<_>>()
-        });
-        let values: Vec<_> = values.collect();
-        let of_pixel = |i: usize| {
-            let n = PASSES as f64;
-            let mean = values.iter().map(|image| image[i]).sum::<f64>() / n;
-            let square = values
-                .iter()
-                .map(|image| (image[i] - mean) * (image[i] - mean));
-            (mean, square.sum::<f64>() / (n - 1.0))
+    let films = passes(scene, &settings, count);
+    let session = Session::new(scene, settings, &Resources::default());
+    let mut session = session.expect("the film is small");
+    (0..count).for_each(|_| assert!(session.step(&())));
+    for told in session.strategy_moments() {
+        let [mean, variance] = mean_and_variance(&films, told.strategy);
+        // Exact where a sample has a pixel of its own.
+        let tolerance = if told.strategy.t == 1 {
+            tolerance
+        } else {
+            1e-4
         };
-        let moments: Vec<_> = (0..16).map(of_pixel).collect();
-        let mean = moments.iter().map(|(mean, _)| mean).sum::<f64>() / 16.0;
-        let variance = moments.iter().map(|(_, variance)| variance).sum::<f64>() / 16.0;
-        // Exact where a sample has a pixel of its own; light paths of a pass meet in pixels.
-        let tolerance = if told.strategy.t == 1 { 0.1 } else { 1e-4 };
         let found = told.variance.expect("several passes");
         assert!(
             (found - variance).abs() <= tolerance * variance,
@@ -114,6 +131,32 @@ fn strategies_vary_as_their_images_do_from_pass_to_pass() {
         );
         assert!((told.mean - mean).abs() <= 1e-5 * mean, "{told:?}: {mean}");
     }
+}
+
+#[test]
+fn strategies_vary_as_their_images_do_from_pass_to_pass() {
+    check_moments(&lit_room(4, &LAMPS), with_raw("all"), 512, 0.1);
+}
+
+#[test]
+fn strategies_of_shared_subpaths_vary_as_their_images_do() {
+    let mut settings = with_raw("all");
+    settings.integrator = IntegratorKind::Lvc;
+    settings.lvc = LvcSettings {
+        candidates: Candidates::Of(CandidateCount::new(12, 3)),
+        samples_per_subpath: SamplesPerSubpath::power_of_two(1),
+        ..LvcSettings::default()
+    };
+    check_moments(&lit_room(4, &LAMPS), settings, 512, 0.1);
+}
+
+#[test]
+fn light_images_of_one_path_vary_exactly_as_they_do_from_pass_to_pass() {
+    // All four pixels share it, so that none meet.
+    let mut settings = with_raw("s1t1,s2t1");
+    settings.integrator = IntegratorKind::Lvc;
+    settings.lvc.samples_per_subpath = SamplesPerSubpath::power_of_two(2);
+    check_moments(&lit_room(2, &LAMPS), settings, 512, 1e-4);
 }
 
 #[test]
