@@ -278,3 +278,13 @@ fn selection_keeps_the_closed_sphere() {
         check_expectation(rule, &result, 1.0 - halved(9));
     }
 }
+
+#[test]
+fn one_ray_for_each_vertex_of_a_light_cache_keeps_the_closed_sphere() {
+    let scene = closed_sphere();
+    let mut settings = settings(IntegratorKind::Lvc, Some(8));
+    settings.shadow_rays = ShadowRays::PerLightVertex;
+    settings.lvc.candidates = Candidates::Of(CandidateCount::new(8, 2));
+    let result = replicates(&scene, &settings, 1024);
+    check_expectation("per-light-vertex", &result, 1.0 - halved(9));
+}

@@ -415,8 +415,15 @@ PATHS = [
     (
         "one per group with an even probability",
         "crates/bidir/src/select/grouped.rs",
-        "prob: prob(candidate, sum),",
-        "prob: 1.0 / self.members(candidates, group).count() as f64,",
+        "prob: prob(picked.of(candidates), sum),",
+        "prob: 1.0 / group.len() as f64,",
+        unit("select::"),
+    ),
+    (
+        "vertices of a light cache in the groups of their depths",
+        "crates/bidir/src/select/grouped.rs",
+        "=> 1 + vertex,",
+        "=> 1 + vertex.min(0) + u32::from(candidate.strategy.s),",
         unit("select::"),
     ),
     (

@@ -1,13 +1,14 @@
 //! π_c = g_c / Σ g over the candidates of its group: one ray for each light vertex, camera vertex
 //! or pair of subpaths [Lafortune95, §3].
 
-use super::{Candidate, Chosen, Draws, Selector};
+use super::{Candidate, Chosen, Draws, LightVertex, Selector};
 
 /// What candidates have in common within a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// The light vertex. For s = 1 with fresh light points: the row of next-event estimates, each
-    /// with a light point of its own.
+    /// with a light point of its own. Of a light cache: the vertex, not its place along its subpath;
+    /// camera vertices seldom share one, so that most groups are one candidate.
     LightVertex,
     /// The camera vertex.
     CameraVertex,
@@ -24,36 +25,60 @@ pub struct OnePerGroup {
 }
 
 impl OnePerGroup {
-    /// The number of a candidate's group; groups are numbered from 0.
+    /// The number of a candidate's group, which is that of its draw, too.
     #[inline]
-    fn number(self, candidate: &Candidate) -> u16 {
-        match self.group {
-            Group::LightVertex => candidate.strategy.s - 1,
-            Group::CameraVertex => candidate.strategy.t - 2,
-            Group::Pair => 0,
+    fn number(self, candidate: &Candidate) -> u32 {
+        match (self.group, candidate.light_vertex) {
+            // Light points have 0; beside a cache no subpath is connected as a sample's own.
+            (Group::LightVertex, LightVertex::Cached(vertex)) => 1 + vertex,
+            (Group::LightVertex, LightVertex::Own | LightVertex::NextEvent(_)) => {
+                u32::from(candidate.strategy.s) - 1
+            }
+            (Group::CameraVertex, _) => u32::from(candidate.strategy.t) - 2,
+            (Group::Pair, _) => 0,
         }
     }
 
-    /// The members of a group, each with its number among the candidates.
+    /// Appends all candidates, those of a group beside each other, with no probabilities yet.
     #[inline]
-    fn members(
-        self,
-        candidates: &[Candidate],
-        group: u16,
-    ) -> impl Iterator<Item = (usize, &Candidate)> {
-        candidates
-            .iter()
-            .enumerate()
-            .filter(move |(_, c)| self.number(c) == group)
+    fn append_sorted(self, candidates: &[Candidate], members: &mut Vec<Chosen>) {
+        let begin = members.len();
+        members.extend((0..candidates.len() as u32).map(|candidate| Chosen {
+            candidate,
+            prob: 0.0,
+        }));
+        members[begin..].sort_unstable_by_key(|member| {
+            let number = self.number(member.of(candidates));
+            (number, member.candidate)
+        });
     }
 
-    /// Σ g of a group. In f64: scores of one group span ten orders of magnitude.
+    /// The members of each group, where all are sorted.
     #[inline]
-    fn sum(self, candidates: &[Candidate], group: u16) -> f64 {
-        self.members(candidates, group)
-            .map(|(_, c)| f64::from(c.score))
-            .sum()
+    fn groups<'a>(
+        self,
+        candidates: &'a [Candidate],
+        members: &'a [Chosen],
+    ) -> impl Iterator<Item = &'a [Chosen]> {
+        members.chunk_by(move |a, b| {
+            let [a, b] = [a, b].map(|member| self.number(member.of(candidates)));
+            a == b
+        })
     }
+}
+
+impl Chosen {
+    #[inline]
+    fn of(self, candidates: &[Candidate]) -> &Candidate {
+        &candidates[self.candidate as usize]
+    }
+}
+
+/// Σ g of a group. In f64: scores of one group span ten orders of magnitude.
+#[inline]
+fn sum(candidates: &[Candidate], group: &[Chosen]) -> f64 {
+    let scores = group.iter().map(|c| f64::from(c.of(candidates).score));
+    scores.sum()
 }
 
 /// g_c / Σ g, `sum` being that of the candidate's group.
@@ -62,29 +87,52 @@ fn prob(candidate: &Candidate, sum: f64) -> f64 {
     f64::from(candidate.score) / sum
 }
 
+/// The member of a group that the number `u` chooses.
+#[inline]
+fn pick(candidates: &[Candidate], group: &[Chosen], u: f64) -> Chosen {
+    let sum = sum(candidates, group);
+    let mut rest = u * sum;
+    let is_it = |member: &&Chosen| {
+        rest -= f64::from(member.of(candidates).score);
+        rest < 0.0
+    };
+    // Where rounding leaves a rest, it is the last.
+    let found = group.iter().find(is_it);
+    let picked = *found.unwrap_or(&group[group.len() - 1]);
+    Chosen {
+        prob: prob(picked.of(candidates), sum),
+        ..picked
+    }
+}
+
 impl Selector for OnePerGroup {
     fn select(&self, candidates: &[Candidate], draws: Draws<'_>, chosen: &mut Vec<Chosen>) {
-        let numbers = candidates.iter().map(|c| self.number(c) + 1);
-        for group in 0..numbers.max().unwrap_or(0) {
-            let sum = self.sum(candidates, group);
-            let mut rest = draws.get(usize::from(group)) * sum;
-            let mut picked = None;
-            for (i, candidate) in self.members(candidates, group) {
-                picked = Some(Chosen {
-                    candidate: i as u32,
-                    prob: prob(candidate, sum),
-                });
-                rest -= f64::from(candidate.score);
-                if rest < 0.0 {
-                    break;
-                }
-            }
-            chosen.extend(picked);
+        let mut kept = chosen.len();
+        self.append_sorted(candidates, chosen);
+        // Where members were sorted, the chosen ones move to the front.
+        let mut next = kept;
+        while next < chosen.len() {
+            let group = self.groups(candidates, &chosen[next..]).next();
+            let group = group.expect("members are left");
+            let number = self.number(group[0].of(candidates));
+            let picked = pick(candidates, group, draws.get(number as usize));
+            next += group.len();
+            chosen[kept] = picked;
+            kept += 1;
         }
+        chosen.truncate(kept);
     }
 
     fn probabilities(&self, candidates: &[Candidate]) -> Vec<f64> {
-        let of = |c| prob(c, self.sum(candidates, self.number(c)));
-        candidates.iter().map(of).collect()
+        let mut members = Vec::with_capacity(candidates.len());
+        self.append_sorted(candidates, &mut members);
+        let mut probs = vec![0.0; candidates.len()];
+        for group in self.groups(candidates, &members) {
+            let sum = sum(candidates, group);
+            for member in group {
+                probs[member.candidate as usize] = prob(member.of(candidates), sum);
+            }
+        }
+        probs
     }
 }

@@ -129,7 +129,8 @@ pub enum ShadowRays {
     Suited,
     /// Every candidate.
     All,
-    /// One for each light vertex: optimisation 1 of \[Lafortune95\].
+    /// One for each light vertex: optimisation 1 of \[Lafortune95\]. Vertices of a light cache are
+    /// seldom drawn twice in a sample, so that nearly all of their candidates are traced.
     PerLightVertex,
     /// One for each camera vertex: optimisation 2 of \[Lafortune95\].
     PerCameraVertex,

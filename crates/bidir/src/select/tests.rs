@@ -24,6 +24,27 @@ fn candidates() -> Vec<Candidate> {
         .collect()
 }
 
+/// Two light points, and three vertices of a light cache of which two are as deep, in the order of cells;
+/// two camera vertices share one of them.
+fn cached_candidates() -> Vec<Candidate> {
+    use LightVertex::{Cached, NextEvent};
+    let ends = [
+        (NextEvent(0), (1, 2)),
+        (NextEvent(1), (1, 2)),
+        (Cached(7), (2, 2)),
+        (Cached(0), (3, 2)),
+        (Cached(9), (2, 2)),
+        (Cached(7), (2, 3)),
+    ];
+    let scores = [0.5, 40.0, 2e-3, 3.0, 1.0, 2e-2];
+    let all = ends.into_iter().zip(scores);
+    all.map(|((light_vertex, (s, t)), score)| Candidate {
+        light_vertex,
+        ..candidate(s, t, score)
+    })
+    .collect()
+}
+
 const RULES: [ShadowRays; 8] = [
     ShadowRays::All,
     ShadowRays::PerLightVertex,
@@ -37,16 +58,21 @@ const RULES: [ShadowRays; 8] = [
 
 /// How often each candidate was chosen in `n` draws, and the probability it is said to have, whether
 /// it is chosen or not; `check` sees every draw.
-fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Vec<(f64, f64)> {
-    let (candidates, selector) = (candidates(), rule.selector(10.0));
+fn frequencies(
+    rule: ShadowRays,
+    candidates: &[Candidate],
+    n: u64,
+    mut check: impl FnMut(&[Chosen]),
+) -> Vec<(f64, f64)> {
+    let selector = rule.selector(10.0);
     let sampler = Sampler::new(SamplerKind::Independent, 11);
-    let probs = selector.probabilities(&candidates);
+    let probs = selector.probabilities(candidates);
     let mut frequencies = vec![0.0; candidates.len()];
     let mut chosen = Vec::new();
     for index in 0..n {
         chosen.clear();
         let stream = sampler.stream(Domain::Camera, 0, index);
-        selector.select(&candidates, Draws(&stream), &mut chosen);
+        selector.select(candidates, Draws(&stream), &mut chosen);
         check(&chosen);
         for c in &chosen {
             let i = c.candidate as usize;
@@ -57,19 +83,27 @@ fn frequencies(rule: ShadowRays, n: u64, mut check: impl FnMut(&[Chosen])) -> Ve
     frequencies.into_iter().zip(probs).collect()
 }
 
-#[test]
-fn candidates_are_chosen_with_the_probability_that_is_stated() {
+#[track_caller]
+fn check_frequencies(candidates: &[Candidate]) {
     let n = 200_000;
     for rule in RULES {
-        for (i, (frequency, prob)) in frequencies(rule, n, |_| ()).into_iter().enumerate() {
+        let found = frequencies(rule, candidates, n, |_| ());
+        for (i, (frequency, prob)) in found.into_iter().enumerate() {
             // Five standard deviations of a binomial frequency.
             let bound = 5.0 * (prob * (1.0 - prob) / n as f64).sqrt() + 1e-9;
+            assert!(prob > 0.0, "{rule} {i}");
             assert!(
                 (frequency - prob).abs() <= bound,
                 "{rule} {i}: {frequency} {prob}"
             );
         }
     }
+}
+
+#[test]
+fn candidates_are_chosen_with_the_probability_that_is_stated() {
+    check_frequencies(&candidates());
+    check_frequencies(&cached_candidates());
 }
 
 #[test]
@@ -82,9 +116,38 @@ fn no_rule_traces_more_rays_than_it_says() {
         ShadowRays::All | ShadowRays::Suited | ShadowRays::RayRoulette(_) => 6,
     };
     for rule in RULES {
-        frequencies(rule, 2000, |chosen| {
+        frequencies(rule, &candidates(), 2000, |chosen| {
             assert!(chosen.len() <= limit(rule), "{rule}");
         });
+    }
+}
+
+#[test]
+fn vertices_of_a_light_cache_have_one_ray_each() {
+    let candidates = cached_candidates();
+    let row = |chosen: &Chosen| match candidates[chosen.candidate as usize].light_vertex {
+        LightVertex::Cached(vertex) => Some(vertex),
+        LightVertex::Own | LightVertex::NextEvent(_) => None,
+    };
+    frequencies(ShadowRays::PerLightVertex, &candidates, 2000, |chosen| {
+        let mut rows: Vec<_> = chosen.iter().map(row).collect();
+        rows.sort_unstable();
+        assert_eq!(rows, [None, Some(0), Some(7), Some(9)]);
+    });
+}
+
+#[test]
+fn chosen_ones_of_others_are_left_alone() {
+    let stream = Sampler::new(SamplerKind::Independent, 1).stream(Domain::Camera, 0, 0);
+    let before = Chosen {
+        candidate: 5,
+        prob: 0.25,
+    };
+    for rule in RULES {
+        let mut chosen = vec![before];
+        let selector = rule.selector(10.0);
+        selector.select(&cached_candidates(), Draws(&stream), &mut chosen);
+        assert_eq!(chosen[0], before, "{rule}");
     }
 }
 
