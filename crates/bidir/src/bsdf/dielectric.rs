@@ -32,7 +32,7 @@ pub(super) enum Lobe {
 impl Dielectric {
     /// An index-matched interface bends nothing, so roughness has no meaning there.
     #[inline]
-    pub(super) fn is_smooth(&self) -> bool {
+    pub(crate) fn is_smooth(&self) -> bool {
         self.ggx.is_smooth() || (self.eta - 1.0).abs() < 1e-6
     }
 

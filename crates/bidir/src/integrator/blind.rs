@@ -8,14 +8,10 @@
 //! found there by hits alone, the rarer the smaller the light is.
 
 use super::IntegratorKind;
-use crate::bsdf::{Bsdf, TransportMode};
 use crate::camera::Camera;
 use crate::light::Light;
 use crate::material::Material;
-use crate::math::{Vec2, Vec3};
 use crate::scene::Scene;
-use crate::spectrum::Wavelengths;
-use crate::texture::TexturePoint;
 
 /// Light paths of a scene that an estimator does not make, or makes by chance only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,21 +64,11 @@ impl BlindSpot {
     }
 }
 
-/// How a material scatters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lobes {
-    /// By Dirac distributions.
-    pub has_dirac: bool,
-    /// In other ways.
-    pub has_spread: bool,
-}
-
-/// The blind spots of an estimator with all its strategies, in a scene.
+/// The blind spots of an estimator with all its strategies, in a scene. What is specular at a few points
+/// only, or may be by the bounds of its textures, counts as mirrors and clear glass do.
 pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
-    let has_specular = scene
-        .materials_of_surfaces()
-        .any(|material| lobes(scene, material).has_dirac);
+    let has_specular = scene.materials_of_surfaces().any(Material::may_be_specular);
     let of_specular: &[(bool, BlindSpot)] = match integrator {
         IntegratorKind::Path => &[
             (true, BlindSpot::Caustics),
@@ -109,41 +95,6 @@ pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> 
         spots.extend((has_sky && is_parallel).then_some(BlindSpot::Sky));
     }
     spots
-}
-
-/// Points of a texture that are asked, along each side.
-const POINTS: usize = 8;
-
-/// How a material scatters anywhere, as far as some points of its textures tell.
-pub fn lobes(scene: &Scene, material: &Material) -> Lobes {
-    let mut lobes = Lobes::default();
-    for i in 0..POINTS * POINTS {
-        let uv = Vec2::new((i % POINTS) as f32, (i / POINTS) as f32) + 0.5;
-        let at = TexturePoint::of_parameters(uv / POINTS as f32);
-        for part in [0.01, 0.5, 0.99] {
-            let material = material.choose(&at, || part);
-            let wavelengths: Wavelengths = scene.color().sample_wavelengths(0.5);
-            lobes.add(&material.bsdf(&at, scene.color(), &wavelengths));
-        }
-    }
-    lobes
-}
-
-impl Lobes {
-    /// Counts what a few draws find.
-    fn add(&mut self, bsdf: &Bsdf) {
-        let directions = [0.9f32, 0.3, -0.9, -0.3].map(|z| Vec3::new((1.0 - z * z).sqrt(), 0.0, z));
-        for wo in directions {
-            for step in 0..8 {
-                let u_lobe = || (step as f32 + 0.5) / 8.0;
-                let drawn = bsdf.sample(wo, TransportMode::Radiance, u_lobe, Vec2::splat(0.37));
-                if let Some(drawn) = drawn {
-                    self.has_dirac |= drawn.is_delta;
-                    self.has_spread |= !drawn.is_delta;
-                }
-            }
-        }
-    }
 }
 
 #[cfg(test)]

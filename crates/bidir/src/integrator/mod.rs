@@ -15,7 +15,7 @@ mod path;
 mod workspace;
 
 pub use bdpt::Bdpt;
-pub use blind::{BlindSpot, Lobes, blind_spots, lobes};
+pub use blind::{BlindSpot, blind_spots};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::{

@@ -102,7 +102,7 @@ impl Layers {
 /// A diffuse base under a layer.
 #[derive(Clone, Debug)]
 pub struct CoatedDiffuseMaterial {
-    coat: CoatSettings,
+    pub(super) coat: CoatSettings,
     reflectance: ColorTexture,
     layers: Layers,
 }
@@ -138,9 +138,9 @@ impl CoatedDiffuseMaterial {
 /// Metal under a layer.
 #[derive(Clone, Debug)]
 pub struct CoatedConductorMaterial {
-    coat: CoatSettings,
+    pub(super) coat: CoatSettings,
     index: super::ConductorIndex,
-    roughness: Roughness,
+    pub(super) roughness: Roughness,
     layers: Layers,
     metal_axis: Axis,
     /// By slope of the interface, then of the metal.

@@ -8,6 +8,7 @@
 mod coated;
 mod principled;
 mod relief;
+mod specular;
 
 pub use coated::{CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial};
 pub use principled::{Anisotropy, PrincipledMaterial, ScaledColor, ScaledFloat};

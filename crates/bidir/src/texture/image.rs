@@ -6,6 +6,8 @@ pub struct Image<const N: usize> {
     width: usize,
     height: usize,
     texels: Vec<[f32; N]>,
+    /// The least and the most of each channel.
+    bounds: [[f32; N]; 2],
     /// Each about half as wide and high as the one before, down to one texel; none unless asked for.
     smaller: Vec<Self>,
 }
@@ -17,6 +19,7 @@ impl<const N: usize> Image<N> {
         whole.then(|| Self {
             width,
             height: texels.len() / width,
+            bounds: bounds(&texels),
             texels,
             smaller: Vec::new(),
         })
@@ -69,6 +72,11 @@ impl<const N: usize> Image<N> {
         &self.texels
     }
 
+    /// The least and the most of each channel.
+    pub fn bounds(&self) -> [[f32; N]; 2] {
+        self.bounds
+    }
+
     /// The texel at column `x` of row `y`.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> [f32; N] {
@@ -92,13 +100,26 @@ impl<const N: usize> Image<N> {
         let texels = rows
             .iter()
             .flat_map(|y| columns.iter().map(move |x| mean(x, y)));
+        let texels: Vec<_> = texels.collect();
         Self {
             width: columns.len(),
             height: rows.len(),
-            texels: texels.collect(),
+            bounds: bounds(&texels),
+            texels,
             smaller: Vec::new(),
         }
     }
+}
+
+/// The least and the most of each channel; NaN is neither.
+fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
+    let empty = [[f32::INFINITY; N], [f32::NEG_INFINITY; N]];
+    texels.iter().fold(empty, |[least, most], texel| {
+        [
+            std::array::from_fn(|i| least[i].min(texel[i])),
+            std::array::from_fn(|i| most[i].max(texel[i])),
+        ]
+    })
 }
 
 /// What a texel of a half as long row has of the longer one: the first index, and the weights of it

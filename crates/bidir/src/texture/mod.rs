@@ -17,6 +17,7 @@ mod mapping;
 mod noise;
 mod pattern;
 mod point;
+mod range;
 
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ pub use mapping::{Mapping, TextureSpace};
 pub use noise::{Marble, Noise, NoiseKind};
 pub use pattern::{Bilerp, Cells, Checkerboard, Dots};
 pub use point::{Footprint, TexturePoint};
+pub use range::Range;
 
 use crate::math::Vec3;
 use crate::spectrum::Rgb;

@@ -3,6 +3,7 @@
 mod images;
 mod mappings;
 mod patterns;
+mod ranges;
 
 use super::TexturePoint;
 use crate::math::{Vec2, Vec3};
