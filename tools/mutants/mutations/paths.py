@@ -293,6 +293,13 @@ PATHS = [
         unit("two_of_three_samples_share"),
     ),
     (
+        "smooth coats that are no blind spot",
+        "crates/bidir/src/material/specular.rs",
+        "self.has_smooth_coat() || self.has_smooth_facets()",
+        "self.has_smooth_facets()",
+        unit("what_is_rarely_specular"),
+    ),
+    (
         "a plan that found nothing, and so does not vary",
         "crates/bidir/src/driver/training/choice.rs",
         "scale.part_found(trial) < LEAST_FOUND",
