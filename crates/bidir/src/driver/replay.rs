@@ -6,7 +6,7 @@
 
 use crate::film::{FilmSettings, SplatPlace};
 use crate::integrator::{Entry, Fate, Link, Term, Workspace};
-use crate::path::{PathContext, Strategy};
+use crate::path::{PathContext, Strategy, Subpath};
 use crate::scene::SegmentEnd;
 use crate::select::Selector;
 use crate::spectrum::{Spectrum, Wavelengths};
@@ -15,6 +15,8 @@ use crate::spectrum::{Spectrum, Wavelengths};
 pub struct Replay {
     /// The buffers as the sample left them: subpaths, candidates, chosen rays, contributions.
     pub workspace: Workspace,
+    /// The light subpath that the sample brought to those that samples share.
+    brought: Option<Subpath>,
     /// The wavelengths of the sample.
     pub wavelengths: Wavelengths,
     /// The terms that are not zero, in the order in which they were evaluated.
@@ -64,11 +66,12 @@ pub struct Landing {
 }
 
 impl Replay {
-    /// Looks into what a sample with a journal left in `workspace`; `selector` is the rule that
-    /// chose its rays.
+    /// Looks into what a sample with a journal left in `workspace`, and the light subpath that it
+    /// `brought`; `selector` is the rule that chose its rays.
     pub(super) fn new(
         context: &PathContext<'_>,
         workspace: Workspace,
+        brought: Option<Subpath>,
         selector: &dyn Selector,
     ) -> Self {
         let probs = selector.probabilities(&workspace.candidates);
@@ -88,7 +91,13 @@ impl Replay {
             terms,
             wavelengths: context.wavelengths,
             workspace,
+            brought,
         }
+    }
+
+    /// The light subpath of the sample; empty where it has that of another.
+    pub fn light(&self) -> &Subpath {
+        self.brought.as_ref().unwrap_or(&self.workspace.light)
     }
 }
 

@@ -282,13 +282,11 @@ impl<'a> Session<'a> {
         let sample = self.sample(index, pass);
         let context = self.context(&sample);
         let shared = self.integrator.shared_light();
-        let images = shared.map(|shared| self.replay_light(shared, index, pass, &mut workspace));
+        let light = shared.and_then(|s| self.replay_light(s, index, pass, &mut workspace));
         self.integrator.sample(&context, &sample, &mut workspace);
-        if let Some(images) = images {
-            workspace.add_light_images(images);
-        }
+        let light = light.map(|light| workspace.add_light(light));
         let selector = selector(&self.settings, self.training.as_ref());
-        Some(Replay::new(&context, workspace, &*selector))
+        Some(Replay::new(&context, workspace, light, &*selector))
     }
 
     /// What is rendered.

@@ -43,9 +43,9 @@ pub enum Aov {
     Samples,
     /// The variance of the pixel's mean, and the same divided by the square of the mean.
     Variance,
-    /// The time of all samples. Unit: seconds. The one image whose bits no run repeats.
+    /// The time of all samples, without light subpaths that they share. Unit: seconds. The one image whose bits no run repeats.
     Time,
-    /// The rays of all samples, with those of the light subpaths that go with them.
+    /// The rays of all samples, with those of light subpaths of their own.
     Rays,
 }
 

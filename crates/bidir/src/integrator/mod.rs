@@ -24,8 +24,8 @@ pub use lvc::{
 };
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
+pub(crate) use workspace::{BroughtLight, camera_ray};
 pub use workspace::{Contribution, Sample, Splat, Workspace};
-pub(crate) use workspace::{LightImages, camera_ray};
 
 use crate::path::{Connections, PathContext, PathRoulette};
 use crate::select::{Selector, ShadowRays};
@@ -43,7 +43,7 @@ pub trait Integrator: Sync + Send {
     }
 }
 
-/// The light subpaths that the samples of a group share: there are as many, and they are in the
+/// The light subpaths that the samples of a group share, each brought by one of them; they are in the
 /// workspace.
 pub trait SharedLight {
     /// Forgets those of another group.
@@ -68,7 +68,8 @@ pub enum IntegratorKind {
     Bdpt,
     /// Bidirectional path tracing that connects with light subpaths of many samples.
     Lvc,
-    /// Path tracing or [`Lvc`](Self::Lvc), by what a short render before the first pass finds.
+    /// [`Path`](Self::Path), [`Bdpt`](Self::Bdpt) or [`Lvc`](Self::Lvc), by what a short render before the
+    /// first pass finds.
     Auto,
 }
 

@@ -91,9 +91,10 @@ pub struct Splat {
     pub place: SplatPlace,
 }
 
-/// The light images of a light subpath, with the journal of their terms.
+/// A light subpath that a sample brings to its group, with its light images and the journal of their terms.
 #[derive(Debug, Default)]
-pub(crate) struct LightImages {
+pub(crate) struct BroughtLight {
+    subpath: Subpath,
     splats: Vec<Splat>,
     entries: Vec<Entry>,
 }
@@ -282,21 +283,23 @@ impl Workspace {
         self.note(contribution.mark(), Fate::Added, contribution.value);
     }
 
-    /// The light images of a light subpath that was walked alone.
-    pub(crate) fn light_images(&self) -> LightImages {
+    /// Takes the light subpath that was walked last.
+    pub(crate) fn take_light(&mut self) -> BroughtLight {
         let entries = self.journal.iter().flat_map(|journal| &journal.entries);
-        LightImages {
-            splats: self.splats.clone(),
+        BroughtLight {
             entries: entries.copied().collect(),
+            subpath: std::mem::take(&mut self.light),
+            splats: std::mem::take(&mut self.splats),
         }
     }
 
-    /// Puts light images beside what the sample left.
-    pub(crate) fn add_light_images(&mut self, images: LightImages) {
-        self.splats.extend(images.splats);
+    /// Puts the light images of such a subpath beside what the sample left; returns the subpath.
+    pub(crate) fn add_light(&mut self, brought: BroughtLight) -> Subpath {
+        self.splats.extend(brought.splats);
         if let Some(journal) = &mut self.journal {
-            journal.entries.extend(images.entries);
+            journal.entries.extend(brought.entries);
         }
+        brought.subpath
     }
 
     /// Traces the shadow ray of a term: how much of it arrives. None: nothing.

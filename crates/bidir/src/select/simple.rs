@@ -29,10 +29,11 @@ pub struct RayRoulette {
 }
 
 impl RayRoulette {
-    /// Roulette with this part of the image's mean luminance as its threshold.
+    /// Roulette with this part of the image's mean luminance as its threshold; filters with negative lobes
+    /// may have a negative mean, by which everything is traced.
     pub fn new(part: f32, mean_luminance: f32) -> Self {
         Self {
-            threshold: part * mean_luminance,
+            threshold: (part * mean_luminance).max(0.0),
         }
     }
 

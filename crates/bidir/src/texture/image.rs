@@ -111,13 +111,14 @@ impl<const N: usize> Image<N> {
     }
 }
 
-/// The least and the most of each channel; NaN is neither.
+/// The least and the most of each channel; NaN becomes any number, by what is done with it.
 fn bounds<const N: usize>(texels: &[[f32; N]]) -> [[f32; N]; 2] {
     let empty = [[f32::INFINITY; N], [f32::NEG_INFINITY; N]];
+    let or = |value: f32, bound: f32| if value.is_nan() { bound } else { value };
     texels.iter().fold(empty, |[least, most], texel| {
         [
-            std::array::from_fn(|i| least[i].min(texel[i])),
-            std::array::from_fn(|i| most[i].max(texel[i])),
+            std::array::from_fn(|i| least[i].min(or(texel[i], f32::MIN))),
+            std::array::from_fn(|i| most[i].max(or(texel[i], f32::MAX))),
         ]
     })
 }

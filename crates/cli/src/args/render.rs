@@ -207,8 +207,8 @@ pub(crate) struct EstimatorArgs {
     /// The strategies that take part (bdpt, lvc) [default: all].
     ///
     /// A list of rules, of which the last that matches decides: `all`, `-s0` (without s = 0), `-t1`,
-    /// `s2t3` (with this one). s counts vertices from the light, t from the camera. A list that does
-    /// not begin with `all` begins with none.
+    /// `s2t3` (with this one). s counts vertices from the light, t from the camera. A list that begins
+    /// with a removal begins with all, another with none.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub(crate) strategies: Option<Strategies>,
     /// Where next-event estimation takes its light point from (bdpt, lvc) [default: fresh].

@@ -27,6 +27,8 @@ pub struct SampleReport {
     pub(super) light_image: Vec<SplatReport>,
     /// What splats are divided by.
     pub(super) light_paths: u64,
+    /// How many light subpaths the pass has: fewer, where samples share them.
+    pub(super) light_subpaths: u64,
     /// What was added to the pixel.
     pub(super) value: Rgb,
     pub(super) value_of_hits: Rgb,
@@ -72,7 +74,7 @@ impl SampleReport {
             settings: SettingsText::from(session.settings()),
             training: TrainingReport::new(session),
             camera: SubpathReport::new(&color, &view, &workspace.camera),
-            light: SubpathReport::new(&color, &view, &workspace.light),
+            light: SubpathReport::new(&color, &view, replay.light()),
             value: color.rgb(workspace.value),
             value_of_hits: sum(hits.iter().map(|hit| hit.added)),
             value_of_candidates: sum(candidates.iter().map(|c| c.term.added)),
@@ -82,6 +84,7 @@ impl SampleReport {
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
             light_image,
             light_paths: scene.film().light_paths(),
+            light_subpaths: session.light_subpaths(),
             rays: workspace.stats.rays.total(),
             dropped: workspace.stats.dropped,
         }

@@ -90,7 +90,12 @@ impl SampleReport {
         if count > 0 {
             writeln!(
                 f,
-                "  g is the luminance of w C, by which candidates are chosen"
+                "  g, by which candidates are chosen, is the luminance of w C{}",
+                if self.settings.integrator == "lvc" {
+                    ", times √V̂ where visibility is learnt"
+                } else {
+                    ""
+                }
             )?;
             writeln!(
                 f,
@@ -112,7 +117,8 @@ impl SampleReport {
         let (count, paths) = (self.light_image.len(), self.light_paths);
         writeln!(
             f,
-            "\nsplats to the light image, t = 1, of one of {paths} light subpaths: {count}"
+            "\nsplats to the light image, t = 1, of one of {} light subpaths: {count}",
+            self.light_subpaths
         )?;
         if count > 0 {
             writeln!(

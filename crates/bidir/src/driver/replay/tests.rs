@@ -129,6 +129,26 @@ fn every_term_says_what_became_of_it() {
     }
 }
 
+/// Of what samples share each brings its part: counted, and told.
+#[test]
+fn the_rays_of_a_pass_are_those_of_its_samples() {
+    let scene = scene();
+    for (name, integrator) in IntegratorKind::NAMES {
+        let mut session = session(&scene, integrator, "all");
+        let pass = pass(&session, 0);
+        let rays = pass.iter().map(|(_, r)| r.workspace.stats.rays.total());
+        let rays: u64 = rays.sum();
+        session.step(&());
+        assert_eq!(rays, session.stats().rays.total(), "{name}");
+        let subpaths = pass.iter().filter(|(_, r)| !r.light().vertices.is_empty());
+        let expected = match session.settings().integrator {
+            IntegratorKind::Path => 0,
+            _ => session.light_subpaths(),
+        };
+        assert_eq!(subpaths.count() as u64, expected, "{name}");
+    }
+}
+
 #[test]
 fn probabilities_of_one_per_pair_sum_to_one() {
     let scene = scene();

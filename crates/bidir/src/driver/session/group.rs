@@ -1,8 +1,8 @@
 //! Groups of samples that share their light subpaths: these are walked before the samples.
 
 use super::Session;
-use crate::integrator::{LightImages, SharedLight, Workspace, group_size};
-use crate::stats::Stage;
+use crate::integrator::{BroughtLight, SharedLight, Workspace, group_size};
+use crate::stats::{Stage, Stats};
 use std::ops::Range;
 
 impl Session<'_> {
@@ -40,27 +40,37 @@ impl Session<'_> {
         shared.end(self.connections(), workspace);
     }
 
-    /// Walks the light subpaths of the group of `pixel` again; returns what that of `pixel` gave.
+    /// How many light subpaths a pass has.
+    pub fn light_subpaths(&self) -> u64 {
+        let pixels = self.scene.film().light_paths();
+        pixels.div_ceil(self.samples_per_subpath())
+    }
+
+    /// Walks the light subpaths of the group of `pixel` again; returns that of `pixel`, of which alone
+    /// anything is counted. None: another sample brings it.
     pub(super) fn replay_light(
         &self,
         shared: &dyn SharedLight,
         pixel: u64,
         pass: u64,
         workspace: &mut Workspace,
-    ) -> LightImages {
+    ) -> Option<BroughtLight> {
         let pixels = self.scene.film().crop.area();
         let size = group_size(pixels);
         let begin = pixel / size * size;
-        let mut own = LightImages::default();
+        let mut own = None;
         shared.begin(workspace);
         for other in self.bringers(begin..(begin + size).min(pixels)) {
             let sample = self.sample(other, pass);
+            workspace.stats = Stats::default();
             shared.walk(&self.context(&sample), &sample, workspace);
             if other == pixel {
-                own = workspace.light_images();
+                own = Some((workspace.take_light(), std::mem::take(&mut workspace.stats)));
             }
         }
         shared.end(self.connections(), workspace);
-        own
+        let (light, stats) = own.unzip();
+        workspace.stats = stats.unwrap_or_default();
+        light
     }
 }

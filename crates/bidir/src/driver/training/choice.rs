@@ -31,21 +31,82 @@ const EARLY_END: f64 = 1.2;
 /// samples tell of its variance is next to nothing.
 const LEAST_FOUND: f64 = 1.0 / 16.0;
 
-/// The best of the plans that were tried with `settings`, on a film of these blocks.
-pub(super) fn best(blocks: Blocks, settings: &Settings, tried: &[Tried]) -> Plan {
-    let scale = Scale::new(blocks, tried);
-    let missed = Missed::new(&scale, settings, tried);
-    let product = |tried: &Tried| product(&scale, &missed, tried);
-    let best = least(tried.iter(), product);
-    let is_even = settings.sampler == SamplerKind::Sobol;
-    let best = match best {
-        Some((plan, _)) if is_shared(plan) && is_even => {
-            let shared = tried.iter().filter(|(plan, _)| is_shared(plan));
-            least(shared, |tried| product_behind(&scale, tried))
+/// What is by so much behind the best may yet be better: the variance of some thousand samples is wrong by
+/// as much where bright ones are rare.
+const NEAR: f64 = 2.0;
+
+/// The plans that were tried with some settings on a film, as they are compared.
+pub(super) struct Judge<'a> {
+    tried: &'a [Tried],
+    scale: Scale<'a>,
+    missed: Missed,
+    is_even: bool,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(blocks: &'a Blocks, settings: &Settings, tried: &'a [Tried]) -> Self {
+        let scale = Scale::new(blocks, tried);
+        Self {
+            missed: Missed::new(&scale, settings, tried),
+            scale,
+            tried,
+            is_even: settings.sampler == SamplerKind::Sobol,
         }
-        best => best,
-    };
-    best.map_or_else(Plan::default, |(plan, _)| *plan)
+    }
+
+    /// The plans of which more samples are to tell which is the best. None where it is plain, or lies among
+    /// those that share light subpaths: they have most of their noise in common, and few samples compare
+    /// them.
+    pub(super) fn close(&self) -> Vec<Plan> {
+        let product = |tried: &Tried| self.product(tried);
+        let best = least(self.tried.iter(), product).map_or(f64::INFINITY, product);
+        let is_near = |tried: &&Tried| product(tried) <= NEAR * best;
+        let others = self.tried.iter().filter(|(plan, _)| !is_shared(plan));
+        let near = others.chain(least(self.shared(), product)).filter(is_near);
+        let near: Vec<_> = near.map(|(plan, _)| *plan).collect();
+        if near.len() > 1 { near } else { Vec::new() }
+    }
+
+    /// The best: one of those with the most samples.
+    pub(super) fn best(&self) -> Plan {
+        let samples = |(_, trial): &Tried| trial.stats.samples;
+        let most = self.tried.iter().map(samples).max();
+        let tried_most = self
+            .tried
+            .iter()
+            .filter(|tried| Some(samples(tried)) == most);
+        let best = match least(tried_most, |tried| self.product(tried)) {
+            Some((plan, _)) if is_shared(plan) && self.is_even => {
+                least(self.shared(), |tried| self.product_behind(tried))
+            }
+            best => best,
+        };
+        best.map_or_else(Plan::default, |(plan, _)| *plan)
+    }
+
+    fn shared(&self) -> impl Iterator<Item = &'a Tried> {
+        self.tried.iter().filter(|(plan, _)| is_shared(plan))
+    }
+
+    /// The product of what varies behind camera rays and of cost.
+    fn product_behind(&self, (plan, trial): &Tried) -> f64 {
+        let behind = self.scale.sum(|i| trial.behind(i, self.scale.blocks));
+        behind * trial.cost(plan.integrator)
+    }
+
+    /// The product of variance and cost, relative to those of others.
+    fn product(&self, (plan, trial): &Tried) -> f64 {
+        if self.scale.part_found(trial) < LEAST_FOUND {
+            return f64::INFINITY;
+        }
+        let found = self.scale.sum(|i| trial.variance(i, self.scale.blocks));
+        let missed = if plan.has_light_images() {
+            0.0
+        } else {
+            self.missed.beside(found)
+        };
+        (found + missed) * handicap(plan) * trial.cost(plan.integrator)
+    }
 }
 
 /// The plan of which `product` is least.
@@ -63,25 +124,6 @@ fn is_shared(plan: &Plan) -> bool {
     plan.integrator == IntegratorKind::Lvc
 }
 
-/// The product of what varies behind camera rays and of cost.
-fn product_behind(scale: &Scale, (plan, trial): &Tried) -> f64 {
-    scale.sum(|i| trial.behind(i, &scale.blocks)) * trial.cost(plan.integrator)
-}
-
-/// The product of variance and cost, relative to those of others.
-fn product(scale: &Scale, missed: &Missed, (plan, trial): &Tried) -> f64 {
-    if scale.part_found(trial) < LEAST_FOUND {
-        return f64::INFINITY;
-    }
-    let found = scale.sum(|i| trial.variance(i, &scale.blocks));
-    let missed = if plan.has_light_images() {
-        0.0
-    } else {
-        missed.beside(found)
-    };
-    (found + missed) * handicap(plan) * trial.cost(plan.integrator)
-}
-
 /// What the product of a plan counts, by what is known before any trial.
 fn handicap(plan: &Plan) -> f64 {
     match (plan.integrator, plan.roulette) {
@@ -92,18 +134,18 @@ fn handicap(plan: &Plan) -> f64 {
 }
 
 /// What variances are relative to.
-struct Scale {
-    blocks: Blocks,
+struct Scale<'a> {
+    blocks: &'a Blocks,
     /// The mean of a pixel of each block, by all plans.
     means: Vec<f64>,
     /// ε.
     least: f64,
 }
 
-impl Scale {
-    fn new(blocks: Blocks, tried: &[Tried]) -> Self {
+impl<'a> Scale<'a> {
+    fn new(blocks: &'a Blocks, tried: &[Tried]) -> Self {
         let mean = |i| {
-            let means = tried.iter().map(|(_, trial)| trial.mean(i, &blocks));
+            let means = tried.iter().map(|(_, trial)| trial.mean(i, blocks));
             means.sum::<f64>() / tried.len() as f64
         };
         let means: Vec<f64> = (0..BLOCKS).map(mean).collect();
@@ -126,14 +168,14 @@ impl Scale {
     /// a single bright sample of another plan is in one of them.
     fn part_found(&self, trial: &Trial) -> f64 {
         let bright = (0..self.means.len()).filter(|&i| self.means[i] > 0.0);
-        let parts = bright.map(|i| (trial.mean(i, &self.blocks) / self.means[i]).min(1.0));
+        let parts = bright.map(|i| (trial.mean(i, self.blocks) / self.means[i]).min(1.0));
         let [sum, count] = parts.fold([0.0, 0.0], |[sum, count], part| [sum + part, count + 1.0]);
         if count > 0.0 { sum / count } else { 1.0 }
     }
 
     /// What the light images of `trial` tell of path tracing beyond squares of `most`, and the largest term.
     fn hidden(&self, trial: &Trial, most: f64) -> [f64; 2] {
-        trial.hidden(most, &self.blocks, |i| self.relative(i))
+        trial.hidden(most, self.blocks, |i| self.relative(i))
     }
 
     /// 1 / (m² + ε) of block number `i`.
@@ -166,7 +208,7 @@ struct Missed {
 }
 
 impl Missed {
-    fn new(scale: &Scale, settings: &Settings, tried: &[Tried]) -> Self {
+    fn new(scale: &Scale<'_>, settings: &Settings, tried: &[Tried]) -> Self {
         let with_light = tried.iter().filter(|(plan, _)| is_told(settings, plan));
         let with_light: Vec<_> = with_light.collect();
         let roulette = with_light.first().map(|(plan, _)| plan.roulette);
@@ -179,7 +221,7 @@ impl Missed {
                 .map(|(_, trial)| scale.hidden(trial, most));
             Self {
                 missed: mean_but_largest(hidden),
-                found: scale.sum(|i| trial.variance(i, &scale.blocks)),
+                found: scale.sum(|i| trial.variance(i, scale.blocks)),
             }
         };
         alike.map(of_alike).unwrap_or_default()

@@ -23,7 +23,9 @@ use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
 use blocks::Blocks;
+use choice::Judge;
 use pilot::Found;
+use plan::Trials;
 use probe::Probe;
 use survey::Survey;
 
@@ -75,12 +77,18 @@ impl Training {
     fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
         let default = Plan::default().keeping(settings);
         let mut training = Self::run(scene, &default.apply(settings));
-        let tried = plan::try_all(scene, settings, &training, training.samples);
+        let trials = Trials {
+            scene,
+            settings,
+            training: &training,
+        };
+        let (mut tried, blocks) = (trials.run(), Blocks::new(scene.film().crop));
+        let close = Judge::new(&blocks, settings, &tried).close();
+        trials.run_more(&close, &mut tried);
         for (_, trial) in &tried {
-            training.rays += trial.stats.rays;
-            training.samples += trial.stats.samples;
+            training.count(trial.stats.samples, trial.stats.rays);
         }
-        let plan = choice::best(Blocks::new(scene.film().crop), settings, &tried);
+        let plan = Judge::new(&blocks, settings, &tried).best();
         training.plan = Some(plan);
         (plan, training)
     }

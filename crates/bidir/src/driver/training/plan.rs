@@ -178,25 +178,46 @@ fn open_plans(settings: &Settings) -> Vec<Plan> {
     plans
 }
 
-/// Tries the plans that are possible, with samples from number `first` on.
-pub(super) fn try_all(
-    scene: &Scene,
-    settings: &Settings,
-    training: &Training,
-    first: u64,
-) -> Vec<Tried> {
-    let attempt = |plan: Plan| {
-        let settings = plan.apply(settings);
+/// The pixels that each plan is tried with, at first.
+const PIXELS: u64 = 4096;
+/// And the next time, where several may be the best.
+const MORE_PIXELS: u64 = 3 * PIXELS;
+
+/// Where plans are tried.
+pub(super) struct Trials<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) settings: &'a Settings,
+    pub(super) training: &'a Training,
+}
+
+impl Trials<'_> {
+    /// Tries the plans that are possible.
+    pub(super) fn run(&self) -> Vec<Tried> {
+        let mut plans = open_plans(self.settings);
+        plans.retain(|plan| plan.is_possible(self.scene, self.settings));
+        let attempt = |plan| (plan, self.attempt(&plan, 0, PIXELS));
+        plans.into_iter().map(attempt).collect()
+    }
+
+    /// Tries those of `plans` with more samples.
+    pub(super) fn run_more(&self, plans: &[Plan], tried: &mut [Tried]) {
+        for (plan, trial) in tried {
+            if plans.contains(plan) {
+                trial.add(self.attempt(plan, trial::THIRDS * PIXELS, MORE_PIXELS));
+            }
+        }
+    }
+
+    /// Tries `plan` with so many pixels; there were `first` samples before.
+    fn attempt(&self, plan: &Plan, first: u64, pixels: u64) -> Trial {
+        let settings = plan.apply(self.settings);
         let probe = Probe {
-            scene,
+            scene: self.scene,
             settings: &settings,
-            connections: plan.connections(&settings, training),
-            first,
-            pixels: trial::PIXELS,
+            connections: plan.connections(&settings, self.training),
+            first: self.training.samples + first,
+            pixels,
         };
-        (plan, Trial::run(&probe, training.mean_luminance))
-    };
-    let plans = open_plans(settings).into_iter();
-    let possible = plans.filter(|plan| plan.is_possible(scene, settings));
-    possible.map(attempt).collect()
+        Trial::run(&probe, self.training.mean_luminance)
+    }
 }

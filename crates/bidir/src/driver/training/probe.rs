@@ -34,6 +34,32 @@ pub(super) trait Witness {
     fn sample(&mut self, context: &PathContext<'_>, sample: &Sample, workspace: &Workspace);
 }
 
+/// A light image on the film.
+pub(super) struct Landed {
+    /// The number of its pixel in the crop.
+    pub(super) pixel: usize,
+    /// The luminance of its value, times the filter's part.
+    pub(super) value: f64,
+    /// The share of its strategy.
+    pub(super) weight: f64,
+}
+
+/// The light images in a workspace that land on the film.
+pub(super) fn landed<'a>(
+    context: &'a PathContext<'_>,
+    workspace: &'a Workspace,
+) -> impl Iterator<Item = Landed> + 'a {
+    workspace.splats.iter().filter_map(|splat| {
+        let (pixel, part) = context.scene.film().pick_pixel(splat.place)?;
+        let value = context.luminance(splat.contribution.value) * part;
+        Some(Landed {
+            pixel,
+            value: value.into(),
+            weight: splat.contribution.weight.into(),
+        })
+    })
+}
+
 /// Where samples lie on the film: point number i of the additive recurrence by 1/ρ and 1/ρ², ρ being the
 /// root of ρ³ = ρ + 1 \[Roberts18\], which spreads evenly over both sides whatever their lengths are, as
 /// steps through the pixels row by row do not. Unit: 2⁻⁶⁴ of a side.

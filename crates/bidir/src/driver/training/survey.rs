@@ -2,7 +2,7 @@
 //! image is, and where vertices are.
 
 use super::Settings;
-use super::probe::{GROUP, Probe, groups};
+use super::probe::{GROUP, Probe, groups, landed};
 use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
 use crate::math::Vec3;
 use crate::path::{Cells, Connections, PairSums, PathContext};
@@ -72,10 +72,9 @@ impl Survey {
         let (scene, sample) = (probe.scene, probe.sample(number));
         let context = probe.context(&sample);
         integrator.sample(&context, &sample, workspace);
-        let y = |light| f64::from(context.luminance(light));
-        let splats = workspace.splats.iter();
-        let splats: f64 = splats.map(|splat| y(splat.contribution.value)).sum();
-        self.luminance += y(workspace.value) + splats / scene.film().crop.area() as f64;
+        let splats: f64 = landed(&context, workspace).map(|splat| splat.value).sum();
+        let own = f64::from(context.luminance(workspace.value));
+        self.luminance += own + splats / scene.film().crop.area() as f64;
         self.keep_vertices(&context, workspace);
     }
 

@@ -27,18 +27,17 @@
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
-use super::probe::{GROUP, Probe, Witness, groups};
+use super::probe::{GROUP, Probe, Witness, groups, landed};
 use crate::integrator::{IntegratorKind, Sample, Workspace};
 use crate::path::PathContext;
 use crate::stats::{RayCounts, Stats};
+use std::ops::AddAssign;
 
 #[cfg(test)]
 pub(super) mod tests;
 
-/// The groups that a plan is tried with.
-const GROUPS: u64 = 48;
-/// The pixels: a third of the samples.
-pub(super) const PIXELS: u64 = GROUPS * GROUP / 3;
+/// The samples of a pixel: a, b and c.
+pub(super) const THIRDS: u64 = 3;
 
 /// Above this a weight says no more than that others are rare: 1 - w is a difference of rounded numbers.
 const MOST_WEIGHT: f64 = 0.9999;
@@ -66,6 +65,18 @@ struct Block {
     behind: f64,
     splats: f64,
     splat_squares: f64,
+}
+
+impl AddAssign<&Self> for Block {
+    fn add_assign(&mut self, more: &Self) {
+        self.samples += more.samples;
+        self.own += more.own;
+        self.triples += more.triples;
+        self.differences += more.differences;
+        self.behind += more.behind;
+        self.splats += more.splats;
+        self.splat_squares += more.splat_squares;
+    }
 }
 
 /// What a light image tells of path tracing.
@@ -138,14 +149,9 @@ impl Witness for Trying<'_> {
 
 impl Trying<'_> {
     fn add_splats(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
-        let film = context.scene.film();
-        for splat in &workspace.splats {
-            let Some((index, weight)) = film.pick_pixel(splat.place) else {
-                continue;
-            };
-            let value = context.luminance(splat.contribution.value) * weight;
-            let [value, weight] = [value, splat.contribution.weight].map(f64::from);
-            self.trial.add_splat(self.blocks.of(index), value, weight);
+        for splat in landed(context, workspace) {
+            let block = self.blocks.of(splat.pixel);
+            self.trial.add_splat(block, splat.value, splat.weight);
         }
     }
 }
@@ -160,7 +166,8 @@ impl Trial {
             ..
         } = probe.settings;
         let blocks = Blocks::new(probe.scene.film().crop);
-        let groups = groups(GROUPS, |group, workspace| {
+        let samples = THIRDS * probe.pixels;
+        let groups = groups(samples / GROUP, |group, workspace| {
             let mut trying = Trying {
                 blocks: &blocks,
                 trial: Self::default(),
@@ -171,20 +178,20 @@ impl Trial {
         });
         let mut all = Self::default();
         for (trial, stats) in groups {
-            all.add(trial, &stats);
+            all.add(trial);
+            all.stats += &stats;
         }
         all.sum_values();
         all
     }
 
-    /// Adds those of the next group.
-    fn add(&mut self, group: Self, stats: &Stats) {
-        self.stats += stats;
-        self.values.extend(group.values);
-        self.told.extend(group.told);
-        for (sum, found) in self.found.iter_mut().zip(&group.found) {
-            sum.splats += found.splats;
-            sum.splat_squares += found.splat_squares;
+    /// Adds what more samples found.
+    pub(super) fn add(&mut self, more: Self) {
+        self.stats += &more.stats;
+        self.values.extend(more.values);
+        self.told.extend(more.told);
+        for (sum, found) in self.found.iter_mut().zip(&more.found) {
+            *sum += found;
         }
     }
 

@@ -6,7 +6,7 @@ use crate::path::{
 };
 use std::ops::Range;
 
-/// Light subpaths, one for each sample of a group.
+/// Light subpaths that samples of a group brought.
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     vertices: Vec<Vertex>,

@@ -1,11 +1,13 @@
-//! ⟨C⟩ = (K / (N M)) Σ_m C(y, z_m): bidirectional path tracing with a light vertex cache
+//! ⟨C⟩ = 1/(N M) Σ_m C(y, z_m) / P(z_m | y): bidirectional path tracing with a light vertex cache
 //! [Davidovic14, §4]. A camera vertex y is connected with M of the K vertices z of N light subpaths, in place
-//! of those of one.
+//! of those of one; they are drawn by P ([`LightProposals`](crate::path::LightProposals)), or evenly, where
+//! P = 1/K.
 //!
-//! **Weights.** For each vertex of the light subpath of a path, strategy (s, t) takes M N / K samples on
-//! average. K differs from group to group; weights must not, or the estimate is biased. They take
-//! M / κ, with κ the mean of K / N in a training render
-//! ([`PathContext::connections`](crate::path::PathContext::connections)).
+//! **Weights.** For each vertex of the light subpath of a path, strategy (s, t) takes M N P samples on
+//! average. K differs from group to group, and P with it; weights must not, or the estimate is biased. They
+//! take M / κ in place of M N / K, with κ the mean of K / N in a training render
+//! ([`PathContext::connections`](crate::path::PathContext::connections)), and for a learnt P what stands in
+//! for it likewise.
 //!
 //! s = 0, s = 1 and t = 1 are those of [`Bdpt`](super::Bdpt), but that a camera vertex may have several
 //! light points.

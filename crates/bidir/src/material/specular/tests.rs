@@ -130,6 +130,8 @@ fn check(is_specular: bool, materials: impl IntoIterator<Item = Material>) {
 fn interfaces_are_specular_where_they_are_smooth() {
     check(true, [metal(Roughness::SMOOTH), metal(evenly(1e-7))]);
     check(true, [metal(rough(speck(0.3, 0.0), speck(0.2, 0.0)))]);
+    let nan = rough(speck(0.3, f32::NAN), FloatTexture::Constant(0.0));
+    check(true, [metal(nan)]);
     let across = rough(FloatTexture::Constant(0.0), FloatTexture::Constant(0.3));
     let away = rough(speck(0.3, 0.1), FloatTexture::Constant(0.2));
     check(

@@ -4,6 +4,11 @@ use crate::driver::training::trial::Trial;
 use crate::driver::training::trial::tests::square;
 use crate::path::PathRoulette;
 
+/// The best of the plans, on a film of these blocks.
+fn best(blocks: &Blocks, settings: &Settings, tried: &[Tried]) -> Plan {
+    Judge::new(blocks, settings, tried).best()
+}
+
 /// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
 fn chosen(splats: &[[f64; 2]]) -> Plan {
     let tried = [
@@ -11,7 +16,7 @@ fn chosen(splats: &[[f64; 2]]) -> Plan {
         (path(1), Trial::of(&[[1.0, 1.1]], &[])),
         (BDPT, Trial::of(&[[0.0, 2.0]], splats)),
     ];
-    best(square(), &Settings::default(), &tried)
+    best(&square(), &Settings::default(), &tried)
 }
 
 #[test]
@@ -19,7 +24,7 @@ fn walks_that_end_at_once_have_to_be_better() {
     let difference = |variance: f64| Trial::of(&[[1.0, 1.0 + variance.sqrt()]], &[]);
     let best_beside = |variance: f64| {
         let tried = [(path(0), difference(variance)), (path(1), difference(1.0))];
-        best(square(), &Settings::default(), &tried)
+        best(&square(), &Settings::default(), &tried)
     };
     assert_eq!([0.9, 0.75].map(best_beside), [path(1), path(0)]);
 }
@@ -42,8 +47,8 @@ fn light_images_tell_where_their_weights_count_all_that_path_tracing_takes() {
         ]
     };
     let missed = |settings: Settings, plan| {
-        let tried = tried(plan);
-        let missed = Missed::new(&Scale::new(square(), &tried), &settings, &tried);
+        let (tried, blocks) = (tried(plan), square());
+        let missed = Missed::new(&Scale::new(&blocks, &tried), &settings, &tried);
         missed.missed > 0.0
     };
     let with = |mis, mis_count| {
@@ -74,7 +79,7 @@ fn a_plan_that_finds_nothing_of_what_is_there_is_not_taken() {
     let everywhere = |value: f64| Trial::of(&[[value, 1.5 * value]; BLOCKS], &[]);
     for (found, expected) in [(0.0, BDPT), (0.01, BDPT), (0.5, path(1))] {
         let tried = [(path(1), everywhere(found)), (BDPT, everywhere(1.0))];
-        let plan = best(square(), &Settings::default(), &tried);
+        let plan = best(&square(), &Settings::default(), &tried);
         assert_eq!(plan, expected, "{found}");
     }
 }
@@ -96,7 +101,7 @@ fn what_light_images_tell_is_beside_path_tracing_of_their_roulette() {
         (path(1), Trial::of(&[[1.0, 1.1]], &[])),
         (keeping(BDPT), Trial::of(&[[0.0, 2.0]], &[[1.0, 0.999]; 8])),
     ];
-    let plan = best(square(), &Settings::default(), &tried);
+    let plan = best(&square(), &Settings::default(), &tried);
     assert_eq!(plan.integrator, IntegratorKind::Bdpt);
 }
 
@@ -111,7 +116,7 @@ fn of_plans_that_are_as_good_one_without_common_noise_is_taken() {
             (path(1), Trial::of(&[[1.0, 2.0]], &[])),
             (LVC, Trial::of(&[[1.0, 1.0 + difference]], &[])),
         ];
-        best(square(), &Settings::default(), &tried)
+        best(&square(), &Settings::default(), &tried)
     };
     assert_eq!([0.95, 0.85].map(best_beside), [path(1), LVC]);
 }
@@ -132,12 +137,48 @@ fn what_a_pixel_varies_by_is_the_same_for_all_that_share_light_subpaths() {
             ..Settings::default()
         };
         let tried = [(LVC, with_pixel(2.0)), (MANY, many.clone())];
-        assert_eq!(best(square(), &settings, &tried), expected);
+        assert_eq!(best(&square(), &settings, &tried), expected);
     }
 }
 
 #[test]
 fn nothing_to_see_is_traced_from_the_camera() {
     let tried = PLANS.map(|plan| (plan, Trial::of(&[[0.0; 2]], &[])));
-    assert_eq!(best(square(), &Settings::default(), &tried), path(0));
+    assert_eq!(best(&square(), &Settings::default(), &tried), path(0));
+}
+
+/// Of so much variance in the one block.
+fn varying(plan: Plan, variance: f64) -> Tried {
+    let is_path = plan.integrator == IntegratorKind::Path;
+    let cost = if is_path {
+        1.0
+    } else {
+        Trial::of(&[[0.0; 2]], &[]).cost(plan.integrator)
+    };
+    let difference = (2.0 * variance / cost).sqrt();
+    (plan, Trial::of(&[[1.0, 1.0 + difference]], &[]))
+}
+
+#[test]
+fn plans_that_are_near_the_best_are_tried_more() {
+    let close = |tried: &[Tried]| Judge::new(&square(), &Settings::default(), tried).close();
+    let path_beside_bdpt = |variance| close(&[varying(path(1), variance), varying(BDPT, 1.0)]);
+    assert_eq!(path_beside_bdpt(1.9), [path(1), BDPT]);
+    assert_eq!(path_beside_bdpt(2.1), []);
+    // Of those that share light subpaths the best alone.
+    let shared = [varying(LVC, 1.0), varying(MANY, 1.2)];
+    assert_eq!(close(&shared), []);
+    let all = [shared.as_slice(), &[varying(BDPT, 1.5)]].concat();
+    assert_eq!(close(&all), [BDPT, LVC]);
+}
+
+#[test]
+fn the_best_is_one_of_those_that_were_tried_more() {
+    let mut tried = [1.1, 1.0, 1.3].map(|variance| varying(BDPT, variance));
+    (tried[0].0, tried[2].0) = (path(1), path(2));
+    for i in [0, 2] {
+        let more = tried[i].1.clone();
+        tried[i].1.add(more);
+    }
+    assert_eq!(best(&square(), &Settings::default(), &tried), path(1));
 }

@@ -146,7 +146,7 @@ fn two_of_three_samples_share_their_camera_ray() {
         settings: &settings,
         connections: Connections::ONE_SUBPATH,
         first: 77,
-        pixels: PIXELS,
+        pixels: 4096,
     };
     let trial = Trial::run(&probe, 0.0);
     let sum = |of_block: &dyn Fn(usize) -> f64| (0..BLOCKS).map(of_block).sum::<f64>();
@@ -154,4 +154,25 @@ fn two_of_three_samples_share_their_camera_ray() {
     assert!(sum(&|i| trial.mean(i, &square())) > 1.0);
     assert!(sum(&|i| trial.variance(i, &square())) > 1.0);
     assert!(sum(&|i| trial.behind(i, &square())) <= 0.0);
+}
+
+#[test]
+fn more_samples_are_as_if_all_had_been_taken_at_once() {
+    let [first, more] = [[[1.0, 3.0], [2.0, 5.0]], [[4.0, 1.0], [0.0, 2.0]]];
+    let mut added = Trial::of(&first, &[[2.0, 0.5]]);
+    added.add(Trial::of(&more, &[[1.0, 0.25]]));
+    let blocks = square();
+    for (i, [a, b]) in [(0, [2.0, 3.0]), (1, [3.0, 2.0])] {
+        // Half the squares of the differences, of two triples; light images of twelve samples land in block 0.
+        let splats = if i == 0 { 5.0 / (12.0 * 256.0) } else { 0.0 };
+        let expected = (a * a + b * b) / 4.0 + splats;
+        assert!((added.variance(i, &blocks) - expected).abs() < 1e-12);
+    }
+    let sum_of_first_block = (1.0 + 3.0 + 3.0 + 4.0 + 1.0 + 1.0) / 6.0;
+    let splats = 3.0 / 12.0;
+    assert!((added.mean(0, &blocks) - sum_of_first_block - splats).abs() < 1e-12);
+    assert!((added.largest_square(|_| 1.0) - 25.0).abs() < 1e-12);
+    let [told, _] = added.hidden(0.0, &blocks, |_| 1.0);
+    let squares = 4.0 / 0.25 + 1.0 / 0.1875;
+    assert!((told - squares / (12.0 * 256.0)).abs() < 1e-12);
 }
