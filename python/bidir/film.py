@@ -122,7 +122,7 @@ class Film:
 
     @property
     def counts(self) -> dict[str, int]:
-        """What was counted: ``samples``, ``rays.total``, ``candidates``, ``dropped`` and more."""
+        """What was counted: ``samples``, ``rays.total``, ``candidates-evaluated``, ``dropped`` and more."""
         return self._native.counts
 
     @property

@@ -130,7 +130,8 @@ impl Console {
             .with_wrap_lines(false);
         let mut text = String::new();
         match handler.render_report(&mut text, diagnostic) {
-            Ok(()) => text.trim().trim_start_matches(['×', 'x', ' ']).to_owned(),
+            // Only the mark that the theme begins with: the message may begin with a letter like it.
+            Ok(()) => text.trim().trim_start_matches("× ").to_owned(),
             Err(_) => diagnostic.to_string(),
         }
     }

@@ -11,6 +11,7 @@ use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use bidir::driver::{Progress, Resources, SessionError};
 use bidir::film::PixelRect;
+use bidir::integrator::IntegratorKind;
 use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,12 +38,14 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     if args.restart {
         reference::clear(&folder).map_err(failure)?;
     }
+    let plan = plan(args, earlier.as_ref(), &loaded)?;
+    warn_unused(args, &plan, console);
     let job = Job {
         args,
         console,
         folder: &folder,
         loaded: &loaded,
-        plan: plan(args, earlier.as_ref(), &loaded)?,
+        plan,
         signals: &signals,
     };
     job.run()
@@ -102,6 +105,23 @@ fn plan(
         }
     }
     Ok(plan)
+}
+
+/// Tells which settings of an estimator have no influence on it.
+fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
+    let flags = [
+        ("--estimator", &args.estimator),
+        ("--against", &args.against),
+    ];
+    for (settings, (flag, named)) in plan.estimators.iter().zip(flags) {
+        let integrator = settings::name_of(&IntegratorKind::NAMES, settings.integrator);
+        let named = named.iter();
+        for unused in named.flat_map(|named| settings::unused(&named.0, settings)) {
+            console.warning(format_args!(
+                "{flag}: {unused} has no influence on the integrator `{integrator}`"
+            ));
+        }
+    }
 }
 
 /// A reference that can be made.

@@ -6,6 +6,7 @@ use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
+use formats::film::has_influence;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -41,46 +42,44 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
 
 /// Tells which flags and variables have no influence on this render. Returns how many there are.
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
-    let estimator = &args.estimator;
-    let is_bdpt = settings.integrator.has_candidates();
-    let is_auto = settings.integrator == IntegratorKind::Auto;
-    let is_lvc = settings.integrator == IntegratorKind::Lvc;
-    let may_share = is_lvc || is_auto;
-    let is_light = settings.integrator == IntegratorKind::Light;
     let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
     let integrator = format!("on the integrator `{integrator}`");
     let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
-    let unused = [
-        ("--strategies", estimator.strategies.is_some() && !is_bdpt),
-        ("--light-point", estimator.light_point.is_some() && !is_bdpt),
-        (
-            "--light-choice",
-            estimator.light_choice.is_some() && is_light,
-        ),
-        ("--candidates", estimator.candidates.is_some() && !may_share),
-        (
-            "--next-events",
-            estimator.next_events.is_some() && !may_share,
-        ),
-        ("--proposal", estimator.proposal.is_some() && !may_share),
-        ("--emission", estimator.emission.is_some() && !may_share),
-        (
-            "--samples-per-subpath",
-            estimator.samples_per_subpath.is_some() && !is_lvc,
-        ),
-        ("--mis-count", estimator.mis_count.is_some() && !may_share),
-        ("--shadow-rays", estimator.shadow_rays.is_some() && !is_bdpt),
-        ("--mis", estimator.mis.is_some() && is_light),
-    ];
-    let unused = unused.iter().filter(|(_, is_unused)| *is_unused);
-    let unused = unused.map(|(flag, _)| (*flag, &*integrator));
+    let unused = unused(&args.estimator, settings).map(|flag| (flag, &*integrator));
     let unused = unused.chain(spp.map(|_| ("--spp", "where --passes is given")));
     unused
         .map(|(flag, on)| {
-            let name = estimator.sources.name(flag);
+            let name = args.estimator.sources.name(flag);
             console.warning(format_args!("{name} has no influence {on}"));
         })
         .count()
+}
+
+/// The flags that are given and that an image by `settings` does not depend on.
+pub(crate) fn unused(
+    estimator: &EstimatorArgs,
+    settings: &Settings,
+) -> impl Iterator<Item = &'static str> {
+    let integrator = settings.integrator;
+    let given = [
+        ("--strategies", estimator.strategies.is_some()),
+        ("--light-point", estimator.light_point.is_some()),
+        ("--light-choice", estimator.light_choice.is_some()),
+        ("--candidates", estimator.candidates.is_some()),
+        ("--next-events", estimator.next_events.is_some()),
+        ("--proposal", estimator.proposal.is_some()),
+        ("--emission", estimator.emission.is_some()),
+        (
+            "--samples-per-subpath",
+            estimator.samples_per_subpath.is_some(),
+        ),
+        ("--mis-count", estimator.mis_count.is_some()),
+        ("--shadow-rays", estimator.shadow_rays.is_some()),
+        ("--mis", estimator.mis.is_some()),
+    ];
+    let given = given.into_iter().filter(|(_, is_given)| *is_given);
+    let given = given.map(|(flag, _)| flag);
+    given.filter(move |flag| !has_influence(flag.trim_start_matches("--"), integrator))
 }
 
 /// When a render is enough: what is reached first.

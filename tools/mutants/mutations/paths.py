@@ -281,8 +281,8 @@ PATHS = [
     (
         "what path tracing missed forgotten",
         "crates/bidir/src/driver/training/choice.rs",
-        "        missed.beside(found)\n",
-        "        0.0 * missed.beside(found)\n",
+        "            self.missed.beside(found)\n",
+        "            0.0 * self.missed.beside(found)\n",
         unit("what_light_images_tell_counts"),
     ),
     (
@@ -302,9 +302,37 @@ PATHS = [
     (
         "a plan that found nothing, and so does not vary",
         "crates/bidir/src/driver/training/choice.rs",
-        "scale.part_found(trial) < LEAST_FOUND",
-        "scale.part_found(trial) < 0.0",
+        "self.scale.part_found(trial) < LEAST_FOUND",
+        "self.scale.part_found(trial) < 0.0",
         unit("a_plan_that_finds_nothing"),
+    ),
+    (
+        "plans that are never tried again",
+        "crates/bidir/src/driver/training/choice.rs",
+        "product(tried) <= NEAR * best",
+        "product(tried) <= best",
+        unit("plans_that_are_near_the_best"),
+    ),
+    (
+        "the best plan of those that few samples flatter",
+        "crates/bidir/src/driver/training/choice.rs",
+        ".filter(|tried| Some(samples(tried)) == most);",
+        ".filter(|tried| Some(samples(tried)) <= most);",
+        unit("the_best_is_one_of_those"),
+    ),
+    (
+        "light images beside the film in the trained mean",
+        "crates/bidir/src/driver/training/probe.rs",
+        "film().pick_pixel(splat.place)?;",
+        "film().pick_pixel(splat.place).unwrap_or((0, 1.0));",
+        unit("the_mean_is_that_of_the_image"),
+    ),
+    (
+        "roulette by a negative mean",
+        "crates/bidir/src/select/simple.rs",
+        "(part * mean_luminance).max(0.0)",
+        "part * mean_luminance",
+        unit("roulette_with_a_negative_mean"),
     ),
     (
         "training samples along a diagonal",

@@ -106,6 +106,16 @@ fn candidates_are_chosen_with_the_probability_that_is_stated() {
     check_frequencies(&cached_candidates());
 }
 
+/// As an image may have by a filter with negative lobes.
+#[test]
+fn roulette_with_a_negative_mean_traces_everything() {
+    for mean in [-3.0, 0.0] {
+        let roulette = ShadowRays::RayRoulette(0.3);
+        let probs = roulette.selector(mean).probabilities(&candidates());
+        assert!(probs.iter().all(|&prob| prob >= 1.0), "{mean}: {probs:?}");
+    }
+}
+
 #[test]
 fn no_rule_traces_more_rays_than_it_says() {
     let limit = |rule| match rule {

@@ -30,6 +30,17 @@ fn faults_of_the_command_line_exit_with_2() {
 }
 
 #[test]
+fn names_are_told_whole() {
+    check("render x.pbrt", 4, "error: x.pbrt: cannot open");
+    let place = Workplace::new();
+    place.write("xx.pbrt", "WorldBegin\nMaterial \"xylophone\"\n");
+    place
+        .run("render xx.pbrt")
+        .expect(3)
+        .says("error: xx.pbrt:2:");
+}
+
+#[test]
 fn the_environment_is_read_after_flags() {
     let place = Workplace::new();
     let spp = |arguments: &str, value: &str| {

@@ -46,6 +46,18 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
     assert!(other["z_test"]["blocks"]["p"].as_f64().unwrap() > 1e-3);
 }
 
+/// What is not named is as if it had been.
+#[test]
+fn the_usual_estimators_may_be_named() {
+    let place = Workplace::new();
+    let make = |flags: &str| place.run(&format!("reference room.pbrt --spp 16 {flags}"));
+    make("").expect(0);
+    make("--estimator bdpt --against path").expect(0);
+    make("--estimator lvc -o lvc.reference")
+        .expect(0)
+        .says("lvc, 16 samples per pixel");
+}
+
 #[test]
 fn a_difference_is_tested_where_both_know_their_noise() {
     let place = Workplace::new();

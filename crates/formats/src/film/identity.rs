@@ -16,6 +16,8 @@ use std::time::Duration;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The setting that is known after training only.
 const TRAINED_MEAN: &str = "trained-mean";
+/// What `auto` renders with: known after training, too.
+const PLAN: &str = "plan";
 
 /// The scene that a film is of.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +58,10 @@ impl SceneIdentity<'_> {
         if let Some(training) = training {
             let mean = format!("{:e}", training.mean_luminance);
             settings.insert(TRAINED_MEAN.to_owned(), mean);
+            let plan = training
+                .plan
+                .map(|plan| (PLAN.to_owned(), plan.to_string()));
+            settings.extend(plan);
         }
         settings
     }
@@ -74,7 +80,9 @@ fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
 #[must_use]
 pub fn untrained(header: &FilmHeader) -> FilmHeader {
     let mut settings = header.settings.clone();
-    settings.remove(TRAINED_MEAN);
+    for name in [TRAINED_MEAN, PLAN] {
+        settings.remove(name);
+    }
     new(&header.scene, settings)
 }
 
@@ -96,7 +104,8 @@ fn counts(session: &Session<'_>) -> Value {
         },
         "connections_blocked": stats.connections_blocked,
         "light_image_blocked": stats.light_image_blocked,
-        "candidates": stats.candidates,
+        // The setting `candidates` has that name.
+        "candidates_evaluated": stats.candidates,
         "dropped": stats.dropped,
     })
 }

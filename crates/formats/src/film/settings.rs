@@ -105,6 +105,20 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
     Some(settings)
 }
 
+/// True where the setting that is called `name` may change an image by `integrator`.
+pub fn has_influence(name: &str, integrator: IntegratorKind) -> bool {
+    use IntegratorKind::{Auto, Light, Lvc};
+    match name {
+        "strategies" | "light-point" | "shadow-rays" => integrator.has_candidates(),
+        "light-choice" | "mis" => integrator != Light,
+        "candidates" | "next-events" | "proposal" | "emission" | "mis-count" => {
+            matches!(integrator, Lvc | Auto)
+        }
+        "samples-per-subpath" => integrator == Lvc,
+        _ => true,
+    }
+}
+
 /// The value of a name in a table of the library. None: it is not there.
 fn named<T: Copy>(names: &[(&'static str, T)], name: &str) -> Option<T> {
     let mut names = names.iter();

@@ -8,6 +8,7 @@ use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, Scen
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use bidir::integrator::IntegratorKind;
+use formats::film::{has_influence, name_of};
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -184,9 +185,16 @@ impl Named for BudgetSpec {
 /// The settings of a table, under the names of flags.
 fn changes(section: &mut Section<'_>) -> Result<Changes> {
     let mut changes = Changes::default();
+    // The integrator is the first.
     for name in Changes::NAMES {
         if let Some(entry) = section.take(name) {
             entry.read(|value| changes.set(name, value))?;
+            let mut deaf = changes.integrator.into_iter();
+            if let Some(deaf) = deaf.find(|integrator| !has_influence(name, *integrator)) {
+                let integrator = name_of(&IntegratorKind::NAMES, deaf);
+                let message = format!("`{name}` has no influence on the integrator `{integrator}`");
+                return Err(entry.fault(message));
+            }
         }
     }
     Ok(changes)

@@ -157,19 +157,22 @@ fn stored_mse(path: &Path) -> Option<f64> {
 }
 
 /// How a reference is made: as usual, or with another witness, where all strategies take part. Else paths
-/// may be missing, which path tracing has: unless another is named, the witness then has the same strategies under other weights. Those of the power
-/// heuristic have light tails; uniform ones would be more different, but have infinite variance near
-/// edges, and a witness whose mean is skewed is refused more often than the level says.
+/// may be missing, which path tracing has: unless another is named, the witness then has the same
+/// strategies under other weights. Those of the power heuristic have light tails; uniform ones would be
+/// more different, but have infinite variance near edges, and a witness whose mean is skewed is refused
+/// more often than the level says.
 fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes, named: Option<IntegratorKind>) -> Plan {
     let mut plan = Plan::usual(&stage.settings, spp);
+    let of_picture = changes.apply(&plan.estimators[0]).path.strategies;
+    let has_all = of_picture == Strategies::default();
+    let witness = named.or((!has_all).then_some(IntegratorKind::Bdpt));
+    if let Some(witness) = witness {
+        plan.estimators[1].set_integrator(witness);
+    }
     plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
-    let [picture, witness] = &mut plan.estimators;
-    if let Some(named) = named {
-        witness.set_integrator(named);
-    } else if picture.path.strategies != Strategies::default() {
-        witness.integrator = IntegratorKind::Bdpt;
-        picture.path.mis = MisHeuristic::Balance;
-        witness.path.mis = MisHeuristic::Power;
+    if named.is_none() && !has_all {
+        plan.estimators[0].path.mis = MisHeuristic::Balance;
+        plan.estimators[1].path.mis = MisHeuristic::Power;
     }
     plan
 }

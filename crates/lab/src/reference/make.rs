@@ -75,11 +75,11 @@ impl Plan {
     pub fn usual(scene: &Settings, spp: u64) -> Self {
         let of = |integrator| {
             let mut settings = Settings {
-                integrator,
                 sampler: SamplerKind::Independent,
                 seed: scene.seed,
                 ..Settings::default()
             };
+            settings.set_integrator(integrator);
             settings.path.max_depth = scene.path.max_depth;
             settings
         };

@@ -4,7 +4,10 @@ use super::agreement::Agreement;
 use super::{Error, LEVEL, PROVENANCE};
 use crate::results::Rays;
 use bidir::ESTIMATOR_VERSION;
+use bidir::driver::Settings;
 use bidir::film::FilmSettings;
+use bidir::integrator::IntegratorKind;
+use formats::film::SettingsText;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -60,10 +63,9 @@ pub struct EstimatorRecord {
 
 impl EstimatorRecord {
     /// In a line, such as `bdpt, 4096 samples per pixel`: the settings that are not the usual ones
-    /// are named.
+    /// of the integrator are named.
     pub fn summary(&self) -> String {
-        let usual = formats::film::SettingsText::from(&bidir::driver::Settings::default());
-        let usual = usual.by_flag();
+        let usual = self.usual();
         let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
         let setting = |name: &str| self.settings.get(name).map_or("", String::as_str);
         let named = self.settings.iter().filter(|(name, value)| {
@@ -73,6 +75,17 @@ impl EstimatorRecord {
         let named = named.collect::<String>();
         let integrator = setting("integrator");
         format!("{integrator}{named}, {} samples per pixel", self.spp)
+    }
+
+    /// What its integrator does where nothing else is said.
+    fn usual(&self) -> BTreeMap<String, String> {
+        let mut settings = Settings::default();
+        let name = self.settings.get("integrator").map(String::as_str);
+        let mut known = IntegratorKind::NAMES.iter();
+        if let Some((_, kind)) = known.find(|(known, _)| Some(*known) == name) {
+            settings.set_integrator(*kind);
+        }
+        SettingsText::from(&settings).by_flag()
     }
 }
 

@@ -31,9 +31,9 @@ const EARLY_END: f64 = 1.2;
 /// samples tell of its variance is next to nothing.
 const LEAST_FOUND: f64 = 1.0 / 16.0;
 
-/// What is by so much behind the best may yet be better: the variance of some thousand samples is wrong by
-/// as much where bright ones are rare.
-const NEAR: f64 = 2.0;
+/// What is by so much behind the best may yet be better: variances of some thousand samples are too small
+/// where bright ones are rare.
+const NEAR: f64 = 1.5;
 
 /// The plans that were tried with some settings on a film, as they are compared.
 pub(super) struct Judge<'a> {
@@ -54,17 +54,27 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The plans of which more samples are to tell which is the best. None where it is plain, or lies among
-    /// those that share light subpaths: they have most of their noise in common, and few samples compare
-    /// them.
+    /// The plans of which more samples are to tell which is the best; none where it is plain.
+    ///
+    /// Of those that share light subpaths the best alone: they have most of their noise in common, and few
+    /// samples compare them. Path tracing with each roulette, or with none: what light images tell is of one
+    /// of them, relative to what its samples found.
     pub(super) fn close(&self) -> Vec<Plan> {
         let product = |tried: &Tried| self.product(tried);
         let best = least(self.tried.iter(), product).map_or(f64::INFINITY, product);
         let is_near = |tried: &&Tried| product(tried) <= NEAR * best;
-        let others = self.tried.iter().filter(|(plan, _)| !is_shared(plan));
-        let near = others.chain(least(self.shared(), product)).filter(is_near);
-        let near: Vec<_> = near.map(|(plan, _)| *plan).collect();
-        if near.len() > 1 { near } else { Vec::new() }
+        let (light, path): (Vec<_>, Vec<_>) = (self.tried.iter())
+            .filter(|(plan, _)| !is_shared(plan))
+            .partition(|(plan, _)| plan.has_light_images());
+        let shared = least(self.shared(), product);
+        let mut near: Vec<_> = light.into_iter().chain(shared).filter(is_near).collect();
+        if path.iter().any(is_near) {
+            near.extend(path);
+        }
+        if near.len() < 2 {
+            return Vec::new();
+        }
+        near.into_iter().map(|(plan, _)| *plan).collect()
     }
 
     /// The best: one of those with the most samples.

@@ -110,3 +110,33 @@ impl Survey {
         PairSums::uniform(light_vertices)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::training::trial::tests::lamp;
+    use crate::driver::{Resources, Session};
+    use crate::film::PixelRect;
+    use crate::spectrum::luminance;
+
+    /// Light images of pixels that are not rendered are none of the image.
+    #[test]
+    fn the_mean_is_that_of_the_image() {
+        let scene = lamp(PixelRect {
+            min: [7, 2],
+            max: [9, 4],
+        });
+        let settings = Settings {
+            shadow_rays: ShadowRays::RayRoulette(1.0),
+            ..Settings::default()
+        };
+        let mut session =
+            Session::new(&scene, settings, &Resources::default()).expect("the film is small");
+        let trained = session.training().map(|training| training.mean_luminance);
+        while session.film().passes().len() < 4096 && session.step(&()) {}
+        let pixels = session.film().develop().pixels;
+        let mean = pixels.iter().copied().map(luminance).sum::<f32>() / pixels.len() as f32;
+        let trained = trained.expect("roulette is trained");
+        assert!((trained / mean - 1.0).abs() < 0.04, "{trained} for {mean}");
+    }
+}

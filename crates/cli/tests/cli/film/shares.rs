@@ -142,6 +142,22 @@ fn an_image_says_the_same_of_all_runs_whoever_writes_it() {
 }
 
 #[test]
+fn an_image_says_what_it_was_rendered_with() {
+    let place = Workplace::new();
+    let attributes = |flags: &str| {
+        let command = format!("render room.pbrt -q --spp 1 -o a.exr {flags}");
+        place.run(&command).expect(0);
+        place.attributes("a.exr")
+    };
+    let lvc = attributes("--integrator lvc --candidates 5,2");
+    assert_eq!(lvc["bidir/candidates"], "5,2");
+    assert!(!lvc.contains_key("bidir/plan"));
+    let auto = attributes("--integrator auto");
+    assert_eq!(auto["bidir/candidates"], "suited");
+    assert!(auto["bidir/plan"].contains("albedo"), "{auto:?}");
+}
+
+#[test]
 fn the_picture_decides_when_it_is_done() {
     let place = Workplace::new();
     let render = "render room.pbrt -q --noise 0.1 --checkpoint a.film";

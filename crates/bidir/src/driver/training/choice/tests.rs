@@ -163,13 +163,19 @@ fn varying(plan: Plan, variance: f64) -> Tried {
 fn plans_that_are_near_the_best_are_tried_more() {
     let close = |tried: &[Tried]| Judge::new(&square(), &Settings::default(), tried).close();
     let path_beside_bdpt = |variance| close(&[varying(path(1), variance), varying(BDPT, 1.0)]);
-    assert_eq!(path_beside_bdpt(1.9), [path(1), BDPT]);
-    assert_eq!(path_beside_bdpt(2.1), []);
+    assert_eq!(path_beside_bdpt(1.4), [BDPT, path(1)]);
+    assert_eq!(path_beside_bdpt(1.6), []);
     // Of those that share light subpaths the best alone.
     let shared = [varying(LVC, 1.0), varying(MANY, 1.2)];
     assert_eq!(close(&shared), []);
-    let all = [shared.as_slice(), &[varying(BDPT, 1.5)]].concat();
+    let mut all = [shared.as_slice(), &[varying(BDPT, 1.5)]].concat();
     assert_eq!(close(&all), [BDPT, LVC]);
+    // Path tracing with all roulettes, where one is near.
+    all.extend([varying(path(0), 1.7), varying(path(1), 1.3)]);
+    assert_eq!(close(&all), [BDPT, LVC, path(0), path(1)]);
+    let paths = [varying(path(0), 0.9), varying(path(1), 0.5)];
+    let beside = [paths.as_slice(), &[varying(BDPT, 1.5)]].concat();
+    assert_eq!(close(&beside), [path(0), path(1)]);
 }
 
 #[test]

@@ -109,10 +109,12 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
     }
 }
 
-/// A black lamp before nothing.
-fn lamp() -> Scene {
+/// A black lamp before nothing, of which these pixels of 16 x 16 are rendered.
+pub(in crate::driver::training) fn lamp(crop: PixelRect) -> Scene {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
-    let mut builder = SceneBuilder::new(FilmSettings::new([16; 2], filter));
+    let mut film = FilmSettings::new([16; 2], filter);
+    film.crop = crop;
+    let mut builder = SceneBuilder::new(film);
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
         resolution: Vec2::splat(16.0),
@@ -142,7 +144,10 @@ fn two_of_three_samples_share_their_camera_ray() {
         ..Settings::default()
     };
     let probe = Probe {
-        scene: &lamp(),
+        scene: &lamp(PixelRect {
+            min: [0; 2],
+            max: [16; 2],
+        }),
         settings: &settings,
         connections: Connections::ONE_SUBPATH,
         first: 77,
