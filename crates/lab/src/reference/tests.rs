@@ -122,7 +122,7 @@ fn restricted_estimators_agree_where_they_make_the_same_paths() {
     let [first, second] = &mut plan.estimators;
     first.path.strategies = "all,-s0,-t1".parse().unwrap();
     first.path.light_point = LightPointChoice::Shared;
-    second.integrator = IntegratorKind::Bdpt;
+    second.set_integrator(IntegratorKind::Bdpt);
     second.path.strategies = "s1,-t1".parse().unwrap();
     let made = place.make("a", &plan);
     assert!(made.provenance.agreement.agree);

@@ -59,6 +59,14 @@ fn what_is_wrong_is_told_with_its_place() {
         None,
     );
     check(
+        &all.replace(
+            "shadow-rays = \"per-pair\"",
+            "candidates = \"12,1\"\nintegrator = \"path\"",
+        ),
+        ":11:14: `candidates` has no influence on the integrator `path`",
+        None,
+    );
+    check(
         &("[[settings]]\nmis = \"power\"\n[[settings]]\n".to_owned() + &all),
         ":3:1: there are settings of all methods already",
         None,
@@ -84,7 +92,7 @@ fn strategies_are_those_of_a_bidirectional_method() {
         Some("methods are all, one"),
     );
     check(
-        &(with("pyramid = \"one\"").replace("per-pair\"", "per-pair\"\nintegrator = \"light\"")),
+        &with("pyramid = \"one\"").replace("shadow-rays = \"per-pair\"", "integrator = \"light\""),
         ":1:11: the method `one` is not bidirectional",
         Some("strategies (s, t) are those of a method whose integrator is \"bdpt\""),
     );
