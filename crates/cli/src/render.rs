@@ -190,13 +190,13 @@ impl Job<'_> {
         let first = Instant::now();
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
         let reporter = Reporter::new(self.display(), signals, clock).after(before);
-        let mut rendered = 0;
+        let mut rendered = 0_u64;
         let end = loop {
             let passes = session.next_pass() - budget.first;
             // A pass is expected to take as long as those before took on average.
-            let expected = first.elapsed().div_f64(f64::from(rendered.max(1u32)));
-            let times = [clock.start.elapsed(), expected];
-            if let ControlFlow::Break(end) = next_pass(budget, passes, times, signals.exit()) {
+            let expected = first.elapsed().div_f64(rendered.max(1) as f64);
+            let (counts, times) = ([passes, rendered], [clock.start.elapsed(), expected]);
+            if let ControlFlow::Break(end) = next_pass(budget, counts, times, signals.exit()) {
                 break end;
             }
             if budget.looks_at_noise(passes) && is_below(budget.noise, session.film()) {
@@ -204,7 +204,7 @@ impl Job<'_> {
             }
             let begun = Instant::now();
             session.step(&reporter);
-            rendered = rendered.saturating_add(1);
+            rendered += 1;
             show.add_pass(session, begun.elapsed(), &|| {
                 keeper.header(session, Stopping::Time)
             });
@@ -323,18 +323,19 @@ impl End {
     }
 }
 
-/// Whether another pass is begun, after so many of them, the time so far, the time that a pass is
-/// expected to take, and what a signal asks for. A signal that comes too late stops nothing.
+/// Whether another pass is begun, after so many of them, of which some were rendered in this run, the
+/// time so far, the time that a pass is expected to take, and what a signal asks for. A signal that
+/// comes too late stops nothing.
 fn next_pass(
     budget: Budget,
-    passes: u64,
+    [passes, rendered]: [u64; 2],
     [elapsed, expected]: [Duration; 2],
     signal: Option<Exit>,
 ) -> ControlFlow<End> {
     if budget.passes.is_some_and(|most| passes >= most) {
         return ControlFlow::Break(End::Passes);
     }
-    if !budget.allows(passes, elapsed, expected) {
+    if !budget.has_time(rendered, elapsed, expected) {
         return ControlFlow::Break(End::Time);
     }
     match signal {
@@ -352,18 +353,19 @@ fn is_below(noise: Option<f64>, film: &Film) -> bool {
 mod tests {
     use super::*;
 
+    const BUDGET: Budget = Budget {
+        first: 0,
+        passes: Some(9),
+        time: Some(Duration::from_secs(10)),
+        noise: None,
+    };
+
     #[track_caller]
     fn check(passes: u64, seconds: [u64; 2], end: End) {
-        let budget = Budget {
-            first: 0,
-            passes: Some(9),
-            time: Some(Duration::from_secs(10)),
-            noise: None,
-        };
         let times = seconds.map(Duration::from_secs);
         let signal = Some(Exit::Interrupted);
         assert_eq!(
-            next_pass(budget, passes, times, signal),
+            next_pass(BUDGET, [passes; 2], times, signal),
             ControlFlow::Break(end)
         );
     }
@@ -375,5 +377,14 @@ mod tests {
         // Another pass would not have fitted, or is not wanted.
         check(2, [8, 4], End::Time);
         check(9, [1, 1], End::Passes);
+    }
+
+    #[test]
+    fn who_goes_on_makes_a_pass_however_long_training_took() {
+        let times = [Duration::from_secs(20), Duration::ZERO];
+        let next = |counts| next_pass(BUDGET, counts, times, None);
+        assert_eq!(next([5, 0]), ControlFlow::Continue(()));
+        assert_eq!(next([6, 1]), ControlFlow::Break(End::Time));
+        assert_eq!(next([9, 0]), ControlFlow::Break(End::Passes));
     }
 }

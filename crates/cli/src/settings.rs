@@ -122,10 +122,10 @@ impl Budget {
         })
     }
 
-    /// True where another pass of about the time `pass` still fits.
-    pub(crate) fn allows(&self, passes: u64, elapsed: Duration, pass: Duration) -> bool {
-        let in_time = passes == 0 || self.time.is_none_or(|time| elapsed + pass <= time);
-        in_time && self.passes.is_none_or(|most| passes < most)
+    /// True where the time allows another pass, which takes about `pass`, after so many of this run:
+    /// without a first one a render that is gone on with might never end.
+    pub(crate) fn has_time(&self, rendered: u64, elapsed: Duration, pass: Duration) -> bool {
+        rendered == 0 || self.time.is_none_or(|time| elapsed + pass <= time)
     }
 
     /// True after those numbers of passes at which noise is looked at: a function of the number
@@ -179,11 +179,10 @@ mod tests {
     #[test]
     fn a_pass_that_would_overrun_is_not_begun() {
         let budget = budget(9);
-        assert!(budget.allows(5, SECOND * 7, SECOND * 3));
-        assert!(!budget.allows(5, SECOND * 8, SECOND * 3));
-        assert!(!budget.allows(9, SECOND, SECOND));
+        assert!(budget.has_time(5, SECOND * 7, SECOND * 3));
+        assert!(!budget.has_time(5, SECOND * 8, SECOND * 3));
         assert!(
-            budget.allows(0, SECOND * 20, SECOND),
+            budget.has_time(0, SECOND * 20, SECOND),
             "there is always a first one"
         );
     }

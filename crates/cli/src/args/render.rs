@@ -259,7 +259,7 @@ pub(crate) struct BudgetArgs {
     /// The time for rendering: 90, 90s, 10m, 1h30m.
     ///
     /// Reading the scene and writing the image do not count; writing film files does. A pass that would
-    /// overrun is not begun, but the first one always is.
+    /// overrun is not begun, but the first one of a run always is.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// The relative error to reach: the root mean square of the pixels' standard errors, divided by

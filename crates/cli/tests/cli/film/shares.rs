@@ -174,3 +174,14 @@ fn the_picture_decides_when_it_is_done() {
     let again = place.run("film info b.film --json").expect(0).json();
     assert_eq!(info["passes"], again["passes"]);
 }
+
+#[test]
+fn every_run_adds_a_pass_where_one_is_left() {
+    let place = Workplace::new();
+    let render = "render room.pbrt -q --spp 3 --time 0.000001 --checkpoint a.film --resume";
+    for passes in [1, 2, 3, 3] {
+        place.run(render).expect(0);
+        let info = place.run("film info a.film --json").expect(0).json();
+        assert_eq!(info["passes"], format!("0..{passes}"));
+    }
+}
