@@ -22,8 +22,12 @@ const SHORTEST_GAP: Duration = Duration::from_secs(1);
 const LONGEST_GAP: Duration = Duration::from_secs(10);
 /// or this much progress. Unit: percent.
 const STEP: u32 = 10;
+/// What is told where nobody knows how long it takes.
+const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
 /// The bar's resolution.
 const BAR_LENGTH: u64 = 1000;
+/// What is beside the bar. Its own estimate of the time would count what was there before.
+const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {prefix}";
 
 /// What progress is measured by.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +36,10 @@ pub(crate) struct Clock {
     pub(crate) budget: Budget,
     /// The samples of a pass.
     pub(crate) samples_per_pass: u64,
-    /// When the render began.
+    /// When the render began, with its training.
     pub(crate) start: Instant,
+    /// When the first pass of this run began.
+    pub(crate) first_pass: Instant,
 }
 
 /// Tells how far a render is.
@@ -65,7 +71,7 @@ impl<'a> Reporter<'a> {
     pub(crate) fn new(display: Display, signals: &'a Signals, clock: Clock) -> Self {
         let channel = match display {
             Display::Silent => Channel::Silent,
-            Display::Bar => Channel::Bar(bar()),
+            Display::Bar => Channel::Bar(bar(TEMPLATE).with_elapsed(clock.start.elapsed())),
             Display::Lines(format) => {
                 let last = LastLine {
                     at: clock.start,
@@ -123,18 +129,16 @@ impl<'a> Reporter<'a> {
     fn state(&self) -> State {
         let Clock { budget, start, .. } = self.clock;
         let now = self.passes(self.samples.load(Ordering::Relaxed));
-        let elapsed = start.elapsed();
-        let progress = budget.used(now, elapsed);
         let before = self.passes(self.before.load(Ordering::Relaxed));
-        let gained = progress - budget.used(before, Duration::ZERO);
-        let left = elapsed.mul_f64((1.0 - progress) / gained.max(1e-9));
+        let (elapsed, rendering) = (start.elapsed(), self.clock.first_pass.elapsed());
+        let left = budget.left([before, now], elapsed, rendering);
         let running = now as u64 + 1;
         State {
-            progress,
+            progress: budget.used(now, elapsed),
             pass: budget.passes.map_or(running, |most| running.min(most)),
             passes: budget.passes,
             elapsed,
-            left: left.min(Duration::from_secs(1 << 30)),
+            left: left.map_or(LONGEST_LEFT, |left| left.min(LONGEST_LEFT)),
         }
     }
 
@@ -178,6 +182,7 @@ impl Progress for Reporter<'_> {
                 let position = (state.progress * BAR_LENGTH as f64) as u64;
                 if position != bar.position() {
                     bar.set_message(state.pass());
+                    bar.set_prefix(state.left());
                     bar.set_position(position);
                 }
             }
@@ -196,11 +201,9 @@ impl Progress for Reporter<'_> {
 }
 
 /// A bar whose end is at 1000.
-pub(crate) fn bar() -> ProgressBar {
+pub(crate) fn bar(template: &str) -> ProgressBar {
     let bar = ProgressBar::new(BAR_LENGTH);
-    let style =
-        ProgressStyle::with_template("{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left");
-    if let Ok(style) = style {
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸ "));
     }
     bar.enable_steady_tick(Duration::from_millis(200));
@@ -239,14 +242,19 @@ impl State {
         }
     }
 
+    /// `14.9s left`.
+    fn left(&self) -> String {
+        format!("{} left", args::Duration(self.left))
+    }
+
     fn percent(&self) -> u32 {
         (self.progress * 100.0) as u32
     }
 
     fn plain(&self) -> String {
-        let [elapsed, left] = [self.elapsed, self.left].map(args::Duration);
-        let (percent, pass) = (self.percent(), self.pass());
-        format!("Progress: {percent}% {pass}, {elapsed}, {left} left")
+        let elapsed = args::Duration(self.elapsed);
+        let (percent, pass, left) = (self.percent(), self.pass(), self.left());
+        format!("Progress: {percent}% {pass}, {elapsed}, {left}")
     }
 
     fn json(&self) -> serde_json::Result<String> {
@@ -325,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_there_before_took_no_time() {
+    fn what_was_there_before_and_training_tell_nothing_of_what_is_left() {
         let signals = Signals::watch().unwrap();
         let budget = Budget {
             first: 0,
@@ -333,11 +341,12 @@ mod tests {
             time: None,
             noise: None,
         };
-        let start = Instant::now().checked_sub(Duration::from_secs(10)).unwrap();
+        let ago = |seconds| Instant::now().checked_sub(Duration::from_secs(seconds));
         let clock = Clock {
             budget,
             samples_per_pass: 100,
-            start,
+            start: ago(60).unwrap(),
+            first_pass: ago(10).unwrap(),
         };
         let reporter = Reporter::new(Display::Silent, &signals, clock).after(600);
         reporter.advance(250);
@@ -346,7 +355,7 @@ mod tests {
             (state.progress - 0.85).abs() < 1e-9 && state.pass == 9,
             "{state:?}"
         );
-        // A quarter of all took ten seconds.
+        // A quarter of all took ten seconds, after training.
         assert!((state.left.as_secs_f64() - 6.0).abs() < 0.5, "{state:?}");
     }
 }

@@ -170,6 +170,8 @@ impl Job<'_> {
 
     /// Both estimators are one budget of passes.
     fn clock(&self) -> Clock {
+        // Each replicate trains anew, so that training is a part of the rate.
+        let start = Instant::now();
         Clock {
             budget: Budget {
                 first: 0,
@@ -178,7 +180,8 @@ impl Job<'_> {
                 noise: None,
             },
             samples_per_pass: self.loaded.scene.film().crop.area(),
-            start: Instant::now(),
+            start,
+            first_pass: start,
         }
     }
 

@@ -137,11 +137,6 @@ impl Job<'_> {
         session.start_at(budget.first);
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
-        let clock = Clock {
-            budget,
-            samples_per_pass: self.loaded.scene.film().crop.area(),
-            start,
-        };
         let tev = serve::display(self.args.display_server.as_ref(), &name)?;
         let mut show = Show::new(
             server,
@@ -153,6 +148,12 @@ impl Job<'_> {
                 target: budget.passes,
             },
         );
+        let clock = Clock {
+            budget,
+            samples_per_pass: self.loaded.scene.film().crop.area(),
+            start,
+            first_pass: Instant::now(),
+        };
         let end = self.render(&mut session, clock, &mut keeper, &mut show);
         let course = Course {
             load,
@@ -187,14 +188,13 @@ impl Job<'_> {
         show: &mut Show,
     ) -> End {
         let (budget, signals) = (clock.budget, self.signals);
-        let first = Instant::now();
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
         let reporter = Reporter::new(self.display(), signals, clock).after(before);
         let mut rendered = 0_u64;
         let end = loop {
             let passes = session.next_pass() - budget.first;
             // A pass is expected to take as long as those before took on average.
-            let expected = first.elapsed().div_f64(rendered.max(1) as f64);
+            let expected = clock.first_pass.elapsed().div_f64(rendered.max(1) as f64);
             let (counts, times) = ([passes, rendered], [clock.start.elapsed(), expected]);
             if let ControlFlow::Break(end) = next_pass(budget, counts, times, signals.exit()) {
                 break end;

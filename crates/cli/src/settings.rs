@@ -134,6 +134,23 @@ impl Budget {
         self.noise.is_some() && passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
     }
 
+    /// The time that is left after `elapsed`, at the rate of the passes from `before` to `now`, which
+    /// took `rendering`: training before them tells nothing of it. None: there is no limit to reach.
+    pub(crate) fn left(
+        &self,
+        [before, now]: [f64; 2],
+        elapsed: Duration,
+        rendering: Duration,
+    ) -> Option<Duration> {
+        let of_passes = self.passes.map(|most| {
+            let left = (most as f64 - now).max(0.0) / (now - before).max(1e-9);
+            let seconds = rendering.as_secs_f64() * left;
+            Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+        });
+        let of_time = self.time.map(|most| most.saturating_sub(elapsed));
+        of_passes.into_iter().chain(of_time).min()
+    }
+
     /// How much of the budget is used up, given passes as a fraction. Range: `[0, 1]`.
     pub(crate) fn used(&self, passes: f64, elapsed: Duration) -> f64 {
         let of_passes = self.passes.map_or(0.0, |most| passes / most as f64);
@@ -185,6 +202,30 @@ mod tests {
             budget.has_time(0, SECOND * 20, SECOND),
             "there is always a first one"
         );
+    }
+
+    #[test]
+    fn time_is_left_by_the_rate_of_passes_however_long_training_took() {
+        let (trained, open) = (SECOND * 300, None);
+        let left = |time| {
+            let budget = Budget { time, ..budget(10) };
+            // Six passes were there, and two came in four seconds.
+            budget.left([6.0, 8.0], trained + SECOND * 4, SECOND * 4)
+        };
+        assert_eq!(left(open), Some(SECOND * 4));
+        assert_eq!(left(Some(SECOND * 600)), Some(SECOND * 4));
+        assert_eq!(left(Some(SECOND * 307)), Some(SECOND * 3));
+        assert_eq!(left(Some(SECOND)), Some(Duration::ZERO));
+    }
+
+    #[test]
+    fn nobody_knows_when_noise_is_low() {
+        let budget = Budget {
+            passes: None,
+            time: None,
+            ..budget(1)
+        };
+        assert_eq!(budget.left([0.0, 8.0], SECOND, SECOND), None);
     }
 
     #[test]

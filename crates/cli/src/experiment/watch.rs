@@ -10,6 +10,8 @@ use std::time::{Duration as Time, Instant};
 
 /// Lines are at least this far apart, but for the first and the last.
 const GAP: Time = Time::from_secs(10);
+/// What is beside the bar.
+const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left";
 
 /// Tells of an experiment, and has its clock.
 pub(super) struct Watch<'a> {
@@ -37,7 +39,7 @@ impl<'a> Watch<'a> {
     pub(super) fn new(console: Console, wanted: Display, signals: &'a Signals) -> Self {
         let channel = match console.on_terminal(wanted) {
             Display::Silent => Channel::Silent,
-            Display::Bar => Channel::Bar(bar()),
+            Display::Bar => Channel::Bar(bar(TEMPLATE)),
             Display::Lines(_) => Channel::Lines(None),
         };
         Self {
