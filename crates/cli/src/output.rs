@@ -38,8 +38,7 @@ impl Outputs {
     /// render has no image but one that is asked for, as all shares would write the same.
     pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
         let named = Self::named(args)?;
-        let is_share = args.long.passes.is_some() || args.long.part.is_some();
-        if is_share || args.output.output.is_some() {
+        if is_share(args) || args.output.output.is_some() {
             return Ok(named);
         }
         let [exr, png] = images(default_image(&args.scene.scene, film))?;
@@ -63,6 +62,7 @@ impl Outputs {
             let hint = "write NAME.exr with --output, or keep a film file with --checkpoint";
             return Err(Failure::usage(message).with_hint(hint));
         }
+        self.check_share(args)?;
         if let Some(folder) = &args.layers.pyramid {
             pyramid::make_folder(folder)?;
         }
@@ -78,6 +78,18 @@ impl Outputs {
             check_file(file)?;
         }
         Ok(())
+    }
+
+    /// Fails where a share would leave nothing behind.
+    fn check_share(&self, args: &RenderArgs) -> Result<(), Failure> {
+        let is_watched = args.serve.is_some() || args.display_server.is_some();
+        let is_kept = args.long.checkpoint.is_some() || self.files().next().is_some();
+        if !is_share(args) || is_watched || is_kept {
+            return Ok(());
+        }
+        let message = "a share of a render has no image by default: nothing would be written";
+        let hint = "keep it with --checkpoint FILE.film, or name an image with --output";
+        Err(Failure::usage(message).with_hint(hint))
     }
 
     /// Writes the image.
@@ -98,6 +110,11 @@ impl Outputs {
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
         self.files().map(|file| file.display().to_string())
     }
+}
+
+/// True where others render other passes.
+fn is_share(args: &RenderArgs) -> bool {
+    args.long.passes.is_some() || args.long.part.is_some()
 }
 
 /// Fails where a file could not be written.

@@ -40,7 +40,8 @@ pub(crate) struct LongArgs {
     ///
     /// They are all that is rendered: --spp and BIDIR_SPP have no influence, and a warning says so.
     /// Ranges that begin and end at multiples of powers of two are the best stratified ones. The
-    /// image of a share is written only where --output names it.
+    /// image of a share is written only where --output names it; a share of which nothing would be
+    /// written is refused.
     #[arg(long, value_name = "A..B", conflicts_with = "part")]
     pub(crate) passes: Option<PassRange>,
     /// Render share I of N of the passes, I counted from 0: `3/16`.

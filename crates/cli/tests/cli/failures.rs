@@ -41,6 +41,27 @@ fn names_are_told_whole() {
 }
 
 #[test]
+fn a_share_that_would_leave_nothing_is_refused() {
+    let place = Workplace::new();
+    for share in ["--part 0/2", "--passes 0..1", "--part 0/2 -q"] {
+        let ran = place.run(&format!("render room.pbrt {share}")).expect(2);
+        ran.says("--checkpoint FILE.film").says("--output");
+    }
+    for kept in [
+        "-o a.exr",
+        "--stats a.json",
+        "--pyramid a",
+        "--checkpoint a.film",
+        "--serve 0",
+        "--replay 1,1,0",
+    ] {
+        place
+            .run(&format!("render room.pbrt --part 0/2 {kept}"))
+            .expect(0);
+    }
+}
+
+#[test]
 fn the_environment_is_read_after_flags() {
     let place = Workplace::new();
     let spp = |arguments: &str, value: &str| {
