@@ -58,6 +58,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
     settings.layers = film::Layers::new(&loaded.settings.aovs, &[], 0);
     let mut warnings = loaded.warnings;
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.scene)));
+    warnings.extend(light_warning(&loaded.scene));
     Ok(LoadedScene {
         scene: loaded.scene,
         settings,
@@ -110,6 +111,12 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
     let [width, height] = film.resolution;
     let message = format!("the crop reaches beyond the film, which has {width} x {height} pixels");
     (film.crop != asked).then_some(message)
+}
+
+/// Tells that there is nothing to be seen. None: there is a light, though it may be a dark one.
+fn light_warning(scene: &Scene) -> Option<String> {
+    let is_dark = scene.lights().is_empty();
+    is_dark.then(|| "the scene has no light: the picture will be black".to_owned())
 }
 
 /// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no

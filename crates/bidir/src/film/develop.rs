@@ -22,7 +22,8 @@ pub struct Picture {
 
 impl Picture {
     /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
-    /// mean of the picture, both of luminance. Infinite for a black picture.
+    /// mean of the picture, both of luminance. Zero where no pixel varies, of a black picture, too;
+    /// infinite where pixels vary about a mean that is not positive.
     ///
     /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
     /// independent, so it is rather too large than too small.
@@ -35,7 +36,9 @@ impl Picture {
             error * error
         });
         let error = libm::sqrt(squares.sum::<f64>() / n);
-        if mean > 0.0 {
+        if error <= 0.0 {
+            0.0
+        } else if mean > 0.0 {
             error / mean
         } else {
             f64::INFINITY

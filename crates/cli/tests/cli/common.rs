@@ -38,6 +38,14 @@ impl Workplace {
         Self { folder }
     }
 
+    /// Writes `dark.pbrt`, the same place without light.
+    pub(crate) fn write_dark(&self) {
+        let lights = ["LightSource", "AreaLightSource"];
+        let lines = SCENE.lines();
+        let dark = lines.filter(|line| !lights.iter().any(|light| line.starts_with(light)));
+        self.write("dark.pbrt", &dark.collect::<Vec<_>>().join("\n"));
+    }
+
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }

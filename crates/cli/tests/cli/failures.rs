@@ -121,6 +121,16 @@ fn warnings_are_errors_where_they_shall_be() {
         .says("warning: the crop reaches beyond");
 }
 
+#[test]
+fn a_scene_without_light_is_told_of() {
+    let place = Workplace::new();
+    place.write_dark();
+    let message = "warning: the scene has no light: the picture will be black";
+    place.run("render dark.pbrt").expect(0).says(message);
+    let strict = place.run("render dark.pbrt --strict").expect(6);
+    strict.says(message).says("1 warning, which --strict makes");
+}
+
 /// Checks that a scene of `scenes/broken` is refused with its place.
 #[track_caller]
 fn check_broken(name: &str, says: &str) {

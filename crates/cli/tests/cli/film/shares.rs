@@ -176,6 +176,16 @@ fn the_picture_decides_when_it_is_done() {
 }
 
 #[test]
+fn a_black_picture_has_no_noise() {
+    let place = Workplace::new();
+    place.write_dark();
+    for integrator in ["path", "bdpt", "lvc"] {
+        let render = format!("render dark.pbrt --integrator {integrator} --noise 0.5 --spp 99");
+        place.run(&render).expect(0).says("16 spp");
+    }
+}
+
+#[test]
 fn every_run_adds_a_pass_where_one_is_left() {
     let place = Workplace::new();
     let render = "render room.pbrt -q --spp 3 --time 0.000001 --checkpoint a.film --resume";
