@@ -4,6 +4,7 @@
 //! light is computed in the `bidir` library. The documentation of the command is its help text.
 
 mod args;
+mod begin;
 mod checkpoint;
 mod compare;
 mod console;

@@ -1,6 +1,7 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::{RenderArgs, ThreadsArgs};
+use crate::begin::{self, Began};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, json, say};
 use crate::denoise::Filter;
@@ -15,7 +16,7 @@ use crate::serve::{self, Show};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
-use bidir::driver::{Resources, Session, SessionError, Settings};
+use bidir::driver::{Session, Settings};
 use bidir::film::Film;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let unused = settings::warn_unused(args, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {
-        let session = new_session(args, &loaded, &settings)?;
+        let session = begin::session(args, &loaded, &settings)?;
         return replay::run(args, &loaded.scene, &session, target);
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
@@ -84,29 +85,6 @@ pub(crate) fn set_threads(threads: ThreadsArgs) -> Result<(), Failure> {
         })
 }
 
-fn new_session<'a>(
-    args: &RenderArgs,
-    loaded: &'a LoadedScene,
-    settings: &Settings,
-) -> Result<Session<'a>, Failure> {
-    let resources = Resources {
-        threads: args.budget.threads.count.into(),
-        clock: args.output.stats.is_some().then_some(Instant::now),
-        ..Resources::default()
-    };
-    Session::new(&loaded.scene, settings.clone(), &resources).map_err(|error| {
-        if matches!(error, SessionError::Threads(_)) {
-            return Failure::new(Exit::RenderFailed, error.to_string());
-        }
-        let [width, height] = loaded.scene.film().resolution;
-        let scene = args.scene.scene.display();
-        let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");
-        let hint =
-            "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
-        Failure::new(Exit::Scene, message).with_hint(hint)
-    })
-}
-
 /// A render that nothing but a signal, a full disk or a bug can keep from an image.
 struct Job<'a> {
     args: &'a RenderArgs,
@@ -133,7 +111,11 @@ impl Job<'_> {
             checkpoint.check(&header(None), budget.range())?;
         }
         let start = Instant::now();
-        let mut session = new_session(self.args, self.loaded, self.settings)?;
+        let began = begin::unless_stopped(self.args, self.loaded, self.settings, self.signals);
+        let mut session = match began? {
+            Began::Session(session) => *session,
+            Began::Stopped(exit) => return Ok(self.stopped(exit)),
+        };
         session.start_at(budget.first);
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
@@ -160,13 +142,8 @@ impl Job<'_> {
             render: start.elapsed(),
             stopping: end.stopping(),
         };
-        if session.film().passes().is_empty() {
-            self.console
-                .warning("stopped before the first pass: nothing is written");
-            return Ok(match end {
-                End::Signal(exit) => exit,
-                _ => Exit::RenderFailed,
-            });
+        if let (End::Signal(exit), true) = (end, session.film().passes().is_empty()) {
+            return Ok(self.stopped(exit));
         }
         let header = keeper.header(&session, course.stopping);
         let kept = keeper.keep(&session, &header);
@@ -176,7 +153,25 @@ impl Job<'_> {
         kept?;
         written?;
         self.tell(&report, &keeper);
-        Ok(end.exit(&keeper).unwrap_or(Exit::Done))
+        Ok(match end {
+            End::Signal(exit) => self.exit(exit),
+            End::Passes | End::Time | End::Noise => Exit::Done,
+        })
+    }
+
+    /// How the command ends where a signal came before there was anything to write.
+    fn stopped(&self, exit: Exit) -> Exit {
+        self.console
+            .warning("stopped before the first pass: nothing is written");
+        self.exit(exit)
+    }
+
+    /// How the command ends because of a signal: with a film file the same command goes on.
+    fn exit(&self, exit: Exit) -> Exit {
+        match self.args.long.checkpoint {
+            Some(_) => Exit::Checkpoint,
+            None => exit,
+        }
     }
 
     /// Renders pass by pass until the budget is used up or a signal comes.
@@ -310,15 +305,6 @@ impl End {
             Self::Passes => Stopping::Fixed,
             Self::Noise => Stopping::Noise,
             Self::Time | Self::Signal(_) => Stopping::Time,
-        }
-    }
-
-    /// How the command ends. None: as it should.
-    fn exit(self, keeper: &Keeper) -> Option<Exit> {
-        match self {
-            Self::Signal(_) if keeper.path().is_some() => Some(Exit::Checkpoint),
-            Self::Signal(exit) => Some(exit),
-            _ => None,
         }
     }
 }

@@ -12,6 +12,7 @@ use formats::scene::{Crop, LoadOptions, Summary};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
 pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_film};
@@ -20,7 +21,7 @@ pub(crate) use formats::image::{Layers, MetadataValue};
 /// A scene that was read, with what else its file says.
 pub(crate) struct LoadedScene {
     /// The scene.
-    pub(crate) scene: Scene,
+    pub(crate) scene: Arc<Scene>,
     /// The file's settings, over the defaults.
     pub(crate) settings: Settings,
     /// The file's number of samples per pixel.
@@ -60,7 +61,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.scene)));
     warnings.extend(light_warning(&loaded.scene));
     Ok(LoadedScene {
-        scene: loaded.scene,
+        scene: Arc::new(loaded.scene),
         settings,
         spp: loaded.settings.samples_per_pixel.into(),
         output: loaded.settings.output.map(PathBuf::from),

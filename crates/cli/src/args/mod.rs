@@ -82,8 +82,9 @@ pub(crate) enum Command {
     /// variable, the scene file, the default. Rendering goes pass by pass, one sample of every pixel
     /// at a time.
     ///
-    /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once. With
-    /// --checkpoint such an end has exit code 75: the same command with --resume goes on.
+    /// Ctrl-C ends after the running pass and writes the image; a second Ctrl-C ends at once, and so
+    /// does the first before there is a pass. With --checkpoint the first ends with exit code 75: the
+    /// same command with --resume goes on.
     Render(Box<RenderArgs>),
     /// Render a scene in the browser: watch it, ask it, change it.
     ///

@@ -84,6 +84,36 @@ fn with_a_film_file_the_render_can_go_on() {
     assert_eq!(info["stopping"], "time");
 }
 
+/// Renders what trains for long, and sends a signal as soon as signals are watched.
+fn stopped_in_training(place: &Workplace, signal: &str) -> Ran {
+    let long = "--integrator lvc --candidates 4096 --next-events 4096 --size 480x320";
+    let mut command = place.command(&format!("render room.pbrt {long} --checkpoint a.film"));
+    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+    // The film file is locked when signals are watched.
+    while !place.path("a.film.lock").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send(signal, &child);
+    let mut told = String::new();
+    let stderr = child.stderr.as_mut().unwrap();
+    std::io::Read::read_to_string(stderr, &mut told).unwrap();
+    Ran {
+        code: child.wait().unwrap().code(),
+        stdout: String::new(),
+        stderr: told,
+    }
+}
+
+#[test]
+fn with_a_film_file_training_can_be_stopped_too() {
+    for signal in ["INT", "TERM"] {
+        let place = Workplace::new();
+        let ran = stopped_in_training(&place, signal).expect(75);
+        ran.says("stopped before the first pass: nothing is written");
+        assert_eq!(place.names(), ["room.pbrt"]);
+    }
+}
+
 #[test]
 fn a_reference_can_be_stopped_and_gone_on_with() {
     let place = Workplace::new();

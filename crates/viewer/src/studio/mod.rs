@@ -17,6 +17,7 @@ use bidir::path::PathRoulette;
 use bidir::scene::Scene;
 use painter::Painter;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// What is rendered at first, and what stays as it is.
@@ -27,7 +28,7 @@ pub struct StudioSettings {
     /// The hash of everything that was read for it.
     pub digest: String,
     /// The scene.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// How it is rendered.
     pub settings: Settings,
     /// How subpaths end by chance, whichever the estimator. None: as it suits it.

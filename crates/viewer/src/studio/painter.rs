@@ -59,7 +59,7 @@ impl Painter {
             view: View::new(&settings.scene),
             name: settings.name,
             digest: settings.digest,
-            scene: Arc::new(settings.scene),
+            scene: settings.scene,
             resources: Resources {
                 threads: settings.threads,
                 ..Resources::default()

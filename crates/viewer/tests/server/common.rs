@@ -94,7 +94,7 @@ impl Place {
         let studio = StudioSettings {
             name: "somewhere/room.pbrt".into(),
             digest,
-            scene,
+            scene: scene.into(),
             settings: settings(),
             roulette: None,
             threads: 1,
