@@ -45,13 +45,15 @@ impl Outputs {
         Ok(Self { exr, png, ..named })
     }
 
-    fn files(&self) -> impl Iterator<Item = &Path> {
-        self.exr
-            .iter()
-            .chain(&self.png)
-            .chain(&self.stats)
-            .chain(self.pyramid.iter().flat_map(pyramid::Files::all))
-            .map(PathBuf::as_path)
+    /// All files, each with the flag that names it.
+    fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let images = self.exr.iter().chain(&self.png);
+        let pyramid = self.pyramid.iter().flat_map(pyramid::Files::all);
+        let images = images.map(|file| ("--output", file));
+        let stats = self.stats.iter().map(|file| ("--stats", file));
+        let pyramid = pyramid.map(|file| ("--pyramid", file));
+        let all = images.chain(stats).chain(pyramid);
+        all.map(|(flag, file)| (flag, file.as_path()))
     }
 
     /// Fails now rather than after hours where a file could not be written.
@@ -67,7 +69,9 @@ impl Outputs {
             pyramid::make_folder(folder)?;
         }
         let mut taken = vec![scene_io::target_of(&args.scene.scene)];
-        for file in self.files().chain(args.long.checkpoint.as_deref()) {
+        let film = args.long.checkpoint.as_deref();
+        let film = film.map(|film| ("--checkpoint", film));
+        for (flag, file) in self.files().chain(film) {
             let target = scene_io::target_of(file);
             if taken.contains(&target) {
                 let message = format!("{}: two files of this name", file.display());
@@ -75,7 +79,7 @@ impl Outputs {
                 return Err(Failure::usage(message).with_hint(hint));
             }
             taken.push(target);
-            check_file(file)?;
+            check_file(flag, file)?;
         }
         Ok(())
     }
@@ -108,7 +112,7 @@ impl Outputs {
 
     /// The names of the files.
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
-        self.files().map(|file| file.display().to_string())
+        self.files().map(|(_, file)| file.display().to_string())
     }
 }
 
@@ -117,14 +121,14 @@ fn is_share(args: &RenderArgs) -> bool {
     args.long.passes.is_some() || args.long.part.is_some()
 }
 
-/// Fails where a file could not be written.
-pub(crate) fn check_file(file: &Path) -> Result<(), Failure> {
+/// Fails where a file that `flag` names could not be written.
+pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
     if file.is_dir() {
         let message = format!("{}: cannot write: it is a folder", file.display());
         return Err(Failure::new(Exit::InputOutput, message));
     }
     scene_io::check_writable(file)
-        .map_err(|failure| failure.with_hint(hint(scene_io::folder_of(file))))
+        .map_err(|failure| failure.with_hint(hint(flag, scene_io::folder_of(file))))
 }
 
 /// The EXR, if any, and the PNG that go by the name of an image.
@@ -146,12 +150,12 @@ fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
     name.unwrap_or(Path::new("bidir")).with_extension("exr")
 }
 
-fn hint(folder: &Path) -> String {
+fn hint(flag: &str, folder: &Path) -> String {
     let folder_name = folder.display();
     if folder.is_dir() {
         format!("files cannot be made in `{folder_name}`: check its permissions and free space")
     } else {
-        format!("there is no folder `{folder_name}`: make it, or write elsewhere with --output")
+        format!("there is no folder `{folder_name}`: make it, or write elsewhere with {flag}")
     }
 }
 

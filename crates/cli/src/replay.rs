@@ -19,7 +19,7 @@ pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
         let message = format!("{}: a drawing is an SVG", path.display());
         return Err(Failure::usage(message).with_hint("call it NAME.svg"));
     }
-    output::check_file(path)
+    output::check_file("--svg", path)
 }
 
 /// Repeats a sample and prints what it did.

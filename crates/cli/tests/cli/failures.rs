@@ -84,16 +84,19 @@ fn what_cannot_be_read_or_written_exits_with_4_before_anything_is_rendered() {
     check("compare missing.exr missing.exr", 4, "missing.exr");
     check("compare room.pbrt room.pbrt", 4, "room.pbrt");
     let far = "--spp 1000000000";
-    check(
-        &format!("render room.pbrt {far} -o missing/room.exr"),
-        4,
-        "hint: there is no folder",
-    );
-    check(
-        &format!("render room.pbrt {far} --stats missing/a.json"),
-        4,
-        "missing/a.json",
-    );
+    for (flag, file) in [
+        ("--output", "missing/room.exr"),
+        ("--stats", "missing/a.json"),
+        ("--checkpoint", "missing/a.film"),
+        ("--replay 1,1,0 --svg", "missing/a.svg"),
+    ] {
+        let render = format!("render room.pbrt {far} {flag} {file}");
+        let ran = Workplace::new().run(&render).expect(4).says(file);
+        let flag = flag.split(' ').next_back().unwrap();
+        let elsewhere = format!("make it, or write elsewhere with {flag}\n");
+        ran.says("hint: there is no folder `missing`")
+            .says(&elsewhere);
+    }
     let place = Workplace::new();
     std::fs::create_dir(place.path("folder.exr")).unwrap();
     place
