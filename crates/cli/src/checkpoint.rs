@@ -2,6 +2,7 @@
 
 use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
+use crate::film;
 use crate::film_header;
 use crate::lock::{self, FilmLock};
 use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
@@ -117,8 +118,7 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
         return failure(message, hint);
     }
     if args.restart && !scene_io::is_film(path) {
-        let message = format!("{name}: not a film file, and so not replaced by one");
-        return failure(message, "give --checkpoint another name".into());
+        return Err(film::not_a_film(path, "--checkpoint"));
     }
     if !args.resume && !args.restart {
         let message = format!("{name}: there is a film file already");

@@ -92,13 +92,16 @@ fn verify(files: &[PathBuf], console: Console) -> Exit {
     last.unwrap_or(Exit::Done)
 }
 
+/// A film file was to replace `path`, which `flag` names and which is none.
+pub(crate) fn not_a_film(path: &Path, flag: &str) -> Failure {
+    let name = path.display();
+    let message = format!("{name}: not a film file, and so not replaced by one");
+    Failure::usage(message).with_hint(format!("give {flag} another name"))
+}
+
 /// Adds films of the same render and different passes.
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
-    scene_io::check_writable(&args.output)?;
-    if let Some(image) = &args.image {
-        scene_io::image_format(image, IMAGES)?;
-        scene_io::check_writable(image)?;
-    }
+    check_outputs(args)?;
     let _lock = FilmLock::take(&args.output)?;
     let mut films = args.files.iter();
     let first = films.next().expect("clap asks for a file");
@@ -115,6 +118,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
                 .with_hint("film files of one render with different passes can be merged")
         })?;
     }
+    check_kept(&args.output, &all.header)?;
     scene_io::write_film(&args.output, &all.header, &all.film)?;
     if let Some(image) = &args.image {
         write_image(image, &all.header, &all.film)?;
@@ -129,6 +133,51 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
         written.join(", ")
     ));
     Ok(Exit::Done)
+}
+
+/// Fails before films are read where a file could not be written, or is no film file to be replaced.
+fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
+    let MergeArgs { output, image, .. } = args;
+    scene_io::check_writable(output)?;
+    if output.is_file() && !scene_io::is_film(output) {
+        return Err(not_a_film(output, "--output"));
+    }
+    let Some(image) = image else {
+        return Ok(());
+    };
+    scene_io::image_format(image, IMAGES)?;
+    scene_io::check_writable(image)?;
+    // An image is no film file, and would replace one.
+    if scene_io::is_film(image) || scene_io::target_of(image) == scene_io::target_of(output) {
+        let message = format!("{}: a film file, not replaced by an image", image.display());
+        return Err(Failure::usage(message).with_hint("give --image another name"));
+    }
+    Ok(())
+}
+
+/// Refuses to replace the film file `output` where passes would be lost by it: those that `all`, the
+/// header of what is to be written, has not.
+fn check_kept(output: &Path, all: &FilmHeader) -> Result<(), Failure> {
+    if !output.is_file() {
+        return Ok(());
+    }
+    let another = "name another file with --output";
+    let there = scene_io::read_film(output).map_err(|failure| failure.with_hint(another))?;
+    let (there, name) = (there.header, output.display());
+    let refused = |message: String, hint: &str| {
+        Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
+    };
+    if let Some(difference) = there.difference(all) {
+        let message = format!("{name}: the film of another render, not replaced: {difference}");
+        return refused(message, another);
+    }
+    let lost = there.passes.difference(&all.passes);
+    if lost.is_empty() {
+        return Ok(());
+    }
+    let message = format!("{name}: it has the passes {lost}, which would be lost");
+    let hint = "name another file with --output, or list this one among the files";
+    refused(message, hint)
 }
 
 /// Adds `other`; else the reason why not.

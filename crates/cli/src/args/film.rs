@@ -38,7 +38,8 @@ pub(crate) struct MergeArgs {
     /// The film files.
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
-    /// The film file of all of them.
+    /// The film file of all of them. One that is there is replaced where the result has all of its
+    /// passes, and nothing else is.
     #[arg(short, long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
     /// Make an image of it, too: NAME.exr or NAME.png.

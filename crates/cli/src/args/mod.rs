@@ -150,7 +150,8 @@ pub(crate) enum Command {
     /// Add film files of one render to one film file.
     ///
     /// In any order and any grouping the result has the bits of one render. Files of another scene or
-    /// other settings, and passes that two files have, are refused.
+    /// other settings, and passes that two files have, are refused, and so is replacing a film file that
+    /// has passes which the result has not.
     Merge(MergeArgs),
     /// Tell which passes of a shared render no film file has.
     ///

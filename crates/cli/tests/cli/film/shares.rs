@@ -26,6 +26,8 @@ fn merged_shares_in_any_order_are_the_whole() {
                 .expect(0);
             place.expect_same("all.exr", "whole.exr");
         }
+        // That of the next estimator does not replace it.
+        fs::remove_file(place.path("all.film")).unwrap();
     }
     // A share by itself writes no image that others would overwrite.
     assert!(!place.path("room.exr").exists());
@@ -90,6 +92,74 @@ fn films_that_do_not_belong_together_are_refused() {
         .run(resumed)
         .expect(5)
         .says("the film of another render");
+}
+
+#[test]
+fn merging_replaces_no_film_that_it_has_not_all_of() {
+    let place = Workplace::new();
+    place.render_share("0..1", "a.film");
+    place.render_share("1..2", "b.film");
+    place.render_share("2..3", "c.film");
+    place.render_share("1..3 --seed 5", "seed.film");
+    place.write("image.exr", "an image");
+    place.write("damaged.film", "BIDIRFLM and then nothing");
+    for (output, code, says, hint) in [
+        (
+            "image.exr",
+            2,
+            "not a film file, and so not replaced by one",
+            "give --output another name",
+        ),
+        (
+            "room.pbrt",
+            2,
+            "not a film file",
+            "give --output another name",
+        ),
+        (
+            "damaged.film",
+            4,
+            "damaged.film",
+            "name another file with --output",
+        ),
+        (
+            "a.film",
+            5,
+            "a.film: it has the passes 0..1, which would be lost",
+            "list this one among the files",
+        ),
+        (
+            "seed.film",
+            5,
+            "the film of another render, not replaced: seed is 5",
+            "name another file",
+        ),
+        (
+            "d.exr --image d.exr",
+            2,
+            "d.exr: a film file, not replaced by an image",
+            "give --image another name",
+        ),
+    ] {
+        let names = place.names();
+        let file = place.path(output.split(' ').next().unwrap());
+        let before = fs::read(&file).ok();
+        place
+            .run(&format!("merge -o {output} b.film c.film"))
+            .expect(code)
+            .says(says)
+            .says(hint);
+        assert_eq!(fs::read(&file).ok(), before, "{output}");
+        assert_eq!(place.names(), names);
+    }
+    // What is in the result may be replaced by it, again and again.
+    let whole = "merge -o whole.film a.film b.film";
+    place.run(whole).expect(0);
+    place.run(whole).expect(0);
+    let more = "merge -o whole.film whole.film c.film";
+    place.run(more).expect(0).says("passes 0..3");
+    place.run(more).expect(5).says("both have the passes 2..3");
+    place.run("merge -o b.film a.film b.film c.film").expect(0);
 }
 
 #[test]
