@@ -1,7 +1,18 @@
 //! Experiments in parts: each in a folder of its own, with its own records, and all of them one result.
 
-use crate::experiment::{Experiment, ExperimentError, Observer, Outcome, Setup, run as render};
+use crate::experiment::{
+    Experiment, ExperimentError, Observer, Outcome, Setup, claim, run as render,
+};
 use crate::results::{FORMAT, Record, Results};
+
+/// Makes the folder of all, which is then that of the experiment `name` alone.
+///
+/// Errors: it cannot be made, or is that of another experiment and not begun anew.
+pub(crate) fn begin(name: &str, setup: &Setup) -> Result<(), ExperimentError> {
+    let path = setup.folder.clone();
+    std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
+    claim(name, setup)
+}
 
 /// Runs a part in its folder below that of all.
 ///
@@ -70,4 +81,33 @@ pub(crate) fn with(
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::Start;
+    use crate::results::Machine;
+
+    #[test]
+    fn a_folder_is_of_one_experiment_until_it_is_begun_anew() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut setup = Setup {
+            folder: folder.path().join("out"),
+            start: Start::Resume,
+            program: "test".to_owned(),
+            machine: Machine::default(),
+        };
+        begin("paper", &setup).unwrap();
+        begin("paper", &setup).unwrap();
+        let error = begin("beyond", &setup).unwrap_err();
+        assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
+        // Which of its parts are of another program they say themselves.
+        setup.program = "another".to_owned();
+        begin("paper", &setup).unwrap();
+        setup.start = Start::Anew;
+        begin("beyond", &setup).unwrap();
+        setup.start = Start::Resume;
+        assert!(begin("paper", &setup).is_err());
+    }
 }

@@ -48,6 +48,47 @@ fn beyond_judges_what_there_is_and_goes_on() {
         ))
         .expect(5)
         .says("--restart");
+    // Nor does any other experiment replace its results.
+    let before = place.read("out/results.json");
+    place.write("test.toml", OTHER);
+    for other in ["paper --quick", "test.toml"] {
+        place
+            .run(&format!("experiment {other} -o out"))
+            .expect(5)
+            .says("out: the records are of another experiment")
+            .says("--restart");
+        assert_eq!(place.read("out/results.json"), before);
+    }
+}
+
+/// A description that renders next to nothing.
+const OTHER: &str = r#"
+size = "8x6"
+[[scene]]
+file = "room.pbrt"
+reference-spp = 16
+[[method]]
+name = "all"
+[[budget]]
+samples = 1
+"#;
+
+#[test]
+fn results_of_a_description_are_not_replaced_by_those_of_the_program() {
+    let place = Workplace::new();
+    place.write("test.toml", OTHER);
+    place.run("experiment test.toml -o out").expect(0);
+    let names = ["results.json", "report.html", "records.ndjson"];
+    let files = || names.map(|name| place.read(&format!("out/{name}")));
+    let before = files();
+    for other in [TINY, "experiment paper --quick"] {
+        place
+            .run(&format!("{other} -o out"))
+            .expect(5)
+            .says("the records are of another experiment");
+    }
+    assert_eq!(files(), before);
+    assert!(!place.path("out/scenes").exists());
 }
 
 #[test]

@@ -83,6 +83,7 @@ struct Absent {
 ///
 /// Errors: no scene is there, or as of [`crate::experiment::run`].
 pub fn run(options: &Options, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
+    parts::begin("beyond", setup)?;
     let folder = setup.folder.join("scenes");
     scenes::unpack(&folder).map_err(|error| ExperimentError::Folder {
         path: folder.clone(),

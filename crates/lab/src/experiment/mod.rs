@@ -55,6 +55,7 @@ mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use error::{ExperimentError, Fault};
+pub(crate) use journal::claim;
 pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
 pub use settings::{Changes, texts};

@@ -92,6 +92,7 @@ pub(crate) fn setting() -> Changes {
 /// Runs everything that has no record yet, judges, and writes `results.json`.
 pub fn run(options: Options, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let amounts = options.effort.amounts();
+    parts::begin("paper", setup)?;
     let folder = setup.folder.join("scenes");
     scenes::unpack(&folder).map_err(|error| ExperimentError::Folder {
         path: folder.clone(),
