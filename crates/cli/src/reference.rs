@@ -32,6 +32,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
         let same = earlier.check(&folder, &loaded.digest, loaded.scene.film());
         same.map_err(failure)?;
     }
+    let plan = plan(args, earlier.as_ref(), &loaded)?;
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
@@ -103,6 +104,12 @@ fn plan(
         if let Some(flags) = flags {
             *settings = settings::resolve(&flags.0, settings.clone());
         }
+    }
+    if plan.is_its_own_witness() {
+        let message =
+            "--estimator and --against are the same estimator, which cannot contradict itself";
+        let hint = "give --against another integrator, or other settings than the seed";
+        return Err(Failure::usage(message).with_hint(hint));
     }
     Ok(plan)
 }

@@ -56,7 +56,8 @@ pub(crate) struct ReferenceArgs {
     /// scene; the scene's integrator and sampler have no influence, nor has the environment.
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
     pub(crate) estimator: Option<EstimatorFlags>,
-    /// The estimator that it has to agree with, likewise [default: path].
+    /// The estimator that it has to agree with, likewise, and not the same but for the seed [default:
+    /// path].
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
     pub(crate) against: Option<EstimatorFlags>,
     /// The picture's geometry.

@@ -1,4 +1,4 @@
-use crate::common::Workplace;
+use crate::common::{Ran, Workplace};
 use serde_json::Value;
 use std::fs;
 
@@ -184,6 +184,38 @@ fn stale_and_damaged_references_are_refused() {
     place
         .run("reference room.pbrt -o a.reference --extend 16")
         .expect(4);
+}
+
+#[test]
+fn an_estimator_is_no_witness_of_itself() {
+    let place = Workplace::new();
+    let reference = |estimators: &[&str]| {
+        let mut command = place.command("reference room.pbrt -q --spp 16 --restart -o a.reference");
+        Ran::of(command.args(estimators))
+    };
+    let same: [&[&str]; 6] = [
+        &["--estimator=bdpt", "--against=bdpt"],
+        &["--estimator=bdpt --seed 1", "--against=bdpt --seed 2"],
+        &["--estimator=lvc", "--against=lvc --shadow-rays suited"],
+        &["--estimator=path", "--against=path --candidates 4"],
+        &["--estimator=light", "--against=light --mis power"],
+        // The first is the usual one.
+        &["--against=bdpt --path-roulette suited"],
+    ];
+    for estimators in same {
+        reference(estimators)
+            .expect(2)
+            .says("the same estimator")
+            .says("hint: give --against another integrator");
+    }
+    assert_eq!(place.names(), ["room.pbrt"]);
+    // Neither is a reference that is there lost by it.
+    reference(&["--against=bdpt --mis power"]).expect(0);
+    reference(&["--against=bdpt"]).expect(2);
+    let picture = "a.reference/picture.exr";
+    place
+        .run(&format!("compare {picture} --reference a.reference"))
+        .expect(0);
 }
 
 #[test]

@@ -35,6 +35,7 @@ mod provenance;
 mod replicate;
 #[cfg(test)]
 mod tests;
+mod witness;
 
 pub use agreement::{Agreement, Comparison};
 pub use make::{Host, Made, Plan, Subject, clear, make};
