@@ -267,6 +267,10 @@ pub(crate) fn failure(error: Error) -> Failure {
     match error {
         Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
         Error::Io { .. } | Error::Damaged { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Missing(_) => {
+            let hint = "make one with `bidir reference`, or name another folder";
+            Failure::new(Exit::InputOutput, text).with_hint(hint)
+        }
         Error::Session(SessionError::Threads(_)) => Failure::new(Exit::RenderFailed, text),
         Error::Session(_) => {
             let hint = "make it smaller with --size, or render a part of it with --crop";

@@ -180,10 +180,23 @@ fn stale_and_damaged_references_are_refused() {
     place.write("a.reference/provenance.json", &older);
     place.run(image).expect(6).says("stale: made by version");
     fs::remove_file(place.path("a.reference/provenance.json")).unwrap();
-    place.run(image).expect(4).says("provenance.json");
+    let hint = "hint: make one with `bidir reference`";
     place
-        .run("reference room.pbrt -o a.reference --extend 16")
-        .expect(4);
+        .run(image)
+        .expect(4)
+        .says("a.reference: no reference: there is no provenance.json in it")
+        .says(hint);
+    for folder in ["a.reference", "none.reference"] {
+        place
+            .run(&format!("reference room.pbrt -o {folder} --extend 16"))
+            .expect(4)
+            .says("no reference")
+            .says(hint);
+    }
+    place
+        .run("compare a.reference/picture.exr --reference none.reference")
+        .expect(4)
+        .says("none.reference: cannot open: no such file");
 }
 
 #[test]

@@ -91,7 +91,11 @@ impl Format {
 
 /// Reads an image; `encoding` is what a PNG file holds, sRGB where there is none.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
-    let format = named_format(path)?;
+    let format = named_format(path).map_err(|unknown| {
+        // What is not there has no format that could be wrong.
+        let missing = path.metadata().err();
+        missing.map_or(unknown, |error| Error::io(path, "open", &error))
+    })?;
     let bytes = bytes::read(path, LARGEST_FILE)?;
     decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
 }

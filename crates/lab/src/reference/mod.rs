@@ -74,6 +74,9 @@ pub enum Error {
         /// What the system said.
         error: std::io::Error,
     },
+    /// The folder is not there, or has no `provenance.json`.
+    #[error("{}: no reference: there is no {PROVENANCE} in it", .0.display())]
+    Missing(PathBuf),
     /// No render can begin.
     #[error(transparent)]
     Session(#[from] SessionError),

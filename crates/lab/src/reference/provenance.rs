@@ -10,6 +10,7 @@ use bidir::integrator::IntegratorKind;
 use formats::film::SettingsText;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The version of the format of `provenance.json`.
@@ -99,7 +100,10 @@ impl Provenance {
             format: u32,
         }
         let path = folder.join(PROVENANCE);
-        let text = std::fs::read_to_string(&path).map_err(|error| Error::io(&path, error))?;
+        let text = std::fs::read_to_string(&path).map_err(|error| match error.kind() {
+            ErrorKind::NotFound => Error::Missing(folder.to_owned()),
+            _ => Error::io(&path, error),
+        })?;
         let damaged = |error: serde_json::Error| Error::damaged(&path, error.to_string());
         let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
