@@ -35,6 +35,7 @@ enum Task {
 
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
+    check_flags(args)?;
     let signals = Signals::watch()?;
     if let Some(address) = &args.ray {
         return cluster::run(args, address, &signals);
@@ -70,15 +71,20 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     Ok(Exit::Done)
 }
 
+/// Refuses flags that are of another experiment, wherever it runs.
+fn check_flags(args: &ExperimentArgs) -> Result<(), Failure> {
+    let given = args.beyond.given();
+    let other = given.filter(|_| args.description != Path::new(builtin::BEYOND));
+    other.map_or(Ok(()), |flag| {
+        let text = format!("{flag} is of `{}` alone", builtin::BEYOND);
+        Err(Failure::usage(text).with_hint("a description says such things itself"))
+    })
+}
+
 /// What the command line asks for.
 fn task(args: &ExperimentArgs) -> Result<Task, Failure> {
     if args.description == Path::new(builtin::BEYOND) {
         return Ok(Task::Beyond(builtin::beyond(args, threads(args, 0))));
-    }
-    if let Some(flag) = args.beyond.given() {
-        let text = format!("{flag} is of `{}` alone", builtin::BEYOND);
-        let hint = "a description says such things itself";
-        return Err(Failure::new(Exit::Usage, text).with_hint(hint));
     }
     if args.description == Path::new(builtin::PAPER) {
         return Ok(Task::Paper(builtin::paper(args, threads(args, 0))));

@@ -3,7 +3,9 @@
 use super::ThreadsArgs;
 use super::values::{Size, positive_number};
 use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueHint};
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, ValueHint};
 use std::path::PathBuf;
 
 /// What is compared, and where the results go.
@@ -72,8 +74,9 @@ pub(crate) struct ExperimentArgs {
     #[arg(long)]
     pub(crate) quick: bool,
     /// Run on the nodes of a Ray cluster, each with all of its threads: `auto` finds the one that runs
-    /// here, `local` starts one on this machine, HOST:PORT is another. Needs the Python package.
-    #[arg(long, value_name = "ADDRESS", conflicts_with = "threads")]
+    /// here, `local` starts one on this machine, HOST:PORT is another. Needs the Python package. Not with
+    /// --threads; `BIDIR_THREADS` has no influence there.
+    #[arg(long, value_name = "ADDRESS")]
     pub(crate) ray: Option<String>,
     /// How fast it is.
     #[command(flatten)]
@@ -84,6 +87,19 @@ pub(crate) struct ExperimentArgs {
     /// What is rendered of `beyond`; last, as its heading holds for all that follow.
     #[command(flatten)]
     pub(crate) beyond: BeyondArgs,
+}
+
+impl ExperimentArgs {
+    /// Refuses --threads beside --ray, whose nodes decide that. A conflict of clap's would refuse the
+    /// variable, too, which is there for all commands.
+    pub(super) fn check(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
+        let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
+        if is_given("ray") && is_given("threads") {
+            let message = "--ray cannot be used with --threads: nodes render with all of theirs";
+            return Err(command.error(ErrorKind::ArgumentConflict, message));
+        }
+        Ok(())
+    }
 }
 
 /// How much is rendered of `beyond`, instead of what `--quick` or its absence says.

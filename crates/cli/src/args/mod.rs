@@ -53,6 +53,11 @@ impl Cli {
     pub(crate) fn read() -> Result<Self, clap::Error> {
         let mut command = Self::command();
         let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+        if let Some(("experiment", matches)) = matches.subcommand()
+            && let Some(command) = command.find_subcommand_mut("experiment")
+        {
+            ExperimentArgs::check(command, matches)?;
+        }
         let cli = Self::from_arg_matches(&matches);
         let mut cli = cli.map_err(|error| error.format(&mut command))?;
         if let Command::Render(args) = &mut cli.command

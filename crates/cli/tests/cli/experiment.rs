@@ -208,7 +208,12 @@ fn a_cluster_needs_the_python_package() {
     place
         .run("experiment a.toml -o out --ray local --threads 2")
         .expect(2)
-        .says("cannot be used with");
+        .says("cannot be used with --threads");
+    // Flags of `beyond` are refused wherever a description runs.
+    place
+        .run("experiment a.toml -o out --ray local --scenes coffee --seconds 3 --size 8x8")
+        .expect(2)
+        .says("--scenes is of `beyond` alone");
 }
 
 #[cfg(unix)]
@@ -230,7 +235,10 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
     );
     let run = |python: &std::path::Path| {
         let command = "experiment a.toml -o out --ray host:1 --quick";
-        Ran::of(place.command(command).env("BIDIR_PYTHON", python))
+        let mut command = place.command(command);
+        // That is for all commands, and nodes have their own.
+        command.env("BIDIR_THREADS", "2");
+        Ran::of(command.env("BIDIR_PYTHON", python))
     };
     run(&without)
         .expect(4)
