@@ -166,13 +166,14 @@ impl FilmHeader {
     }
 
     /// Why a film of `self` is not one of `other`; None: it is. The first setting that differs is
-    /// named with both values.
+    /// named with both values: the integrator, which decides what others usually are, before them.
     pub fn difference(&self, other: &Self) -> Option<String> {
         if self.identity == other.identity {
             return None;
         }
-        let names = self.settings.keys().chain(other.settings.keys());
-        let value = |header: &Self, name| {
+        let keys = self.settings.keys().chain(other.settings.keys());
+        let names = std::iter::once("integrator").chain(keys.map(String::as_str));
+        let value = |header: &Self, name: &str| {
             header
                 .settings
                 .get(name)

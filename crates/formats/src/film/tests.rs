@@ -149,6 +149,22 @@ fn a_difference_is_named() {
         header().difference(&header_with("2")).unwrap(),
         "seed is 1 here and 2 there"
     );
+    // Whatever else differs follows from the integrator, or matters less.
+    let with = |candidates: &str, integrator: &str| {
+        let settings = [("candidates", candidates), ("integrator", integrator)];
+        let settings = settings.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        FilmHeader::new("bidir", "room.pbrt".to_owned(), settings.into())
+    };
+    assert_eq!(
+        with("12,1", "lvc")
+            .difference(&with("suited", "auto"))
+            .unwrap(),
+        "integrator is lvc here and auto there"
+    );
+    assert_eq!(
+        with("12,1", "lvc").difference(&with("8", "lvc")).unwrap(),
+        "candidates is 12,1 here and 8 there"
+    );
 }
 
 #[test]

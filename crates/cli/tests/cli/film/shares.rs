@@ -69,6 +69,7 @@ fn films_that_do_not_belong_together_are_refused() {
     place.render_share("1..3", "overlap.film");
     place.render_share("2..4 --seed 5", "seed.film");
     place.render_share("2..4 --crop 0,0,8,8", "crop.film");
+    place.render_share("2..4 --integrator auto", "auto.film");
     place.write(
         "room.pbrt",
         &place.read("room.pbrt").replace("[9 8 7]", "[9 8 6]"),
@@ -79,6 +80,7 @@ fn films_that_do_not_belong_together_are_refused() {
         ("overlap", "both have the passes 1..2"),
         ("seed", "seed is 5 here and 0 there"),
         ("crop", "crop is 0,0,8,8 here and 0,0,24,16 there"),
+        ("auto", "integrator is auto here and bdpt there"),
         ("scene", "scene-digest is "),
     ] {
         place
