@@ -322,7 +322,7 @@ class _Budget:
         passes = session.next_pass
         if self._spp is not None and passes >= self._spp:
             return False
-        if self._is_over(passes):
+        if self._is_over():
             self.stopping = "time"
             return False
         # Developing a film costs time: the noise is looked at after an eighth more passes each.
@@ -334,8 +334,8 @@ class _Budget:
         self._rendered += 1
         return True
 
-    def _is_over(self, passes: int) -> bool:
-        if self._time is None or passes == 0:
+    def _is_over(self) -> bool:
+        if self._time is None or self._rendered == 0:
             return False
         elapsed = clock.monotonic() - self._begin
         # A pass is expected to take as long as those before.

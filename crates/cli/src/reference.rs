@@ -33,14 +33,13 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
         same.map_err(failure)?;
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
+    warn_unused(args, &plan, console);
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
     if args.restart {
         reference::clear(&folder).map_err(failure)?;
     }
-    let plan = plan(args, earlier.as_ref(), &loaded)?;
-    warn_unused(args, &plan, console);
     let job = Job {
         args,
         console,

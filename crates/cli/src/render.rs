@@ -17,7 +17,6 @@ use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report};
 use bidir::driver::{Session, Settings};
-use bidir::film::Film;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
@@ -194,7 +193,7 @@ impl Job<'_> {
             if let ControlFlow::Break(end) = next_pass(budget, counts, times, signals.exit()) {
                 break end;
             }
-            if budget.looks_at_noise(passes) && is_below(budget.noise, session.film()) {
+            if budget.looks_at_noise(passes) && is_below(budget.noise, session) {
                 break End::Noise;
             }
             let begun = Instant::now();
@@ -331,8 +330,8 @@ fn next_pass(
 }
 
 /// Whether the image's relative error is at most `noise`.
-fn is_below(noise: Option<f64>, film: &Film) -> bool {
-    noise.is_some_and(|most| film.develop().relative_error() <= most)
+fn is_below(noise: Option<f64>, session: &Session<'_>) -> bool {
+    noise.is_some_and(|most| session.noise() <= most)
 }
 
 #[cfg(test)]

@@ -183,7 +183,7 @@ impl Session {
     /// The relative error of the picture.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
-        self.with(py, |state| state.session.film().develop().relative_error())
+        self.with(py, |state| state.session.noise())
     }
 
     /// The number of threads.

@@ -20,8 +20,8 @@ pub use training::{Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
-use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
-use crate::path::{MisCount, PathSettings};
+use crate::integrator::{Candidates, EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::path::{MisCount, PathRoulette, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use crate::select::ShadowRays;
@@ -56,6 +56,19 @@ impl Settings {
         self.path.roulette = integrator.roulette();
         self.shadow_rays = integrator.shadow_rays();
         self.lvc.candidates = integrator.candidates();
+    }
+
+    /// Decides what is left to the estimator, as it does itself; `auto` finds it out before the first pass.
+    pub fn decide(&mut self) {
+        if self.path.roulette == PathRoulette::Suited {
+            self.path.roulette = self.integrator.roulette();
+        }
+        if self.shadow_rays == ShadowRays::Suited {
+            self.shadow_rays = self.integrator.shadow_rays();
+        }
+        if self.lvc.candidates == Candidates::Suited {
+            self.lvc.candidates = self.integrator.candidates();
+        }
     }
 
     /// True where the estimator learns about connections before the first pass.

@@ -304,6 +304,16 @@ impl<'a> Session<'a> {
         &self.film
     }
 
+    /// The noise that is left in the picture ([`Picture::relative_error`](crate::film::Picture::relative_error)).
+    /// Without any light it is 0: the picture is black for good, where one that is black so far may have
+    /// found nothing yet.
+    pub fn noise(&self) -> f64 {
+        if self.scene.lights().is_empty() {
+            return 0.0;
+        }
+        self.film.develop().relative_error()
+    }
+
     /// What was counted so far, without training.
     pub fn stats(&self) -> &Stats {
         &self.stats

@@ -22,8 +22,7 @@ pub struct Picture {
 
 impl Picture {
     /// The noise that is left: the root mean square of the pixels' standard errors, divided by the
-    /// mean of the picture, both of luminance. Zero where no pixel varies, of a black picture, too;
-    /// infinite where pixels vary about a mean that is not positive.
+    /// mean of the picture, both of luminance. Infinite for a black picture.
     ///
     /// Errors of a pixel's channels are taken as fully correlated, and stratified passes as
     /// independent, so it is rather too large than too small.
@@ -36,9 +35,7 @@ impl Picture {
             error * error
         });
         let error = libm::sqrt(squares.sum::<f64>() / n);
-        if error <= 0.0 {
-            0.0
-        } else if mean > 0.0 {
+        if mean > 0.0 {
             error / mean
         } else {
             f64::INFINITY

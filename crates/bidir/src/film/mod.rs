@@ -283,16 +283,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_black_has_no_noise() {
-        let mut film = film(2, 2, Filter::default());
-        for pass in 0..2 {
-            let buffer = PassBuffer::new(film.settings(), film.layers());
-            film.add_pass(pass, &buffer);
-        }
-        assert!(film.develop().relative_error() <= 0.0);
-    }
-
-    #[test]
     fn a_film_beyond_the_limit_is_refused() {
         let settings = FilmSettings::new([1_000_000, 1_000_000], Filter::default());
         let error = Film::new(settings, 1 << 33).unwrap_err();

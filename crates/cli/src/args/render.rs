@@ -265,8 +265,8 @@ pub(crate) struct BudgetArgs {
     /// The relative error to reach: the root mean square of the pixels' standard errors, divided by
     /// the mean of the image, both of luminance.
     ///
-    /// Looked at from 16 passes on, after every eighth more; a black picture has no noise. A picture
-    /// that decides itself when it is done is slightly biased: the file says so.
+    /// Looked at from 16 passes on, after every eighth more. A picture that decides itself when it is
+    /// done is slightly biased: the file says so.
     #[arg(long, value_name = "ERROR", value_parser = values::positive_number)]
     pub(crate) noise: Option<f64>,
     /// How fast it is.

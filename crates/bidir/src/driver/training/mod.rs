@@ -16,9 +16,9 @@ pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{Candidates, EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
 use crate::light::LightChoice;
-use crate::path::{Cells, Connections, LightProposals, MisCount, PathRoulette};
+use crate::path::{Cells, Connections, LightProposals, MisCount};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
@@ -57,15 +57,7 @@ pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Tr
         let (plan, training) = Training::plan(scene, &settings);
         return (plan.apply(&settings), Some(training));
     }
-    if settings.path.roulette == PathRoulette::Suited {
-        settings.path.roulette = settings.integrator.roulette();
-    }
-    if settings.shadow_rays == ShadowRays::Suited {
-        settings.shadow_rays = settings.integrator.shadow_rays();
-    }
-    if settings.lvc.candidates == Candidates::Suited {
-        settings.lvc.candidates = settings.integrator.candidates();
-    }
+    settings.decide();
     let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
     let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
     let training = needs_training.then(|| Training::run(scene, &settings));
