@@ -307,6 +307,13 @@ PATHS = [
         unit("a_plan_that_finds_nothing"),
     ),
     (
+        "one light image that decides between plans",
+        "crates/bidir/src/driver/training/choice.rs",
+        "(self.sum(variance) - largest).max(0.0)",
+        "(self.sum(variance) - 0.0 * largest).max(0.0)",
+        unit("one_bright_light_image"),
+    ),
+    (
         "plans that are never tried again",
         "crates/bidir/src/driver/training/choice.rs",
         "product(tried) <= NEAR * best",

@@ -100,8 +100,8 @@ impl<'a> Judge<'a> {
 
     /// The product of what varies behind camera rays and of cost.
     fn product_behind(&self, (plan, trial): &Tried) -> f64 {
-        let behind = self.scale.sum(|i| trial.behind(i, self.scale.blocks));
-        behind * trial.cost(plan.integrator)
+        let behind = |i| trial.behind(i, self.scale.blocks);
+        self.scale.sum_but_largest(trial, behind) * trial.cost(plan.integrator)
     }
 
     /// The product of variance and cost, relative to those of others.
@@ -109,7 +109,8 @@ impl<'a> Judge<'a> {
         if self.scale.part_found(trial) < LEAST_FOUND {
             return f64::INFINITY;
         }
-        let found = self.scale.sum(|i| trial.variance(i, self.scale.blocks));
+        let variance = |i| trial.variance(i, self.scale.blocks);
+        let found = self.scale.sum_but_largest(trial, variance);
         let missed = if plan.has_light_images() {
             0.0
         } else {
@@ -172,6 +173,13 @@ impl<'a> Scale<'a> {
     fn sum(&self, variance: impl Fn(usize) -> f64) -> f64 {
         let relative = |i| variance(i) * self.relative(i);
         (0..self.means.len()).map(relative).sum()
+    }
+
+    /// The same without the largest of the light images of `trial`: where these are bright and rare, one
+    /// alone may be most of the sum, of whichever plan happened to make it.
+    fn sum_but_largest(&self, trial: &Trial, variance: impl Fn(usize) -> f64) -> f64 {
+        let largest = trial.largest_splat(self.blocks, |i| self.relative(i));
+        (self.sum(variance) - largest).max(0.0)
     }
 
     /// The part of what all plans find that a trial found, by the mean over the blocks that have anything:

@@ -65,6 +65,7 @@ struct Block {
     behind: f64,
     splats: f64,
     splat_squares: f64,
+    largest_splat_square: f64,
 }
 
 impl AddAssign<&Self> for Block {
@@ -76,6 +77,8 @@ impl AddAssign<&Self> for Block {
         self.behind += more.behind;
         self.splats += more.splats;
         self.splat_squares += more.splat_squares;
+        let largest = self.largest_splat_square;
+        self.largest_splat_square = largest.max(more.largest_splat_square);
     }
 }
 
@@ -215,8 +218,10 @@ impl Trial {
     }
 
     fn add_splat(&mut self, block: usize, value: f64, weight: f64) {
-        self.found[block].splats += value;
-        self.found[block].splat_squares += value * value;
+        let (found, square) = (&mut self.found[block], value * value);
+        found.splats += value;
+        found.splat_squares += square;
+        found.largest_splat_square = found.largest_splat_square.max(square);
         self.told.extend(Told::new(block, value, weight));
     }
 
@@ -239,7 +244,18 @@ impl Trial {
     }
 
     fn splat_variance(&self, i: usize, blocks: &Blocks) -> f64 {
-        let squares = self.found[i].splat_squares;
+        self.of_splats(self.found[i].splat_squares, i, blocks)
+    }
+
+    /// What a single light image adds to variances at most, times `relative` of its block.
+    pub(super) fn largest_splat(&self, blocks: &Blocks, relative: impl Fn(usize) -> f64) -> f64 {
+        let square = |i: usize| self.found[i].largest_splat_square;
+        let of_block = |i| self.of_splats(square(i), i, blocks) * relative(i);
+        (0..BLOCKS).map(of_block).fold(0.0, f64::max)
+    }
+
+    /// The variance of a pixel of block number `i` by light images with this sum of squares.
+    fn of_splats(&self, squares: f64, i: usize, blocks: &Blocks) -> f64 {
         squares / (self.samples() * blocks.pixels() * blocks.size(i))
     }
 

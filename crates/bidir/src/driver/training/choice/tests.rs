@@ -159,6 +159,19 @@ fn varying(plan: Plan, variance: f64) -> Tried {
     (plan, Trial::of(&[[1.0, 1.0 + difference]], &[]))
 }
 
+/// Of plans with light images whichever made a bright one would seem worse.
+#[test]
+fn one_bright_light_image_decides_nothing() {
+    let with = |plan, splats: &[[f64; 2]]| (plan, Trial::of(&[[1.0, 2.0]], splats));
+    let best = |splats: &[[f64; 2]]| {
+        let tried = [with(BDPT, splats), with(LVC, &[])];
+        best(&square(), &Settings::default(), &tried)
+    };
+    let bright = [30.0, 0.5];
+    assert_eq!(best(&[bright]), BDPT);
+    assert_eq!(best(&[bright, bright]), LVC);
+}
+
 #[test]
 fn plans_that_are_near_the_best_are_tried_more() {
     let close = |tried: &[Tried]| Judge::new(&square(), &Settings::default(), tried).close();
