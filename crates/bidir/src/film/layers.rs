@@ -43,7 +43,8 @@ pub enum Aov {
     Samples,
     /// The variance of the pixel's mean, and the same divided by the square of the mean.
     Variance,
-    /// The time of all samples, without light subpaths that they share. Unit: seconds. The one image whose bits no run repeats.
+    /// The time of all samples, without light subpaths that they share. Unit: seconds. The one image whose
+    /// bits no run repeats.
     Time,
     /// The rays of all samples, with those of light subpaths of their own.
     Rays,

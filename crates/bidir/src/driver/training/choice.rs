@@ -6,6 +6,9 @@
 //! What neighbouring pixels have in common by shared light subpaths is not in V, and trials have noise: of
 //! plans that are nearly as good, one is taken without them, and one whose walks do not end at once.
 //!
+//! What is close is tried again with more samples, and the largest light image of each plan is left out, as
+//! few samples mistake what is bright and rare.
+//!
 //! Plans that share light subpaths are compared once more, among themselves, by what varies behind the
 //! camera rays: what a pixel varies by is the same with all of them, and points of a sequence even it out.
 
