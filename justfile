@@ -65,6 +65,10 @@ bench-view *FLAGS:
     cargo build --release
     python3 tools/bench_view {{FLAGS}}
 
+# What `auto` takes to the same noise, beside what it chooses from; needs the Python package.
+bench-auto *FLAGS:
+    python3 tools/bench_auto {{FLAGS}}
+
 # What a render over Ray costs beside the same without, in time and memory; needs the Python package.
 bench-ray *FLAGS:
     python3 tools/bench_ray {{FLAGS}}

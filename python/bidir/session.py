@@ -266,7 +266,8 @@ def render(
         integrator: The estimator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
         spp: Samples per pixel; None is the scene's, or no limit where ``time`` or ``noise`` is given.
         time: End before this time is over, but after a pass. Unit: seconds.
-        noise: End when the error relative to the mean of the image is as small as this.
+        noise: End when the error relative to the mean of the image is as small as this; it is looked
+            at after 16 passes, and after every eighth of them or less more.
         seed, layers, light_groups, strategy_layers, threads: As for :class:`Session`.
         progress: Is told of every pass: ``tqdm``, a bar, or a function of done and all.
         checkpoint: A film file to go on from where it is there, and to write now and then.
@@ -315,7 +316,6 @@ class _Budget:
         self._spp, self._time, self._noise = spp, time, noise
         self._begin = clock.monotonic()
         self._rendered = 0
-        self._looked_at = 0
         self.stopping = "fixed"
 
     def allows(self, session: Session) -> bool:
@@ -325,12 +325,9 @@ class _Budget:
         if self._is_over():
             self.stopping = "time"
             return False
-        # Developing a film costs time: the noise is looked at after an eighth more passes each.
-        if self._noise is not None and passes >= max(2, self._looked_at * 9 // 8):
-            self._looked_at = passes
-            if session.noise <= self._noise:
-                self.stopping = "noise"
-                return False
+        if self._noise is not None and session._native.looks_at_noise and session.noise <= self._noise:
+            self.stopping = "noise"
+            return False
         self._rendered += 1
         return True
 

@@ -205,4 +205,8 @@ class Lvc(_Bidirectional):
 
 @dataclass(frozen=True, kw_only=True)
 class Auto(Lvc):
-    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, by what a short render before the first pass finds."""
+    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, by what a short render before the first pass finds.
+
+    It tries several numbers of ``samples_per_subpath``: naming one has no influence. What it took is
+    ``film.settings["plan"]``.
+    """

@@ -152,6 +152,8 @@ def test_limits_end_a_render(cornell: bidir.Scene) -> None:
     by_noise = bidir.render(cornell, noise=0.2)
     assert by_noise.film.stopping == "noise"
     assert by_noise.film.noise <= 0.2
+    # One pass would do: from 16 on it is looked at, as by the command.
+    assert bidir.render(cornell, noise=1e6).film.spp == 16
     assert bidir.render(cornell, spp=1, time=1e6).film.stopping == "fixed"
     for wrong in ({"spp": 0}, {"spp": 1, "threads": -1}, {"spp": 1, "seed": -1}):
         with pytest.raises(bidir.SettingsError):

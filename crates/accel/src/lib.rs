@@ -1,4 +1,4 @@
-//! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, and instances of trees.
+//! Watertight ray intersection: an 8-wide BVH over triangles, spheres, disks, cylinders and instances.
 //!
 //! A [`Bvh`] is built once from a slice of [`Primitive`]s and then answers two questions from any
 //! number of threads: [`Bvh::closest`] and [`Bvh::occluded`]; [`Bvh::each_hit`] tells all hits.

@@ -297,7 +297,7 @@ pub(crate) fn tell_failure(args: TalkArgs, failure: &Failure) {
 }
 
 /// Writes a line of Open Job Description. Where nobody listens there is nobody to tell.
-fn tell_openjd(kind: &str, message: &str) {
+pub(crate) fn tell_openjd(kind: &str, message: &str) {
     let _ = print(&format!(
         "openjd_{kind}: {}\n",
         message.replace(char::is_control, " ")

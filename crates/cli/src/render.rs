@@ -50,8 +50,11 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let unused = settings::warn_unused(args, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {
-        let session = begin::session(args, &loaded, &settings)?;
-        return replay::run(args, &loaded.scene, &session, target);
+        let display = console.display(args.output.talk);
+        return match begin::session(args, &loaded, &settings, &signals, display)? {
+            Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
+            Began::Stopped(exit) => Ok(exit),
+        };
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
     outputs.check(args)?;
@@ -110,7 +113,13 @@ impl Job<'_> {
             checkpoint.check(&header(None), budget.range())?;
         }
         let start = Instant::now();
-        let began = begin::unless_stopped(self.args, self.loaded, self.settings, self.signals);
+        let began = begin::session(
+            self.args,
+            self.loaded,
+            self.settings,
+            self.signals,
+            self.display(),
+        );
         let mut session = match began? {
             Began::Session(session) => *session,
             Began::Stopped(exit) => return Ok(self.stopped(exit)),

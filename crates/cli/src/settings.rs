@@ -4,7 +4,7 @@
 use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
-use bidir::driver::Settings;
+use bidir::driver::{Session, Settings};
 use bidir::integrator::IntegratorKind;
 use formats::film::has_influence;
 use std::ops::Range;
@@ -128,10 +128,9 @@ impl Budget {
         rendered == 0 || self.time.is_none_or(|time| elapsed + pass <= time)
     }
 
-    /// True after those numbers of passes at which noise is looked at: a function of the number
-    /// alone, so that a render that was interrupted ends where it would have ended.
+    /// True where the noise may end the render, and is looked at after so many passes.
     pub(crate) fn looks_at_noise(&self, passes: u64) -> bool {
-        self.noise.is_some() && passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
+        self.noise.is_some() && Session::looks_at_noise(passes)
     }
 
     /// The time that is left after `elapsed`, at the rate of the passes from `before` to `now`, which

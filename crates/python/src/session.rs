@@ -186,6 +186,12 @@ impl Session {
         self.with(py, |state| state.session.noise())
     }
 
+    /// Whether a render that ends by its noise looks at it before the next pass.
+    #[getter]
+    fn looks_at_noise(&self, py: Python<'_>) -> bool {
+        driver::Session::looks_at_noise(self.next_pass(py))
+    }
+
     /// The number of threads.
     #[getter]
     fn threads(&self) -> usize {

@@ -323,8 +323,8 @@ PATHS = [
     (
         "the best plan of those that few samples flatter",
         "crates/bidir/src/driver/training/choice.rs",
-        ".filter(|tried| Some(samples(tried)) == most);",
-        ".filter(|tried| Some(samples(tried)) <= most);",
+        ".filter(|tried| samples(tried) == most);",
+        ".filter(|tried| samples(tried) <= most);",
         unit("the_best_is_one_of_those"),
     ),
     (
@@ -347,6 +347,13 @@ PATHS = [
         "0x91e1_0da5_c79e_7b1d",
         "0xc13f_a9a9_02a6_328f",
         unit("samples_are_spread_over_films"),
+    ),
+    (
+        "light subpaths of trials that leave points of their sequence out",
+        "crates/bidir/src/driver/training/probe.rs",
+        "(number - self.first) / samples_per_subpath;",
+        "(number - self.first) / samples_per_subpath.min(1);",
+        unit("light_subpaths_of_many_samples"),
     ),
     (
         "light images that tell what counts of traced rays do not",

@@ -314,6 +314,13 @@ impl<'a> Session<'a> {
         self.film.develop().relative_error()
     }
 
+    /// True after those numbers of passes at which a render that ends by its [`Self::noise`] looks at it,
+    /// from 16 on: developing a film takes time. A function of the number alone, so that a render that
+    /// was interrupted ends where it would have ended.
+    pub fn looks_at_noise(passes: u64) -> bool {
+        passes >= 16 && passes.is_multiple_of(1 << (passes.ilog2() - 3))
+    }
+
     /// What was counted so far, without training.
     pub fn stats(&self) -> &Stats {
         &self.stats

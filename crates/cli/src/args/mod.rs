@@ -103,7 +103,8 @@ pub(crate) enum Command {
     /// Tell what is in a scene.
     ///
     /// Prints its film, camera and settings, the number of shapes, triangles, materials, lights and
-    /// textures, its extent, and the memory that rendering takes.
+    /// textures, its extent, and the memory that rendering takes; which light paths each integrator
+    /// misses or finds by chance only, and what a render would refuse.
     Info(InfoArgs),
     /// Render a reference: a picture that others can be measured against.
     ///

@@ -151,7 +151,7 @@ pub(crate) struct EstimatorArgs {
     ///
     /// path walks from the camera, light from the lights. bdpt joins the two subpaths of a sample; lvc
     /// joins camera subpaths with light subpaths of many samples; auto tries path, bdpt and lvc with
-    /// a few samples, and takes what suits the scene.
+    /// a few samples, and takes what suits the scene; what is named for lvc holds there, too.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
     /// Which connections between subpaths are traced (bdpt, lvc) [default: what suits the integrator].
@@ -188,7 +188,7 @@ pub(crate) struct EstimatorArgs {
     #[arg(long, value_parser = named(EmissionKind::NAMES))]
     pub(crate) emission: Option<EmissionKind>,
     /// How many samples bring one light subpath to those that are shared (lvc): a power of two, up to
-    /// 256 [default: 2].
+    /// 256 [default: 2]. auto tries 1, 2 and 4.
     #[arg(long, value_name = "K")]
     pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
     /// What weights take for the number of samples of a strategy whose light subpaths are shared (lvc)
@@ -219,7 +219,7 @@ pub(crate) struct EstimatorArgs {
     /// How next-event estimation chooses the light (path, bdpt, lvc) [default: tree].
     ///
     /// tree: by what arrives from it at the point, as a hierarchy of the lights estimates. power: by
-    /// power alone, as light subpaths do.
+    /// power alone, as light subpaths of light and bdpt do.
     #[arg(long, value_parser = named(LightChoiceKind::NAMES))]
     pub(crate) light_choice: Option<LightChoiceKind>,
     /// How subpaths end by chance [default: the integrator's].

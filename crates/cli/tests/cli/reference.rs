@@ -206,12 +206,15 @@ fn an_estimator_is_no_witness_of_itself() {
         let mut command = place.command("reference room.pbrt -q --spp 16 --restart -o a.reference");
         Ran::of(command.args(estimators))
     };
-    let same: [&[&str]; 6] = [
+    let same: [&[&str]; 8] = [
         &["--estimator=bdpt", "--against=bdpt"],
         &["--estimator=bdpt --seed 1", "--against=bdpt --seed 2"],
         &["--estimator=lvc", "--against=lvc --shadow-rays suited"],
         &["--estimator=path", "--against=path --candidates 4"],
         &["--estimator=light", "--against=light --mis power"],
+        // Either may be what the other is.
+        &["--estimator=auto", "--against=path"],
+        &["--estimator=bdpt", "--against=auto"],
         // The first is the usual one.
         &["--against=bdpt --path-roulette suited"],
     ];

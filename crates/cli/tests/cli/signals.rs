@@ -1,5 +1,5 @@
 use crate::common::{Ran, Workplace};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -84,19 +84,18 @@ fn with_a_film_file_the_render_can_go_on() {
     assert_eq!(info["stopping"], "time");
 }
 
-/// Renders what trains for long, and sends a signal as soon as signals are watched.
-fn stopped_in_training(place: &Workplace, signal: &str) -> Ran {
+/// Runs what trains for long, and sends a signal when it says so.
+fn stopped_in_training(place: &Workplace, what: &str, signal: &str) -> Ran {
     let long = "--integrator lvc --candidates 4096 --next-events 4096 --size 480x320";
-    let mut command = place.command(&format!("render room.pbrt {long} --checkpoint a.film"));
+    let mut command = place.command(&format!("render room.pbrt {long} {what}"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    // The film file is locked when signals are watched.
-    while !place.path("a.film.lock").exists() {
-        std::thread::sleep(Duration::from_millis(5));
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut told = String::new();
+    while !told.contains("training before the first pass") {
+        assert!(stderr.read_line(&mut told).unwrap() > 0, "{told}");
     }
     send(signal, &child);
-    let mut told = String::new();
-    let stderr = child.stderr.as_mut().unwrap();
-    std::io::Read::read_to_string(stderr, &mut told).unwrap();
+    stderr.read_to_string(&mut told).unwrap();
     Ran {
         code: child.wait().unwrap().code(),
         stdout: String::new(),
@@ -108,10 +107,16 @@ fn stopped_in_training(place: &Workplace, signal: &str) -> Ran {
 fn with_a_film_file_training_can_be_stopped_too() {
     for signal in ["INT", "TERM"] {
         let place = Workplace::new();
-        let ran = stopped_in_training(&place, signal).expect(75);
+        let ran = stopped_in_training(&place, "--checkpoint a.film", signal).expect(75);
         ran.says("stopped before the first pass: nothing is written");
         assert_eq!(place.names(), ["room.pbrt"]);
     }
+}
+
+#[test]
+fn a_replay_can_be_stopped_while_it_trains() {
+    let place = Workplace::new();
+    stopped_in_training(&place, "--replay 1,1,0", "INT").expect(130);
 }
 
 #[test]
@@ -130,7 +135,7 @@ fn a_reference_can_be_stopped_and_gone_on_with() {
     send("INT", &child);
     let mut told = String::new();
     let stderr = child.stderr.as_mut().unwrap();
-    std::io::Read::read_to_string(stderr, &mut told).unwrap();
+    stderr.read_to_string(&mut told).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(75), "{told}");
     assert!(told.contains("the same command goes on"), "{told}");
     assert!(!place.path("room.reference/provenance.json").exists());

@@ -2,7 +2,8 @@
 
 use crate::board::{Board, Interrupts, Look, Subject};
 use crate::exhibit::Exhibit;
-use bidir::driver::{Progress, Session};
+use bidir::driver::{Progress, Session, Settings};
+use bidir::integrator::IntegratorKind;
 use formats::film::{FilmHeader, Stopping, of_run};
 use std::time::{Duration, Instant};
 
@@ -86,5 +87,35 @@ impl Lane {
             generation: self.exhibit.generation(),
             header: &header,
         }));
+    }
+}
+
+/// What a preview is rendered with: no camera would stand still for as long as `auto` tries estimators.
+/// Bidirectional path tracing finds whatever the others do.
+pub(super) fn without_training(wanted: &Settings) -> Settings {
+    let mut settings = wanted.clone();
+    if matches!(
+        settings.integrator,
+        IntegratorKind::Auto | IntegratorKind::Lvc
+    ) {
+        settings.set_integrator(IntegratorKind::Bdpt);
+    }
+    settings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use IntegratorKind::{Auto, Bdpt, Light, Lvc, Path};
+
+    #[test]
+    fn previews_train_for_nothing() {
+        let preview = |integrator| {
+            let mut wanted = Settings::default();
+            wanted.set_integrator(integrator);
+            without_training(&wanted).integrator
+        };
+        assert_eq!([Path, Light, Bdpt].map(preview), [Path, Light, Bdpt]);
+        assert_eq!([Auto, Lvc].map(preview), [Bdpt; 2]);
     }
 }

@@ -1,7 +1,7 @@
 //! The thread that renders: requests, a pass of the lane that is behind, requests, …
 
 use super::StudioSettings;
-use super::lane::Lane;
+use super::lane::{Lane, without_training};
 use super::save::Saved;
 use super::view::View;
 use crate::board::{Desk, Request};
@@ -209,10 +209,15 @@ impl Painter {
             preview: self.view.is_preview(),
             target: self.target,
         };
-        let session = Session::new(Arc::clone(&self.scene), wanted.clone(), &self.resources)
+        let settings = if course.preview {
+            without_training(wanted)
+        } else {
+            wanted.clone()
+        };
+        let session = Session::new(Arc::clone(&self.scene), settings.clone(), &self.resources)
             .map_err(|error| error.to_string())?;
         Ok(Lane {
-            header: self.header(wanted, &session),
+            header: self.header(&settings, &session),
             session,
             exhibit: Exhibit::new(lane, course, wanted),
         })

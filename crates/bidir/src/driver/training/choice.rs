@@ -9,8 +9,9 @@
 //! What is close is tried again with more samples, and the largest light image of each plan is left out, as
 //! few samples mistake what is bright and rare.
 //!
-//! Plans that share light subpaths are compared once more, among themselves, by what varies behind the
-//! camera rays: what a pixel varies by is the same with all of them, and points of a sequence even it out.
+//! Plans that share light subpaths are compared among themselves by the first samples, of which all have as
+//! many, and by what varies behind the camera rays: what a pixel varies by is the same with all of them, and
+//! points of a sequence even it out.
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
@@ -64,10 +65,13 @@ impl<'a> Judge<'a> {
     /// of them, relative to what its samples found.
     pub(super) fn close(&self) -> Vec<Plan> {
         let product = |tried: &Tried| self.product(tried);
-        let best = least(self.tried.iter(), product).map_or(f64::INFINITY, product);
+        let best = least(self.tried.iter(), product).map_or(0.0, product);
+        if best <= 0.0 {
+            return Vec::new();
+        }
         let is_near = |tried: &&Tried| product(tried) <= NEAR * best;
         let (light, path): (Vec<_>, Vec<_>) = (self.tried.iter())
-            .filter(|(plan, _)| !is_shared(plan))
+            .filter(|(plan, _)| !plan.is_shared())
             .partition(|(plan, _)| plan.has_light_images());
         let shared = least(self.shared(), product);
         let mut near: Vec<_> = light.into_iter().chain(shared).filter(is_near).collect();
@@ -80,38 +84,38 @@ impl<'a> Judge<'a> {
         near.into_iter().map(|(plan, _)| *plan).collect()
     }
 
-    /// The best: one of those with the most samples.
-    pub(super) fn best(&self) -> Plan {
+    /// The best of those with the most samples. None: no plan found any light.
+    pub(super) fn best(&self) -> Option<Plan> {
         let samples = |(_, trial): &Tried| trial.stats.samples;
-        let most = self.tried.iter().map(samples).max();
-        let tried_most = self
-            .tried
-            .iter()
-            .filter(|tried| Some(samples(tried)) == most);
-        let best = match least(tried_most, |tried| self.product(tried)) {
-            Some((plan, _)) if is_shared(plan) && self.is_even => {
-                least(self.shared(), |tried| self.product_behind(tried))
-            }
-            best => best,
+        let most = self.tried.iter().map(samples).max()?;
+        let tried_most = self.tried.iter().filter(|tried| samples(tried) == most);
+        let best = least(tried_most, |tried| self.product(tried))?;
+        self.scale.has_light().then_some(best.0)
+    }
+
+    /// The best of those that share light subpaths.
+    pub(super) fn best_shared(&self) -> Option<Plan> {
+        let best = if self.is_even {
+            least(self.shared(), |tried| self.product_behind(tried))
+        } else {
+            least(self.shared(), |tried| self.product(tried))
         };
-        best.map_or_else(Plan::default, |(plan, _)| *plan)
+        best.map(|(plan, _)| *plan)
     }
 
     fn shared(&self) -> impl Iterator<Item = &'a Tried> {
-        self.tried.iter().filter(|(plan, _)| is_shared(plan))
+        self.tried.iter().filter(|(plan, _)| plan.is_shared())
     }
 
     /// The product of what varies behind camera rays and of cost.
     fn product_behind(&self, (plan, trial): &Tried) -> f64 {
         let behind = |i| trial.behind(i, self.scale.blocks);
-        self.scale.sum_but_largest(trial, behind) * trial.cost(plan.integrator)
+        let varies = self.scale.sum_but_largest(trial, behind);
+        self.told(trial, varies * trial.cost(plan.integrator))
     }
 
     /// The product of variance and cost, relative to those of others.
     fn product(&self, (plan, trial): &Tried) -> f64 {
-        if self.scale.part_found(trial) < LEAST_FOUND {
-            return f64::INFINITY;
-        }
         let variance = |i| trial.variance(i, self.scale.blocks);
         let found = self.scale.sum_but_largest(trial, variance);
         let missed = if plan.has_light_images() {
@@ -119,7 +123,17 @@ impl<'a> Judge<'a> {
         } else {
             self.missed.beside(found)
         };
-        (found + missed) * handicap(plan) * trial.cost(plan.integrator)
+        let product = (found + missed) * handicap(plan) * trial.cost(plan.integrator);
+        self.told(trial, product)
+    }
+
+    /// `product`, or more than any where the samples of `trial` found too little to tell.
+    fn told(&self, trial: &Trial, product: f64) -> f64 {
+        if self.scale.part_found(trial) < LEAST_FOUND {
+            f64::INFINITY
+        } else {
+            product
+        }
     }
 }
 
@@ -131,11 +145,6 @@ fn least<'a>(
     let products = tried.map(|tried| (tried, product(tried)));
     let least = products.min_by(|a, b| a.1.total_cmp(&b.1));
     least.map(|(tried, _)| tried)
-}
-
-/// True where light subpaths are shared.
-fn is_shared(plan: &Plan) -> bool {
-    plan.integrator == IntegratorKind::Lvc
 }
 
 /// What the product of a plan counts, by what is known before any trial.
@@ -170,6 +179,11 @@ impl<'a> Scale<'a> {
             means,
             least,
         }
+    }
+
+    /// False where no plan found any.
+    fn has_light(&self) -> bool {
+        self.means.iter().any(|mean| *mean > 0.0)
     }
 
     /// The sum over the blocks of what `variance` tells of each.
@@ -210,7 +224,7 @@ impl<'a> Scale<'a> {
 /// where path tracing's strategies count in full, and densities have the roulette in them. By traced rays
 /// next-event estimation counts less.
 fn is_told(settings: &Settings, plan: &Plan) -> bool {
-    let is_by_rays = is_shared(plan) && settings.lvc.mis_count == MisCount::Resampled;
+    let is_by_rays = plan.is_shared() && settings.lvc.mis_count == MisCount::Resampled;
     let is_in_densities = !matches!(plan.roulette, PathRoulette::Throughput { .. });
     let has_weights = settings.path.mis == MisHeuristic::Balance && is_in_densities && !is_by_rays;
     plan.has_light_images() && has_weights

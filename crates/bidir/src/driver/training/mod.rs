@@ -69,20 +69,32 @@ impl Training {
     fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
         let default = Plan::default().keeping(settings);
         let mut training = Self::run(scene, &default.apply(settings));
+        let plan = if scene.lights().is_empty() {
+            plan::path(1).keeping(settings)
+        } else {
+            // What nothing found yet is found by what makes most paths.
+            training.choose(scene, settings).unwrap_or(default)
+        };
+        training.plan = Some(plan);
+        (plan, training)
+    }
+
+    /// The best plan. None: no trial found any light.
+    fn choose(&mut self, scene: &Scene, settings: &Settings) -> Option<Plan> {
         let trials = Trials {
             scene,
             settings,
-            training: &training,
+            training: self,
         };
         let (mut tried, blocks) = (trials.run(), Blocks::new(scene.film().crop));
-        let close = Judge::new(&blocks, settings, &tried).close();
+        let first = Judge::new(&blocks, settings, &tried);
+        let (close, shared) = (first.close(), first.best_shared());
         trials.run_more(&close, &mut tried);
         for (_, trial) in &tried {
-            training.count(trial.stats.samples, trial.stats.rays);
+            self.count(trial.stats.samples, trial.stats.rays);
         }
-        let plan = Judge::new(&blocks, settings, &tried).best();
-        training.plan = Some(plan);
-        (plan, training)
+        let best = Judge::new(&blocks, settings, &tried).best()?;
+        if best.is_shared() { shared } else { Some(best) }
     }
 
     /// Renders a few samples spread over the film, tracing every connection.

@@ -14,6 +14,9 @@ const GROUPS: u64 = 64;
 const CANDIDATES: Candidates = Candidates::Of(CandidateCount::of(16));
 /// The samples of all groups, each of which brings a light subpath.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
+/// The most that a group keeps of connections, and of next events: walks that never end have millions, and
+/// what is learnt are ratios of sums.
+const MOST_KEPT: usize = 1 << 16;
 
 /// A connection with a vertex of the light cache that was traced.
 #[derive(Clone, Copy)]
@@ -55,6 +58,9 @@ impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
 
     fn sample(&mut self, context: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
+        if self.connections.len().max(self.next_events.len()) >= MOST_KEPT {
+            return;
+        }
         let square = |value| {
             let y = f64::from(context.luminance(value));
             y * y

@@ -110,13 +110,18 @@ impl Plan {
 
     /// How many connections a camera vertex makes.
     fn connections<'a>(&self, settings: &Settings, training: &'a Training) -> Connections<'a> {
-        match self.integrator {
-            IntegratorKind::Lvc => Connections {
-                samples_per_subpath: f64::from(self.samples_per_subpath.get()),
-                ..training.connections(settings.lvc)
-            },
-            _ => Connections::ONE_SUBPATH,
+        if !self.is_shared() {
+            return Connections::ONE_SUBPATH;
         }
+        Connections {
+            samples_per_subpath: f64::from(self.samples_per_subpath.get()),
+            ..training.connections(settings.lvc)
+        }
+    }
+
+    /// True where samples share light subpaths.
+    pub(super) fn is_shared(&self) -> bool {
+        self.integrator == IntegratorKind::Lvc
     }
 
     /// True where light subpaths are connected to the lens.
@@ -153,7 +158,7 @@ impl fmt::Display for Plan {
             name.map_or("", |(name, _)| name),
             self.roulette
         )?;
-        if self.integrator != IntegratorKind::Lvc {
+        if !self.is_shared() {
             return Ok(());
         }
         if self.samples_per_subpath.get() > 1 {

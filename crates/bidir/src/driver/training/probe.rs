@@ -141,12 +141,14 @@ impl Probe<'_> {
             (number / self.pixels, self.first + number % self.pixels)
         };
         let ray = if round == 1 { place } else { number };
+        let samples_per_subpath = self.connections.samples_per_subpath as u64;
+        let subpath = self.first + (number - self.first) / samples_per_subpath;
         Sample {
             pass: 0,
             pixel: pixel(&crop, place),
             ray: sampler.stream(Domain::TrainingCamera, ray, 0),
             camera: sampler.stream(Domain::TrainingCamera, number, 0),
-            light: sampler.stream(Domain::TrainingLight, 0, number),
+            light: sampler.stream(Domain::TrainingLight, 0, subpath),
         }
     }
 
@@ -159,6 +161,8 @@ impl Probe<'_> {
 mod tests {
     use super::*;
     use crate::driver::training::blocks::{BLOCKS, Blocks};
+    use crate::driver::training::trial::tests::lamp;
+    use crate::sampler::{Dimension, Purpose};
 
     #[test]
     fn samples_are_spread_over_films_of_all_sizes() {
@@ -181,6 +185,30 @@ mod tests {
             let most = counts.iter().max().copied().unwrap_or(0);
             let least = counts.iter().min().copied().unwrap_or(0);
             assert!(least >= 8 && most <= 24, "{max:?}: {least} to {most}");
+        }
+    }
+    /// As in the image: points of a sequence are even where none is left out.
+    #[test]
+    fn light_subpaths_of_many_samples_are_one_after_the_other() {
+        let max = [16; 2];
+        let (scene, settings) = (lamp(PixelRect { min: [0; 2], max }), Settings::default());
+        let light = |samples_per_subpath, number| {
+            let probe = Probe {
+                scene: &scene,
+                settings: &settings,
+                connections: Connections {
+                    samples_per_subpath,
+                    ..Connections::ONE_SUBPATH
+                },
+                first: 768,
+                pixels: u64::MAX,
+            };
+            let light = Dimension::at(0, Purpose::Light);
+            probe.sample(number).light.get_1d(light)
+        };
+        for i in 0..8 {
+            let (own, shared) = (light(1.0, 768 + i), light(4.0, 768 + 4 * i));
+            assert_eq!(own.to_bits(), shared.to_bits());
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::path::PathRoulette;
 
 /// The best of the plans, on a film of these blocks.
 fn best(blocks: &Blocks, settings: &Settings, tried: &[Tried]) -> Plan {
-    Judge::new(blocks, settings, tried).best()
+    let best = Judge::new(blocks, settings, tried).best();
+    best.expect("they found light")
 }
 
 /// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
@@ -137,14 +138,22 @@ fn what_a_pixel_varies_by_is_the_same_for_all_that_share_light_subpaths() {
             ..Settings::default()
         };
         let tried = [(LVC, with_pixel(2.0)), (MANY, many.clone())];
-        assert_eq!(best(&square(), &settings, &tried), expected);
+        let best = Judge::new(&square(), &settings, &tried).best_shared();
+        assert_eq!(best, Some(expected));
     }
 }
 
 #[test]
-fn nothing_to_see_is_traced_from_the_camera() {
-    let tried = PLANS.map(|plan| (plan, Trial::of(&[[0.0; 2]], &[])));
-    assert_eq!(best(&square(), &Settings::default(), &tried), path(0));
+fn of_plans_that_found_nothing_none_is_the_best() {
+    let judged = |value| {
+        let tried = PLANS.map(|plan| (plan, Trial::of(&[[value; 2]], &[])));
+        let (blocks, settings) = (square(), Settings::default());
+        let judge = Judge::new(&blocks, &settings, &tried);
+        (judge.best(), judge.close().len())
+    };
+    assert_eq!(judged(0.0), (None, 0));
+    // No more samples are asked where one varies by nothing.
+    assert_eq!(judged(1.0), (Some(path(0)), 0));
 }
 
 /// Of so much variance in the one block.

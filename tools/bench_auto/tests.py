@@ -1,0 +1,51 @@
+"""Tests of this tool: python3 -m pytest tools/bench_auto/tests.py"""
+
+import figures
+import numpy as np
+import pytest
+
+SPP = 4
+
+
+def noisy(variance, seeds, seed, common=0.0):
+    """Return images of mean 1, whose samples have so much variance, and blocks some in common."""
+    rng = np.random.default_rng(seed)
+    own = rng.normal(1.0, np.sqrt(variance / SPP), (seeds, 48, 64, 3))
+    shared = np.sqrt(common / SPP) * rng.normal(size=(seeds, 3, 4, 3))
+    return own + shared.repeat(figures.BLOCK, axis=1).repeat(figures.BLOCK, axis=2)
+
+
+def test_known_variances_are_found():
+    images = {"path": noisy(2.0, 64, 1), "bdpt": noisy(0.5, 64, 2, common=0.1)}
+    seconds = {"path": np.full(64, 3e-6), "bdpt": np.full(64, 8e-6)}
+    found = figures.products(images, seconds, SPP)
+    for name, variance, common, time in (("path", 2.0, 0.0, 3.0), ("bdpt", 0.5, 0.1, 8.0)):
+        pixels, blocks = found[name]
+        # The thousandth that is left out has little more than the others.
+        assert pixels == pytest.approx((variance + common) * time / 1.01, rel=0.02)
+        assert blocks == pytest.approx((variance / figures.BLOCK**2 + common) * time / 1.01, rel=0.15)
+
+
+def test_a_seed_that_takes_longer_counts_for_its_time():
+    calm, wild = noisy(0.1, 64, 3), noisy(0.9, 64, 4)
+    images = {"auto": np.concatenate([calm, wild])}
+    seconds = np.repeat([1e-6, 3e-6], 64)
+    found = figures.products(images, {"auto": seconds}, SPP)["auto"][0]
+    assert found == pytest.approx((0.1 * 1.0 + 0.9 * 3.0) / 2 / 1.01, rel=0.02)
+
+
+def test_the_noisiest_thousandth_is_left_out():
+    values = np.ones((50, 40))
+    values[3, 4] = values[5, 6] = 1e9
+    assert figures.trimmed_mean(values) == 1.0
+    values[7, 8] = 1e9
+    assert figures.trimmed_mean(values) > 1e5
+
+
+def test_auto_is_measured_by_the_better_of_both():
+    products = {"path": (2.0, None), "bdpt": (1.0, None), "lvc": (0.1, None), "auto": (0.5, 0.25)}
+    row = figures.Row("room", products, ["lvc", "bdpt", "lvc"])
+    table = figures.table([row])
+    assert row.behind() == 0.5
+    assert "| room | 2 | 1 | 0.1 | 0.5 (64) | 0.50 | lvc (2 of 3) |" in table
+    assert "1 scenes: 0.50 (geometric mean), 0.50 to 0.50." in table
