@@ -39,8 +39,9 @@ pub fn replace_keeping(path: &Path, previous: &Path, bytes: &[u8]) -> Result<()>
         let name = temporary_for(previous)?.into_temp_path();
         std::fs::remove_file(&name)?;
         std::fs::hard_link(target, &name).or_else(|_| std::fs::copy(target, &name).map(drop))?;
-        name.persist(previous)?;
-        Ok(())
+        // Both may be names of one file, where the last writer was killed before its last step: then a
+        // rename does nothing, and what it leaves is removed with `name`.
+        std::fs::rename(&name, previous)
     })
 }
 
@@ -76,13 +77,14 @@ fn is_special(path: &Path) -> bool {
         .is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// Says now whether [`replace`] can make its temporary file; nothing is left behind.
+/// Says now whether [`replace`] can make its temporary file. Nothing is left behind, not even by who is
+/// killed here where the file system has files without names.
 pub fn check_replaceable(path: &Path) -> Result<()> {
     let target = target_of(path);
     if is_special(&target) {
         return Ok(());
     }
-    let made = temporary_for(&target);
+    let made = tempfile::tempfile_in(folder_of(&target));
     made.map(drop)
         .map_err(|error| Error::io(path, "write", &error))
 }
@@ -236,6 +238,12 @@ mod tests {
                 kept.map(|b| &b[..])
             );
         }
+        // As a writer leaves them that is killed before its last step.
+        std::fs::remove_file(&previous).unwrap();
+        std::fs::hard_link(&path, &previous).unwrap();
+        replace_keeping(&path, &previous, b"4").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"4");
+        assert_eq!(std::fs::read(&previous).unwrap(), b"3");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
