@@ -22,8 +22,8 @@ const SHOTS = path.join(TARGET, "browser");
 /** Why nothing can be tested here; null: it can. */
 export const MISSING = CHROMIUM ? (existsSync(BIDIR) ? null : `${BIDIR} is not built`) : "Chromium is not installed";
 
-/** How long to wait for what a page has to show. Unit: milliseconds. */
-const PATIENCE = 60_000;
+/** How long to wait for what a page has to show, on however slow a machine. Unit: milliseconds. */
+const PATIENCE = 300_000;
 
 const FLAGS = [
   "--no-sandbox",

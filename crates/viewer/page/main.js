@@ -42,7 +42,7 @@ new Gestures(stage, pilot, {
     tellHovered();
   },
   onEnter: () => (mode() === "sample" ? sample.ask() : undefined),
-  onHome: () => link.send("home"),
+  onHome: goHome,
 });
 
 connectTransport(link, () => status);
@@ -66,7 +66,12 @@ function connectModes() {
     stage.element.dataset.mode = mode();
     if (mode() === "sample") showTab("tab-sample");
   });
-  button("home").addEventListener("click", () => link.send("home"));
+  button("home").addEventListener("click", goHome);
+}
+
+function goHome() {
+  pilot.forget();
+  link.send("home");
 }
 
 function connectKeys() {

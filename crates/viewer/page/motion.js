@@ -103,6 +103,11 @@ export class Pilot {
     this.held.delete(code);
   }
 
+  /** Sends nothing of what waits: it was meant from where the camera is no more. */
+  forget() {
+    this.motions.waiting.clear();
+  }
+
   start() {
     if (this.timer !== null) return;
     this.tick();

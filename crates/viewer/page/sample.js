@@ -7,7 +7,7 @@ import { toScreen } from "./view.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { Fate } from "./samplelines.js" */
-/** @import { Lane, LaneName, SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
+/** @import { LaneName, SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
 /** @import { Point, View } from "./view.js" */
 
 /** @type {{[fate in Fate]: string}} */
@@ -25,10 +25,6 @@ export class SampleView {
     this.report = null;
     /** @type {LaneName} Of the report. */
     this.lane = "a";
-    /** @type {number | undefined} Of that lane, when the report was made. */
-    this.generation = undefined;
-    /** @type {Lane[]} */
-    this.lanes = [];
     /** The ray whose row is pointed at. */
     this.hot = "";
     get("sample-form", HTMLFormElement).addEventListener("submit", (event) => {
@@ -45,14 +41,9 @@ export class SampleView {
     const lane = select("sample-lane");
     lane.disabled = !split;
     if (!split) lane.value = "a";
-    // A lane that began anew takes other samples.
-    this.lanes = lanes;
-    if (this.report && this.generationOf(this.lane) !== this.generation) this.clear();
-  }
-
-  /** @param {LaneName} name */
-  generationOf(name) {
-    return this.lanes.find(({ lane }) => lane === name)?.generation;
+    // A lane that began anew takes other samples; a report may come before the status of its lane.
+    const shown = lanes.find(({ lane }) => lane === this.lane);
+    if (this.report && (!shown || shown.generation > this.report.generation)) this.clear();
   }
 
   /** @param {Point} pixel */
@@ -75,7 +66,6 @@ export class SampleView {
     try {
       this.report = /** @type {SampleReport} */ (await this.link.ask("/sample", { lane, x, y, pass }));
       this.lane = lane;
-      this.generation = this.generationOf(lane);
       box("sample-list").replaceChildren(...this.describe(this.report));
       button("sample-clear").disabled = false;
     } catch (error) {

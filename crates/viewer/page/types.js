@@ -117,6 +117,7 @@
 /**
  * One sample, told.
  * @typedef {object} SampleReport
+ * @property {number} generation That of the lane.
  * @property {[number, number]} pixel
  * @property {number} pass
  * @property {SampleSubpath} camera

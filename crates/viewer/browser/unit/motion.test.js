@@ -52,3 +52,16 @@ test("a held key walks until it is let go", () => {
   assert.equal(count, 6);
   mock.timers.reset();
 });
+
+test("what waits when the camera goes elsewhere is not sent", () => {
+  mock.timers.enable({ apis: ["setInterval"] });
+  /** @type {string[]} */
+  const sent = [];
+  const pilot = new Pilot((name) => sent.push(name));
+  pilot.move("orbit", { yaw: 1, pitch: 0 });
+  pilot.move("pan", { right: 1, up: 0 });
+  pilot.forget();
+  mock.timers.tick(1000);
+  assert.deepEqual(sent, ["orbit"]);
+  mock.timers.reset();
+});

@@ -36,7 +36,7 @@ function candidate(s, t, value, other = {}) {
 function report(candidates) {
   const camera = { vertices: [vertex(null), vertex([1, 2]), vertex([3, 4]), vertex(null)], escape: null };
   const light = { vertices: [vertex([9, 9])], escape: null };
-  return { pixel: [1, 2], pass: 0, camera, light, hits: [], candidates, zeros: [], light_image: [], value: [0, 0, 0], value_of_all_candidates: [0, 0, 0], rays: 1 };
+  return { generation: 1, pixel: [1, 2], pass: 0, camera, light, hits: [], candidates, zeros: [], light_image: [], value: [0, 0, 0], value_of_all_candidates: [0, 0, 0], rays: 1 };
 }
 
 test("a candidate's fate is the selection's and the shadow ray's", () => {

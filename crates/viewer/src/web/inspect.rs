@@ -123,7 +123,14 @@ pub(super) async fn pixel(
     json(&report.ok_or_else(|| not_rendered(x, y))?)
 }
 
-/// What a sample did, as `bidir render --replay --json` tells it.
+/// What a sample did, as `bidir render --replay --json` tells it, and of which render it is.
+#[derive(Debug, Serialize)]
+struct SampleOfLane {
+    generation: u32,
+    #[serde(flatten)]
+    report: SampleReport,
+}
+
 pub(super) async fn sample(
     State(site): State<Arc<Site>>,
     Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
@@ -138,7 +145,10 @@ pub(super) async fn sample(
         }
         let replay = session.replay([x, y], pass);
         let replay = replay.ok_or_else(|| not_rendered(x, y))?;
-        json(&SampleReport::new(session, [x, y], pass, &replay))
+        json(&SampleOfLane {
+            generation: subject.generation,
+            report: SampleReport::new(session, [x, y], pass, &replay),
+        })
     });
     report.await?
 }

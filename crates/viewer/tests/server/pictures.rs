@@ -88,6 +88,7 @@ fn a_sample_is_told_with_its_places_on_the_film() {
     let place = done();
     let sample = place.json("/sample?lane=a&x=24&y=20&pass=1");
     assert_eq!(sample["pixel"], serde_json::json!([24, 20]));
+    assert_eq!(sample["generation"], 1);
     let vertices = sample["camera"]["vertices"].as_array().unwrap();
     let raster = &vertices[1]["raster"];
     assert!(
