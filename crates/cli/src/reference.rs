@@ -105,8 +105,7 @@ fn plan(
         }
     }
     if plan.is_its_own_witness() {
-        let message =
-            "--estimator and --against are the same estimator, which cannot contradict itself";
+        let message = "--estimator and --against are or may be the same estimator, which cannot contradict itself";
         let hint = "give --against another integrator, or other settings than the seed; \
                     auto may take any but light";
         return Err(Failure::usage(message).with_hint(hint));

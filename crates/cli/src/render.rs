@@ -3,7 +3,7 @@
 use crate::args::{RenderArgs, ThreadsArgs};
 use crate::begin::{self, Began};
 use crate::checkpoint::{Checkpoint, Keeper};
-use crate::console::{Console, Display, json, say};
+use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
@@ -50,7 +50,11 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let unused = settings::warn_unused(args, &settings, console);
     loaded.tell_warnings(&args.scene, unused, console)?;
     if let Some(target) = args.replay {
-        let display = console.display(args.output.talk);
+        // Objects that are to be read have standard output to themselves.
+        let display = match console.display(args.output.talk) {
+            Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
+            display => display,
+        };
         return match begin::session(args, &loaded, &settings, &signals, display)? {
             Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
             Began::Stopped(exit) => Ok(exit),

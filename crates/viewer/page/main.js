@@ -128,6 +128,7 @@ function tellBreak(seconds) {
   const notice = box("notice");
   notice.hidden = seconds === null;
   if (seconds === null) return;
+  sample.expire();
   say(notice, `The server does not answer. What is shown stays; the next try is in ${digits(seconds, 2)} s.`);
   const state = box("state");
   state.dataset.state = "away";

@@ -7,7 +7,7 @@ import { toScreen } from "./view.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { Fate } from "./samplelines.js" */
-/** @import { LaneName, SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
+/** @import { Lane, LaneName, SampleReport, SampleSubpath, SampleTerm, Status } from "./types.js" */
 /** @import { Point, View } from "./view.js" */
 
 /** @type {{[fate in Fate]: string}} */
@@ -25,6 +25,8 @@ export class SampleView {
     this.report = null;
     /** @type {LaneName} Of the report. */
     this.lane = "a";
+    /** @type {Lane[]} */
+    this.lanes = [];
     /** The ray whose row is pointed at. */
     this.hot = "";
     get("sample-form", HTMLFormElement).addEventListener("submit", (event) => {
@@ -41,9 +43,20 @@ export class SampleView {
     const lane = select("sample-lane");
     lane.disabled = !split;
     if (!split) lane.value = "a";
-    // A lane that began anew takes other samples; a report may come before the status of its lane.
-    const shown = lanes.find(({ lane }) => lane === this.lane);
-    if (this.report && (!shown || shown.generation > this.report.generation)) this.clear();
+    this.lanes = lanes;
+    if (this.isOld()) this.clear();
+  }
+
+  /** A lane that began anew takes other samples; but a report may come before the status of its lane. */
+  isOld() {
+    const { report, lane, lanes } = this;
+    const told = lanes.find((other) => other.lane === lane);
+    return report !== null && (!told || told.generation > report.generation);
+  }
+
+  /** Who answers after a break may be another server, whose renders are counted anew. */
+  expire() {
+    if (this.report) this.report.generation = 0;
   }
 
   /** @param {Point} pixel */
@@ -68,6 +81,7 @@ export class SampleView {
       this.lane = lane;
       box("sample-list").replaceChildren(...this.describe(this.report));
       button("sample-clear").disabled = false;
+      if (this.isOld()) this.clear();
     } catch (error) {
       this.report = null;
       box("sample-list").replaceChildren(make("p", {}, [/** @type {Error} */ (error).message]));

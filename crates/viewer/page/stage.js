@@ -81,8 +81,6 @@ export class Stage {
     const { picture } = this;
     if (!picture) return;
     if (Math.max(...frame.size) > picture.largest) return this.giveUp("The film is larger than this browser’s textures");
-    const before = picture.frame(frame.lane);
-    if (before && before.generation > frame.generation) return;
     picture.take(frame);
     this.redraw();
   }

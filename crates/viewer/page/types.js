@@ -117,7 +117,7 @@
 /**
  * One sample, told.
  * @typedef {object} SampleReport
- * @property {number} generation That of the lane.
+ * @property {number} generation That of the lane; 0 for one of a server that went away.
  * @property {[number, number]} pixel
  * @property {number} pass
  * @property {SampleSubpath} camera

@@ -157,9 +157,9 @@ pub struct LaneStatus {
     pub generation: u32,
     /// All settings, by the names of flags.
     pub settings: BTreeMap<String, String>,
-    /// The estimator.
+    /// The estimator that was asked for: a preview takes one that needs no training, as its settings say.
     pub integrator: String,
-    /// Which connections are traced.
+    /// Which connections are traced, likewise.
     pub shadow_rays: String,
     /// The passes that are done.
     pub passes: u64,

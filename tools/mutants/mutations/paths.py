@@ -349,6 +349,27 @@ PATHS = [
         unit("samples_are_spread_over_films"),
     ),
     (
+        "plans that are tried where there is no light",
+        "crates/bidir/src/driver/training/mod.rs",
+        "if scene.lights().is_empty() {",
+        "if false {",
+        unit("without_lights_and_where_none"),
+    ),
+    (
+        "path tracing for what nothing found yet",
+        "crates/bidir/src/driver/training/mod.rs",
+        "training.choose(scene, settings).unwrap_or(default)",
+        "training.choose(scene, settings).unwrap_or(plan::path(1))",
+        unit("without_lights_and_where_none"),
+    ),
+    (
+        "the plan that was tried again in place of all that share light subpaths",
+        "crates/bidir/src/driver/training/choice.rs",
+        "shared.filter(|_| best.is_shared())",
+        "shared.filter(|_| false)",
+        unit("the_first_samples_tell_which"),
+    ),
+    (
         "light subpaths of trials that leave points of their sequence out",
         "crates/bidir/src/driver/training/probe.rs",
         "(number - self.first) / samples_per_subpath;",

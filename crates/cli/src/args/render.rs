@@ -151,7 +151,8 @@ pub(crate) struct EstimatorArgs {
     ///
     /// path walks from the camera, light from the lights. bdpt joins the two subpaths of a sample; lvc
     /// joins camera subpaths with light subpaths of many samples; auto tries path, bdpt and lvc with
-    /// a few samples, and takes what suits the scene; what is named for lvc holds there, too.
+    /// a few samples, and takes what suits the scene; what is named for lvc, but
+    /// --samples-per-subpath, holds there, too.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
     /// Which connections between subpaths are traced (bdpt, lvc) [default: what suits the integrator].

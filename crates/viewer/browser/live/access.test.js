@@ -147,6 +147,12 @@ test("a server that goes away is missed, and found again when it is back", { ski
   let other = await Renderer.start(args);
   const { page } = await open(browser, other.url);
   await page.waitForSelector("#figures td");
+  await page.click("#restart");
+  await other.until(({ lanes }) => lanes[0].generation >= 2);
+  await page.click("#tab-sample");
+  for (const id of ["#sample-x", "#sample-y"]) await page.fill(id, "32");
+  await page.click("#sample-form button[type=submit]");
+  await page.waitForSelector("#sample-list table");
   await other.end();
   await page.waitForSelector("#notice:not([hidden])");
   assert.match((await page.textContent("#notice")) ?? "", /does not answer/);
@@ -154,6 +160,8 @@ test("a server that goes away is missed, and found again when it is back", { ski
   other = await Renderer.start(args);
   await page.waitForSelector("#notice[hidden]", { state: "attached" });
   await page.waitForFunction(() => document.getElementById("state")?.dataset.state !== "away");
+  // A sample of the server before is none of this one's.
+  await page.waitForSelector("#sample-list table", { state: "detached" });
   await page.close();
   await other.end();
 });

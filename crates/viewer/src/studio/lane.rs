@@ -4,6 +4,7 @@ use crate::board::{Board, Interrupts, Look, Subject};
 use crate::exhibit::Exhibit;
 use bidir::driver::{Progress, Session, Settings};
 use bidir::integrator::IntegratorKind;
+use bidir::path::PathRoulette;
 use formats::film::{FilmHeader, Stopping, of_run};
 use std::time::{Duration, Instant};
 
@@ -91,14 +92,18 @@ impl Lane {
 }
 
 /// What a preview is rendered with: no camera would stand still for as long as `auto` tries estimators.
-/// Bidirectional path tracing finds whatever the others do.
-pub(super) fn without_training(wanted: &Settings) -> Settings {
+/// Bidirectional path tracing finds whatever the others do. `roulette` is the one that was asked for.
+pub(super) fn without_training(wanted: &Settings, roulette: Option<PathRoulette>) -> Settings {
     let mut settings = wanted.clone();
     if matches!(
         settings.integrator,
         IntegratorKind::Auto | IntegratorKind::Lvc
     ) {
         settings.set_integrator(IntegratorKind::Bdpt);
+        settings.path.roulette = roulette.unwrap_or(settings.path.roulette);
+    }
+    if settings.shadow_rays.needs_mean() {
+        settings.shadow_rays = settings.integrator.shadow_rays();
     }
     settings
 }
@@ -110,12 +115,26 @@ mod tests {
 
     #[test]
     fn previews_train_for_nothing() {
-        let preview = |integrator| {
+        let rules = ["suited", "per-pair", "ray-roulette"];
+        let expected = [
+            (Path, Path),
+            (Light, Light),
+            (Bdpt, Bdpt),
+            (Auto, Bdpt),
+            (Lvc, Bdpt),
+        ];
+        for (rule, (integrator, expected)) in rules
+            .iter()
+            .flat_map(|rule| expected.map(|pair| (rule, pair)))
+        {
             let mut wanted = Settings::default();
             wanted.set_integrator(integrator);
-            without_training(&wanted).integrator
-        };
-        assert_eq!([Path, Light, Bdpt].map(preview), [Path, Light, Bdpt]);
-        assert_eq!([Auto, Lvc].map(preview), [Bdpt; 2]);
+            wanted.shadow_rays = rule.parse().expect("a rule");
+            let preview = without_training(&wanted, Some(PathRoulette::Off));
+            assert_eq!(preview.integrator, expected);
+            assert!(!preview.shadow_rays.needs_mean());
+            let is_other = preview.integrator != wanted.integrator;
+            assert_eq!(preview.path.roulette == PathRoulette::Off, is_other);
+        }
     }
 }

@@ -210,7 +210,7 @@ impl Painter {
             target: self.target,
         };
         let settings = if course.preview {
-            without_training(wanted)
+            without_training(wanted, self.roulette)
         } else {
             wanted.clone()
         };

@@ -10,8 +10,8 @@
 //! few samples mistake what is bright and rare.
 //!
 //! Plans that share light subpaths are compared among themselves by the first samples, of which all have as
-//! many, and by what varies behind the camera rays: what a pixel varies by is the same with all of them, and
-//! points of a sequence even it out.
+//! many, and where points are of a sequence by what varies behind the camera rays: what a pixel varies by is
+//! the same with all of them, and the sequence evens it out.
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
@@ -84,13 +84,15 @@ impl<'a> Judge<'a> {
         near.into_iter().map(|(plan, _)| *plan).collect()
     }
 
-    /// The best of those with the most samples. None: no plan found any light.
-    pub(super) fn best(&self) -> Option<Plan> {
+    /// The best of those with the most samples; where that shares light subpaths, `shared`, the best of these
+    /// by as many samples of each. None: no plan found any light.
+    pub(super) fn best(&self, shared: Option<Plan>) -> Option<Plan> {
         let samples = |(_, trial): &Tried| trial.stats.samples;
         let most = self.tried.iter().map(samples).max()?;
         let tried_most = self.tried.iter().filter(|tried| samples(tried) == most);
-        let best = least(tried_most, |tried| self.product(tried))?;
-        self.scale.has_light().then_some(best.0)
+        let (best, _) = least(tried_most, |tried| self.product(tried))?;
+        let best = shared.filter(|_| best.is_shared()).unwrap_or(*best);
+        self.scale.has_light().then_some(best)
     }
 
     /// The best of those that share light subpaths.

@@ -10,6 +10,8 @@ mod plan;
 mod probe;
 mod rays;
 mod survey;
+#[cfg(test)]
+mod tests;
 mod trial;
 
 pub use plan::Plan;
@@ -93,8 +95,7 @@ impl Training {
         for (_, trial) in &tried {
             self.count(trial.stats.samples, trial.stats.rays);
         }
-        let best = Judge::new(&blocks, settings, &tried).best()?;
-        if best.is_shared() { shared } else { Some(best) }
+        Judge::new(&blocks, settings, &tried).best(shared)
     }
 
     /// Renders a few samples spread over the film, tracing every connection.

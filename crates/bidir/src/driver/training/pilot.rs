@@ -1,7 +1,7 @@
 //! What is learnt about connections: uniform candidates, all of them traced, of groups of samples that
 //! share light subpaths as those of the image do.
 
-use super::probe::{GROUP, Probe, Witness, groups};
+use super::probe::{GROUP, Probe, Witness, groups, keep};
 use crate::integrator::{
     CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
 };
@@ -14,9 +14,6 @@ const GROUPS: u64 = 64;
 const CANDIDATES: Candidates = Candidates::Of(CandidateCount::of(16));
 /// The samples of all groups, each of which brings a light subpath.
 pub(super) const SAMPLES: u64 = GROUPS * GROUP;
-/// The most that a group keeps of connections, and of next events: walks that never end have millions, and
-/// what is learnt are ratios of sums.
-const MOST_KEPT: usize = 1 << 16;
 
 /// A connection with a vertex of the light cache that was traced.
 #[derive(Clone, Copy)]
@@ -58,9 +55,6 @@ impl Witness for Found {
     fn light(&mut self, _: &PathContext<'_>, _: &Workspace) {}
 
     fn sample(&mut self, context: &PathContext<'_>, _: &Sample, workspace: &Workspace) {
-        if self.connections.len().max(self.next_events.len()) >= MOST_KEPT {
-            return;
-        }
         let square = |value| {
             let y = f64::from(context.luminance(value));
             y * y
@@ -69,16 +63,19 @@ impl Witness for Found {
             let Some(cells) = workspace.cells_of(candidate) else {
                 continue;
             };
-            match candidate.light_vertex {
-                LightVertex::NextEvent(_) => self.next_events.push(NextEvent {
+            if let LightVertex::NextEvent(_) = candidate.light_vertex {
+                let next_event = NextEvent {
                     pair: Cells::pair(cells[0], cells[1]),
                     has_arrived: arrived.is_some(),
-                }),
-                _ => self.connections.push(Connection {
+                };
+                keep(&mut self.next_events, next_event);
+            } else {
+                let connection = Connection {
                     light: candidate.light,
                     cells,
                     square: arrived.map(square),
-                }),
+                };
+                keep(&mut self.connections, connection);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! What is learnt about chosen rays: how likely connections from cell to cell are to be traced, under the
 //! rule and with the candidates of the image.
 
-use super::probe::{GROUP, Probe, Witness, groups};
+use super::probe::{GROUP, Probe, Witness, groups, keep};
 use crate::integrator::{Sample, Workspace};
 use crate::path::{Cells, Inclusion, PathContext};
 use crate::select::{LightVertex, Selector};
@@ -49,10 +49,10 @@ impl Witness for Found<'_> {
         for (candidate, prob) in workspace.candidates.iter().zip(probs) {
             if let LightVertex::NextEvent(_) = candidate.light_vertex {
                 let camera = workspace.camera_cell(candidate).index() as u32;
-                self.next_events.push((camera, prob));
+                keep(&mut self.next_events, (camera, prob));
             } else if let Some([light, camera]) = workspace.cells_of(candidate) {
                 let pair = Cells::pair(light, camera) as u32;
-                self.connections.push((pair, prob));
+                keep(&mut self.connections, (pair, prob));
             }
         }
     }

@@ -6,8 +6,13 @@ use crate::path::PathRoulette;
 
 /// The best of the plans, on a film of these blocks.
 fn best(blocks: &Blocks, settings: &Settings, tried: &[Tried]) -> Plan {
-    let best = Judge::new(blocks, settings, tried).best();
+    let best = Judge::new(blocks, settings, tried).best(None);
     best.expect("they found light")
+}
+
+/// Two samples that differ, of so much variance.
+fn difference(variance: f64) -> Trial {
+    Trial::of(&[[1.0, 1.0 + variance.sqrt()]], &[])
 }
 
 /// Path tracing that found next to nothing, and bidirectional path tracing with these light images.
@@ -22,7 +27,6 @@ fn chosen(splats: &[[f64; 2]]) -> Plan {
 
 #[test]
 fn walks_that_end_at_once_have_to_be_better() {
-    let difference = |variance: f64| Trial::of(&[[1.0, 1.0 + variance.sqrt()]], &[]);
     let best_beside = |variance: f64| {
         let tried = [(path(0), difference(variance)), (path(1), difference(1.0))];
         best(&square(), &Settings::default(), &tried)
@@ -143,13 +147,28 @@ fn what_a_pixel_varies_by_is_the_same_for_all_that_share_light_subpaths() {
     }
 }
 
+/// One was tried again, and those that share with it stand where they stood.
+#[test]
+fn the_first_samples_tell_which_of_those_that_share_light_subpaths() {
+    for (other, expected) in [(9.0, MANY), (0.1, BDPT)] {
+        let tried = [
+            (LVC, difference(1.0)),
+            (MANY, difference(2.0)),
+            (BDPT, difference(other)),
+        ];
+        let (blocks, settings) = (square(), Settings::default());
+        let judge = Judge::new(&blocks, &settings, &tried);
+        assert_eq!(judge.best(Some(MANY)), Some(expected));
+    }
+}
+
 #[test]
 fn of_plans_that_found_nothing_none_is_the_best() {
     let judged = |value| {
         let tried = PLANS.map(|plan| (plan, Trial::of(&[[value; 2]], &[])));
         let (blocks, settings) = (square(), Settings::default());
         let judge = Judge::new(&blocks, &settings, &tried);
-        (judge.best(), judge.close().len())
+        (judge.best(None), judge.close().len())
     };
     assert_eq!(judged(0.0), (None, 0));
     // No more samples are asked where one varies by nothing.

@@ -111,6 +111,15 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
 
 /// A black lamp before nothing, of which these pixels of 16 x 16 are rendered.
 pub(in crate::driver::training) fn lamp(crop: PixelRect) -> Scene {
+    sphere(crop, 3.0, Some([2.0; 3]))
+}
+
+/// A black sphere of this radiance, at this place before the camera.
+pub(in crate::driver::training) fn sphere(
+    crop: PixelRect,
+    z: f32,
+    radiance: Option<[f32; 3]>,
+) -> Scene {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
     let mut film = FilmSettings::new([16; 2], filter);
     film.crop = crop;
@@ -126,14 +135,14 @@ pub(in crate::driver::training) fn lamp(crop: PixelRect) -> Scene {
     let black = builder.material(Material::Diffuse {
         reflectance: ColorTexture::Constant([0.0; 3]),
     });
-    let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, 3.0));
+    let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, z));
     let sphere = Shape::Sphere(Sphere::new(place, 1.5, Orientation::Natural));
-    let light = Emission {
-        radiance: [2.0; 3],
+    let light = radiance.map(|radiance| Emission {
+        radiance,
         pattern: None,
         sides: EmissionSides::Front,
-    };
-    builder.shape(sphere, black, Some(light));
+    });
+    builder.shape(sphere, black, light);
     builder.build().expect("the scene is valid")
 }
 
