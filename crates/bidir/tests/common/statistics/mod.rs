@@ -228,9 +228,10 @@ pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates, blocks: &[
     check_agree_to(name, a, b, blocks, BIAS);
 }
 
-/// True where two estimators look different at the level of one comparison.
-pub(crate) fn disagree(a: &Replicates, b: &Replicates, blocks: &[usize]) -> bool {
-    compare(a, b, blocks).p <= level()
+/// True where two estimators agree at the level of one comparison, which would see [`BIAS`].
+pub(crate) fn agree(a: &Replicates, b: &Replicates, blocks: &[usize]) -> bool {
+    let sees = || compare(&a.scaled(1.0 + BIAS), b, blocks).p < level();
+    compare(a, b, blocks).p > level() && sees()
 }
 
 /// As [`check_agree`], for another `bias` that must be seen.
