@@ -60,7 +60,7 @@ pub(crate) fn session(
 
 /// Says why there is no progress yet.
 fn tell_training(display: Display) {
-    let text = "training before the first pass";
+    let text = "training before the first sample";
     match display {
         // Nothing but objects is expected there.
         Display::Silent | Display::Lines(LineFormat::Ndjson) => {}

@@ -91,7 +91,7 @@ fn stopped_in_training(place: &Workplace, what: &str, signal: &str) -> Ran {
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     let mut told = String::new();
-    while !told.contains("training before the first pass") {
+    while !told.contains("training before the first sample") {
         assert!(stderr.read_line(&mut told).unwrap() > 0, "{told}");
     }
     send(signal, &child);

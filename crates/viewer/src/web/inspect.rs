@@ -123,7 +123,7 @@ pub(super) async fn pixel(
     json(&report.ok_or_else(|| not_rendered(x, y))?)
 }
 
-/// What a sample did, as `bidir render --replay --json` tells it, and of which render it is.
+/// What a sample did, and of which render of its lane it is.
 #[derive(Debug, Serialize)]
 struct SampleOfLane {
     generation: u32,
@@ -131,6 +131,7 @@ struct SampleOfLane {
     report: SampleReport,
 }
 
+/// What a sample did, as `bidir render --replay --json` tells it.
 pub(super) async fn sample(
     State(site): State<Arc<Site>>,
     Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,

@@ -230,8 +230,12 @@ pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates, blocks: &[
 
 /// True where two estimators agree at the level of one comparison, which would see [`BIAS`].
 pub(crate) fn agree(a: &Replicates, b: &Replicates, blocks: &[usize]) -> bool {
-    let sees = || compare(&a.scaled(1.0 + BIAS), b, blocks).p < level();
-    compare(a, b, blocks).p > level() && sees()
+    compare(a, b, blocks).p > level() && compare_biased(a, b, blocks, BIAS).p < level()
+}
+
+/// [`compare`], had the first a relative `bias`.
+fn compare_biased(a: &Replicates, b: &Replicates, blocks: &[usize], bias: f64) -> Verdict {
+    compare(&a.scaled(1.0 + bias), b, blocks)
 }
 
 /// As [`check_agree`], for another `bias` that must be seen.
@@ -252,7 +256,7 @@ pub(crate) fn check_agree_to(
         let seen = smallest_seen(a, b, blocks);
         eprintln!("{name}: {verdict:?}, sees a relative bias of {seen:.4}");
     }
-    let biased = compare(&a.scaled(1.0 + bias), b, blocks);
+    let biased = compare_biased(a, b, blocks, bias);
     assert!(
         biased.p < level(),
         "{name}: blind to a relative bias of {bias}: {biased:?}"
@@ -292,7 +296,7 @@ pub(crate) fn check_means(name: &str, a: &Replicates, b: &Replicates, block: usi
 /// The smallest relative bias, to a tenth of itself, that a comparison would see.
 fn smallest_seen(a: &Replicates, b: &Replicates, blocks: &[usize]) -> f64 {
     let mut bias = 1e-4;
-    while bias < 1.0 && compare(&a.scaled(1.0 + bias), b, blocks).p >= level() {
+    while bias < 1.0 && compare_biased(a, b, blocks, bias).p >= level() {
         bias *= 1.1;
     }
     bias
