@@ -14,6 +14,8 @@ mod help;
 mod info;
 mod layers;
 mod progress;
+#[cfg(unix)]
+mod readme;
 mod reference;
 mod render;
 mod replay;
