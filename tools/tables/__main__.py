@@ -12,10 +12,9 @@ A page marks the place of a table; the path is relative to the page:
          source: no -->
     <!-- end of table -->
 
-A column is a title and a template over the columns of the file; without `columns` the table has all
-of them. `rows` keeps the rows with one of the values, in the order of the file. The line below the
-table names command, date and file unless `source` is `no`. A file of data begins with comments:
-`# command: …`, `# date: …`, `# version: …` and `# machine: …`. Standard library only.
+A column is a title and a template over the columns of the file; `rows` takes those with these
+values, in this order. The line below the table names command, date and file unless `source` is `no`.
+A file of data begins with the comments `# command: …`, `# date: …`, `# version: …`, `# machine: …`.
 """
 
 import argparse
@@ -31,13 +30,12 @@ sys.dont_write_bytecode = True
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 KEYS = ("command", "date", "version", "machine")
-OPTIONS = ("columns", "rows", "source")
-TABLE = re.compile(r"^<!-- table: (\S+)(.*?)-->$(.*?)^<!-- end of table -->$", re.DOTALL | re.MULTILINE)
-SKIPPED = ("target", "node_modules")
+SKIPPED = ("node_modules", "target")
+TABLE = re.compile(r"^<!-- table: (\S+)(.*?)-->$.*?^<!-- end of table -->$", re.DOTALL | re.MULTILINE)
 
 
 class Fault(Exception):
-    """A marker or a file of data that cannot be used."""
+    """A marker or a file of data cannot be used."""
 
 
 class Value(str):
@@ -49,14 +47,10 @@ class Value(str):
 
 def read(path):
     """Return the comments of a file of data, by key, and its rows."""
-    if not path.is_file():
-        raise Fault("there is no %s" % path.name)
     lines = path.read_text(encoding="utf-8").splitlines()
-    comments = [line[1:].partition(":") for line in lines if line.startswith("#")]
-    about = {key.strip(): value.strip() for key, _, value in comments}
-    for key in KEYS:
-        if not about.get(key):
-            raise Fault("%s lacks `# %s: …`" % (path.name, key))
+    about = dict(line[2:].partition(": ")[::2] for line in lines if line.startswith("# "))
+    if missing := [key for key in KEYS if not about.get(key)]:
+        raise Fault("%s lacks `# %s: …`" % (path.name, missing[0]))
     rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     if not rows or any(None in row or None in row.values() for row in rows):
         raise Fault("%s has no rows, or rows of different lengths" % path.name)
@@ -71,8 +65,8 @@ def pairs(text):
 def options(text):
     """Return the options of a marker."""
     found = dict(line.strip().partition(": ")[::2] for line in text.splitlines() if line.strip())
-    if any(key not in OPTIONS for key in found):
-        raise Fault("an option is not one of %s" % ", ".join(OPTIONS))
+    if not found.keys() <= {"columns", "rows", "source"}:
+        raise Fault("a table has options other than columns, rows and source")
     return found
 
 
@@ -82,25 +76,22 @@ def cell(template, row):
     return "" if any(row[key] == "" for key in used) else template.format(**row).replace("|", "\\|")
 
 
-def table(path, text):
-    """Return the lines of a table of the file `path` by a marker's options."""
-    about, rows = read(path)
-    chosen = options(text)
+def table(name, rows, chosen):
+    """Return the lines of a table of these rows by a marker's options."""
     try:
         for key, values in pairs(chosen["rows"]) if "rows" in chosen else []:
-            rows = [row for row in rows if row[key] in values.split(", ")]
-        all_of_them = " | ".join("%s = {%s}" % (key, key) for key in rows[0]) if rows else ""
-        columns = pairs(chosen.get("columns", all_of_them))
+            wanted = values.split(", ")
+            if missing := set(wanted) - {row[key] for row in rows}:
+                raise Fault("no row of %s has %s = %s" % (name, key, missing.pop()))
+            rows = [row for value in wanted for row in rows if row[key] == value]
+        columns = pairs(chosen.get("columns", " | ".join("%s = {%s}" % (key, key) for key in rows[0])))
         cells = [[cell(template, row) for row in rows] for _, template in columns]
     except (KeyError, ValueError) as error:
-        raise Fault("%s does not fit: %s" % (path.name, error)) from error
-    if not rows:
-        raise Fault("no row of %s is chosen" % path.name)
+        raise Fault("a column does not fit %s: %s" % (name, error)) from error
     numbers = [all(re.match(r"[-+−]?\d|$", one) for one in column) for column in cells]
     rule = "|".join("---:" if number else "---" for number in numbers)
-    lines = ["| %s |" % " | ".join(title for title, _ in columns), "|%s|" % rule]
-    lines += ["| %s |" % " | ".join(line) for line in zip(*cells)]
-    return lines, about
+    lines = ["| %s |" % " | ".join(line) for line in [[title for title, _ in columns], *zip(*cells)]]
+    return [lines[0], "|%s|" % rule, *lines[1:]]
 
 
 def rewritten(page):
@@ -108,11 +99,13 @@ def rewritten(page):
     old = page.read_text(encoding="utf-8")
 
     def marked(match):
-        name, text, _ = match.groups()
-        lines, about = table(page.parent / name, text)
-        if options(text).get("source") != "no":
+        name, chosen = match[1], options(match[2])
+        about, rows = read(page.parent / name)
+        lines = table(name, rows, chosen)
+        if chosen.get("source") != "no":
             lines += ["", "`%s`, %s ([data](%s))" % (about["command"], about["date"], name)]
-        return "<!-- table: %s%s-->\n\n%s\n\n<!-- end of table -->" % (name, text, "\n".join(lines))
+        lines = [match[0].partition("-->")[0] + "-->", "", *lines, "", "<!-- end of table -->"]
+        return "\n".join(lines)
 
     if len(re.findall(r"^<!-- table:", old, re.MULTILINE)) != len(TABLE.findall(old)):
         raise Fault("a table has no end: `<!-- end of table -->`")
@@ -132,25 +125,24 @@ def main():
     parser.add_argument("pages", nargs="*", type=Path, metavar="PAGE.md", help="pages [all]")
     parser.add_argument("--check", action="store_true", help="change nothing")
     parser.add_argument("--self-test", action="store_true", help="test this tool")
-    chosen = parser.parse_args()
-    if chosen.self_test:
+    args = parser.parse_args()
+    if args.self_test:
         result = unittest.TextTestRunner().run(unittest.TestLoader().discover(str(HERE), "tests.py"))
         return 0 if result.wasSuccessful() and result.testsRun > 0 else 1
-    status, place = 0, ROOT
-    try:
-        for place in sorted(ROOT.glob("docs/data/*.csv")):
-            read(place)
-        for place in chosen.pages or pages():
-            old, new = rewritten(place)
-            if old != new and chosen.check:
-                print("tables: %s is out of date: run `python3 tools/tables`" % place, file=sys.stderr)
-                status = 1
+    faults = []
+    for place in [*sorted(ROOT.glob("docs/data/*.csv")), *(args.pages or pages())]:
+        name = os.path.relpath(place)
+        try:
+            old, new = rewritten(place) if place.suffix == ".md" else (read(place),) * 2
+            if old != new and args.check:
+                faults.append("%s is out of date: run `python3 tools/tables`" % name)
             elif old != new:
                 place.write_text(new, encoding="utf-8")
-    except (Fault, OSError) as error:
-        print("tables: %s: %s" % (place, error), file=sys.stderr)
-        status = 1
-    return status
+        except (Fault, OSError) as error:
+            faults.append("%s: %s" % (name, error))
+    for fault in faults:
+        print("tables: %s" % fault, file=sys.stderr)
+    return 1 if faults else 0
 
 
 if __name__ == "__main__":
