@@ -42,6 +42,13 @@ look SCENE *FLAGS:
     mkdir -p out
     cargo run --release -- render {{SCENE}} -o out/{{file_stem(SCENE)}}-look.png --time 5s {{FLAGS}}
 
+# Makes the pictures of pages in the browser: needs node, Chromium and a built bidir.
+pictures:
+    cd crates/viewer/browser && npm ci --no-audit --no-fund
+    cd crates/viewer/browser && node pictures.js view {{justfile_directory()}}/docs/images/view.jpg
+    target/release/bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
+    cd crates/viewer/browser && node pictures.js report {{justfile_directory()}}/out/shadow-rays/report.html {{justfile_directory()}}/docs/images/report.jpg
+
 # Writes the project's own scenes.
 scenes:
     python3 tools/make_scenes
