@@ -1,48 +1,72 @@
-"""Writes scenes/README.md from what was generated."""
+"""Writes scenes/README.md from the generated scenes."""
 
 _HEAD = """# The project's own scenes
 
-pbrt-v4 text with meshes in `meshes/` (binary PLY); lengths in metres, y up. All files here,
-this one included, are written by a script without dependencies:
+`tools/make_scenes` writes all files here, this one included.
+It is deterministic and needs Python alone:
 
     python3 tools/make_scenes
 
-Running it again gives the same files byte for byte. `--out FOLDER` writes elsewhere. Change the
-script, not the files.
+`--out FOLDER` writes elsewhere.
+To change a scene, change the script.
 
-The files in `parts/` are included by the others and are no scenes by themselves. In the closed
-rooms no light can leave: walls, floors and ceilings are one surface without gaps. Light values are
-chosen for viewing without tone mapping.
+Scenes are pbrt-v4 text with binary PLY meshes in `meshes/`; files in `parts/` are included by others.
+Lengths are in metres, and y is up.
+The closed rooms have no gaps for light to leave by.
+Light values are chosen for viewing without tone mapping.
 
 ## Main scenes
 
-| Scene | Triangles | What it shows |
+| Scene | Triangles | Content |
 |---|---|---|
 """
 
 _MAIN_NOTES = {
-    "room-direct.pbrt": "The easy case of the 1995 paper: a ceiling panel that most points see.",
-    "room-indirect.pbrt": "The hard case: the emitter is deep in an opaque bowl, about 95 % of"
-                          " the picture has no direct light, most shadow rays are blocked.",
-    "apartment.pbrt": "Many light subpaths start where they cannot matter to the pixel.",
+    "room-direct.pbrt": "The easy case of the 1995 paper: most points see the ceiling light.",
+    "room-indirect.pbrt": "The hard case: the emitter is deep in an opaque bowl, about 95 % of the image has no"
+                          " direct light, and most shadow rays are blocked.",
+    "apartment.pbrt": "Many light subpaths start where they cannot matter to a given pixel.",
     "apartment-dark.pbrt": "Strongly indirect: light arrives through two doorways.",
-    "cornell.pbrt": "A quick look at direct light, soft shadows and colour bleeding.",
+    "cornell.pbrt": "A quick test of direct light, soft shadows and colour bleeding.",
 }
 
 _TORTURE = """
 ## torture/: small films for tests that compare estimators
 
-Each comparison is between strategies, selections or integrators on one scene; the comment at the
-head of each file says what it is after.
+Each comparison takes strategies, selectors or integrators on one scene.
+The comment at the head of a file states its purpose.
 
-| Scene | Triangles | What it is |
+| Scene | Triangles | Content |
 |---|---|---|
 """
 
-_BROKEN = """
-## broken/: must be refused with a clear message
+# Where the title in the file, whose bytes are its identity, could be clearer.
+_TORTURE_NOTES = {
+    "shading-normal.pbrt": "Shading normals that differ from the geometric ones.",
+    "mirror.pbrt": "Mirroring transforms; one-sided and two-sided lights.",
+    "filter-gaussian.pbrt": "Gaussian filter on bright edges against black.",
+    "filter-mitchell.pbrt": "Mitchell filter on bright edges against black.",
+    "filter-sinc.pbrt": "Sinc filter on bright edges against black.",
+    "filter-triangle.pbrt": "Triangle filter on bright edges against black.",
+    "lights.pbrt": "Point, spot, distant and infinite lights together.",
+    "parallel.pbrt": "Orthographic camera outdoors under a sky.",
+    "around-longitude.pbrt": "Spherical camera, equirectangular mapping.",
+    "around-octahedron.pbrt": "Spherical camera, equal-area mapping.",
+    "picture-lamp.pbrt": "Area lights that emit an image.",
+    "sky-alone.pbrt": "An environment map as the only light.",
+    "within-glass.pbrt": "A camera inside a glass ball.",
+    "bulb.pbrt": "A lamp inside glass, seen in a mirror.",
+    "narrow-spot.pbrt": "A spot light three degrees wide.",
+    "shapes.pbrt": "Parts of cylinders, disks and spheres; patches and subdivision.",
+    "leaves.pbrt": "Instances of leaves, cut out of squares by alpha.",
+    "empty.pbrt": "No shapes and no lights.",
+    "empty-sky.pbrt": "A sky and no shapes.",
+}
 
-| File | What is wrong |
+_BROKEN = """
+## broken/: scenes that must be refused with a clear message
+
+| File | Fault |
 |---|---|
 """
 
@@ -55,7 +79,8 @@ def write(project):
     text += _TORTURE
     for path, triangles, title in project.scenes:
         if path.startswith("torture/"):
-            text += "| `%s` | %d | %s |\n" % (path[8:], triangles, title)
+            name = path[8:]
+            text += "| `%s` | %d | %s |\n" % (name, triangles, _TORTURE_NOTES.get(name, title))
     text += _BROKEN
     for path, what in project.broken:
         text += "| `%s` | %s |\n" % (path[7:], what.replace("Broken: ", "", 1))
