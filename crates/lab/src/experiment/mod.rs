@@ -44,6 +44,7 @@ mod description;
 mod error;
 mod identity;
 mod journal;
+mod keys;
 mod names;
 mod page;
 mod pyramid;
