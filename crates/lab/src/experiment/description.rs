@@ -14,9 +14,9 @@ use std::path::Path;
 type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// Where no number of seeds is given.
-pub(super) const SEEDS: u64 = 10;
+const SEEDS: u64 = 10;
 /// Samples per pixel of images of strategies, where no number is given.
-pub(super) const PYRAMID_SPP: u64 = 64;
+const PYRAMID_SPP: u64 = 64;
 
 impl Experiment {
     /// Reads a description; `file` is what messages call it, and its scenes are relative to its folder.
@@ -229,10 +229,7 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
-    let witness = match section.take("reference-cross-check") {
-        None => section.take("reference-witness"),
-        given => given,
-    };
+    let witness = section.take("reference-witness");
     match (image, spp) {
         (Some(image), None) => match strategies.or(witness) {
             Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),

@@ -1,20 +1,25 @@
-//! Every key of a description: the reader refuses others, and docs/reference/experiments.md lists them.
+//! Every key of a description, as docs/reference/experiments.md lists them. Tests compare the list with the
+//! reader and with the page.
 
-use super::settings::Changes;
+use super::{Changes, Experiment, ExperimentError};
+use crate::metric::Metric;
+use std::fmt::Write;
+use std::path::Path;
+use std::{env, fs};
 
 /// A key of a description.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Key {
+struct Key {
     /// The table that it belongs to; empty: the top of the file.
-    pub(super) table: &'static str,
+    table: &'static str,
     /// Its name.
-    pub(super) name: &'static str,
+    name: &'static str,
     /// The kind of its value.
-    pub(super) value: &'static str,
+    value: &'static str,
     /// Its default, or that it is required.
-    pub(super) default: &'static str,
+    default: &'static str,
     /// Its meaning in one sentence.
-    pub(super) meaning: &'static str,
+    meaning: &'static str,
 }
 
 const fn key(
@@ -35,7 +40,7 @@ const fn key(
 
 /// All keys but settings, in the order of the page.
 #[rustfmt::skip]
-pub(super) const KEYS: &[Key] = &[
+const KEYS: &[Key] = &[
     key("", "title", "text", "`Experiment`", "Title of the report."),
     key("", "description", "text", "none", "A sentence below the title."),
     key("", "size", "`\"WIDTHxHEIGHT\"`", "each scene's", "Size of all images. Unit: pixels."),
@@ -61,12 +66,35 @@ pub(super) const KEYS: &[Key] = &[
     key("budget", "name", "text", "amount and unit", "Name in results, such as the default `64 spp`; unique."),
 ];
 
-/// Old names that are still read.
-const OLD_NAMES: [&str; 2] = ["emission", "reference-witness"];
+/// The tables of a description.
+const TABLES: [&str; 4] = ["settings", "scene", "method", "budget"];
 
-/// The names of the keys of a table, settings included; empty: the tables and keys of the file.
-pub(super) fn names(table: &str) -> Vec<&'static str> {
-    let mut names = Vec::new();
+const PAGE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../docs/reference/experiments.md"
+);
+const BEGIN: &str = "<!-- generated: experiment keys -->\n";
+const END: &str = "<!-- end -->\n";
+
+/// A description with a line more in one of its tables.
+fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
+    let with = |head: &str, own: &str| {
+        let line = if head == table { line } else { "" };
+        format!("{own}\n{line}\n")
+    };
+    let text = [
+        with("", ""),
+        with("settings", "[settings]"),
+        with("scene", "[[scene]]\nfile = \"a.pbrt\"\nreference-spp = 1"),
+        with("method", "[[method]]\nname = \"a\""),
+        with("budget", "[[budget]]\nsamples = 1"),
+    ];
+    Experiment::read(&text.concat(), Path::new("a.toml"))
+}
+
+/// The names of the keys of a table, in alphabetical order.
+fn names(table: &str) -> Vec<String> {
+    let mut names: Vec<&str> = Vec::new();
     for key in KEYS.iter().filter(|key| key.table == table) {
         match key.name {
             "" => names.extend(Changes::NAMES),
@@ -76,96 +104,80 @@ pub(super) fn names(table: &str) -> Vec<&'static str> {
     if table.is_empty() {
         names.extend(TABLES);
     }
-    names
+    names.sort_unstable();
+    names.into_iter().map(str::to_owned).collect()
 }
 
-/// The tables of a description.
-const TABLES: [&str; 4] = ["settings", "scene", "method", "budget"];
-
-/// True where a table may have a key.
-pub(super) fn is_known(table: &str, name: &str) -> bool {
-    names(table).contains(&name) || (!table.is_empty() && OLD_NAMES.contains(&name))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::description::{PYRAMID_SPP, SEEDS};
-    use super::*;
-    use crate::metric::Metric;
-    use std::fmt::Write;
-    use std::{env, fs};
-
-    const BEGIN: &str = "<!-- generated: experiment keys -->\n";
-    const END: &str = "<!-- end -->\n";
-
-    /// The list of keys, as the page has it.
-    fn list() -> String {
-        let mut text = String::new();
-        for table in [""].into_iter().chain(TABLES) {
-            match table {
-                "" => text += "\nAt the top of the file:\n\n",
-                "settings" => text += "\n`[settings]`:\n\n",
-                _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
-            }
-            text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
-            for key in KEYS.iter().filter(|key| key.table == table) {
-                let Key {
-                    name,
-                    value,
-                    default,
-                    meaning,
-                    ..
-                } = key;
-                let name = if name.is_empty() {
-                    Changes::NAMES.map(|name| format!("`{name}`")).join(", ")
-                } else {
-                    format!("`{name}`")
-                };
-                let (value, default) = match (*value, *default) {
-                    ("", _) => ("as the [flag](cli.md)", "the scene's"),
-                    other => other,
-                };
-                writeln!(text, "| {name} | {value} | {default} | {meaning} |").unwrap();
-            }
-        }
-        text + "\n"
+#[test]
+fn the_reader_knows_these_keys() {
+    for table in [""].into_iter().chain(TABLES) {
+        // Nothing is near this name, so the hint lists every key.
+        let error = read(table, "zzzzzzzzzzzzzzzz = 1").unwrap_err();
+        let hint = error.hint().unwrap();
+        let known = hint
+            .split(", ")
+            .map(|name| name.rsplit(' ').next().unwrap());
+        let mut known: Vec<String> = known.map(|name| name.replace('`', "")).collect();
+        known.sort_unstable();
+        assert_eq!(known, names(table), "{table}: {hint}");
     }
+}
 
-    /// `BIDIR_WRITE_PAGES=1` writes the list into the page.
-    #[test]
-    fn the_page_lists_every_key() {
-        let page = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../docs/reference/experiments.md"
+#[test]
+fn defaults_are_those_of_the_reader() {
+    let default = |name| KEYS.iter().find(|key| key.name == name).unwrap().default;
+    let experiment = read("", "pyramid = \"a\"").unwrap();
+    assert_eq!(default("title"), format!("`{}`", experiment.title));
+    assert_eq!(default("seeds"), experiment.seeds.count.to_string());
+    assert_eq!(default("first-seed"), experiment.seeds.first.to_string());
+    let spp = experiment.pyramid.unwrap().spp;
+    assert_eq!(default("pyramid-spp"), spp.to_string());
+    let metrics = experiment.metrics.into_iter().map(|metric| {
+        let named = Metric::NAMES.iter().find(|(_, other)| *other == metric);
+        format!("`{}`", named.unwrap().0)
+    });
+    assert_eq!(default("metrics"), metrics.collect::<Vec<_>>().join(", "));
+}
+
+/// The list of keys, as the page has it.
+fn list() -> String {
+    let mut text = String::new();
+    for table in [""].into_iter().chain(TABLES) {
+        match table {
+            "" => text += "\nAt the top of the file:\n\n",
+            "settings" => text += "\n`[settings]`:\n\n",
+            _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
+        }
+        text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
+        for key in KEYS.iter().filter(|key| key.table == table) {
+            let name = match key.name {
+                "" => Changes::NAMES.map(|name| format!("`{name}`")).join(", "),
+                name => format!("`{name}`"),
+            };
+            let [value, default] = match key.name {
+                "" => ["as the [flag](cli.md)", "the scene's"],
+                _ => [key.value, key.default],
+            };
+            writeln!(text, "| {name} | {value} | {default} | {} |", key.meaning).unwrap();
+        }
+    }
+    text + "\n"
+}
+
+/// `BIDIR_WRITE_PAGES=1` writes the list into the page.
+#[test]
+fn the_page_lists_every_key() {
+    let text = fs::read_to_string(PAGE).unwrap();
+    let (before, rest) = text.split_once(BEGIN).unwrap();
+    let (found, after) = rest.split_once(END).unwrap();
+    let expected = list();
+    if env::var_os("BIDIR_WRITE_PAGES").is_some() {
+        fs::write(PAGE, [before, BEGIN, &expected, END, after].concat()).unwrap();
+    } else {
+        let how = "BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys";
+        assert!(
+            found == expected,
+            "{PAGE} is out of date; to write it: {how}"
         );
-        let text = fs::read_to_string(page).unwrap();
-        let (before, rest) = text.split_once(BEGIN).unwrap();
-        let (found, after) = rest.split_once(END).unwrap();
-        let expected = list();
-        if env::var_os("BIDIR_WRITE_PAGES").is_some() {
-            fs::write(page, [before, BEGIN, &expected, END, after].concat()).unwrap();
-        } else {
-            let how = "BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys";
-            assert!(
-                found == expected,
-                "{page} is out of date; to write it: {how}"
-            );
-        }
-    }
-
-    #[test]
-    fn defaults_are_those_of_the_reader() {
-        let default = |name| {
-            let key = KEYS.iter().find(|key| key.name == name).unwrap();
-            key.default
-        };
-        assert_eq!(default("seeds"), SEEDS.to_string());
-        assert_eq!(default("pyramid-spp"), PYRAMID_SPP.to_string());
-        let metrics = [Metric::Relmse, Metric::RelmseTrimmed].map(|metric| {
-            let names = Metric::NAMES.iter();
-            let name = names.clone().find(|(_, other)| *other == metric);
-            format!("`{}`", name.unwrap().0)
-        });
-        assert_eq!(default("metrics"), metrics.join(", "));
     }
 }

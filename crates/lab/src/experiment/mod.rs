@@ -44,6 +44,7 @@ mod description;
 mod error;
 mod identity;
 mod journal;
+#[cfg(test)]
 mod keys;
 mod names;
 mod page;

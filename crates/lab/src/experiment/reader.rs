@@ -1,10 +1,9 @@
 //! Tables of TOML, and where in the file everything stands.
 //!
-//! A [`Section`] refuses keys that are not in [`KEYS`](super::keys::KEYS), with the nearest of them, before
-//! any value is read: a misspelt key is reported rather than a missing one.
+//! A [`Section`] remembers which keys were asked for, so that every other one is refused with the
+//! nearest of them.
 
 use super::error::{ExperimentError, Fault};
-use super::keys;
 use super::names::nearest;
 use std::ops::Range;
 use std::path::Path;
@@ -22,20 +21,17 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// The whole text as a table.
-    ///
-    /// Errors: the text is not TOML, or has an unknown key at its top.
     pub(super) fn parse(self) -> Result<Section<'a>> {
         let table = DeTable::parse(self.text).map_err(|error| {
             let place = error.span().unwrap_or(0..0);
             self.fault(place, error.message().replace('\n', ", "), None)
         })?;
-        let top = Section {
+        Ok(Section {
             source: self,
-            name: "",
             place: 0..0,
             table: table.into_inner(),
-        };
-        top.with_known_keys()
+            known: Vec::new(),
+        })
     }
 
     /// An error at a place.
@@ -56,12 +52,11 @@ impl<'a> Source<'a> {
 #[derive(Debug)]
 pub(super) struct Section<'a> {
     source: Source<'a>,
-    /// The name in its head; empty: the top of the file.
-    name: &'static str,
     /// Its head.
     place: Range<usize>,
-    /// The keys that were not taken yet.
+    /// What was not asked for yet.
     table: DeTable<'a>,
+    known: Vec<&'static str>,
 }
 
 /// A value with its place.
@@ -75,6 +70,7 @@ pub(super) struct Entry<'a> {
 impl<'a> Section<'a> {
     /// The value of a key.
     pub(super) fn take(&mut self, key: &'static str) -> Option<Entry<'a>> {
+        self.known.push(key);
         self.table
             .remove(key)
             .map(|value| Entry::new(self.source, value))
@@ -96,9 +92,9 @@ impl<'a> Section<'a> {
                 let entries = array
                     .into_iter()
                     .map(|value| Entry::new(entry.source, value));
-                entries.map(|entry| entry.section(key)).collect()
+                entries.map(Entry::section).collect()
             }
-            _ => Ok(vec![entry.section(key)?]),
+            _ => Ok(vec![entry.section()?]),
         }
     }
 
@@ -107,27 +103,14 @@ impl<'a> Section<'a> {
         self.source.fault(self.place.clone(), message.into(), None)
     }
 
-    /// Refuses keys that this kind of table does not have.
-    fn with_known_keys(self) -> Result<Self> {
-        self.refuse(|key| !keys::is_known(self.name, key))?;
-        Ok(self)
-    }
-
-    /// Refuses keys that were not taken.
+    /// Refuses what nobody asked for.
     pub(super) fn finish(self) -> Result<()> {
-        self.refuse(|_| true)
-    }
-
-    /// Refuses the first of the keys left that are `wrong`.
-    fn refuse(&self, wrong: impl Fn(&str) -> bool) -> Result<()> {
-        let wrong = self.table.keys().filter(|key| wrong(key.get_ref()));
-        let Some(key) = wrong.min_by_key(|key| key.span().start) else {
-            return Ok(());
-        };
-        let known = keys::names(self.name);
-        let hint = match nearest(key.get_ref(), known.iter().copied()) {
+        let unknown = self.table.keys().min_by_key(|key| key.span().start);
+        let Some(key) = unknown else { return Ok(()) };
+        let known = self.known.iter().copied();
+        let hint = match nearest(key.get_ref(), known) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known here are {}", known.join(", ")),
+            None => format!("known here are {}", self.known.join(", ")),
         };
         let message = format!("there is no key `{}` here", key.get_ref());
         Err(self.source.fault(key.span(), message, Some(hint)))
@@ -153,20 +136,15 @@ impl<'a> Entry<'a> {
         self.source.fault(self.place.clone(), message, Some(hint))
     }
 
-    /// The table called `name`.
-    ///
-    /// Errors: it is no table, or has an unknown key.
-    fn section(self, name: &'static str) -> Result<Section<'a>> {
+    /// A table.
+    pub(super) fn section(self) -> Result<Section<'a>> {
         match self.value {
-            DeValue::Table(table) => {
-                let section = Section {
-                    source: self.source,
-                    name,
-                    place: self.place,
-                    table,
-                };
-                section.with_known_keys()
-            }
+            DeValue::Table(table) => Ok(Section {
+                source: self.source,
+                place: self.place,
+                table,
+                known: Vec::new(),
+            }),
             _ => Err(self.fault("expected a table")),
         }
     }

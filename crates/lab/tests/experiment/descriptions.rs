@@ -21,14 +21,7 @@ fn what_is_wrong_is_told_with_its_place() {
         ":1:9: string values must be quoted, expected literal string",
         None,
     );
-    check("seeds = 3\n", ":1:1: there is no [[scene]]", None);
-    let nearest = Some("did you mean `seeds`?");
-    check("sedes = 3\n", ":1:1: there is no key `sedes` here", nearest);
-    check(
-        "[[scene]]\nfile = \"room.pbrt\"\nreference-sp = 16\n",
-        ":3:1: there is no key `reference-sp` here",
-        Some("did you mean `reference-spp`?"),
-    );
+    check("sedes = 3\n", ":1:1: there is no [[scene]]", None);
     let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
     check(
         &all.replace("seeds", "sedes"),

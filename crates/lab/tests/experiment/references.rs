@@ -138,12 +138,12 @@ fn beneath_a_mirror() -> Workplace {
 #[test]
 fn a_witness_that_finds_all_light_can_be_named() {
     let text = format!("{DESCRIPTION}{BUDGET}");
-    let naming = |key: &str, integrator: &str| {
-        let named = format!("reference-spp = 1024\n{key} = \"{integrator}\"");
+    let naming = |witness: &str| {
+        let named = format!("reference-spp = 1024\nreference-witness = \"{witness}\"");
         text.replace(MADE, &named)
     };
     let place = beneath_a_mirror();
-    let results = place.complete(&naming("reference-cross-check", "lvc"), "out");
+    let results = place.complete(&naming("lvc"), "out");
     assert!(results.scenes[0].reference_image.is_some());
     let folder = fs::read_dir(place.path("out/references")).unwrap().next();
     let provenance = folder.unwrap().unwrap().path().join("provenance.json");
@@ -152,8 +152,7 @@ fn a_witness_that_finds_all_light_can_be_named() {
         provenance.contains("\"integrator\": \"lvc\""),
         "{provenance}"
     );
-    // The old name of the key.
-    let error = place.refusal(&naming("reference-witness", "bdpt"), "other");
+    let error = place.refusal(&naming("bdpt"), "other");
     assert!(error.to_string().contains(":7:21: "), "{error}");
     assert!(error.hint().unwrap().contains("path, light or lvc"));
 }
