@@ -43,11 +43,11 @@ Value: TypeAlias = float | int | bool | str | Rgb | Texture
 
 
 class SceneBuilder:
-    """A scene in the making: every call adds something, :meth:`build` makes the scene.
+    """Builds a scene: calls add objects, :meth:`build` returns the scene.
 
-    The world is right-handed, lengths have no unit, +y is up unless the camera says otherwise. What is
-    made is a text of pbrt-v4 with meshes and images beside it, in memory; :meth:`save` writes them.
-    Kinds of materials and lights and the names of their parameters are those of pbrt-v4.
+    The world is right-handed, lengths have no unit, +y is up unless the camera has another ``up``. The
+    builder keeps pbrt-v4 text with meshes and images in memory; :meth:`save` writes them. Kinds of
+    materials and lights and the names of their parameters are those of pbrt-v4.
     """
 
     def __init__(self, size: tuple[int, int] = (640, 480), *, spp: int = 16) -> None:
@@ -55,7 +55,7 @@ class SceneBuilder:
 
         Args:
             size: Width and height of the film. Unit: pixels.
-            spp: Samples per pixel, where a render says nothing else.
+            spp: Samples per pixel, unless a render sets them.
         """
         self._film = (
             f'Film "rgb" "integer xresolution" {int(size[0])} "integer yresolution" {int(size[1])}\n'
@@ -80,12 +80,12 @@ class SceneBuilder:
         """Set the camera.
 
         Args:
-            eye: Where it is. Space: world.
-            target: What is in the middle of the picture.
-            up: What is up in the picture.
+            eye: Position. Space: world.
+            target: The point in the middle of the image.
+            up: The upward direction in the image.
             fov: The angle of view along the shorter side. Unit: degrees.
-            lens_radius: 0 is a pinhole, everything is sharp.
-            focal_distance: What is sharp; None is the distance of the target.
+            lens_radius: Radius of the lens; 0 is a pinhole camera.
+            focal_distance: Distance in focus; None is the distance of the target.
         """
         eye_, target_, up_ = (_numbers(part, 3, "camera") for part in (eye, target, up))
         if focal_distance is None:
@@ -103,11 +103,11 @@ class SceneBuilder:
         """Add a material, such as ``material("diffuse", reflectance=(0.7, 0.1, 0.1))``.
 
         Args:
-            kind: One of pbrt-v4: ``diffuse``, ``coateddiffuse``, ``conductor``, ``dielectric`` and more.
-            **parameters: Those of that kind. A key that has its type in front is taken as it is:
+            kind: A pbrt-v4 material: ``diffuse``, ``coateddiffuse``, ``conductor``, ``dielectric`` and more.
+            **parameters: Its parameters. A key may begin with its type:
                 ``**{"spectrum eta": "metal-Cu-eta"}``.
 
-        What is wrong with them is told by :meth:`build`.
+        :meth:`build` reports invalid parameters.
         """
         material = Material(self._name("material"))
         self._world.append(
@@ -150,12 +150,12 @@ class SceneBuilder:
 
         Args:
             vertices: Points. Shape: (n, 3).
-            faces: Numbers of vertices, counterclockwise seen from the front. Shape: (m, 3) or (m, 4).
-            material: Of its surface.
-            normals: Where shading is smooth. Shape: (n, 3).
-            uv: Where textures are. Shape: (n, 2).
+            faces: Indices of vertices, counterclockwise seen from the front. Shape: (m, 3) or (m, 4).
+            material: Its material.
+            normals: Shading normals. Shape: (n, 3).
+            uv: Texture coordinates. Shape: (n, 2).
             emission: Radiance that its front emits, linear Rec. 709. Unit: W/(m² sr).
-            transform: To the world, for columns. Shape: (4, 4).
+            transform: Object to world, for column vectors. Shape: (4, 4).
 
         Errors: :class:`bidir.SettingsError` for other shapes, or vertices that do not exist.
         """
@@ -172,9 +172,9 @@ class SceneBuilder:
         *,
         emission: Rgb | None = None,
     ) -> SceneBuilder:
-        """Add a sphere; ``emission`` is as that of :meth:`mesh`.
+        """Add a sphere; ``emission`` as for :meth:`mesh`.
 
-        Errors: :class:`bidir.SettingsError` where the centre is no point.
+        Errors: :class:`bidir.SettingsError` if the centre is not a point.
         """
         place = np.eye(4)
         place[:3, 3] = _numbers(center, 3, "center")
@@ -182,36 +182,36 @@ class SceneBuilder:
         return self
 
     def light(self, kind: str, **parameters: Value) -> SceneBuilder:
-        """Add a light that is no shape, such as ``light("infinite", L=(1, 1, 1))``.
+        """Add a light without a shape, such as ``light("infinite", L=(1, 1, 1))``.
 
         Args:
-            kind: One of pbrt-v4: ``point``, ``spot``, ``distant``, ``infinite``.
-            **parameters: Those of that kind, as of :meth:`material`; ``from`` and ``to`` are points:
+            kind: A pbrt-v4 light: ``point``, ``spot``, ``distant``, ``infinite``.
+            **parameters: Its parameters, as for :meth:`material`; ``from`` and ``to`` are points:
                 ``light("point", I=(5, 5, 5), **{"point3 from": (0, 2, 0)})``.
         """
         self._world.append(f"LightSource {_text(kind)}{_list(parameters)}\n")
         return self
 
     def text(self) -> str:
-        """Return the scene as a text of pbrt-v4.
+        """Return the scene as pbrt-v4 text.
 
-        Errors: :class:`bidir.SettingsError` where there is no camera.
+        Errors: :class:`bidir.SettingsError` if there is no camera.
         """
         if not self._camera:
             raise SettingsError("the scene has no camera: call camera()")
         return self._camera + self._film + "WorldBegin\n" + "".join(self._world)
 
     def build(self) -> Scene:
-        """Make the scene.
+        """Return the scene.
 
-        Errors: :class:`bidir.SceneError` with the line of :meth:`text` where something is wrong.
+        Errors: :class:`bidir.SceneError` with the line of :meth:`text`.
         """
         return from_text(self.text(), files=self._files, name="builder.pbrt")
 
     def save(self, folder: StrPath) -> Path:
-        """Write ``scene.pbrt`` with its meshes and images into a folder, which is made if need be.
+        """Write ``scene.pbrt`` with its meshes and images into a folder, and create the folder if needed.
 
-        Returns: The file.
+        Returns: The path of ``scene.pbrt``.
 
         Errors: :class:`OSError`.
         """

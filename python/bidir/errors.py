@@ -1,4 +1,4 @@
-"""What goes wrong, by whose fault it is.
+"""Errors by cause.
 
 Every exception of the package is a :class:`BidirError`. Those about a file have its place as
 attributes, and their text is ``file:line:column: reason; hint``.
@@ -28,36 +28,36 @@ __all__ = [
 
 
 class BidirError(Exception):
-    """Anything that goes wrong in this package."""
+    """Base class of all errors of this package, except ``RenderInterruptedError``."""
 
 
 class SettingsError(BidirError, ValueError):
-    """A setting has a value that is not known, or does not fit the scene."""
+    """A setting has an unknown value, or one that does not fit the scene."""
 
     def __init__(self, message: str, **_place: object) -> None:
         super().__init__(message)
 
 
 class RenderError(BidirError, RuntimeError):
-    """A render cannot begin, such as for want of memory."""
+    """A render cannot start, for example because memory is short."""
 
 
 class FilmError(BidirError, ValueError):
-    """Films cannot become one: they are of different renders, or have the same passes."""
+    """Films cannot be merged: they belong to different renders, or passes overlap."""
 
 
 class _PlacedError(BidirError):
     """An error about a place in a file."""
 
-    #: What is wrong, without the place and the hint.
+    #: The reason, without place and hint.
     reason: str
-    #: What to do about it, if there is something.
+    #: A remedy, if there is one.
     hint: str | None
-    #: The file that is at fault, if it is one.
+    #: The file with the error, if there is one.
     file: str | None
-    #: The line, counted from 1; None where the whole file is at fault.
+    #: The line, counted from 1; None if the error concerns the whole file.
     line: int | None
-    #: The column in characters, counted from 1; None where ``line`` is.
+    #: The column in characters, counted from 1; None if ``line`` is None.
     column: int | None
 
     def __init__(
@@ -89,15 +89,15 @@ def _restore(kind: type[_PlacedError], message: str, place: dict[str, object]) -
 
 
 class SceneError(_PlacedError):
-    """A scene's text breaks the grammar of its format, or means nothing valid."""
+    """A scene is invalid."""
 
 
 class SceneWarning(UserWarning):
-    """Something in a scene is odd but no error, told as ``file:line:column: text``."""
+    """A warning about a scene, as ``file:line:column: text``."""
 
 
 class UnsupportedError(SceneError):
-    """The format has this and bidir does not; ``lenient=True`` may let something stand in."""
+    """bidir does not support a feature of the format; ``lenient=True`` replaces many."""
 
 
 class DataError(_PlacedError):
@@ -105,7 +105,7 @@ class DataError(_PlacedError):
 
 
 class FileError(_PlacedError, OSError):
-    """The system refuses to read or write a file."""
+    """The system cannot read or write a file."""
 
     def __str__(self) -> str:
         """Tell the place and the reason, as all errors about files do."""
@@ -113,21 +113,21 @@ class FileError(_PlacedError, OSError):
 
 
 class MissingFileError(FileError, FileNotFoundError):
-    """A file that was named does not exist."""
+    """A file does not exist."""
 
 
 class ExperimentError(_PlacedError):
-    """An experiment has no results: its description is wrong, or something that it names."""
+    """An experiment fails: its description is invalid, or a file it names."""
 
 
 class RenderInterruptedError(KeyboardInterrupt):
-    """Ctrl-C stopped a render; what was rendered is kept.
+    """Ctrl-C stopped a render; the image of the finished passes is kept.
 
-    It is a :class:`KeyboardInterrupt`, so that loops over renders end as they should. In a notebook
-    ``sys.last_value.image`` has the picture.
+    It is a :class:`KeyboardInterrupt`, so it ends loops over renders. In a notebook,
+    ``sys.last_value.image`` is the image.
     """
 
-    #: The picture of the finished passes; None where there was none.
+    #: The image of the finished passes; None if no pass is finished.
     image: Image | None
 
     def __init__(self, message: str, image: Image | None) -> None:

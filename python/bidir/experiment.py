@@ -20,23 +20,23 @@ __all__ = ["Experiment", "Results"]
 
 @dataclass(frozen=True)
 class Results:
-    """What an experiment found; also in ``results.json`` and ``report.html`` of its folder."""
+    """The results of an experiment; ``results.json`` and ``report.html`` in its folder contain them too."""
 
-    #: The folder.
+    #: The folder of the results.
     folder: Path
     #: All of ``results.json``.
     data: dict[str, Any]
-    #: Means over seeds and ratios to the first method, with intervals of 95 %, as text.
+    #: Means over seeds and ratios to the first method, with 95 % intervals, as text.
     tables: str
 
     @property
     def records(self) -> list[dict[str, Any]]:
-        """One for each render: scene, method, budget, seed, spp, seconds, rays, metrics."""
+        """One record per render: scene, method, budget, seed, spp, seconds, rays, metrics."""
         records: list[dict[str, Any]] = self.data["records"]
         return records
 
     def values(self, metric: str, *, scene: str, method: str, budget: str) -> list[float]:
-        """Return a metric of all seeds, in ascending order of these."""
+        """Return a metric for all seeds, in ascending order of the seed."""
         wanted = {"scene": scene, "method": method, "budget": budget}
         found = [r for r in self.records if all(r[key] == wanted[key] for key in wanted)]
         return [record["metrics"][metric] for record in sorted(found, key=lambda r: int(r["seed"]))]
@@ -47,7 +47,7 @@ class Results:
 
 
 class Experiment:
-    """A description of what is compared; ``bidir experiment --help`` has its format."""
+    """The description of an experiment; docs/reference/experiments.md lists its keys."""
 
     def __init__(
         self,
@@ -61,9 +61,9 @@ class Experiment:
 
         Args:
             text: The description, TOML.
-            file: What errors call it; scenes and references are relative to its folder.
-            quick: Small and coarse: few seeds, small images, an eighth of the budgets.
-            threads: Of each render, instead of the description's; 0 is one per processor.
+            file: Its name in messages; scenes and references are relative to its folder.
+            quick: Few seeds, small images, an eighth of the budgets.
+            threads: Threads of each render, instead of the description's; 0 is one per processor.
 
         Errors: :class:`bidir.ExperimentError` with line and column.
         """
@@ -95,21 +95,21 @@ class Experiment:
         metrics: Sequence[str] = ("relmse",),
         threads: int | None = None,
     ) -> Experiment:
-        """Describe an experiment by values.
+        """Describe an experiment with Python values.
 
         Args:
             scenes: Files by name.
-            methods: Estimators by name; ratios are relative to the first.
+            methods: Integrators by name; ratios are relative to the first.
             budgets: Each ``{"samples": 64}``, ``{"rays": 500}`` (per pixel) or ``{"seconds": 10}``.
-            title: What it is about.
-            seeds: How many seeds.
+            title: Title of the report.
+            seeds: Number of seeds.
             size: Width and height of all images, instead of the scenes'. Unit: pixels.
-            reference_spp: Samples per pixel of references, which are made first.
-            references: Files or folders of references that are there, by the names of scenes.
-            metrics: Names of :data:`bidir.METRICS` beside ``rmse``.
-            threads: Of each render; 0 is one per processor.
+            reference_spp: Samples per pixel of references that are rendered first.
+            references: Existing references, images or folders, by the names of scenes.
+            metrics: Names of :data:`bidir.METRICS`, in addition to ``rmse``.
+            threads: Threads of each render; 0 is one per processor.
 
-        Errors: :class:`bidir.SettingsError` where a scene has no reference,
+        Errors: :class:`bidir.SettingsError` if a scene has no reference,
         :class:`bidir.ExperimentError`.
         """
         lines = [f"title = {_toml(title)}", f"seeds = {seeds}", f"metrics = {_toml(list(metrics))}"]
@@ -141,7 +141,7 @@ class Experiment:
 
     @property
     def cells(self) -> int:
-        """How many renders there are, beside those of references."""
+        """The number of renders, without references."""
         return self._native.cells
 
     def run(
@@ -151,15 +151,15 @@ class Experiment:
         restart: bool = False,
         progress: Callable[[str, int, int], object] | None = None,
     ) -> Results:
-        """Render and compare what has no record in ``folder`` yet.
+        """Render and compare everything that has no record in ``folder`` yet.
 
         Args:
-            folder: Where results go, and where an interrupted run goes on.
-            restart: Forget records that are there; references stay.
-            progress: A function of what is rendered, how much is done, and of how much.
+            folder: The folder of the results; an interrupted run continues there.
+            restart: Discard existing records; references stay.
+            progress: A function of the current render, the number done and the total.
 
-        Errors: :class:`bidir.ExperimentError`, those of :func:`bidir.load`,
-        :class:`KeyboardInterrupt`; the same call goes on.
+        Errors: :class:`bidir.ExperimentError`, those of :func:`bidir.load`, and
+        :class:`KeyboardInterrupt`, after which the same call continues.
         """
 
         def hear(kind: str, text: str, done: int, of: int) -> None:

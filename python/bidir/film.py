@@ -18,11 +18,10 @@ __all__ = ["Film"]
 
 
 class Film:
-    """The exact sums of some passes of a render, with whose they are; immutable.
+    """The exact sums of some passes of a render; immutable.
 
-    A pass is one sample of every pixel. Sums are integers, so that films of different passes of one
-    render can be merged in any order, and are then the film of one render, bit for bit. ``a == b`` is
-    that comparison: the same render, the same passes, the same bits. Films can be pickled.
+    A pass is one sample of every pixel. Sums are integers, so merging films of different passes in any
+    order gives the bits of one render. ``a == b`` compares render, passes and bits. Films can be pickled.
     """
 
     def __init__(self, native: _bidir.Film) -> None:
@@ -33,7 +32,7 @@ class Film:
     def load(cls, path: StrPath) -> Film:
         """Read a film file, as ``bidir render --checkpoint`` and :meth:`save` write them.
 
-        Errors: :class:`bidir.MissingFileError`, :class:`bidir.DataError` where it is damaged.
+        Errors: :class:`bidir.MissingFileError`, :class:`bidir.DataError` if it is damaged.
         """
         return cls(_bidir.Film.load(os.fspath(path)))
 
@@ -44,10 +43,10 @@ class Film:
 
     @staticmethod
     def merge(*films: Film | Iterable[Film]) -> Film:
-        """Add films of different passes of one render; in any order, the sum is the same.
+        """Add films of different passes of one render; the order does not matter.
 
-        Errors: :class:`bidir.FilmError` where there is none, where they are of different renders, or
-        where two have the same passes.
+        Errors: :class:`bidir.FilmError` if there is no film, if they belong to different renders, or if
+        passes overlap.
         """
         all_films: list[Film] = []
         for film in films:
@@ -57,7 +56,7 @@ class Film:
         return reduce(lambda a, b: Film(a._native.merged(b._native)), all_films)
 
     def save(self, path: StrPath) -> None:
-        """Write a film file; the name stands for the whole of it or for what was there before.
+        """Write a film file; after an error, an older file is unchanged.
 
         Errors: :class:`bidir.FileError`.
         """
@@ -68,14 +67,14 @@ class Film:
         return self._native.to_bytes()
 
     def develop(self) -> Image:
-        """Return the picture of all passes."""
+        """Return the image of all passes."""
         from bidir.image import Image
 
         return Image(self)
 
     @property
     def passes(self) -> list[range]:
-        """The passes, as ranges that do not touch, in ascending order."""
+        """The passes, as disjoint ranges in ascending order."""
         return [range(begin, end) for begin, end in self._native.passes]
 
     @property
@@ -84,7 +83,7 @@ class Film:
         return sum(map(len, self.passes))
 
     def missing(self, passes: range) -> list[range]:
-        """Return which of ``passes`` are not here, as ranges in ascending order."""
+        """Return the missing ones of ``passes``, as ranges in ascending order."""
         gaps = []
         begin = passes.start
         for here in self.passes:
@@ -97,12 +96,12 @@ class Film:
 
     @property
     def identity(self) -> str:
-        """A hash of all that the bits depend on but the passes: films of one identity are mergeable."""
+        """A hash of all that determines the bits, except the passes; films of one identity can be merged."""
         return self._native.identity
 
     @property
     def settings(self) -> dict[str, str]:
-        """What the identity is made of: every setting, the scene's digest, versions, by name."""
+        """The contents of the identity by name: every setting, the scene's digest, versions."""
         return self._native.settings
 
     @property
@@ -112,22 +111,22 @@ class Film:
 
     @property
     def stopping(self) -> str:
-        """How the number of passes was decided: ``fixed``, by ``time`` or by ``noise``."""
+        """The stopping rule: ``fixed``, ``time`` or ``noise``."""
         return self._native.stopping
 
     @property
     def seconds(self) -> float:
-        """The time that rendering took, all parts added. Unit: seconds."""
+        """Render time, summed over all parts. Unit: seconds."""
         return self._native.seconds
 
     @property
     def counts(self) -> dict[str, int]:
-        """What was counted: ``samples``, ``rays.total``, ``candidates-evaluated``, ``dropped`` and more."""
+        """Counters: ``samples``, ``rays.total``, ``candidates-evaluated``, ``dropped`` and more."""
         return self._native.counts
 
     @property
     def noise(self) -> float:
-        """The error of the picture relative to its mean, as the variances of pixels tell it."""
+        """The estimated RMS error of the pixels relative to the mean."""
         return self._native.noise
 
     def __eq__(self, other: object) -> bool:

@@ -42,9 +42,9 @@ def _pixels(image: npt.ArrayLike | Image) -> Array:
 
 
 class Image:
-    """A picture, with the variance of its pixels, its layers, and what was counted.
+    """An image with the variance of its pixels, its layers and its statistics.
 
-    ``np.asarray(image)`` is :attr:`pixels`. Notebooks show the picture.
+    ``np.asarray(image)`` is :attr:`pixels`. Notebooks display it.
     """
 
     def __init__(self, film: Film) -> None:
@@ -70,22 +70,21 @@ class Image:
 
     @property
     def layers(self) -> Mapping[str, Array]:
-        """The images beside the picture, by name, such as ``Albedo`` or ``Z``.
+        """The extra layers by name, such as ``Albedo`` or ``Z``; docs/reference/images.md has their units.
 
         Shape: (rows, columns, 3) for colours, points and normals, (rows, columns) for numbers.
-        Which there are is decided by ``layers``, ``light_groups`` and ``strategy_layers`` of
-        :func:`bidir.render`; units are told in docs/reference/layers.md.
+        ``layers``, ``light_groups`` and ``strategy_layers`` of :func:`bidir.render` select them.
         """
         return self._layers
 
     @property
     def film(self) -> Film:
-        """The exact sums that the picture is made of."""
+        """The film of the image."""
         return self._film
 
     @property
     def stats(self) -> dict[str, Any]:
-        """What was counted, by name; ``spp``, ``seconds``, ``noise`` and ``settings`` besides."""
+        """Counters by name, with ``spp``, ``seconds``, ``noise``, ``stopping`` and ``settings``."""
         film = self._film
         return {
             "spp": film.spp,
@@ -103,14 +102,14 @@ class Image:
         return (height, width, channels)
 
     def save(self, path: StrPath) -> None:
-        """Write NAME.exr, linear with layers and attributes, or NAME.png, as a screen shows it.
+        """Write NAME.exr, linear with layers and attributes, or NAME.png for the screen.
 
         Errors: :class:`bidir.FileError`; :class:`bidir.SettingsError` for other names.
         """
         self._film._native.write_image(os.fspath(path))
 
     def png(self, exposure: float = 0.0) -> bytes:
-        """Return the bytes of a PNG, ``exposure`` stops brighter; what is too bright is clipped."""
+        """Return the bytes of a PNG, ``exposure`` stops brighter; values above 1 are clipped."""
         return png(self._pixels, exposure)
 
     def _repr_png_(self) -> bytes:
@@ -134,7 +133,7 @@ def png(image: npt.ArrayLike | Image, exposure: float = 0.0) -> bytes:
 
     Args:
         image: Linear Rec. 709. Shape: (rows, columns, 3).
-        exposure: How much brighter. Unit: stops.
+        exposure: Exposure. Unit: stops.
 
     Errors: :class:`bidir.SettingsError` for another shape.
     """
@@ -146,7 +145,7 @@ def png(image: npt.ArrayLike | Image, exposure: float = 0.0) -> bytes:
 
 
 def write_image(path: StrPath, image: npt.ArrayLike | Image) -> None:
-    """Write linear pixels as NAME.exr, or NAME.png as a screen shows them.
+    """Write linear pixels as NAME.exr, or as NAME.png for the screen.
 
     Args:
         path: The file.
@@ -160,11 +159,11 @@ def write_image(path: StrPath, image: npt.ArrayLike | Image) -> None:
 
 
 def read_image(path: StrPath) -> Array:
-    """Read an image of EXR, PFM, HDR, PNG, JPEG or TGA as linear pixels.
+    """Read an EXR, PFM, HDR, PNG, JPEG or TGA image as linear pixels.
 
-    Returns: Linear Rec. 709; grey is repeated, alpha left out. Shape: (rows, columns, 3).
+    Returns: Linear Rec. 709; grey is repeated, alpha ignored. Shape: (rows, columns, 3).
 
-    Errors: :class:`bidir.MissingFileError`, :class:`bidir.DataError` where it is broken.
+    Errors: :class:`bidir.MissingFileError`, :class:`bidir.DataError` if it is broken.
     """
     (width, height), data = _bidir.read_image(os.fspath(Path(path)))
     return _array(data, height, width, 3)

@@ -43,9 +43,9 @@ def _pair(image: ImageLike, reference: ImageLike) -> tuple[tuple[int, int], byte
 
 
 def metric(name: str, image: ImageLike, reference: ImageLike) -> float:
-    """Return the metric that is called ``name``, one of :data:`METRICS`.
+    """Return the metric ``name``, one of :data:`METRICS`.
 
-    Errors: :class:`bidir.SettingsError` for an unknown name, or where the shapes differ.
+    Errors: :class:`bidir.SettingsError` for an unknown name, or if the shapes differ.
     """
     return _bidir.metric(name, *_pair(image, reference))
 
@@ -60,7 +60,7 @@ def error_map(name: str, image: ImageLike, reference: ImageLike) -> Array:
 
 
 def compare(image: ImageLike, reference: ImageLike, names: Iterable[str] | None = None) -> dict[str, float]:
-    """Return metrics by name: those of ``names``, or all but FLIP, which takes longer.
+    """Return metrics by name: ``names``, or all except FLIP, which takes longer.
 
     Errors: as :func:`metric`.
     """
@@ -70,7 +70,7 @@ def compare(image: ImageLike, reference: ImageLike, names: Iterable[str] | None 
 
 
 def identical(image: ImageLike, reference: ImageLike) -> bool:
-    """Tell whether both have the same shape, and the same bits in every channel."""
+    """Return True if both have the same shape and the same bits in every channel."""
     a, b = _pixels(image), _pixels(reference)
     return a.shape == b.shape and bool(np.array_equal(a.view(np.uint32), b.view(np.uint32)))
 
@@ -96,10 +96,10 @@ def mape(image: ImageLike, reference: ImageLike) -> float:
 
 
 def flip(image: ImageLike, reference: ImageLike) -> float:
-    """Return the mean difference from 0 to 1 that is seen on a screen that shows [0, 1]."""
+    """Return the mean of FLIP for a screen that shows [0, 1]: visible difference from 0 to 1."""
     return metric("flip", image, reference)
 
 
 def flip_hdr(image: ImageLike, reference: ImageLike) -> float:
-    """Return the mean difference from 0 to 1 that is seen at the worst of several exposures."""
+    """Return the mean of HDR-FLIP: visible difference from 0 to 1 at the worst of several exposures."""
     return metric("flip_hdr", image, reference)

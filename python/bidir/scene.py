@@ -19,10 +19,10 @@ MemoryFile: TypeAlias = tuple[list[str], bytes]
 
 
 class Scene:
-    """A scene that can be rendered; immutable.
+    """An immutable scene.
 
-    Made by :func:`load`, :func:`from_text` or :class:`bidir.SceneBuilder`. It can be pickled: its files
-    go with it, so that it is the same scene in another process and on another machine.
+    :func:`load`, :func:`from_text` and :class:`bidir.SceneBuilder` make scenes. A pickle contains the
+    scene's files, so it is the same scene in another process and on another machine.
     """
 
     def __init__(self, name: StrPath, source: Mapping[str, Any]) -> None:
@@ -32,12 +32,12 @@ class Scene:
 
     @property
     def name(self) -> str:
-        """The scene file, as it was named."""
+        """The name of the scene file, as given."""
         return self._native.name
 
     @property
     def digest(self) -> str:
-        """The SHA-256 of all that was read for the scene, in hexadecimal."""
+        """The SHA-256 of all files of the scene, in hexadecimal."""
         return self._native.digest
 
     @property
@@ -48,7 +48,7 @@ class Scene:
 
     @property
     def crop(self) -> tuple[int, int, int, int]:
-        """Left, top, right, bottom of what is rendered, the last two exclusive. Unit: pixels."""
+        """Left, top, right, bottom of the rendered rectangle, the last two exclusive. Unit: pixels."""
         left, top, right, bottom = self._native.crop
         return (left, top, right, bottom)
 
@@ -60,12 +60,12 @@ class Scene:
 
     @property
     def spp(self) -> int:
-        """Samples per pixel that the file asks for."""
+        """Samples per pixel set in the file."""
         return self._native.spp
 
     @property
     def settings(self) -> dict[str, str]:
-        """The settings that the file asks for, by the names of flags."""
+        """The settings in the file, by the names of flags."""
         return self._native.settings
 
     @property
@@ -75,17 +75,17 @@ class Scene:
 
     @property
     def summary(self) -> dict[str, int]:
-        """What the scene is made of: how many shapes, primitives, instances, lights and more."""
+        """Numbers of shapes, primitives, instances, lights and more."""
         return self._native.summary
 
     @property
     def warnings(self) -> list[str]:
-        """What is odd but no error, each as ``file:line:column: text``."""
+        """The warnings, each as ``file:line:column: text``."""
         return self._native.warnings
 
     @property
     def files(self) -> list[str]:
-        """Every file that was read, by each name that it was asked for; the scene is the first."""
+        """Every file read, under each name used for it; the scene is the first."""
         return [os.fspath(name) for name in self._native.files]
 
     def __repr__(self) -> str:
@@ -94,9 +94,9 @@ class Scene:
         return f"<bidir.Scene {self.name!r} {width} x {height} {self.digest[:12]}>"
 
     def packed(self) -> tuple[str, dict[str, Any]]:
-        """Return the name and all files of the scene: what pickles have.
+        """Return the name and all files of the scene, as pickles contain them.
 
-        Errors: :class:`bidir.FileError` where a file is no longer there.
+        Errors: :class:`bidir.FileError` if a file no longer exists.
         """
         known = {name: data for names, data in self._source["memory"] for name in names}
         names_of: dict[str, list[str]] = {}
@@ -147,18 +147,18 @@ def load(
     crop: tuple[int, int, int, int] | None = None,
     lenient: bool = False,
 ) -> Scene:
-    """Read a scene: glTF 2.0 where the name ends in .gltf or .glb, else pbrt-v4.
+    """Read a scene: glTF 2.0 if the name ends in .gltf or .glb, otherwise pbrt-v4.
 
     Args:
         path: The file.
         size: Width and height of the whole film instead of the file's; the view stays. Unit: pixels.
-        crop: Left, top, right, bottom of what is rendered, the last two exclusive. Unit: pixels.
-        lenient: Let something simpler stand in for what is not supported, with a warning.
+        crop: Left, top, right, bottom of the rendered rectangle, the last two exclusive. Unit: pixels.
+        lenient: Replace unsupported features by simpler ones, with a warning.
 
-    Warns: :class:`bidir.SceneWarning` of what is odd.
+    Warns: :class:`bidir.SceneWarning` for each warning of the scene.
 
-    Errors: :class:`bidir.SceneError` with file, line and column where the scene is wrong,
-    :class:`bidir.UnsupportedError` where bidir lacks something, :class:`bidir.MissingFileError`.
+    Errors: :class:`bidir.SceneError` with file, line and column if the scene is invalid,
+    :class:`bidir.UnsupportedError` for unsupported features, :class:`bidir.MissingFileError`.
     """
     return _told(Scene(path, _source(size, crop, lenient, [])))
 
@@ -172,13 +172,12 @@ def from_text(
     crop: tuple[int, int, int, int] | None = None,
     lenient: bool = False,
 ) -> Scene:
-    """Make a scene of a text of pbrt-v4.
+    """Make a scene from pbrt-v4 text.
 
     Args:
         text: The text.
-        files: The bytes of meshes and images that the text names, by the names that it gives them;
-            others are looked for on the disk.
-        name: What errors call the text; files on the disk are looked for in its folder.
+        files: Contents of meshes and images by their names in the text; other files are read from disk.
+        name: The name of the text in messages; files on disk are relative to its folder.
         size, crop, lenient: As for :func:`load`.
 
     Errors: as for :func:`load`.

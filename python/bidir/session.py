@@ -20,7 +20,7 @@ from bidir.settings import Integrator
 
 __all__ = ["LAYERS", "Progress", "ProgressBar", "Session", "Wanted", "render"]
 
-#: The names of the images that a film can keep beside the picture.
+#: The names of all layers.
 LAYERS: tuple[str, ...] = tuple(_bidir.LAYERS)
 
 
@@ -130,10 +130,10 @@ def wanted(
 
 
 class Session:
-    """A render that goes pass by pass.
+    """A render, pass by pass.
 
-    Other threads of Python run while a pass is rendered. Ctrl-C gives the running pass up, and the
-    session goes on from there as if it had never begun.
+    Other Python threads run during a pass. Ctrl-C discards the running pass; the session can continue
+    with it.
     """
 
     def __init__(
@@ -147,18 +147,18 @@ class Session:
         strategy_layers: int = 0,
         threads: int = 0,
     ) -> None:
-        """Begin a render; nothing is rendered yet but what an estimator learns before.
+        """Start a render; only training, if the integrator has any, is done here.
 
         Args:
             scene: The scene, or its file.
-            integrator: The estimator; None is the scene's.
-            seed: Other seeds give unrelated noise; None is the scene's, or 0.
-            layers: Images beside the picture: names of :data:`bidir.LAYERS`, or ``all``.
-            light_groups: Keep an image of each group of lights.
-            strategy_layers: Keep images of strategies, of paths of at most so many vertices.
-            threads: 0 is one per processor; changes speed, never a bit.
+            integrator: The integrator; None is the scene's.
+            seed: Random seed; None is the scene's, or 0.
+            layers: Extra layers: names of :data:`bidir.LAYERS`, or ``all``.
+            light_groups: Keep one layer per light group.
+            strategy_layers: Keep one layer per strategy, for paths of up to this many vertices.
+            threads: Number of threads, 0 is one per processor; does not change the image.
 
-        Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, those of :func:`bidir.load`.
+        Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """
         self.scene = scene if isinstance(scene, Scene) else load(scene)
         self.wanted = wanted(integrator, seed, layers, light_groups, strategy_layers)
@@ -169,58 +169,58 @@ class Session:
         self._stopping = "fixed"
 
     def step(self, passes: int = 1) -> None:
-        """Render the next passes: one sample of every pixel each.
+        """Render the next passes, each with one sample per pixel.
 
-        Errors: :class:`KeyboardInterrupt`; finished passes are kept.
+        Errors: :class:`KeyboardInterrupt`; finished passes stay.
         """
         for _ in range(passes):
             self._native.step()
 
     def start_at(self, first: int) -> None:
-        """Leave the passes before ``first`` to others."""
+        """Skip the passes before ``first``."""
         self._native.start_at(first)
 
     def snapshot(self) -> Image:
-        """Return the picture of what is rendered so far."""
+        """Return the image of all passes so far."""
         return Image(self.film())
 
     def film(self) -> Film:
-        """Return the exact sums of what is rendered so far."""
+        """Return the film of all passes so far."""
         return Film(self._native.film(self._stopping))
 
     def take_film(self) -> Film:
-        """Return the same, and go on with an empty film: for ranges of passes, one after another."""
+        """Return the film and continue with an empty one."""
         return Film(self._native.take_film())
 
     def checkpoint(self, path: StrPath) -> None:
-        """Write a film file to go on from.
+        """Write a film file for :meth:`resume`.
 
-        Errors: :class:`bidir.FileError`; what was there before is then still there.
+        Errors: :class:`bidir.FileError`; an older file is then unchanged.
         """
         self.film().save(path)
 
     def resume(self, film: Film | StrPath) -> None:
-        """Go on from a film of the same render; its passes are not rendered again.
+        """Add a film of the same render; its passes are not rendered again.
 
-        Errors: :class:`bidir.FilmError` where it is of another render or has passes that are here;
-        those of :meth:`bidir.Film.load`.
+        Errors: :class:`bidir.FilmError` if it belongs to another render or overlaps; those of
+        :meth:`bidir.Film.load`.
         """
         film = film if isinstance(film, Film) else Film.load(film)
         self._native.add_film(film._native)
 
     @property
     def next_pass(self) -> int:
-        """The pass that :meth:`step` renders, counted from 0."""
+        """The pass that :meth:`step` renders next, counted from 0."""
         return self._native.next_pass
 
     @property
     def passes(self) -> list[range]:
-        """The passes that are rendered."""
+        """The finished passes."""
         return [range(begin, end) for begin, end in self._native.passes]
 
     @property
     def noise(self) -> float:
-        """The error of the picture relative to its mean, as the variances of pixels tell it."""
+        """The estimated RMS error of the pixels relative to the mean."""
         return self._native.noise
 
     @property
@@ -230,7 +230,7 @@ class Session:
 
     @property
     def settings(self) -> dict[str, str]:
-        """Every setting of the estimator, with what was left open decided."""
+        """Every setting of the integrator, defaults and automatic choices included."""
         return self._native.settings
 
     @property
@@ -263,19 +263,18 @@ def render(
 
     Args:
         scene: The scene, or its file.
-        integrator: The estimator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
-        spp: Samples per pixel; None is the scene's, or no limit where ``time`` or ``noise`` is given.
-        time: End before this time is over, but after a pass. Unit: seconds.
-        noise: End when the error relative to the mean of the image is as small as this; it is looked
-            at after 16 passes, and after every eighth of them or less more.
+        integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
+        spp: Samples per pixel; None is the scene's, or unlimited with ``time`` or ``noise``.
+        time: Stop within this time; at least one pass is rendered. Unit: seconds.
+        noise: Stop at this error relative to the mean; checked from 16 passes on.
         seed, layers, light_groups, strategy_layers, threads: As for :class:`Session`.
-        progress: Is told of every pass: ``tqdm``, a bar, or a function of done and all.
-        checkpoint: A film file to go on from where it is there, and to write now and then.
-        checkpoint_every: How often. Unit: seconds.
+        progress: ``tqdm``, a progress bar, or a function of finished and all passes.
+        checkpoint: A film file to continue from, if it exists, and to write repeatedly.
+        checkpoint_every: Time between checkpoints. Unit: seconds.
 
-    Errors: those of :class:`Session`; :class:`bidir.RenderInterruptedError` on Ctrl-C, with the picture
-    of the finished passes as ``image``, which are in ``checkpoint``, too;
-    :class:`bidir.FilmError` where ``checkpoint`` is of another render.
+    Errors: those of :class:`Session`; :class:`bidir.RenderInterruptedError` on Ctrl-C, with the image of the
+    finished passes, which ``checkpoint`` contains too; :class:`bidir.FilmError` if ``checkpoint`` belongs
+    to another render.
     """
     session = Session(
         scene,

@@ -39,8 +39,7 @@ MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 class Selector:
     """A rule that chooses which connections are traced.
 
-    None of them changes the expectation of an image: a connection that is chosen with probability π
-    counts 1/π times.
+    No rule changes the expected image: a connection chosen with probability π has the weight 1/π.
     """
 
     def __str__(self) -> str:
@@ -86,9 +85,9 @@ class PerPair(Selector):
 
 @dataclass(frozen=True)
 class RayRoulette(Selector):
-    """Trace each connection by chance, where it adds less than a part of the image's mean."""
+    """Russian roulette for connections that contribute less than a fraction of the image's mean."""
 
-    #: The part; above 0.
+    #: The fraction; above 0.
     part: float = 0.1
 
     def __str__(self) -> str:
@@ -98,9 +97,9 @@ class RayRoulette(Selector):
 
 @dataclass(frozen=True)
 class Budget(Selector):
-    """Trace at most so many connections for each pair of subpaths, the largest for certain."""
+    """Trace at most ``rays`` connections for each pair of subpaths, the largest contributions always."""
 
-    #: The number of rays; from 1.
+    #: The number of rays, from 1.
     rays: int
 
     def __str__(self) -> str:
@@ -110,13 +109,13 @@ class Budget(Selector):
 
 @dataclass(frozen=True, kw_only=True)
 class Integrator:
-    """An estimator of the image with its settings."""
+    """An integrator with its settings; ``None`` leaves a setting to the scene or its default."""
 
-    #: The most bounces of a path; 0 is no limit.
+    #: Maximum number of bounces; 0 is unlimited.
     max_depth: int | None = None
     #: How subpaths end by chance: ``albedo[:START]``, ``throughput[:START]``, ``off`` or ``suited``.
     path_roulette: str | None = None
-    #: The random numbers.
+    #: The sampler.
     sampler: Literal["independent", "sobol"] | None = None
 
     def __post_init__(self) -> None:
@@ -128,11 +127,11 @@ class Integrator:
 
     @property
     def name(self) -> str:
-        """The estimator as ``--integrator`` takes it."""
+        """The value of ``--integrator``."""
         return type(self).__name__.lower()
 
     def flags(self) -> dict[str, str]:
-        """Return the settings that are not None, as texts by the names of flags."""
+        """Return the settings that are not None, as text by the names of flags."""
         own = {field.name: getattr(self, field.name) for field in fields(self)}
         texts = {name.replace("_", "-"): _text(value) for name, value in own.items() if value is not None}
         return {"integrator": self.name, **texts}
@@ -145,68 +144,67 @@ def _text(value: object) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Path(Integrator):
-    """Path tracing: next-event estimation and lights that are hit, combined."""
+    """Path tracing with next-event estimation."""
 
-    #: How strategies that make the same path share it.
+    #: The MIS heuristic.
     mis: Mis | None = None
-    #: How next-event estimation chooses the light.
+    #: How next-event estimation picks a light.
     light_choice: LightChoice | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Light(Integrator):
-    """Light tracing: every vertex of a light subpath is connected to the lens."""
+    """Light tracing: connects every vertex of a light subpath to the lens."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Bidirectional(Integrator):
     """Settings of estimators that have connections to choose from."""
 
-    #: Which connections are traced: a :class:`Selector`, or its text such as ``"budget:2"``.
+    #: The connections to trace: a :class:`Selector`, or its text such as ``"budget:2"``.
     shadow_rays: Selector | str | None = None
-    #: How strategies that make the same path share it.
+    #: The MIS heuristic.
     mis: Mis | None = None
-    #: The strategies that take part, such as ``all,-s0,-t1``; the last rule that matches decides.
+    #: Strategies in use, such as ``all,-s0,-t1``; the last rule that matches wins.
     strategies: str | None = None
-    #: Where next-event estimation takes its light point from: each camera vertex draws its own, or
-    #: all use the start of the light subpath.
+    #: The light point of next-event estimation: a fresh one per camera vertex, or the start of the
+    #: light subpath.
     light_point: LightPoint | None = None
-    #: How next-event estimation chooses the light.
+    #: How next-event estimation picks a light.
     light_choice: LightChoice | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Bdpt(_Bidirectional):
-    """Bidirectional path tracing: both ends of a sample, joined by every strategy."""
+    """Bidirectional path tracing."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lvc(_Bidirectional):
-    """Bidirectional path tracing that connects with light subpaths of many samples."""
+    """Bidirectional path tracing with light subpaths shared by many samples."""
 
     #: How many vertices of shared light subpaths are weighed for each camera vertex, 1 to 4096; two
     #: numbers are for the first vertex of a camera subpath, and for each of those behind it.
     #: ``"suited"`` is what suits the estimator.
     candidates: int | tuple[int, int] | Literal["suited"] | None = None
-    #: How many light points next-event estimation draws for each camera vertex, in the same way.
+    #: Light samples of next-event estimation per camera vertex, likewise.
     next_events: int | tuple[int, int] | None = None
-    #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short
-    #: render before learnt.
+    #: How candidates are drawn: uniformly, or as learned in training.
     proposal: Proposal | None = None
     #: How light subpaths choose their light: by power, or by what the same render found to reach
     #: what is seen.
     emission: Emission | None = None
-    #: How many samples bring one light subpath to those that are shared: a power of two to 256.
+    #: Samples per light subpath: a power of two up to 256.
     samples_per_subpath: int | None = None
-    #: What weights take for the number of samples of a strategy whose light subpaths are shared: how
-    #: often it makes the path, less where camera subpaths are rare, or how often it traces its ray.
+    #: Sample counts in the MIS weights of shared light subpaths: connections per path, fewer where they
+    #: share a rare camera subpath, or traced rays.
     mis_count: MisCount | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
 class Auto(Lvc):
-    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, by what a short render before the first pass finds.
+    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short trial before the first pass.
 
-    It tries several numbers of ``samples_per_subpath``: naming one has no influence. What it took is
-    ``film.settings["plan"]``.
+    It tries several values of ``samples_per_subpath`` and ignores the setting.
+    ``film.settings["plan"]`` has the choice.
     """

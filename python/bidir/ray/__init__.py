@@ -1,7 +1,7 @@
 """Renders and experiments on more than one machine, by Ray; ``pip install 'bidir[ray]'``.
 
 :func:`render` splits a render by ranges of passes over the nodes of a cluster, and gives the bits that
-one machine would give. docs/ray.md says how it works, and how it is used with KubeRay and Slurm.
+one machine would give. docs/guide/ray.md has the setup with KubeRay and Slurm.
 """
 
 try:

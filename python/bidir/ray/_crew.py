@@ -34,30 +34,30 @@ logger = logging.getLogger("bidir.ray")
 
 
 class ClusterError(BidirError, RuntimeError):
-    """The cluster has no node that can work, or loses what it works on again and again."""
+    """The cluster has no usable node, or keeps losing work."""
 
 
 class NodeRefusedError(ClusterError):
-    """Every node is refused, such as for another version of bidir."""
+    """No node can take part, for example because of another version of bidir."""
 
 
 class TaskFailedError(BidirError, RuntimeError):
-    """A part of the work fails however often it is tried; the text names it, and why."""
+    """A part of the work keeps failing; the message names it and the cause."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """How often something is tried."""
+    """Numbers of retries."""
 
-    #: How often a unit may raise an error.
+    #: Errors that a unit of work may raise.
     errors: int = 3
-    #: How often a unit may be lost with its worker.
+    #: Losses of a unit with its worker.
     losses: int = 9
-    #: How often the actor of a node may die without having done anything.
+    #: Deaths of a node's actor before it finishes a unit.
     deaths: int = 4
-    #: How long to wait for a node that can work. Unit: seconds.
+    #: Longest wait for a usable node. Unit: seconds.
     patience: float = 300.0
-    #: Units that wait or run on a worker.
+    #: Units waiting or running on a worker.
     in_flight: int = 2
 
 

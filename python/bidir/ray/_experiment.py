@@ -169,23 +169,23 @@ def experiment(
     limits: Limits | None = None,
     _actor: type = Bench,
 ) -> Results:
-    """Run an experiment on the nodes of a cluster; records are those of one machine, but for times.
+    """Run an experiment on the nodes of a cluster; except for times, records equal those of one machine.
 
-    All methods of a scene, a budget and a seed are rendered on one node, with all of its threads, and
-    all nodes that take part are alike: so times can be compared. This process makes references that
-    are not there yet, and keeps all results; when it dies, the same call goes on.
+    All methods of a scene, a budget and a seed run on one node with all of its threads, and all nodes that
+    take part are alike, so times are comparable. This process renders missing references and keeps all
+    results; after an interruption the same call continues.
 
     Args:
         experiment: The experiment, or the file of its description.
-        folder: Where results go.
-        address: Of the cluster, as for :func:`render`.
-        quick: As for :class:`bidir.Experiment`, where a file is given.
-        restart: Forget records that are there; references stay.
-        progress: A function of what was rendered, how many renders are done, and of how many.
-        limits: How often what fails is tried.
+        folder: The folder of the results.
+        address: Address of the cluster, as for :func:`render`.
+        quick: As for :class:`bidir.Experiment`, if a file is given.
+        restart: Discard existing records; references stay.
+        progress: A function of the finished render, the number done and the total.
+        limits: Numbers of retries.
 
-    Errors: :class:`bidir.ExperimentError`, those of :func:`bidir.load`; :class:`TaskFailedError` names
-    what fails however often it is tried; :class:`NodeRefusedError`, :class:`ClusterError`.
+    Errors: :class:`bidir.ExperimentError`, those of :func:`bidir.load`; :class:`TaskFailedError` with the
+    part that keeps failing; :class:`NodeRefusedError`, :class:`ClusterError`.
     """
     given = experiment
     if not isinstance(given, Experiment):

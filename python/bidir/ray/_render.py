@@ -278,30 +278,29 @@ def render(
 ) -> Image:
     """Render a scene on the nodes of a cluster; the bits are those of :func:`bidir.render`.
 
-    Every node that has processors renders ranges of passes with all of its threads. Nodes may come
-    and go; what is lost is rendered again, and no pass is counted twice.
+    Every node with processors renders ranges of passes with all of its threads. Nodes may come and go;
+    lost passes are rendered again, and no pass is counted twice.
 
     Args:
         scene: The scene, or its file.
-        integrator: The estimator; None is the scene's.
-        spp: Samples per pixel, which is the number of passes; None is the scene's.
+        integrator: The integrator; None is the scene's.
+        spp: Samples per pixel; None is the scene's.
         seed, layers, light_groups, strategy_layers: As for :class:`bidir.Session`.
-        address: Of the cluster, as ``ray.init`` takes it: ``local`` starts one on this machine, None
-            is the cluster that is found, or else a local one. A process that is connected stays so.
-        ship: ``object`` sends the scene with its meshes and images once to each node; ``path`` lets
-            nodes read the file, which lies where all of them find it; they check that it is the same.
-        task_seconds: About how long a task takes; between 10 and 60 suits most. Unit: seconds.
-        fan_in: How many films are merged at a time on the cluster.
-        checkpoint: A film file to go on from where it is there, and to write now and then: what a
-            driver that died had rendered.
-        checkpoint_every: How often. Unit: seconds.
-        progress: Is told of finished passes, as for :func:`bidir.render`.
-        limits: How often what fails is tried.
+        address: Address of the cluster, as for ``ray.init``: ``local`` starts one on this machine, None
+            takes a running cluster or starts a local one. A connected process stays connected.
+        ship: ``object`` sends the scene with its files once to each node; with ``path`` each node reads
+            the file from a shared path and checks that it is the same.
+        task_seconds: Approximate duration of a task; 10 to 60 works well. Unit: seconds.
+        fan_in: Number of films merged at a time on the cluster.
+        checkpoint: A film file to continue from, if it exists, and to write repeatedly.
+        checkpoint_every: Time between checkpoints. Unit: seconds.
+        progress: As for :func:`bidir.render`.
+        limits: Numbers of retries.
 
-    Errors: those of :func:`bidir.load`; :class:`TaskFailedError` names the range of passes that fails
-    however often it is tried; :class:`NodeRefusedError` where no node has the same version of bidir or
-    can read the scene; :class:`ClusterError`; :class:`bidir.FilmError` where ``checkpoint`` is of
-    another render; :class:`bidir.RenderInterruptedError` on Ctrl-C.
+    Errors: those of :func:`bidir.load`; :class:`TaskFailedError` with the range of passes that keeps
+    failing; :class:`NodeRefusedError` if no node has the same version of bidir or can read the scene;
+    :class:`ClusterError`; :class:`bidir.FilmError` if ``checkpoint`` belongs to another render;
+    :class:`bidir.RenderInterruptedError` on Ctrl-C.
     """
     scene = scene if isinstance(scene, Scene) else load(scene)
     wish = wanted(integrator, seed, layers, light_groups, strategy_layers)

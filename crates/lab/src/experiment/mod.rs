@@ -44,6 +44,8 @@ mod description;
 mod error;
 mod identity;
 mod journal;
+#[cfg(test)]
+mod keys;
 mod names;
 mod page;
 mod pyramid;

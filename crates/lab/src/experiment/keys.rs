@@ -1,0 +1,183 @@
+//! Every key of a description, as docs/reference/experiments.md lists them. Tests compare the list with the
+//! reader and with the page.
+
+use super::{Changes, Experiment, ExperimentError};
+use crate::metric::Metric;
+use std::fmt::Write;
+use std::path::Path;
+use std::{env, fs};
+
+/// A key of a description.
+#[derive(Clone, Copy, Debug)]
+struct Key {
+    /// The table that it belongs to; empty: the top of the file.
+    table: &'static str,
+    /// Its name.
+    name: &'static str,
+    /// The kind of its value.
+    value: &'static str,
+    /// Its default, or that it is required.
+    default: &'static str,
+    /// Its meaning in one sentence.
+    meaning: &'static str,
+}
+
+const fn key(
+    table: &'static str,
+    name: &'static str,
+    value: &'static str,
+    default: &'static str,
+    meaning: &'static str,
+) -> Key {
+    Key {
+        table,
+        name,
+        value,
+        default,
+        meaning,
+    }
+}
+
+/// All keys but settings, in the order of the page.
+#[rustfmt::skip]
+const KEYS: &[Key] = &[
+    key("", "title", "text", "`Experiment`", "Title of the report."),
+    key("", "description", "text", "none", "A sentence below the title."),
+    key("", "size", "`\"WIDTHxHEIGHT\"`", "each scene's", "Size of all images. Unit: pixels."),
+    key("", "seeds", "whole number from 1", "10", "Number of seeds."),
+    key("", "first-seed", "whole number", "0", "The first seed; the others follow it."),
+    key("", "threads", "whole number from 1", "one per processor", "Threads of each render."),
+    key("", "metrics", "list of [metrics](metrics.md)", "`relmse`, `relmse_trim`", "Metrics in addition to `rmse`."),
+    key("", "pyramid", "name of a method", "none", "Renders each strategy (s, t) of this method for the report."),
+    key("", "pyramid-spp", "whole number from 2", "64", "Samples per pixel of these images."),
+    key("settings", "", "", "", "Settings of all methods."),
+    key("scene", "file", "path", "required", "The scene file, relative to the description."),
+    key("scene", "name", "text", "the file's name", "Name in results; unique."),
+    key("scene", "size", "`\"WIDTHxHEIGHT\"`", "`size` above", "Size of its images. Unit: pixels."),
+    key("scene", "reference", "path", "none", "An existing reference folder, or an image with finite pixels."),
+    key("scene", "reference-spp", "whole number from 1", "none", "Renders a reference with this many samples per pixel; each scene needs this key or `reference`."),
+    key("scene", "reference-strategies", "as `strategies`", "those of `[settings]`", "Strategies of the rendered reference."),
+    key("scene", "reference-cross-check", "`path`, `light` or `lvc`", "`path`", "Integrator that checks the rendered reference."),
+    key("method", "name", "text", "required", "Name in results; unique. Ratios are relative to the first method."),
+    key("method", "", "", "", "Settings of this method; they replace those of `[settings]`."),
+    key("budget", "samples", "whole number from 1", "none", "Samples per pixel."),
+    key("budget", "rays", "number above 0", "none", "Rays per pixel. Each budget has exactly one of `samples`, `rays` and `seconds`."),
+    key("budget", "seconds", "number above 0", "none", "Render time. Unit: seconds."),
+    key("budget", "name", "text", "amount and unit", "Name in results, such as the default `64 spp`; unique."),
+];
+
+/// The tables of a description.
+const TABLES: [&str; 4] = ["settings", "scene", "method", "budget"];
+
+const PAGE: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../docs/reference/experiments.md"
+);
+const BEGIN: &str = "<!-- generated: experiment keys -->\n";
+const END: &str = "<!-- end -->\n";
+
+/// A description with a line more in one of its tables.
+fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
+    let with = |head: &str, own: &str| {
+        let line = if head == table { line } else { "" };
+        format!("{own}\n{line}\n")
+    };
+    let text = [
+        with("", ""),
+        with("settings", "[settings]"),
+        with("scene", "[[scene]]\nfile = \"a.pbrt\"\nreference-spp = 1"),
+        with("method", "[[method]]\nname = \"a\""),
+        with("budget", "[[budget]]\nsamples = 1"),
+    ];
+    Experiment::read(&text.concat(), Path::new("a.toml"))
+}
+
+/// The names of the keys of a table, in alphabetical order.
+fn names(table: &str) -> Vec<String> {
+    let mut names: Vec<&str> = Vec::new();
+    for key in KEYS.iter().filter(|key| key.table == table) {
+        match key.name {
+            "" => names.extend(Changes::NAMES),
+            name => names.push(name),
+        }
+    }
+    if table.is_empty() {
+        names.extend(TABLES);
+    }
+    names.sort_unstable();
+    names.into_iter().map(str::to_owned).collect()
+}
+
+#[test]
+fn the_reader_knows_these_keys() {
+    for table in [""].into_iter().chain(TABLES) {
+        // Nothing is near this name, so the hint lists every key.
+        let error = read(table, "zzzzzzzzzzzzzzzz = 1").unwrap_err();
+        let hint = error.hint().unwrap();
+        let known = hint
+            .split(", ")
+            .map(|name| name.rsplit(' ').next().unwrap());
+        let mut known: Vec<String> = known.map(|name| name.replace('`', "")).collect();
+        known.sort_unstable();
+        assert_eq!(known, names(table), "{table}: {hint}");
+    }
+}
+
+#[test]
+fn defaults_are_those_of_the_reader() {
+    let default = |name| KEYS.iter().find(|key| key.name == name).unwrap().default;
+    let experiment = read("", "pyramid = \"a\"").unwrap();
+    assert_eq!(default("title"), format!("`{}`", experiment.title));
+    assert_eq!(default("seeds"), experiment.seeds.count.to_string());
+    assert_eq!(default("first-seed"), experiment.seeds.first.to_string());
+    let spp = experiment.pyramid.unwrap().spp;
+    assert_eq!(default("pyramid-spp"), spp.to_string());
+    let metrics = experiment.metrics.into_iter().map(|metric| {
+        let named = Metric::NAMES.iter().find(|(_, other)| *other == metric);
+        format!("`{}`", named.unwrap().0)
+    });
+    assert_eq!(default("metrics"), metrics.collect::<Vec<_>>().join(", "));
+}
+
+/// The list of keys, as the page has it.
+fn list() -> String {
+    let mut text = String::new();
+    for table in [""].into_iter().chain(TABLES) {
+        match table {
+            "" => text += "\nAt the top of the file:\n\n",
+            "settings" => text += "\n`[settings]`:\n\n",
+            _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
+        }
+        text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
+        for key in KEYS.iter().filter(|key| key.table == table) {
+            let name = match key.name {
+                "" => Changes::NAMES.map(|name| format!("`{name}`")).join(", "),
+                name => format!("`{name}`"),
+            };
+            let [value, default] = match key.name {
+                "" => ["as the [flag](cli.md)", "the scene's"],
+                _ => [key.value, key.default],
+            };
+            writeln!(text, "| {name} | {value} | {default} | {} |", key.meaning).unwrap();
+        }
+    }
+    text + "\n"
+}
+
+/// `BIDIR_WRITE_PAGES=1` writes the list into the page.
+#[test]
+fn the_page_lists_every_key() {
+    let text = fs::read_to_string(PAGE).unwrap();
+    let (before, rest) = text.split_once(BEGIN).unwrap();
+    let (found, after) = rest.split_once(END).unwrap();
+    let expected = list();
+    if env::var_os("BIDIR_WRITE_PAGES").is_some() {
+        fs::write(PAGE, [before, BEGIN, &expected, END, after].concat()).unwrap();
+    } else {
+        let how = "BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys";
+        assert!(
+            found == expected,
+            "{PAGE} is out of date; to write it: {how}"
+        );
+    }
+}
