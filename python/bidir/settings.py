@@ -7,7 +7,8 @@ names and meanings are those of the flags of ``bidir render``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import warnings
+from dataclasses import InitVar, dataclass, fields
 from typing import Literal, TypeAlias
 
 from bidir import _bidir
@@ -32,7 +33,7 @@ Mis: TypeAlias = Literal["balance", "power", "uniform"]
 LightChoice: TypeAlias = Literal["power", "tree"]
 LightPoint: TypeAlias = Literal["fresh", "shared"]
 Proposal: TypeAlias = Literal["uniform", "learned"]
-Emission: TypeAlias = Literal["power", "learned"]
+LightStart: TypeAlias = Literal["power", "learned"]
 MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 
 
@@ -114,7 +115,7 @@ class Integrator:
 
     #: The most bounces of a path; 0 is no limit.
     max_depth: int | None = None
-    #: How subpaths end by chance: ``albedo[:START]``, ``throughput[:START]``, ``off`` or ``suited``.
+    #: How subpaths end by chance: ``albedo[:START]``, ``throughput[:START]``, ``off`` or ``auto``.
     path_roulette: str | None = None
     #: The random numbers.
     sampler: Literal["independent", "sobol"] | None = None
@@ -125,6 +126,8 @@ class Integrator:
         Errors: :class:`bidir.SettingsError` where one has a value that is not known.
         """
         _bidir.check_settings(self.flags())
+        if "suited" in self.flags().values():
+            _warn("suited", "auto")
 
     @property
     def name(self) -> str:
@@ -136,6 +139,12 @@ class Integrator:
         own = {field.name: getattr(self, field.name) for field in fields(self)}
         texts = {name.replace("_", "-"): _text(value) for name, value in own.items() if value is not None}
         return {"integrator": self.name, **texts}
+
+
+def _warn(older: str, today: str) -> None:
+    """Warn the caller of a constructor that a name has changed."""
+    message = f"`{older}` is now `{today}`"
+    warnings.warn(message, DeprecationWarning, stacklevel=4)
 
 
 def _text(value: object) -> str:
@@ -186,8 +195,8 @@ class Lvc(_Bidirectional):
 
     #: How many vertices of shared light subpaths are weighed for each camera vertex, 1 to 4096; two
     #: numbers are for the first vertex of a camera subpath, and for each of those behind it.
-    #: ``"suited"`` is what suits the estimator.
-    candidates: int | tuple[int, int] | Literal["suited"] | None = None
+    #: ``"auto"`` leaves the numbers to the estimator.
+    candidates: int | tuple[int, int] | Literal["auto", "suited"] | None = None
     #: How many light points next-event estimation draws for each camera vertex, in the same way.
     next_events: int | tuple[int, int] | None = None
     #: How vertices of shared light subpaths are chosen: each as likely as others, or by what a short
@@ -195,12 +204,24 @@ class Lvc(_Bidirectional):
     proposal: Proposal | None = None
     #: How light subpaths choose their light: by power, or by what the same render found to reach
     #: what is seen.
-    emission: Emission | None = None
+    light_start: LightStart | None = None
     #: How many samples bring one light subpath to those that are shared: a power of two to 256.
     samples_per_subpath: int | None = None
     #: What weights take for the number of samples of a strategy whose light subpaths are shared: how
     #: often it makes the path, less where camera subpaths are rare, or how often it traces its ray.
     mis_count: MisCount | None = None
+    #: The older name of ``light_start``, with a warning.
+    emission: InitVar[LightStart | None] = None
+
+    def __post_init__(self, emission: LightStart | None) -> None:
+        """Check every setting, and take the older name of one of them.
+
+        Errors: :class:`bidir.SettingsError` where one has a value that is not known.
+        """
+        if emission is not None:
+            _warn("emission", "light_start")
+            object.__setattr__(self, "light_start", emission)
+        super().__post_init__()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -225,7 +225,7 @@ fn an_image_says_what_it_was_rendered_with() {
     assert_eq!(lvc["bidir/candidates"], "5,2");
     assert!(!lvc.contains_key("bidir/plan"));
     let auto = attributes("--integrator auto");
-    assert_eq!(auto["bidir/candidates"], "suited");
+    assert_eq!(auto["bidir/candidates"], "auto");
     assert!(auto["bidir/plan"].contains("albedo"), "{auto:?}");
 }
 
