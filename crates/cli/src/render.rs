@@ -26,12 +26,12 @@ use viewer::{Desk, StageSettings, Status};
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
     // First of all: a signal during loading shall not kill what asks to be told of it.
     let signals = Signals::watch()?;
-    set_threads(args.budget.threads)?;
+    set_threads(args.threads)?;
     // What is wrong without a scene is told before hours may have gone into one.
     let filter = args
         .layers
         .denoise
-        .then(|| Filter::load(args.budget.threads));
+        .then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
         Outputs::named(args)?.check(args)?;
