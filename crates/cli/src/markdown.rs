@@ -97,7 +97,11 @@ fn section(page: &mut String, path: &str, command: &Command) {
     let usage = command.clone().render_usage().to_string();
     // Writing to a string cannot fail.
     let _ = write!(page, "\n## bidir {path}\n");
-    for paragraph in long.map(ToString::to_string).unwrap_or_default().split("\n\n") {
+    for paragraph in long
+        .map(ToString::to_string)
+        .unwrap_or_default()
+        .split("\n\n")
+    {
         let _ = write!(page, "\n{}\n", ended(&paragraph.replace('\n', " ")));
     }
     for line in usage.lines() {
@@ -131,7 +135,11 @@ fn section(page: &mut String, path: &str, command: &Command) {
     }
     let examples = command.get_after_long_help().or(command.get_after_help());
     if let Some(examples) = examples {
-        let _ = write!(page, "\n```text\n{}\n```\n", examples.to_string().trim_end());
+        let _ = write!(
+            page,
+            "\n```text\n{}\n```\n",
+            examples.to_string().trim_end()
+        );
     }
 }
 

@@ -15,8 +15,9 @@ use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, S
 use crate::serve::{self, Show};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
-use crate::stats::{Course, Report};
+use crate::stats::{Course, Report, Summary, listed};
 use bidir::driver::{Session, Settings};
+use bidir::integrator::{IntegratorKind, blind_spots};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
@@ -28,10 +29,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let signals = Signals::watch()?;
     set_threads(args.threads)?;
     // What is wrong without a scene is told before hours may have gone into one.
-    let filter = args
-        .layers
-        .denoise
-        .then(|| Filter::load(args.threads));
+    let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
         Outputs::named(args)?.check(args)?;
@@ -164,7 +162,11 @@ impl Job<'_> {
         show.leave(&session, self.console);
         kept?;
         written?;
-        self.tell(&report, &keeper);
+        let summary = || {
+            let is_denoised = self.filter.is_some();
+            Summary::new(&session, budget, course, [self.is_part(), is_denoised])
+        };
+        self.tell(&summary, &report, &keeper, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
@@ -278,23 +280,39 @@ impl Job<'_> {
         scene_io::write_text(path, &(json(report)? + "\n"))
     }
 
-    /// Tells what was done.
-    fn tell(&self, report: &Report, keeper: &Keeper) {
+    /// True where others render the other passes.
+    fn is_part(&self) -> bool {
+        self.args.long.passes.is_some() || self.args.long.part.is_some()
+    }
+
+    /// Writes the last lines.
+    fn tell(&self, summary: &dyn Fn() -> Summary, report: &Report, keeper: &Keeper, end: End) {
         let warnings = report.warning().into_iter().chain(report.raw_warning());
         warnings.for_each(|warning| self.console.warning(warning));
         if !self.args.output.talk.quiet {
             let film = keeper.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
-            let files = if names.is_empty() {
-                "nothing".to_owned()
-            } else {
-                names.join(", ")
-            };
-            say(format_args!("{}; wrote {files}", report.summary()));
+            say(format_args!("wrote {}", listed(&names)));
+            summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
                 say(report.strategy_table().trim_end());
             }
+            if matches!(end, End::Signal(_)) && keeper.path().is_some() {
+                say("stopped early; the same command with --resume continues");
+            }
+            if self.may_gain_by_auto() {
+                say("note: rendered with `path`, as the scene asks; try --integrator auto");
+            }
         }
+    }
+
+    /// True where nothing but the scene asks for path tracing, and light paths are there that it misses or
+    /// samples badly.
+    fn may_gain_by_auto(&self) -> bool {
+        let own = self.loaded.settings.integrator;
+        self.args.estimator.integrator.is_none()
+            && own == IntegratorKind::Path
+            && !blind_spots(&self.loaded.scene, own).is_empty()
     }
 }
 

@@ -96,9 +96,9 @@ fn shown(command: Command, view: View) -> Command {
         // The values of this machine's environment are no documentation.
         View::Long => arg.hide_env_values(true),
     });
-    names
-        .into_iter()
-        .fold(command, |all, name| all.mut_subcommand(name, |c| shown(c, view)))
+    names.into_iter().fold(command, |all, name| {
+        all.mut_subcommand(name, |c| shown(c, view))
+    })
 }
 
 /// An argument under `-h`: flags that are not `common` are hidden, and the others stand in one list.

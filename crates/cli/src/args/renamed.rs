@@ -50,8 +50,14 @@ mod tests {
 
     #[test]
     fn older_names_are_found_wherever_they_stand() {
-        assert_eq!(warned(&["render", "--light-start", "power"], None), [false; 2]);
-        assert_eq!(warned(&["render", "--emission", "power"], None), [true, false]);
+        assert_eq!(
+            warned(&["render", "--light-start", "power"], None),
+            [false; 2]
+        );
+        assert_eq!(
+            warned(&["render", "--emission", "power"], None),
+            [true, false]
+        );
         assert_eq!(warned(&["--emission=power"], None), [true, false]);
         assert_eq!(warned(&["--candidates", "suited"], None), [false, true]);
         assert_eq!(warned(&["--path-roulette=suited"], None), [false, true]);
