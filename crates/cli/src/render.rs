@@ -7,7 +7,7 @@ use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
-use crate::output::Outputs;
+use crate::output::{self, Outputs};
 use crate::progress::{Clock, Reporter};
 use crate::pyramid;
 use crate::replay;
@@ -164,7 +164,7 @@ impl Job<'_> {
         written?;
         let summary = || {
             let is_denoised = self.filter.is_some();
-            Summary::new(&session, budget, course, [self.is_part(), is_denoised])
+            Summary::new(&session, budget, course, [output::is_share(self.args), is_denoised])
         };
         self.tell(&summary, &report, &keeper, end);
         Ok(match end {
@@ -278,11 +278,6 @@ impl Job<'_> {
             return Ok(());
         };
         scene_io::write_text(path, &(json(report)? + "\n"))
-    }
-
-    /// True where others render the other passes.
-    fn is_part(&self) -> bool {
-        self.args.long.passes.is_some() || self.args.long.part.is_some()
     }
 
     /// Writes the last lines.

@@ -102,7 +102,11 @@ fn help_has_exit_codes_defaults_environment_and_other_spellings() {
 #[test]
 fn short_help_has_the_common_flags() {
     let place = Workplace::new();
-    let render = place.run("render -h").expect(0).prints("Examples:\n").stdout;
+    let render = place
+        .run("render -h")
+        .expect(0)
+        .prints("Examples:\n")
+        .stdout;
     let common = "--aov --checkpoint --denoise --help --integrator --lenient --noise --output --resume --seed --serve --size \
         --spp --threads --time --version";
     assert_eq!(flags(&render), common.split_whitespace().collect());
@@ -112,7 +116,10 @@ fn short_help_has_the_common_flags() {
     assert!(!all.contains("Exit codes"), "{all}");
     for command in ["view", "reference", "experiment"] {
         let help = |flag| place.run(&format!("{command} {flag}")).expect(0).stdout;
-        assert!(flags(&help("-h")).len() < flags(&help("--help")).len(), "{command}");
+        assert!(
+            flags(&help("-h")).len() < flags(&help("--help")).len(),
+            "{command}"
+        );
     }
 }
 
@@ -134,7 +141,16 @@ fn help_is_plain_english() {
     for command in known_flags().keys() {
         for flag in ["-h", "--help"] {
             let help = place.run(&format!("{command} {flag}")).expect(0).stdout;
-            for word in ["suited", "witness", "told", "tells", "shall ", "picture ", "go on from", "gone on"] {
+            for word in [
+                "suited",
+                "witness",
+                "told",
+                "tells",
+                "shall ",
+                "picture ",
+                "go on from",
+                "gone on",
+            ] {
                 assert!(!help.contains(word), "{command} {flag} has {word:?}");
             }
             let mut starts = help.lines().map(str::trim_start);
@@ -149,7 +165,10 @@ fn the_page_of_all_flags_is_current() {
     let page = Workplace::new().run("man --markdown").expect(0).stdout;
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/cli.md");
     let written = fs::read_to_string(file).unwrap_or_default();
-    assert!(page == written, "docs/reference/cli.md is out of date: run `just docs`");
+    assert!(
+        page == written,
+        "docs/reference/cli.md is out of date: run `just docs`"
+    );
     for part in [
         "## bidir farm slurm",
         "| `-o`, `--output <FILE>` |",

@@ -42,11 +42,15 @@ fn a_render_ends_with_files_samples_and_error() {
         all[all.len() - lines..].join("\n")
     };
     let text = last("--spp 16 --stats s.json --crop 0,0,12,8", 2);
-    let expected = "wrote room.exr, room.png and s.json\n16 samples per pixel of a crop of 12x8 pixels in ";
+    let expected =
+        "wrote room.exr, room.png and s.json\n16 samples per pixel of a crop of 12x8 pixels in ";
     assert!(text.starts_with(expected), "{text}");
     assert!(text.contains(", relative error "), "{text}");
     let text = last("--integrator auto -o auto.png", 3);
-    assert!(text.starts_with("wrote auto.png\n2 samples per pixel in "), "{text}");
+    assert!(
+        text.starts_with("wrote auto.png\n2 samples per pixel in "),
+        "{text}"
+    );
     assert!(text.contains("\nauto chose "), "{text}");
     let text = last("--passes 4..6 --checkpoint part.film", 2);
     let expected = "wrote part.film\n2 samples per pixel (passes 4..6) in ";
@@ -56,7 +60,10 @@ fn a_render_ends_with_files_samples_and_error() {
     let text = last("--spp 5 --checkpoint all.film", 1);
     assert!(text.starts_with("5 samples per pixel in "), "{text}");
     let text = last("--spp 7 --checkpoint all.film --resume", 1);
-    assert!(text.starts_with("7 samples per pixel, 2 of them in "), "{text}");
+    assert!(
+        text.starts_with("7 samples per pixel, 2 of them in "),
+        "{text}"
+    );
 }
 
 /// A triangle without anything else.

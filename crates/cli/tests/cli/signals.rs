@@ -44,7 +44,8 @@ fn the_first_signal_ends_after_the_running_pass_with_an_image() {
         // A tenth of the time is told of after a second.
         let arguments = "--spp 1000000000 --time 10";
         let ran = interrupted(&place, arguments, &[("Progress:", signal)]).expect(code);
-        ran.says("wrote room.exr and room.png").says(" of 1000000000 samples per pixel");
+        ran.says("wrote room.exr and room.png")
+            .says(" of 1000000000 samples per pixel");
         place.run("compare room.exr room.exr --exact").expect(0);
     }
 }

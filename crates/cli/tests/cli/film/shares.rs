@@ -253,7 +253,10 @@ fn a_black_picture_has_no_noise() {
     place.write_dark();
     for integrator in ["path", "bdpt", "lvc"] {
         let render = format!("render dark.pbrt --integrator {integrator} --noise 0.5 --spp 99");
-        place.run(&render).expect(0).says("16 of 99 samples per pixel");
+        place
+            .run(&render)
+            .expect(0)
+            .says("16 of 99 samples per pixel");
     }
 }
 
