@@ -58,7 +58,7 @@ impl Cli {
     /// Reads the command line and the environment.
     pub(crate) fn read() -> Result<Self, clap::Error> {
         let arguments: Vec<_> = std::env::args_os().collect();
-        let mut command = help::command(View::asked(&arguments));
+        let mut command = command(View::asked(&arguments));
         let matches = command.try_get_matches_from_mut(&arguments)?;
         if let Some(("experiment", matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand_mut("experiment")
