@@ -263,7 +263,8 @@ def render(
 
     Args:
         scene: The scene, or its file.
-        integrator: The estimator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
+        integrator: The estimator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the
+            scene's, or ``auto`` for glTF.
         spp: Samples per pixel; None is the scene's, or no limit where ``time`` or ``noise`` is given.
         time: End before this time is over, but after a pass. Unit: seconds.
         noise: End when the error relative to the mean of the image is as small as this; it is looked

@@ -52,13 +52,9 @@ pub(crate) fn page() -> String {
     page.push_str("\n| Command | |\n|---|---|\n");
     for (path, command) in all(&root) {
         let about = command.get_about().map(ToString::to_string);
-        let link = format!("bidir {path}").replace(' ', "-");
         row(
             &mut page,
-            &[
-                &format!("[`{path}`](#{link})"),
-                &cell(&about.unwrap_or_default()),
-            ],
+            &[&link(&path), &cell(&about.unwrap_or_default())],
         );
     }
     page.push_str("\n## Flags of every command\n\n| Flag | Meaning |\n|---|---|\n");
@@ -66,8 +62,9 @@ pub(crate) fn page() -> String {
     for arg in shared {
         row(&mut page, &[&name(arg), &meaning(arg).0]);
     }
+    let mut tables = Tables::new();
     for (path, command) in all(&root) {
-        section(&mut page, &path, command);
+        section(&mut page, &path, command, &mut tables);
     }
     environment(&mut page, &root);
     page.push_str("\n## Exit codes\n\n| Code | Meaning |\n|---:|---|\n");
@@ -91,23 +88,56 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
     with_its_own.collect()
 }
 
-/// The section of a command.
-fn section(page: &mut String, path: &str, command: &Command) {
+/// The tables that are written, by heading and rows, with the command that has them.
+type Tables = BTreeMap<(String, String), String>;
+
+/// The section of a command. A table that another command has is a link to that one.
+fn section(page: &mut String, path: &str, command: &Command, tables: &mut Tables) {
     let long = command.get_long_about().or(command.get_about());
+    let long = long.map(ToString::to_string).unwrap_or_default();
     let usage = command.clone().render_usage().to_string();
     // Writing to a string cannot fail.
     let _ = write!(page, "\n## bidir {path}\n");
-    for paragraph in long
-        .map(ToString::to_string)
-        .unwrap_or_default()
-        .split("\n\n")
-    {
-        let _ = write!(page, "\n{}\n", ended(&paragraph.replace('\n', " ")));
+    for paragraph in long.split("\n\n") {
+        let text = match paragraph.strip_prefix("For example: ") {
+            Some(example) => format!("For example: {}", code(example.trim_end_matches('.'))),
+            None => ended(&paragraph.replace('\n', " ")),
+        };
+        let _ = write!(page, "\n{text}\n");
     }
-    for line in usage.lines() {
-        let line = line.trim_start_matches("Usage:").trim();
-        let _ = write!(page, "\nUsage: `{line}`\n");
+    let lines = usage.lines().map(|line| line.trim_start_matches("Usage:"));
+    let usages: Vec<_> = lines.map(|line| code(line.trim())).collect();
+    let _ = write!(page, "\nUsage: {}\n", usages.join(" or "));
+    for (heading, args) in by_heading(command) {
+        let mut rows = String::new();
+        for arg in &args {
+            let (meaning, default) = meaning(arg);
+            let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
+            let variable = variable.unwrap_or_default();
+            row(&mut rows, &[&name(arg), &default, &variable, &meaning]);
+        }
+        let key = (heading.to_owned(), rows);
+        match tables.get(&key) {
+            Some(other) if args.len() > 1 => {
+                let link = link(other);
+                let _ = write!(page, "\n{heading}: as for {link}\n");
+            }
+            _ => {
+                let head = "Default | Environment | Meaning |\n|---|---|---|---|";
+                let _ = write!(page, "\n| {heading} | {head}\n{}", key.1);
+                tables.insert(key, path.to_owned());
+            }
+        }
     }
+    let examples = command.get_after_long_help().or(command.get_after_help());
+    if let Some(examples) = examples {
+        let examples = examples.to_string();
+        let _ = write!(page, "\n```text\n{}\n```\n", examples.trim_end());
+    }
+}
+
+/// The arguments of a command under their headings, positional ones first.
+fn by_heading(command: &Command) -> Vec<(&str, Vec<&Arg>)> {
     let mut headings: Vec<(&str, Vec<&Arg>)> = Vec::new();
     for arg in command.get_arguments().filter(|arg| is_own(arg)) {
         let heading = match arg.get_help_heading() {
@@ -121,26 +151,13 @@ fn section(page: &mut String, path: &str, command: &Command) {
         }
     }
     headings.sort_by_key(|(heading, _)| *heading != "Arguments");
-    for (heading, args) in headings {
-        let _ = write!(
-            page,
-            "\n| {heading} | Default | Environment | Meaning |\n|---|---|---|---|\n"
-        );
-        for arg in args {
-            let (meaning, default) = meaning(arg);
-            let variable = arg.get_env().map(|name| code(&name.to_string_lossy()));
-            let variable = variable.unwrap_or_default();
-            row(page, &[&name(arg), &default, &variable, &meaning]);
-        }
-    }
-    let examples = command.get_after_long_help().or(command.get_after_help());
-    if let Some(examples) = examples {
-        let _ = write!(
-            page,
-            "\n```text\n{}\n```\n",
-            examples.to_string().trim_end()
-        );
-    }
+    headings
+}
+
+/// A link to the section of a command.
+fn link(path: &str) -> String {
+    let anchor = format!("bidir {path}").replace(' ', "-");
+    format!("[`{path}`](#{anchor})")
 }
 
 /// False for flags of every command, and for hidden ones.
@@ -191,7 +208,10 @@ fn meaning(arg: &Arg) -> (String, String) {
     const BRACKET: &str = "[default: ";
     let text = arg.get_long_help().or(arg.get_help());
     let text = text.map(ToString::to_string).unwrap_or_default();
-    let text = text.replace("\n\n", " ").replace('\n', " ");
+    let paragraphs = text
+        .split("\n\n")
+        .map(|part| ended(&part.replace('\n', " ")));
+    let text = paragraphs.collect::<Vec<_>>().join(" ");
     let bracket = text.split_once(BRACKET);
     let bracket = bracket.and_then(|(before, rest)| {
         let (default, after) = rest.split_once(']')?;

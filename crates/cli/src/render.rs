@@ -164,7 +164,12 @@ impl Job<'_> {
         written?;
         let summary = || {
             let is_denoised = self.filter.is_some();
-            Summary::new(&session, budget, course, [output::is_share(self.args), is_denoised])
+            Summary::new(
+                &session,
+                budget,
+                course,
+                [output::is_share(self.args), is_denoised],
+            )
         };
         self.tell(&summary, &report, &keeper, end);
         Ok(match end {

@@ -10,13 +10,14 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Layers")]
 pub(crate) struct LayerArgs {
-    /// Extra layers: albedo, normal, depth, variance, …, or all [default: those of the scene's film].
+    /// Extra layers: albedo, normal, depth, variance, …, or all.
     ///
     /// First surface: albedo (Albedo.R, G, B), position (P.X, Y, Z), normal (N.X, Y, Z) and
     /// shading-normal (Ns.X, Y, Z) in world space, depth along the view (Z), coverage (Coverage). Noise:
     /// samples (Samples), variance (Variance.R, G, B of each pixel's mean, and RelativeVariance). Cost:
-    /// time in seconds (Time), rays (Rays). Layers of time differ from run to run. pbrt's film `gbuffer`
-    /// has albedo, position, normal, shading-normal and variance; any other film has none.
+    /// time in seconds (Time), rays (Rays). Layers of time differ from run to run. The default is the
+    /// layers of the scene's film: pbrt's `gbuffer` has albedo, position, normal, shading-normal and
+    /// variance; any other film has none.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = named(aov_names()))]
     pub(crate) aov: Vec<AovName>,
     /// Denoise with Open Image Denoise; keep the noisy image as a layer.

@@ -213,7 +213,7 @@ pub(crate) struct SceneArgs {
     /// A .pbrt, .gltf or .glb file; `-` reads pbrt from standard input.
     ///
     /// A file with any other ending is read as pbrt-v4.
-    #[arg(value_hint = ValueHint::FilePath)]
+    #[arg(value_hint = ValueHint::FilePath, help_heading = None::<&str>)]
     pub(crate) scene: PathBuf,
     /// Replace unsupported features by similar ones, with a warning.
     ///

@@ -157,7 +157,7 @@ pub(crate) struct TalkArgs {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Integrator")]
 pub(crate) struct EstimatorArgs {
-    /// Integrator: path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
+    /// path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
     ///
     /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
     /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
@@ -192,7 +192,7 @@ pub(crate) struct EstimatorArgs {
     /// albedo:0 for bdpt, albedo:0 for lvc, auto for auto.
     #[arg(long, value_name = "RULE")]
     pub(crate) path_roulette: Option<PathRoulette>,
-    /// How next-event estimation picks a light: tree or power (all but light) [default: tree].
+    /// How next-event estimation picks a light: tree or power (path, bdpt, lvc, auto) [default: tree].
     ///
     /// tree: a hierarchy of the lights estimates the light that arrives from each. power: by power
     /// alone.
@@ -270,16 +270,17 @@ pub(crate) struct EstimatorArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Stopping")]
 pub(crate) struct BudgetArgs {
-    /// Samples per pixel [default: the scene's; unlimited with --time or --noise].
+    /// Samples per pixel [default: the scene's].
     ///
-    /// A pass takes one sample of every pixel. The limit that is reached first ends the render.
+    /// With --time or --noise the default is unlimited; the limit that is reached first ends the render.
+    /// A pass takes one sample of every pixel.
     #[arg(long, env = "BIDIR_SPP", value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: Option<u64>,
     /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///
     /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
-    /// take longer is not started, but every run renders at least one.
+    /// not finish in time is not started, but every run renders at least one.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// Stop at this relative error, such as 0.05.

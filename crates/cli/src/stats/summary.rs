@@ -136,7 +136,9 @@ fn took(time: Duration) -> String {
 
 /// A positive number with two significant digits.
 fn two_digits(number: f64) -> String {
-    let exponent = libm::floor(libm::log10(number));
+    // 0.0996 has the digits of 0.10.
+    let rounded = format!("{number:.1e}").parse().unwrap_or(number);
+    let exponent = libm::floor(libm::log10(rounded) + 1e-9);
     let digits = (1.0 - exponent).clamp(0.0, 12.0) as usize;
     format!("{number:.digits$}")
 }
@@ -230,6 +232,8 @@ mod tests {
         assert_eq!(time(7500.0), "2 h 05 min");
         assert_eq!(two_digits(0.2123), "0.21");
         assert_eq!(two_digits(0.00316), "0.0032");
+        assert_eq!(two_digits(0.0996), "0.10");
+        assert_eq!(two_digits(0.001), "0.0010");
         assert_eq!(two_digits(1.26), "1.3");
         assert_eq!(two_digits(126.0), "126");
         let names = ["a", "b", "c"].map(str::to_owned);
