@@ -20,6 +20,11 @@ stat SEED="1":
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test analytic --test layers
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators --test real_scenes
 
+# Writes the pages that are generated.
+docs:
+    cargo build --release
+    ${CARGO_TARGET_DIR:-target}/release/bidir man --markdown > docs/reference/cli.md
+
 # The libraries' documentation.
 doc:
     cargo doc --workspace --no-deps --document-private-items

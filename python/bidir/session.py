@@ -263,7 +263,8 @@ def render(
 
     Args:
         scene: The scene, or its file.
-        integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the scene's.
+        integrator: The integrator, such as ``bidir.Bdpt(shadow_rays="per-pair")``; None is the
+            scene's, or ``auto`` for glTF.
         spp: Samples per pixel; None is the scene's, or unlimited with ``time`` or ``noise``.
         time: Stop within this time; at least one pass is rendered. Unit: seconds.
         noise: Stop at this error relative to the mean; checked from 16 passes on.

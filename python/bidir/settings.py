@@ -7,7 +7,8 @@ names and meanings are those of the flags of ``bidir render``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import warnings
+from dataclasses import InitVar, dataclass, fields
 from typing import Literal, TypeAlias
 
 from bidir import _bidir
@@ -32,7 +33,7 @@ Mis: TypeAlias = Literal["balance", "power", "uniform"]
 LightChoice: TypeAlias = Literal["power", "tree"]
 LightPoint: TypeAlias = Literal["fresh", "shared"]
 Proposal: TypeAlias = Literal["uniform", "learned"]
-Emission: TypeAlias = Literal["power", "learned"]
+LightStart: TypeAlias = Literal["power", "learned"]
 MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 
 
@@ -113,7 +114,7 @@ class Integrator:
 
     #: Maximum number of bounces; 0 is unlimited.
     max_depth: int | None = None
-    #: How subpaths end by chance: ``albedo[:START]``, ``throughput[:START]``, ``off`` or ``suited``.
+    #: Russian roulette of subpaths: ``albedo[:START]``, ``throughput[:START]``, ``off`` or ``auto``.
     path_roulette: str | None = None
     #: The sampler.
     sampler: Literal["independent", "sobol"] | None = None
@@ -124,6 +125,8 @@ class Integrator:
         Errors: :class:`bidir.SettingsError` where one has a value that is not known.
         """
         _bidir.check_settings(self.flags())
+        if "suited" in self.flags().values():
+            _warn("suited", "auto")
 
     @property
     def name(self) -> str:
@@ -135,6 +138,12 @@ class Integrator:
         own = {field.name: getattr(self, field.name) for field in fields(self)}
         texts = {name.replace("_", "-"): _text(value) for name, value in own.items() if value is not None}
         return {"integrator": self.name, **texts}
+
+
+def _warn(older: str, today: str) -> None:
+    """Warn the caller of a constructor that a name has changed."""
+    message = f"`{older}` is now `{today}`"
+    warnings.warn(message, DeprecationWarning, stacklevel=4)
 
 
 def _text(value: object) -> str:
@@ -183,22 +192,33 @@ class Bdpt(_Bidirectional):
 class Lvc(_Bidirectional):
     """Bidirectional path tracing with light subpaths shared by many samples."""
 
-    #: How many vertices of shared light subpaths are weighed for each camera vertex, 1 to 4096; two
-    #: numbers are for the first vertex of a camera subpath, and for each of those behind it.
-    #: ``"suited"`` is what suits the estimator.
-    candidates: int | tuple[int, int] | Literal["suited"] | None = None
+    #: Light vertices considered per camera vertex, 1 to 4096; of two numbers the first is for the first
+    #: vertex of a camera subpath, the second for later ones.
+    #: ``"auto"`` leaves the numbers to the integrator.
+    candidates: int | tuple[int, int] | Literal["auto", "suited"] | None = None
     #: Light samples of next-event estimation per camera vertex, likewise.
     next_events: int | tuple[int, int] | None = None
     #: How candidates are drawn: uniformly, or as learned in training.
     proposal: Proposal | None = None
-    #: How light subpaths choose their light: by power, or by what the same render found to reach
-    #: what is seen.
-    emission: Emission | None = None
+    #: How light subpaths choose their light: by power, or as learned in training.
+    light_start: LightStart | None = None
     #: Samples per light subpath: a power of two up to 256.
     samples_per_subpath: int | None = None
     #: Sample counts in the MIS weights of shared light subpaths: connections per path, fewer where they
     #: share a rare camera subpath, or traced rays.
     mis_count: MisCount | None = None
+    #: The former name of ``light_start``, which warns.
+    emission: InitVar[LightStart | None] = None
+
+    def __post_init__(self, emission: LightStart | None) -> None:
+        """Check every setting, and take the older name of one of them.
+
+        Errors: :class:`bidir.SettingsError` where one has a value that is not known.
+        """
+        if emission is not None:
+            _warn("emission", "light_start")
+            object.__setattr__(self, "light_start", emission)
+        super().__post_init__()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,7 @@ def test_settings_are_those_of_the_flags() -> None:
         candidates=(8, 2),
         next_events=(3, 1),
         proposal="uniform",
-        emission="power",
+        light_start="power",
         samples_per_subpath=8,
         mis_count="resampled",
         mis="power",
@@ -32,7 +32,7 @@ def test_settings_are_those_of_the_flags() -> None:
         "candidates": "8,2",
         "next-events": "3,1",
         "proposal": "uniform",
-        "emission": "power",
+        "light-start": "power",
         "samples-per-subpath": "8",
         "mis-count": "resampled",
         "mis": "power",
@@ -45,8 +45,17 @@ def test_settings_are_those_of_the_flags() -> None:
     }
 
 
-def test_candidates_may_be_those_that_suit() -> None:
-    assert bidir.Auto(candidates="suited").flags() == {"integrator": "auto", "candidates": "suited"}
+def test_candidates_may_be_left_to_the_estimator() -> None:
+    assert bidir.Auto(candidates="auto").flags() == {"integrator": "auto", "candidates": "auto"}
+
+
+def test_older_names_are_taken_with_a_warning() -> None:
+    with pytest.warns(DeprecationWarning, match="`emission` is now `light_start`"):
+        lvc = bidir.Lvc(emission="power")
+    assert lvc == bidir.Lvc(light_start="power")
+    assert dataclasses.replace(lvc, mis="power").light_start == "power"
+    with pytest.warns(DeprecationWarning, match="`suited` is now `auto`"):
+        bidir.Bdpt(shadow_rays="suited")
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ fn tell_training(display: Display) {
 
 fn resources(args: &RenderArgs) -> Resources {
     Resources {
-        threads: args.budget.threads.count.into(),
+        threads: args.threads.count.into(),
         clock: args.output.stats.is_some().then_some(Instant::now),
         ..Resources::default()
     }

@@ -31,15 +31,15 @@ pub(crate) enum Exit {
 impl Exit {
     /// Every way to end, as the help text lists them.
     const ALL: [(Self, &'static str); 10] = [
-        (Self::Done, "done"),
+        (Self::Done, "success"),
         (Self::RenderFailed, "the render failed"),
         (
             Self::Usage,
-            "the command line is wrong, or its crop is outside the film",
+            "the command line is wrong, or its crop is outside the image",
         ),
         (
             Self::Scene,
-            "the scene or the experiment is wrong, or the scene too large",
+            "the scene or the experiment is wrong, or the scene is too large",
         ),
         (
             Self::InputOutput,
@@ -52,12 +52,12 @@ impl Exit {
         ),
         (
             Self::Validation,
-            "a check failed: `render --strict`, `compare --exact`, `missing`, `reference`; or a reference \
+            "a check failed (`render --strict`, `compare --exact`, `missing`, `reference`), or a reference \
              is refused",
         ),
         (
             Self::Checkpoint,
-            "stopped early by a signal, with a checkpoint or records to go on from",
+            "stopped early by a signal; the same command continues from its checkpoint or records",
         ),
         (
             Self::Interrupted,
@@ -90,6 +90,12 @@ impl Exit {
         let mut all = Self::ALL.into_iter().map(|(exit, _)| exit);
         let found = all.find(|exit| Some(i32::from(exit.code())) == code);
         found.unwrap_or(Self::RenderFailed)
+    }
+
+    /// Every exit code with its meaning.
+    pub(crate) fn codes() -> impl Iterator<Item = (u8, &'static str)> {
+        let all = Self::ALL.into_iter();
+        all.map(|(exit, meaning)| (exit.code(), meaning))
     }
 
     /// The section of the help text.

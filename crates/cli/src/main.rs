@@ -16,6 +16,7 @@ mod film;
 mod film_header;
 mod info;
 mod lock;
+mod markdown;
 mod output;
 mod progress;
 mod pyramid;
@@ -46,6 +47,9 @@ fn main() -> ExitCode {
         }
     };
     let console = Console::new(cli.color);
+    for warning in &cli.renamed {
+        console.warning(warning);
+    }
     let exit = match run(&cli.command, console) {
         Ok(exit) => exit,
         Err(failure) => {

@@ -117,7 +117,7 @@ impl Outputs {
 }
 
 /// True where others render other passes.
-fn is_share(args: &RenderArgs) -> bool {
+pub(crate) fn is_share(args: &RenderArgs) -> bool {
     args.long.passes.is_some() || args.long.part.is_some()
 }
 

@@ -102,9 +102,12 @@ impl<'a> Reporter<'a> {
         self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
-    /// Tells that all is done.
+    /// Writes that all is done, unless the last line had it.
     pub(crate) fn complete(&self) {
-        if let Channel::Lines(format, _) = &self.channel {
+        if let Channel::Lines(format, last) = &self.channel {
+            if last.lock().is_ok_and(|last| last.percent >= 100) {
+                return;
+            }
             let pass = self.passes(self.samples.load(Ordering::Relaxed)) as u64;
             format.write(&State {
                 progress: 1.0,

@@ -7,7 +7,7 @@ use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
-use crate::output::Outputs;
+use crate::output::{self, Outputs};
 use crate::progress::{Clock, Reporter};
 use crate::pyramid;
 use crate::replay;
@@ -15,8 +15,9 @@ use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, S
 use crate::serve::{self, Show};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
-use crate::stats::{Course, Report};
+use crate::stats::{Course, Report, Summary, listed};
 use bidir::driver::{Session, Settings};
+use bidir::integrator::{IntegratorKind, blind_spots};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
@@ -26,12 +27,9 @@ use viewer::{Desk, StageSettings, Status};
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
     // First of all: a signal during loading shall not kill what asks to be told of it.
     let signals = Signals::watch()?;
-    set_threads(args.budget.threads)?;
+    set_threads(args.threads)?;
     // What is wrong without a scene is told before hours may have gone into one.
-    let filter = args
-        .layers
-        .denoise
-        .then(|| Filter::load(args.budget.threads));
+    let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
         Outputs::named(args)?.check(args)?;
@@ -164,7 +162,16 @@ impl Job<'_> {
         show.leave(&session, self.console);
         kept?;
         written?;
-        self.tell(&report, &keeper);
+        let summary = || {
+            let is_denoised = self.filter.is_some();
+            Summary::new(
+                &session,
+                budget,
+                course,
+                [output::is_share(self.args), is_denoised],
+            )
+        };
+        self.tell(&summary, &report, &keeper, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
@@ -278,23 +285,34 @@ impl Job<'_> {
         scene_io::write_text(path, &(json(report)? + "\n"))
     }
 
-    /// Tells what was done.
-    fn tell(&self, report: &Report, keeper: &Keeper) {
+    /// Writes the last lines.
+    fn tell(&self, summary: &dyn Fn() -> Summary, report: &Report, keeper: &Keeper, end: End) {
         let warnings = report.warning().into_iter().chain(report.raw_warning());
         warnings.for_each(|warning| self.console.warning(warning));
         if !self.args.output.talk.quiet {
             let film = keeper.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
-            let files = if names.is_empty() {
-                "nothing".to_owned()
-            } else {
-                names.join(", ")
-            };
-            say(format_args!("{}; wrote {files}", report.summary()));
+            say(format_args!("wrote {}", listed(&names)));
+            summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
                 say(report.strategy_table().trim_end());
             }
+            if matches!(end, End::Signal(_)) && keeper.path().is_some() {
+                say("stopped early; the same command with --resume continues");
+            }
+            if self.may_gain_by_auto() {
+                say("note: rendered with `path`, as the scene asks; try --integrator auto");
+            }
         }
+    }
+
+    /// True where nothing but the scene asks for path tracing, and light paths are there that it misses or
+    /// samples badly.
+    fn may_gain_by_auto(&self) -> bool {
+        let own = self.loaded.settings.integrator;
+        self.args.estimator.integrator.is_none()
+            && own == IntegratorKind::Path
+            && !blind_spots(&self.loaded.scene, own).is_empty()
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
     lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
     lvc.next_events = args.next_events.unwrap_or(lvc.next_events);
     lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
-    lvc.emission = args.emission.unwrap_or(lvc.emission);
+    lvc.emission = args.light_start.unwrap_or(lvc.emission);
     lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
     lvc.mis_count = args.mis_count.unwrap_or(lvc.mis_count);
     let path = &mut settings.path;
@@ -68,7 +68,7 @@ pub(crate) fn unused(
         ("--candidates", estimator.candidates.is_some()),
         ("--next-events", estimator.next_events.is_some()),
         ("--proposal", estimator.proposal.is_some()),
-        ("--emission", estimator.emission.is_some()),
+        ("--light-start", estimator.light_start.is_some()),
         (
             "--samples-per-subpath",
             estimator.samples_per_subpath.is_some(),

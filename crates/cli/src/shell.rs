@@ -1,20 +1,23 @@
 //! Completions and manual pages, made from the same tables as the help text.
 
-use crate::args::{Cli, CompletionsArgs, ManArgs};
+use crate::args::{CompletionsArgs, ManArgs, View, command};
 use crate::console::print;
 use crate::exit::{Exit, Failure};
-use clap::CommandFactory;
+use crate::markdown;
 
 /// Prints a completion script.
 pub(crate) fn completions(args: &CompletionsArgs) -> Result<Exit, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "bidir", &mut script);
+    clap_complete::generate(args.shell, &mut command(View::Long), "bidir", &mut script);
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints the manual page of the whole, or of one command, `film info` among them.
+/// Prints the manual page of the whole, or of one command, `film info` among them; or the reference.
 pub(crate) fn man(args: &ManArgs) -> Result<Exit, Failure> {
-    let mut cli = Cli::command();
+    if args.markdown {
+        return print(&markdown::page());
+    }
+    let mut cli = command(View::Long);
     cli.build();
     let mut command = &cli;
     for name in &args.command {

@@ -1,8 +1,8 @@
-//! What a render counted and measured: as JSON, and as a line to read.
+//! Counts and measurements of a render: as JSON, and as lines to read.
 
 mod parts;
+mod summary;
 
-use crate::args;
 use crate::scene_io::Stopping;
 use crate::settings::{Budget, SettingsText};
 use bidir::driver::Session;
@@ -11,6 +11,8 @@ use lab::sample::TrainingReport;
 use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;
 use std::time::Duration;
+
+pub(crate) use summary::{Summary, listed};
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -107,29 +109,6 @@ impl Report {
         }
     }
 
-    /// A line to read at the end.
-    pub(crate) fn summary(&self) -> String {
-        let ray = |count| per_sample(count, self.samples);
-        let rays = &self.rays.of_image;
-        let training = match self.rays.training {
-            0 => String::new(),
-            rays => format!("; {} rays for training", short(rays as f64)),
-        };
-        let plan = self.training.as_ref().and_then(|t| t.plan.as_ref());
-        let plan = plan.map_or(String::new(), |plan| format!("; auto: {plan}"));
-        format!(
-            "{} spp in {}, {} samples/s; rays per sample: {:.2} camera, {:.2} light, \
-             {:.2} connection, {:.2} light image{training}{plan}",
-            self.spp,
-            args::Duration(Duration::from_secs_f64(self.seconds)),
-            short(self.samples_per_second),
-            ray(rays.camera),
-            ray(rays.light),
-            ray(rays.connection),
-            ray(rays.light_image),
-        )
-    }
-
     /// What each strategy did, as a table to read.
     pub(crate) fn strategy_table(&self) -> String {
         parts::strategy_table(&self.strategies, self.samples)
@@ -160,33 +139,4 @@ impl Report {
 
 fn per_sample(count: u64, samples: u64) -> f64 {
     count as f64 / samples.max(1) as f64
-}
-
-/// Three digits with a letter for thousands, millions or billions.
-fn short(number: f64) -> String {
-    let units = [(1e9, " G"), (1e6, " M"), (1e3, " k")];
-    let (unit, letter) = units
-        .into_iter()
-        .find(|(unit, _)| number >= *unit)
-        .unwrap_or((1.0, ""));
-    let scaled = number / unit;
-    let digits = if scaled < 10.0 {
-        2
-    } else {
-        usize::from(scaled < 100.0)
-    };
-    format!("{scaled:.digits$}{letter}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_written_shortly() {
-        assert_eq!(short(12.34), "12.3");
-        assert_eq!(short(1234.0), "1.23 k");
-        assert_eq!(short(123_456_789.0), "123 M");
-        assert_eq!(short(0.0), "0.00");
-    }
 }

@@ -70,7 +70,7 @@ impl PathRoulette {
 
 /// Why a roulette cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]`, `off` or `suited`")]
+#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]`, `off` or `auto`")]
 pub struct PathRouletteError(String);
 
 impl FromStr for PathRoulette {
@@ -90,7 +90,8 @@ impl FromStr for PathRoulette {
                 start: start.unwrap_or(0),
             }),
             ("off", None) => Ok(Self::Off),
-            ("suited", None) => Ok(Self::Suited),
+            // The older name.
+            ("auto" | "suited", None) => Ok(Self::Suited),
             _ => Err(error()),
         }
     }
@@ -102,7 +103,7 @@ impl fmt::Display for PathRoulette {
             Self::Albedo { start } => write!(f, "albedo:{start}"),
             Self::Throughput { start } => write!(f, "throughput:{start}"),
             Self::Off => write!(f, "off"),
-            Self::Suited => write!(f, "suited"),
+            Self::Suited => write!(f, "auto"),
         }
     }
 }
@@ -113,10 +114,11 @@ mod tests {
 
     #[test]
     fn names_are_read_and_written() {
-        for text in ["albedo:0", "albedo:3", "throughput:2", "off", "suited"] {
+        for text in ["albedo:0", "albedo:3", "throughput:2", "off", "auto"] {
             assert_eq!(text.parse::<PathRoulette>().unwrap().to_string(), text);
         }
         assert_eq!("albedo".parse(), Ok(PathRoulette::Albedo { start: 0 }));
+        assert_eq!("suited".parse(), Ok(PathRoulette::Suited));
         for text in ["", "albedo:", "off:2", "throughput:x"] {
             assert!(text.parse::<PathRoulette>().is_err(), "{text}");
         }

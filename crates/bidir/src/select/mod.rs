@@ -181,7 +181,7 @@ impl ShadowRays {
 impl fmt::Display for ShadowRays {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Suited => write!(f, "suited"),
+            Self::Suited => write!(f, "auto"),
             Self::All => write!(f, "all"),
             Self::PerLightVertex => write!(f, "per-light-vertex"),
             Self::PerCameraVertex => write!(f, "per-camera-vertex"),
@@ -197,7 +197,7 @@ impl fmt::Display for ShadowRays {
 #[error(
     "`{0}` is no choice of shadow rays: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
      `per-pair`, `ray-roulette[:PART]` (a positive part of the image's mean), `budget:K` \
-     (a positive number of rays) or `suited`"
+     (a positive number of rays) or `auto`"
 )]
 pub struct ShadowRaysError(String);
 
@@ -210,7 +210,8 @@ impl FromStr for ShadowRays {
             None => (text, None),
         };
         let rule = match (name, value) {
-            ("suited", None) => Some(Self::Suited),
+            // The older name.
+            ("auto" | "suited", None) => Some(Self::Suited),
             ("all", None) => Some(Self::All),
             ("per-light-vertex", None) => Some(Self::PerLightVertex),
             ("per-camera-vertex", None) => Some(Self::PerCameraVertex),

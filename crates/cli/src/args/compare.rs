@@ -17,34 +17,33 @@ use std::path::PathBuf;
         bidir compare a.exr b.exr --exact"
 )]
 pub(crate) struct CompareArgs {
-    /// Image and reference; with --reference, images alone.
+    /// Image and reference; with --reference, only images.
     #[arg(required = true, value_name = "A", value_hint = ValueHint::FilePath)]
     pub(crate) images: Vec<PathBuf>,
-    /// What all images are compared with: an image, or a folder of `bidir reference`.
+    /// Reference for all images: an image, or a folder written by `bidir reference`.
     ///
-    /// A reference that is damaged, of another version of the estimators, or whose estimators
-    /// disagree is refused.
+    /// A folder is refused if it is damaged, comes from another version of the estimators, or if its two
+    /// estimators disagree.
     #[arg(long, value_name = "B", value_hint = ValueHint::FilePath)]
     pub(crate) reference: Option<PathBuf>,
-    /// Exit with 6 unless every pixel of all has the same bits.
+    /// Exit with code 6 unless all pixels have the same bits.
     #[arg(long, conflicts_with = "resample")]
     pub(crate) exact: bool,
-    /// Where sizes differ, average the image of more pixels down to the size of the other.
+    /// If sizes differ, average the larger image down to the size of the smaller.
     ///
-    /// Each pixel is the mean of what it covers, weighted by area. Without this, different sizes are
-    /// an error.
+    /// Each pixel becomes the area-weighted mean of the pixels that it covers. Without this flag,
+    /// different sizes are an error.
     #[arg(long)]
     pub(crate) resample: bool,
     /// What is computed.
     #[command(flatten)]
     pub(crate) metrics: MetricArgs,
-    /// Print JSON with the names of the numbers as keys, and size and resampled.
+    /// Print JSON with the names of the metrics as keys, and size and resampled.
     ///
-    /// The test of noise is the key `z_test`, with block (the side of the blocks), pixels and blocks,
-    /// each with p, tests (their number), block (left, top, right, bottom), channel, means and
-    /// deviations. Numbers that are not finite are null, as are all numbers where sizes differ. With several
-    /// images a number is an object with mean, low, high and values, and there are the keys images
-    /// and confidence.
+    /// The key `z_test` has block (the side of the blocks), pixels and blocks; the latter two have p,
+    /// tests (their number), block (left, top, right, bottom), channel, means and deviations. Numbers
+    /// that are not finite are null, and so are all numbers if sizes differ. With several images each
+    /// number is an object with mean, low, high and values, and the keys images and confidence are added.
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -52,27 +51,27 @@ pub(crate) struct CompareArgs {
 /// What is computed of an image and its reference, beside the usual numbers.
 #[derive(Args, Debug)]
 pub(crate) struct MetricArgs {
-    /// Print FLIP too, which takes seconds: the difference seen when both images alternate.
+    /// Print FLIP too: the difference seen when both images alternate. Takes seconds.
     ///
-    /// flip: on a screen that shows [0, 1]. `flip_hdr`: the largest difference at any exposure from the
-    /// one for the brightest pixel of the reference to the one for its median. Both for 67 pixels per
-    /// degree; 0 is no difference, 1 the largest.
+    /// flip: on a screen that shows [0, 1]. flip_hdr: the largest difference at any exposure between
+    /// that of the reference's brightest pixel and that of its median. Both assume 67 pixels per degree;
+    /// 0 is no difference, 1 the largest.
     #[arg(long)]
     pub(crate) flip: bool,
-    /// Write the error of every pixel: as it is to FILE.exr, channel Y, or in colours to FILE.png.
+    /// Write the error of every pixel: as channel Y of an .exr, or in colours as a .png.
     ///
-    /// The colours of a PNG go from black, no error, by purple and orange to pale yellow, which is
-    /// --error-max and above; green is no number.
+    /// Colours go from black (no error) through purple and orange to pale yellow (--error-max and
+    /// above); green marks pixels that are not a number.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) error_map: Option<PathBuf>,
-    /// The error that --error-map has.
+    /// Metric of --error-map.
     ///
-    /// A metric of this name is the mean over its map, and rmse the root of the mean square. Trimmed
-    /// metrics have the map of all pixels.
+    /// The metric is the mean of its map; rmse is the root of the mean square. Trimmed metrics have the
+    /// map of all pixels.
     #[arg(long, default_value = "relmse", requires = "error_map")]
     #[arg(value_parser = named(Metric::NAMES))]
     pub(crate) metric: Metric,
-    /// The error that is brightest in the PNG of --error-map.
+    /// Error that is brightest in the .png of --error-map.
     #[arg(
         long,
         value_name = "ERROR",

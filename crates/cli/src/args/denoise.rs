@@ -7,19 +7,20 @@ use std::path::PathBuf;
 /// An image, and where it goes without its noise.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Environment:\n  BIDIR_OIDN  the library of Open Image Denoise 2, or a folder that \
-    has it; by default\n              the one that the system finds\n\n\
-    Examples:\n  bidir denoise room.exr -o room-clean.exr\n  \
+    after_help = "Environment:\n  BIDIR_OIDN  the library of Open Image Denoise 2 or its folder \
+    [default: the system's]\n\nExamples:\n  bidir denoise room.exr -o room-clean.exr\n  \
     BIDIR_OIDN=oidn/lib bidir denoise room.exr -o room-clean.png"
 )]
-#[command(mut_arg("threads", |threads| threads.help(
-    "Threads; 0 leaves that to the library [default: 0]"
-)))]
+#[command(mut_arg("threads", |threads| threads
+    .help("Threads [default: the library's choice]")
+    .long_help("Threads [default: the library's choice]\n\n0 is the default.")))]
 pub(crate) struct DenoiseArgs {
-    /// The image, an EXR; of one that was denoised before, the noisy picture that it still has.
+    /// Image, an EXR.
+    ///
+    /// An image that was denoised before is denoised again from its layer Noisy.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) image: PathBuf,
-    /// The denoised image, NAME.exr with all other layers and attributes of the image, or NAME.png.
+    /// Output image: .exr with all other layers and attributes, or .png.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
     /// How fast it is.

@@ -6,27 +6,27 @@ use std::path::PathBuf;
 /// What to do with film files.
 #[derive(Debug, Subcommand)]
 pub(crate) enum FilmCommand {
-    /// Tell whose film it is, which passes it has, and what was counted.
+    /// Print the scene, settings, passes and ray counts of a film file.
     Info {
-        /// The film file.
+        /// Film file.
         #[arg(value_hint = ValueHint::FilePath)]
         file: PathBuf,
         /// Print JSON.
         #[arg(long)]
         json: bool,
     },
-    /// Make an image of a film file.
+    /// Write the image of a film file.
     Develop {
-        /// The film file.
+        /// Film file.
         #[arg(value_hint = ValueHint::FilePath)]
         file: PathBuf,
-        /// The image, NAME.exr or NAME.png.
+        /// Output image, .exr or .png.
         #[arg(short, long, value_name = "IMAGE", value_hint = ValueHint::FilePath)]
         output: PathBuf,
     },
-    /// Compare all checksums; exits with 4 where a file is damaged.
+    /// Verify all checksums; exit with code 4 if a file is damaged.
     Verify {
-        /// The film files.
+        /// Film files.
         #[arg(required = true, value_hint = ValueHint::FilePath)]
         files: Vec<PathBuf>,
     },
@@ -35,14 +35,16 @@ pub(crate) enum FilmCommand {
 /// The flags of `bidir merge`.
 #[derive(Args, Debug)]
 pub(crate) struct MergeArgs {
-    /// The film files.
+    /// Film files.
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
-    /// The film file of all of them. One that is there is replaced where the result has all of its
-    /// passes, and nothing else is.
+    /// Output film file.
+    ///
+    /// An existing film file is replaced only if the result has all of its passes; any other file is
+    /// left alone.
     #[arg(short, long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
-    /// Make an image of it, too: NAME.exr or NAME.png.
+    /// Also write the image, .exr or .png.
     #[arg(long, value_name = "IMAGE", value_hint = ValueHint::FilePath)]
     pub(crate) image: Option<PathBuf>,
 }
@@ -50,14 +52,14 @@ pub(crate) struct MergeArgs {
 /// The flags of `bidir missing`.
 #[derive(Args, Debug)]
 pub(crate) struct MissingArgs {
-    /// The film files that are there; none are needed.
+    /// Existing film files; there may be none.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) files: Vec<PathBuf>,
-    /// The passes that there should be.
+    /// Number of passes of the whole render.
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: u64,
-    /// The shares that they are rendered in.
+    /// Number of parts that the passes are rendered in.
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) parts: Option<u64>,

@@ -6,44 +6,46 @@ use clap::{Args, ValueHint};
 use lab::pyramid;
 use std::path::PathBuf;
 
-/// Images beside the picture, as layers of the EXR and of film files.
+/// Images beside the main one, as layers of the EXR and of film files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Layers")]
 pub(crate) struct LayerArgs {
-    /// Images to write beside the picture, separated by commas.
+    /// Extra layers: albedo, normal, depth, variance, …, or all.
     ///
-    /// What the first surface is like: albedo (Albedo.R, G, B), position (P.X, Y, Z), normal (N.X, Y,
-    /// Z), shading-normal (Ns.X, Y, Z), in world space, depth along the view (Z), coverage (Coverage).
-    /// How certain the picture is: samples (Samples), variance (Variance.R, G, B of a pixel's mean, and
-    /// RelativeVariance). What it cost: time in seconds (Time), rays (Rays). Images of time differ
-    /// from run to run. Unless given, those of the scene's film: the film `gbuffer` has albedo,
-    /// position, normal, shading-normal and variance.
+    /// First surface: albedo (Albedo.R, G, B), position (P.X, Y, Z), normal (N.X, Y, Z) and
+    /// shading-normal (Ns.X, Y, Z) in world space, depth along the view (Z), coverage (Coverage). Noise:
+    /// samples (Samples), variance (Variance.R, G, B of each pixel's mean, and RelativeVariance). Cost:
+    /// time in seconds (Time), rays (Rays). Layers of time differ from run to run. The default is the
+    /// layers of the scene's film: pbrt's `gbuffer` has albedo, position, normal, shading-normal and
+    /// variance; any other film has none.
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = named(aov_names()))]
     pub(crate) aov: Vec<AovName>,
-    /// Take the noise out of the picture with Open Image Denoise, guided by albedo and shading normals.
+    /// Denoise with Open Image Denoise; keep the noisy image as a layer.
     ///
-    /// The picture as it was rendered is kept as Noisy.R, G, B, and in film files. The library is
-    /// looked for when the program runs: BIDIR_OIDN names it, or a folder that has it.
+    /// Albedo and shading normals guide the filter and become layers too. The noisy image is the layer
+    /// Noisy.R, G, B, and the only one in film files. BIDIR_OIDN names the library or its folder;
+    /// `pip install pyoidn` installs it.
     #[arg(long)]
     pub(crate) denoise: bool,
-    /// Write an image of each group of lights: lightgroup.NAME.R, G, B. They add up to the picture.
+    /// One layer per light group; they add up to the image.
     ///
-    /// Scenes name groups by `Attribute "light" "string lightgroup" "NAME"`. Lights at infinity that
-    /// are in no group are in `environment`, all others in `default`.
+    /// Layers are lightgroup.NAME.R, G, B. pbrt scenes name groups by `Attribute "light" "string
+    /// lightgroup" "NAME"`. Lights in no group belong to `environment` if they are at infinity, and else
+    /// to `default`.
     #[arg(long)]
     pub(crate) light_groups: bool,
-    /// Write an image of what each strategy adds, weighted, to paths of at most N vertices: sStT.R, G,
-    /// B; and one of all longer paths, longer.R, G, B. They add up to the picture.
+    /// One weighted layer per strategy, for paths of up to N vertices; they add up to the image.
+    ///
+    /// Layers are sStT.R, G, B, and longer.R, G, B for all longer paths.
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u16).range(2..=Layers::MOST_STRATEGY_VERTICES as i64))]
     pub(crate) strategy_layers: Option<u16>,
-    /// Show what each strategy (s, t) does, in this folder: pyramid.exr, weighted.png, raw.png.
+    /// Write the strategy pyramid: pyramid.exr, weighted.png and raw.png in this folder.
     ///
-    /// pyramid.exr has the layers of --strategy-layers (6 where it is not given), and raw.sStT.R, G,
-    /// B: the same without the strategy's weight, which is what it would show alone, however noisy.
-    /// The others are contact sheets with a row for each length of paths. Rays, blocked rays, mean and
-    /// variance of each strategy are told at the end, and are in --stats. Paths of 6 vertices take 6.4
-    /// KB of memory for each pixel.
+    /// pyramid.exr has the layers of --strategy-layers (6 by default) and raw.sStT.R, G, B, the same
+    /// without weights: the estimate of each strategy alone. The PNGs are contact sheets with a row per
+    /// path length. The render prints the rays, blocked rays, mean and variance of each strategy at the
+    /// end; --stats has them too. Needs 6.4 KB of memory per pixel at 6 vertices.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) pyramid: Option<PathBuf>,
 }

@@ -9,16 +9,16 @@ use std::str::FromStr;
 
 /// How a render survives, and how it is shared.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Long renders")]
+#[command(next_help_heading = "Checkpoints and parts")]
 pub(crate) struct LongArgs {
-    /// Keep the exact sums in this film file, now and then and at the end.
+    /// Save progress to this film file.
     ///
-    /// It can be gone on from with --resume, merged with `bidir merge`, and developed with
-    /// `bidir film develop`. The one before is kept as FILE.previous. SIGUSR1 writes image and film
-    /// file after the running pass.
+    /// The file has the exact sums of all pixels. --resume continues from it, `bidir merge` adds it to
+    /// others, and `bidir film develop` makes an image of it. The previous file stays as FILE.previous.
+    /// SIGUSR1 saves film file and image after the current pass.
     #[arg(long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) checkpoint: Option<PathBuf>,
-    /// The time between film files.
+    /// Time between checkpoints.
     #[arg(
         long,
         value_name = "DURATION",
@@ -26,28 +26,28 @@ pub(crate) struct LongArgs {
         requires = "checkpoint"
     )]
     pub(crate) checkpoint_every: Duration,
-    /// Go on from the film file where there is one: the result has the bits of a render without a
-    /// break.
+    /// Continue from the checkpoint if it exists.
     ///
-    /// --spp counts all passes, --time what this run adds. A film of another scene, of other settings
-    /// or of passes that are not asked for is refused.
+    /// The image has the bits of an uninterrupted render. --spp counts all passes, --time only this run.
+    /// A film file of another scene, of other settings, or with passes outside the requested ones is
+    /// refused.
     #[arg(long, requires = "checkpoint", conflicts_with = "restart")]
     pub(crate) resume: bool,
-    /// Begin anew where there is a film file, and replace it.
+    /// Start over, and replace the checkpoint if it exists.
     #[arg(long, requires = "checkpoint")]
     pub(crate) restart: bool,
-    /// Render only these passes, from A up to but not including B, counted from 0.
+    /// Render passes A to B - 1 only, counted from 0.
     ///
-    /// They are all that is rendered: --spp and BIDIR_SPP have no influence, and a warning says so.
-    /// Ranges that begin and end at multiples of powers of two are the best stratified ones. The
-    /// image of a share is written only where --output names it; a share of which nothing would be
-    /// written is refused.
+    /// --spp and BIDIR_SPP then have no effect, and a warning says so. Ranges that begin and end at
+    /// multiples of powers of two are stratified best. A part of a render writes an image only if
+    /// --output names one. `bidir merge` adds parts.
     #[arg(long, value_name = "A..B", conflicts_with = "part")]
     pub(crate) passes: Option<PassRange>,
-    /// Render share I of N of the passes, I counted from 0: `3/16`.
+    /// Render part I of N of the passes, I from 0, such as 3/16.
     ///
-    /// `env/16` takes I from the first of HQ_TASK_ID, JOB_COMPLETION_INDEX and SLURM_ARRAY_TASK_ID
-    /// (less SLURM_ARRAY_TASK_MIN) that is set.
+    /// env/N takes I from HyperQueue, Kubernetes or Slurm: the first of HQ_TASK_ID,
+    /// JOB_COMPLETION_INDEX and SLURM_ARRAY_TASK_ID (minus SLURM_ARRAY_TASK_MIN) that is set.
+    /// `bidir merge` adds parts.
     #[arg(long, value_name = "I/N")]
     pub(crate) part: Option<Part>,
 }

@@ -11,58 +11,61 @@ use std::str::FromStr;
 #[command(after_long_help = "\
 Examples:
   bidir reference scenes/cornell.pbrt --spp 4096
-      512x512 pixels by bdpt and by path tracing, into cornell.reference
+      512x512 pixels by bdpt, cross-checked by path, into cornell.reference
   bidir reference scenes/cornell.pbrt --extend 4096
-      as many samples more
+      4096 more samples per pixel
   bidir compare cornell.exr --reference cornell.reference
-      how far an image is from it
+      the error of an image
   bidir reference room.pbrt --spp 1024 -o room-inner.reference \\
     --estimator 'bdpt --strategies all,-s0,-t1 --light-point shared' \\
     --against 'bdpt --strategies s1,-t1'
-      for estimators that leave some light out")]
+      for estimators without some of the strategies")]
 pub(crate) struct ReferenceArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
-    /// The folder of the reference [default: NAME.reference, in the current folder].
+    /// Folder of the reference [default: NAME.reference, in the current folder].
     ///
-    /// What is there already is gone on from, where it is of the same scene and settings.
+    /// The command continues an existing reference of the same scene and settings.
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     #[arg(help_heading = "Output")]
     pub(crate) output: Option<PathBuf>,
-    /// What is told meanwhile.
+    /// Messages and progress.
     #[command(flatten)]
     pub(crate) talk: TalkArgs,
-    /// Samples per pixel of each estimator, those included that are there already; rounded up to a
-    /// multiple of 16 [default: the scene's].
-    #[arg(long, value_name = "N", help_heading = "Resources")]
+    /// Samples per pixel of each estimator, in multiples of 16 [default: the scene's].
+    ///
+    /// Includes the samples that the reference has already.
+    #[arg(long, value_name = "N", help_heading = "Samples")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
     pub(crate) spp: Option<u64>,
-    /// Add samples to the reference that is there, with the settings that it has.
-    #[arg(long, value_name = "N", help_heading = "Resources")]
+    /// Add N samples per pixel to an existing reference, with its settings.
+    #[arg(long, value_name = "N", help_heading = "Samples")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..=MOST_SAMPLES))]
     #[arg(conflicts_with_all = ["spp", "estimator", "against", "restart", "size", "crops"])]
     pub(crate) extend: Option<u64>,
-    /// Begin anew where there is a reference, and replace it.
-    #[arg(long, help_heading = "Resources")]
+    /// Start over, and replace an existing reference.
+    #[arg(long, help_heading = "Samples")]
     pub(crate) restart: bool,
-    /// How fast it is.
-    #[command(flatten, next_help_heading = "Resources")]
-    pub(crate) threads: ThreadsArgs,
-    /// The estimator that makes the picture [default: bdpt].
+    /// Estimator of the image [default: bdpt].
     ///
-    /// An integrator, and flags of `bidir render` from its section Estimator, in quotes. What is not
-    /// said is as usual, with independent random numbers, and the longest paths and the seed of the
-    /// scene; the scene's integrator and sampler have no influence, nor has the environment.
+    /// In quotes, an integrator and flags of `bidir render` under Integrator, Shadow rays and Shared
+    /// light subpaths. Defaults are those of `bidir render`, with the independent sampler and with the
+    /// scene's maximum depth and seed; the scene's integrator and sampler and the environment have no
+    /// effect.
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
     pub(crate) estimator: Option<EstimatorFlags>,
-    /// The estimator that it has to agree with, likewise, and not the same but for the seed [default:
-    /// path].
+    /// Estimator of the cross-check [default: path].
+    ///
+    /// Written in the same way; it must differ from the first in more than the seed.
     #[arg(long, value_name = "FLAGS", help_heading = "Estimators")]
     pub(crate) against: Option<EstimatorFlags>,
-    /// The picture's geometry.
+    /// The image's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// How fast it is.
+    #[command(flatten, next_help_heading = "Scene and machine")]
+    pub(crate) threads: ThreadsArgs,
 }
 
 /// More would take longer than anybody waits.

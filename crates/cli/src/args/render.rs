@@ -19,51 +19,37 @@ use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use viewer::tev::TevAddress;
 
-/// What is rendered, how, for how long, and where it goes.
+/// What is rendered, how, for how long, and where it goes. Headings of `--help` come in the order of
+/// their first fields.
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  bidir render room.pbrt --integrator auto --time 10m -o room.exr
+  bidir render room.glb --spp 64 --denoise
+  bidir render room.pbrt --spp 65536 --checkpoint room.film --resume")]
 #[command(after_long_help = "\
 Examples:
-  bidir render scenes/cornell.pbrt
-      512x512 pixels with 64 samples each, into cornell.exr and cornell.png
-  bidir render room.pbrt -o out/room.exr --time 10m --stats out/room.json
-      as many passes as fit into ten minutes
-  bidir render room.pbrt --shadow-rays per-pair --spp 256
-      one connection ray for each pair of subpaths
+  bidir render room.pbrt --integrator auto --time 10m -o room.exr
+      as many passes as fit into ten minutes, into room.exr and room.png
+  bidir render room.glb --spp 64 --denoise
+      a scene exported from Blender; glTF files are rendered with auto
   bidir render room.pbrt --spp 65536 --checkpoint room.film --resume
-      survives the night: the same command goes on where it was stopped
+      repeat the command to continue an interrupted render
+  bidir render room.pbrt --shadow-rays per-pair --stats room.json
+      one connection ray per pair of subpaths; the JSON has the ray counts
   bidir render room.pbrt --strategies all,-s0
-      without the light that camera subpaths hit by chance
-  bidir render room.pbrt --replay 17,4,3
-      what sample 3 of the pixel in column 17 of row 4 did
+      without light that camera subpaths hit by chance
   bidir render room.pbrt --replay 17,4,3 --svg sample.svg
-      the same as a picture, too")]
+      sample 3 of the pixel in column 17, row 4: its terms as text, its paths as a drawing")]
 pub(crate) struct RenderArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
     /// Where results go.
     #[command(flatten)]
     pub(crate) output: OutputArgs,
-    /// What is written beside the picture.
-    #[command(flatten)]
-    pub(crate) layers: LayerArgs,
-    /// How light is estimated.
-    #[command(flatten)]
-    pub(crate) estimator: EstimatorArgs,
-    /// When it is enough.
-    #[command(flatten)]
-    pub(crate) budget: BudgetArgs,
-    /// How it survives and is shared.
-    #[command(flatten)]
-    pub(crate) long: LongArgs,
-    /// The picture's geometry.
-    #[command(flatten)]
-    pub(crate) film: FilmArgs,
-    /// Show the render in the browser as it goes, and print the URL on stdout: the page of
-    /// `bidir view`, to look at only.
+    /// Show progress in the browser, read only.
     ///
-    /// Without an address it can be reached from this machine alone; on others the URL has a random
-    /// token, without which nothing is answered. The server ends with the render.
+    /// Prints the URL on stdout. Without ADDRESS the page can be reached from this machine only;
+    /// otherwise the URL carries a random token. The server ends with the render. `bidir view` can
+    /// also change the render.
     #[arg(
         long,
         value_name = "[ADDRESS:]PORT",
@@ -71,10 +57,10 @@ pub(crate) struct RenderArgs {
         help_heading = "Output"
     )]
     pub(crate) serve: Option<ServeAddress>,
-    /// Show the render as it goes in the image viewer tev, which listens there [default port: 14158].
+    /// Show progress in the image viewer tev [default port: 14158].
     ///
-    /// The image is called as the scene. The render never waits for tev, which may be started later,
-    /// but for at most two seconds at the end, so that the last image arrives.
+    /// The render never waits for tev, which may be started later, except for at most two seconds at
+    /// the end.
     #[arg(
         long,
         value_name = "HOST[:PORT]",
@@ -82,19 +68,40 @@ pub(crate) struct RenderArgs {
         help_heading = "Output"
     )]
     pub(crate) display_server: Option<TevAddress>,
-    /// Repeat one sample instead of rendering, and tell on stdout what it did.
+    /// The image's geometry.
+    #[command(flatten)]
+    pub(crate) film: FilmArgs,
+    /// When it is enough.
+    #[command(flatten)]
+    pub(crate) budget: BudgetArgs,
+    /// How light is estimated.
+    #[command(flatten)]
+    pub(crate) estimator: EstimatorArgs,
+    /// Images beside the main one.
+    #[command(flatten)]
+    pub(crate) layers: LayerArgs,
+    /// How it survives and is shared.
+    #[command(flatten)]
+    pub(crate) long: LongArgs,
+    /// The scene.
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// How fast it is.
+    #[command(flatten, next_help_heading = "Scene and machine")]
+    pub(crate) threads: ThreadsArgs,
+    /// Repeat one sample and print every term, instead of rendering.
     ///
-    /// Prints the vertices of both subpaths, the candidate connections with their strategies,
-    /// values, scores and probabilities, which of them were chosen, which are visible, and what was
-    /// added to the film. Pixels count from the top left of the whole film, passes from 0; with the
-    /// flags of the render that is asked about.
+    /// Prints the vertices of both subpaths; every connection with its strategy, value, score,
+    /// probability, weight and visibility; and the values added to the film. X and Y count from the
+    /// top left of the whole film, PASS from 0. Repeat the flags of the render.
     #[arg(long, value_name = "X,Y,PASS", help_heading = "Debugging")]
     pub(crate) replay: Option<ReplayTarget>,
     /// Print the replayed sample as JSON.
     #[arg(long, requires = "replay", help_heading = "Debugging")]
     pub(crate) json: bool,
-    /// Draw the replayed sample, too: from above and from the side, with both subpaths, the candidates,
-    /// the shadow rays that were traced, and which of them were blocked.
+    /// Also draw the replayed sample in plan and elevation.
+    ///
+    /// Shows both subpaths, the candidates, the traced shadow rays, and the blocked ones among them.
     #[arg(
         long,
         value_name = "FILE.svg",
@@ -109,190 +116,199 @@ pub(crate) struct RenderArgs {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
-    /// The image. NAME.exr is written with NAME.png beside it; NAME.png alone.
+    /// Output image: .exr with a .png beside it, or .png [default: the scene's name].
     ///
-    /// By default the name that the scene gives its film, with the ending .exr, in the current
-    /// folder.
-    #[arg(short, long, visible_alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    /// The default is the file name that the scene gives its film, or else the name of the scene file,
+    /// with the ending .exr, in the current folder. pbrt's spelling --outfile is accepted.
+    #[arg(short, long, alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
-    /// Write what was counted and measured, with all settings, as JSON.
+    /// Write settings, ray counts and timings as JSON.
     ///
-    /// `stages` in it is where the time of a sample goes, measured in one of 61: walk, hits (s=0),
-    /// light_image (t=1 with its shadow rays), candidates (s>=1, t>=2), select, shadow, direct (all
-    /// of path tracing but the walk), film. Times are of one thread, and differ from run to run.
+    /// `stages` has the share of each stage in the time of a sample, measured on one sample in 61:
+    /// walk, hits (s=0), light_image (t=1 with its shadow rays), candidates (s>=1, t>=2), select,
+    /// shadow, direct (path tracing without the walk), film. Timings are those of one thread and
+    /// differ from run to run.
     #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
     pub(crate) stats: Option<PathBuf>,
-    /// What is told meanwhile.
+    /// Messages and progress.
     #[command(flatten)]
     pub(crate) talk: TalkArgs,
 }
 
-/// What is told meanwhile.
+/// Messages and progress.
 #[derive(Args, Clone, Copy, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct TalkArgs {
-    /// Tell nothing but warnings and errors, and the progress that --progress asks for.
+    /// Print only warnings and errors.
+    ///
+    /// Progress that --progress requests is still printed.
     #[arg(short, long)]
     pub(crate) quiet: bool,
-    /// How progress is told [default: bar on a terminal, plain elsewhere].
+    /// Progress format [default: bar on a terminal, plain elsewhere].
     ///
-    /// bar: a bar that is drawn over. plain: a line now and then. ndjson: such lines as objects of
-    /// JSON, with the keys progress (0 to 1), pass, passes, seconds and left (seconds). openjd: lines
-    /// of Open Job Description on stdout, openjd_progress, openjd_status and openjd_fail.
-    #[arg(long, value_parser = named(Display::NAMES))]
+    /// bar: a progress bar. plain: a line now and then. ndjson: lines of JSON with the keys progress
+    /// (0 to 1), pass, passes, seconds and left (seconds). openjd: lines of Open Job Description on
+    /// stdout (openjd_progress, openjd_status, openjd_fail). All others go to stderr.
+    #[arg(long, value_name = "FORMAT", value_parser = named(Display::NAMES))]
     pub(crate) progress: Option<Display>,
 }
 
 /// How light is estimated.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Estimator")]
+#[command(next_help_heading = "Integrator")]
 pub(crate) struct EstimatorArgs {
-    /// The estimator: path tracing, light tracing, or both ends joined [default: the scene's].
+    /// path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
     ///
-    /// path walks from the camera, light from the lights. bdpt joins the two subpaths of a sample; lvc
-    /// joins camera subpaths with light subpaths of many samples; auto tries path, bdpt and lvc with
-    /// a few samples, and takes what suits the scene; what is named for lvc, but
-    /// --samples-per-subpath, holds there, too.
-    #[arg(long, env = "BIDIR_INTEGRATOR", value_parser = named(IntegratorKind::NAMES))]
+    /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
+    /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
+    /// few samples and takes the one with the least variance × time. A glTF file names no integrator
+    /// and is rendered with auto.
+    #[arg(long, env = "BIDIR_INTEGRATOR", value_name = "NAME")]
+    #[arg(value_parser = named(IntegratorKind::NAMES))]
     pub(crate) integrator: Option<IntegratorKind>,
-    /// Which connections between subpaths are traced (bdpt, lvc) [default: what suits the integrator].
-    ///
-    /// By default all for bdpt, budget:6 for lvc and suited for auto.
-    /// all: every one. per-light-vertex, per-camera-vertex, per-pair: one for each light vertex, for
-    /// each camera vertex, for each pair of subpaths, drawn by unshadowed contribution.
-    /// ray-roulette[:PART]: each by chance, where it adds less than PART of the image's mean (0.1).
-    /// budget:K: at most K for each sample. suited: what suits the integrator.
-    #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
-    pub(crate) shadow_rays: Option<ShadowRays>,
-    /// How many vertices of shared light subpaths are weighed for the first vertex of a camera subpath and
-    /// for each of those behind it (lvc), up to 4096 [default: what suits the integrator].
-    ///
-    /// By default 12,1 for lvc and suited for auto, which then tries more of them, too, with more shadow
-    /// rays. One number is for all vertices; suited is what suits the integrator.
-    #[arg(long, value_name = "M[,N]")]
-    pub(crate) candidates: Option<Candidates>,
-    /// How many light points next-event estimation draws for the first vertex of a camera subpath, and for
-    /// each of those behind it, up to 4096 (lvc) [default: 2,1].
-    ///
-    /// One number is for all vertices.
-    #[arg(long, value_name = "M[,N]")]
-    pub(crate) next_events: Option<CandidateCount>,
-    /// How vertices of shared light subpaths are chosen (lvc) [default: learned].
-    ///
-    /// learned: by what connections between places contributed in a short render before the first
-    /// pass. uniform: each is as likely as others.
-    #[arg(long, value_parser = named(ProposalKind::NAMES))]
-    pub(crate) proposal: Option<ProposalKind>,
-    /// How shared light subpaths choose the light that they begin on (lvc) [default: learned].
-    ///
-    /// learned: by what the same short render found to reach what is seen. power: by power alone.
-    #[arg(long, value_parser = named(EmissionKind::NAMES))]
-    pub(crate) emission: Option<EmissionKind>,
-    /// How many samples bring one light subpath to those that are shared (lvc): a power of two, up to
-    /// 256 [default: 2]. auto tries 1, 2 and 4.
-    #[arg(long, value_name = "K")]
-    pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
-    /// What weights take for the number of samples of a strategy whose light subpaths are shared (lvc)
-    /// [default: expected].
-    ///
-    /// expected: how often it makes the path. correlated: less, where connections have a camera
-    /// subpath in common that the camera rarely finds. resampled: how often it traces the path's shadow
-    /// ray, where not all are traced.
-    #[arg(long, value_name = "KIND", value_parser = named(MisCount::NAMES))]
-    pub(crate) mis_count: Option<MisCount>,
-    /// How strategies that make the same path share it [default: balance].
-    ///
-    /// balance: by how often each makes it. power: by the squares of that. uniform: all alike.
-    #[arg(long, env = "BIDIR_MIS", value_parser = named(MisHeuristic::NAMES))]
-    pub(crate) mis: Option<MisHeuristic>,
-    /// The strategies that take part (bdpt, lvc) [default: all].
-    ///
-    /// A list of rules, of which the last that matches decides: `all`, `-s0` (without s = 0), `-t1`,
-    /// `s2t3` (with this one). s counts vertices from the light, t from the camera. A list that begins
-    /// with a removal begins with all, another with none.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub(crate) strategies: Option<Strategies>,
-    /// Where next-event estimation takes its light point from (bdpt, lvc) [default: fresh].
-    ///
-    /// fresh: each camera vertex draws its own. shared: all use the start of the light subpath.
-    #[arg(long, value_parser = named(LightPointChoice::NAMES))]
-    pub(crate) light_point: Option<LightPointChoice>,
-    /// How next-event estimation chooses the light (path, bdpt, lvc) [default: tree].
-    ///
-    /// tree: by what arrives from it at the point, as a hierarchy of the lights estimates. power: by
-    /// power alone, as light subpaths of light and bdpt do.
-    #[arg(long, value_parser = named(LightChoiceKind::NAMES))]
-    pub(crate) light_choice: Option<LightChoiceKind>,
-    /// How subpaths end by chance [default: the integrator's].
-    ///
-    /// By default albedo:1 for path, albedo:2 for light, albedo:0 for bdpt, albedo:0 for lvc and suited
-    /// for auto. albedo[:START]: with the albedo they meet. throughput[:START]: with their throughput.
-    /// Both from bounce START on. off: only by --max-depth or escape. suited: what suits the integrator.
-    #[arg(long, value_name = "RULE")]
-    pub(crate) path_roulette: Option<PathRoulette>,
-    /// The most bounces of a path; 0 is no limit [default: the scene's].
+    /// Maximum number of bounces; 0 is unlimited [default: the scene's].
     #[arg(long, value_name = "N")]
     pub(crate) max_depth: Option<u32>,
-    /// The random numbers [default: the scene's].
+    /// MIS heuristic: balance, power or uniform [default: balance].
     ///
-    /// sobol: points that are spread evenly over the samples of a pixel, in random order. independent:
-    /// numbers that know nothing of each other.
-    #[arg(long, env = "BIDIR_SAMPLER", value_parser = named(SamplerKind::NAMES))]
+    /// Strategies that make the same path are weighted by their densities, by the squares of these, or
+    /// equally.
+    #[arg(long, env = "BIDIR_MIS", value_name = "HEURISTIC")]
+    #[arg(value_parser = named(MisHeuristic::NAMES))]
+    pub(crate) mis: Option<MisHeuristic>,
+    /// Strategies (s, t) in use, such as all,-s0 or s2t3 (bdpt, lvc, auto) [default: all].
+    ///
+    /// s counts vertices from the light, t from the camera. The list has rules such as all, -s0
+    /// (without s = 0), -t1 and s2t3; the last rule that matches a strategy wins. A list that begins
+    /// with a removal begins with all strategies, any other with none.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub(crate) strategies: Option<Strategies>,
+    /// Russian roulette of subpaths: albedo[:START], throughput[:START], off, auto [default: the
+    /// integrator's].
+    ///
+    /// albedo, throughput: subpaths survive with the albedo that they meet, or with their throughput.
+    /// START is the first bounce that it applies to (0). off: subpaths end by --max-depth or by leaving
+    /// the scene. auto: the integrator's default. Defaults: albedo:1 for path, albedo:2 for light,
+    /// albedo:0 for bdpt, albedo:0 for lvc, auto for auto.
+    #[arg(long, value_name = "RULE")]
+    pub(crate) path_roulette: Option<PathRoulette>,
+    /// How next-event estimation picks a light: tree or power (path, bdpt, lvc, auto) [default: tree].
+    ///
+    /// tree: a hierarchy of the lights estimates the light that arrives from each. power: by power
+    /// alone.
+    #[arg(long, value_name = "RULE", value_parser = named(LightChoiceKind::NAMES))]
+    pub(crate) light_choice: Option<LightChoiceKind>,
+    /// Light point of next-event estimation (bdpt, lvc, auto) [default: fresh].
+    ///
+    /// fresh: one per camera vertex. shared: the start of the light subpath.
+    #[arg(long, value_name = "RULE", value_parser = named(LightPointChoice::NAMES))]
+    pub(crate) light_point: Option<LightPointChoice>,
+    /// Sampler: sobol or independent [default: the scene's].
+    ///
+    /// sobol: Owen-scrambled Sobol' points, stratified over the samples of a pixel. independent:
+    /// independent uniform numbers.
+    #[arg(long, env = "BIDIR_SAMPLER", value_name = "NAME")]
+    #[arg(value_parser = named(SamplerKind::NAMES))]
     pub(crate) sampler: Option<SamplerKind>,
-    /// Other seeds give unrelated noise [default: the scene's, or 0].
+    /// Random seed [default: the scene's, or 0].
+    ///
+    /// Images of different seeds have independent noise.
     #[arg(long, env = "BIDIR_SEED", value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// What the values above come from.
+    /// Which connections are traced (bdpt, lvc, auto) [default: the integrator's].
+    ///
+    /// all: all that can carry light. per-light-vertex, per-camera-vertex, per-pair: one for each light
+    /// vertex, camera vertex or pair of subpaths, drawn by unoccluded contribution (optimisations 1, 2
+    /// and 3 of Lafortune and Willems, 1995). ray-roulette[:T]: Russian roulette below the fraction T
+    /// (0.1) of the image's mean. budget:K: at most K per sample, the largest for certain. auto: the
+    /// integrator's default. No rule is biased. Defaults: all for bdpt, budget:6 for lvc, auto for auto.
+    #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
+    #[arg(help_heading = "Shadow rays")]
+    pub(crate) shadow_rays: Option<ShadowRays>,
+    /// Light vertices considered per camera vertex: M at the first, N at later ones (lvc, auto)
+    /// [default: the integrator's].
+    ///
+    /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
+    /// 12,1 for lvc, auto for auto, which tries several numbers together with budgets of shadow rays.
+    #[arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")]
+    pub(crate) candidates: Option<Candidates>,
+    /// Light samples per camera vertex: M at the first, N at later ones (lvc, auto) [default: 2,1].
+    ///
+    /// Each from 1 to 4096; one number is for all vertices.
+    #[arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")]
+    pub(crate) next_events: Option<CandidateCount>,
+    /// How candidates are drawn: learned in training, or uniform (lvc, auto) [default: learned].
+    ///
+    /// Training is a short render before the first pass.
+    #[arg(long, value_name = "RULE", value_parser = named(ProposalKind::NAMES))]
+    #[arg(help_heading = "Shared light subpaths")]
+    pub(crate) proposal: Option<ProposalKind>,
+    /// How light subpaths pick their light: learned, or by power (lvc, auto) [default: learned].
+    ///
+    /// learned: by the light of each that reached visible surfaces in training.
+    #[arg(long, alias = "emission", value_name = "RULE")]
+    #[arg(value_parser = named(EmissionKind::NAMES), help_heading = "Shared light subpaths")]
+    pub(crate) light_start: Option<EmissionKind>,
+    /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
+    ///
+    /// auto tries 1, 2 and 4.
+    #[arg(long, value_name = "K", help_heading = "Shared light subpaths")]
+    pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
+    /// Sample counts in the MIS weights of shared light subpaths (lvc, auto) [default: expected].
+    ///
+    /// expected: connections per path. correlated: fewer where connections share a camera subpath that
+    /// the camera rarely samples. resampled: traced shadow rays.
+    #[arg(long, value_name = "RULE", value_parser = named(MisCount::NAMES))]
+    #[arg(help_heading = "Shared light subpaths")]
+    pub(crate) mis_count: Option<MisCount>,
+    /// The environment variables among the sources of these values.
     #[arg(skip)]
     pub(crate) sources: Sources,
 }
 
-/// When it is enough: what is reached first ends the render.
+/// When it is enough: the limit that is reached first ends the render.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Resources")]
+#[command(next_help_heading = "Stopping")]
 pub(crate) struct BudgetArgs {
-    /// Samples per pixel, which is the number of passes [default: the scene's].
+    /// Samples per pixel [default: the scene's].
     ///
-    /// With --time or --noise and no --spp there is no limit.
+    /// With --time or --noise the default is unlimited; the limit that is reached first ends the render.
+    /// A pass takes one sample of every pixel.
     #[arg(long, env = "BIDIR_SPP", value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: Option<u64>,
-    /// The time for rendering: 90, 90s, 10m, 1h30m.
+    /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///
-    /// Reading the scene and writing the image do not count; writing film files does. A pass that would
-    /// overrun is not begun, but the first one of a run always is.
+    /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
+    /// not finish in time is not started, but every run renders at least one.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
-    /// The relative error to reach: the root mean square of the pixels' standard errors, divided by
-    /// the mean of the image, both of luminance.
+    /// Stop at this relative error, such as 0.05.
     ///
-    /// Looked at from 16 passes on, after every eighth more. A picture that decides itself when it is
-    /// done is slightly biased: the file says so.
+    /// The error is the root mean square of the pixels' standard errors over the mean of the image, both
+    /// in luminance. It is checked after 16 passes and after every eighth more. Stopping by it biases
+    /// the image slightly, which the file records.
     #[arg(long, value_name = "ERROR", value_parser = values::positive_number)]
     pub(crate) noise: Option<f64>,
-    /// How fast it is.
-    #[command(flatten)]
-    pub(crate) threads: ThreadsArgs,
 }
 
-/// The picture's geometry.
+/// The image's geometry.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Film")]
+#[command(next_help_heading = "Image")]
 pub(crate) struct FilmArgs {
-    /// Width and height of the whole film in pixels.
+    /// Image size in pixels [default: the scene's].
     ///
-    /// The view stays that of the scene: a size of another shape has pixels that are not square, and a
-    /// warning says so.
+    /// The view stays; another aspect ratio makes pixels that are not square, with a warning.
     #[arg(long, value_name = "WxH")]
     pub(crate) size: Option<Size>,
-    /// Render only these pixels, from x0,y0 up to but not including x1,y1.
+    /// Render only this rectangle of pixels; X1 and Y1 are exclusive [default: the scene's].
     #[arg(long, value_name = "X0,Y0,X1,Y1", group = "crops")]
     pub(crate) crop: Option<PixelBounds>,
-    /// The same in the order of pbrt.
+    /// The same in pbrt's order.
     #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
     #[arg(value_parser = PixelBounds::from_pbrt)]
     pub(crate) pixelbounds: Option<PixelBounds>,
-    /// The same as fractions of the film, in the order of pbrt.
+    /// The same in pbrt's order, as fractions of the image.
     #[arg(long, value_name = "X0,X1,Y0,Y1", group = "crops")]
     pub(crate) cropwindow: Option<CropFractions>,
 }
@@ -330,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn the_help_tells_the_true_defaults() {
+    fn the_help_has_the_true_defaults() {
         let settings = Settings::default();
         let path = &settings.path;
         check_default("next-events", settings.lvc.next_events);
@@ -340,7 +356,7 @@ mod tests {
             name_of(&ProposalKind::NAMES, settings.lvc.proposal),
         );
         check_default(
-            "emission",
+            "light-start",
             name_of(&EmissionKind::NAMES, settings.lvc.emission),
         );
         check_default(

@@ -6,11 +6,13 @@ use clap::Args;
 /// themselves.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct ThreadsArgs {
-    /// Threads; 0 is one for each processor [default: 0].
+    /// Threads [default: one per processor].
+    ///
+    /// 0 is the default. The number never changes the image. pbrt's spelling --nthreads is accepted.
     #[arg(
         id = "threads",
         long = "threads",
-        visible_alias = "nthreads",
+        alias = "nthreads",
         env = "BIDIR_THREADS",
         value_name = "N"
     )]

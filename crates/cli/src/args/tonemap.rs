@@ -12,22 +12,21 @@ use std::path::PathBuf;
     bidir tonemap room.exr -o room.png --operator agx"
 )]
 pub(crate) struct TonemapArgs {
-    /// The image: exr, hdr, pfm, or another one that is read.
+    /// Image: .exr, .hdr, .pfm, .png, .jpg or .tga.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) image: PathBuf,
-    /// The picture, in eight bits of sRGB.
+    /// Output image, 8-bit sRGB.
     #[arg(short, long, value_name = "OUT.png", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
-    /// Stops that the image is made brighter by: each doubles the light, a negative one halves it.
+    /// Exposure in stops: 1 doubles the light, -1 halves it.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops)]
     #[arg(allow_negative_numbers = true)]
     pub(crate) exposure: f32,
-    /// How light of any strength fits on the screen.
+    /// Tone mapping operator: srgb, agx or neutral.
     ///
-    /// srgb: what is brighter than the screen is clipped, the rest is exact, as in the PNG of
-    /// `bidir render`. agx: the base look of AgX, a curve like that of film, where bright colours
-    /// fade to white. neutral: the PBR Neutral tone mapper of Khronos, which keeps colours up to
-    /// 0.8 and compresses highlights alone.
+    /// srgb: clips values above 1 and keeps all others, as the PNG of `bidir render`. agx: the base
+    /// look of AgX, a film-like curve; bright colours fade to white. neutral: Khronos PBR Neutral;
+    /// keeps colours up to 0.8 and compresses highlights only.
     #[arg(long, default_value = "srgb", value_parser = named(Operator::NAMES))]
     pub(crate) operator: Operator,
 }

@@ -12,21 +12,18 @@ use std::str::FromStr;
 Examples:
   bidir view scenes/room-indirect.pbrt
       prints a URL to open; Ctrl-C ends
-  bidir view room.glb --size 640x360 --integrator auto
-      a smaller picture is clear sooner
+  bidir view room.glb --size 640x360
+      a smaller image is clear sooner
   bidir view room.pbrt --bind 0.0.0.0 --port 9000
-      for other machines, too, which need the token of the URL")]
+      for other machines too, which need the token in the URL")]
 pub(crate) struct ViewArgs {
-    /// The scene.
-    #[command(flatten)]
-    pub(crate) scene: SceneArgs,
-    /// The port; 0 is any that is free [default: 8080, or one of the next ten].
+    /// Port; 0 is any free one [default: 8080, or one of the next ten].
     #[arg(long, value_name = "N", help_heading = "Server")]
     pub(crate) port: Option<u16>,
-    /// The address that the page is served on.
+    /// Address that the page is served on.
     ///
-    /// On any but the loopback the URL has a random token, without which nothing is answered. What
-    /// is sent is not encrypted: across networks that are not yours, take a tunnel.
+    /// For any other address than the loopback, the URL carries a random token that every request
+    /// needs. The connection is not encrypted: use a tunnel across networks that are not yours.
     #[arg(
         long,
         value_name = "ADDRESS",
@@ -34,21 +31,24 @@ pub(crate) struct ViewArgs {
         help_heading = "Server"
     )]
     pub(crate) bind: IpAddr,
+    /// The image's geometry.
+    #[command(flatten)]
+    pub(crate) film: FilmArgs,
+    /// Stop at this number of samples per pixel [default: unlimited].
+    #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Stopping")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) spp: Option<u64>,
     /// How light is estimated.
     #[command(flatten)]
     pub(crate) estimator: EstimatorArgs,
-    /// Samples per pixel after which it is enough [default: no end].
-    #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Resources")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) spp: Option<u64>,
-    /// How fast it is.
-    #[command(flatten, next_help_heading = "Resources")]
-    pub(crate) threads: ThreadsArgs,
-    /// The picture's geometry.
+    /// The scene.
     #[command(flatten)]
-    pub(crate) film: FilmArgs,
-    /// Tell nothing but the URL, warnings and errors.
-    #[arg(short, long, help_heading = "Output")]
+    pub(crate) scene: SceneArgs,
+    /// How fast it is.
+    #[command(flatten, next_help_heading = "Scene and machine")]
+    pub(crate) threads: ThreadsArgs,
+    /// Print only the URL, warnings and errors.
+    #[arg(short, long, help_heading = "Server")]
     pub(crate) quiet: bool,
 }
 

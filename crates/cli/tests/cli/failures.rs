@@ -68,8 +68,12 @@ fn the_environment_is_read_after_flags() {
         let mut command = place.command(arguments);
         Ran::of(command.env("BIDIR_SPP", value))
     };
-    spp("render room.pbrt", "3").expect(0).says("3 spp");
-    spp("render room.pbrt --spp 1", "3").expect(0).says("1 spp");
+    spp("render room.pbrt", "3")
+        .expect(0)
+        .says("3 samples per pixel");
+    spp("render room.pbrt --spp 1", "3")
+        .expect(0)
+        .says("1 sample per pixel");
     spp("render room.pbrt", "many").expect(2).says("--spp");
     let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_ISA", "neon"))

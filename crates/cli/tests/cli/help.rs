@@ -32,16 +32,16 @@ fn every_flag_is_described() {
     check_flags("", "--help --no-color --version");
     check_flags(
         "render",
-        "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --display-server --emission --help --integrator \
-         --isa --json --lenient --light-choice --light-groups --light-point --max-depth --mis --mis-count --next-events --no-color --noise \
+        "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --display-server --help --integrator \
+         --isa --json --lenient --light-choice --light-groups --light-point --light-start --max-depth --mis --mis-count --next-events --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
          --resume --sampler --samples-per-subpath --seed --serve --shadow-rays --size --spp --stats --strategies --strategy-layers \
          --strict --svg --threads --time --version",
     );
     check_flags(
         "view",
-        "--bind --candidates --crop --cropwindow --emission --help --integrator --isa --lenient --light-choice --light-point \
-         --max-depth --mis --mis-count --next-events --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
+        "--bind --candidates --crop --cropwindow --help --integrator --isa --lenient --light-choice --light-point \
+         --light-start --max-depth --mis --mis-count --next-events --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
          --samples-per-subpath --seed --shadow-rays --size --spp --strategies --strict --threads --version",
     );
     check_flags(
@@ -75,11 +75,12 @@ fn every_flag_is_described() {
 }
 
 #[test]
-fn help_tells_exit_codes_defaults_environment_and_other_spellings() {
+fn help_has_exit_codes_defaults_environment_and_other_spellings() {
     let place = Workplace::new();
     place
         .run("--help")
         .expect(0)
+        .prints("Renders pbrt-v4 and glTF scenes with path tracing")
         .prints("75  stopped early")
         .prints("143  stopped by SIGTERM");
     let mut render = place.run("render --help").expect(0);
@@ -96,6 +97,88 @@ fn help_tells_exit_codes_defaults_environment_and_other_spellings() {
     render
         .prints("[default: fresh]")
         .prints("[possible values: path, light, bdpt, lvc, auto]");
+}
+
+#[test]
+fn short_help_has_the_common_flags() {
+    let place = Workplace::new();
+    let render = place
+        .run("render -h")
+        .expect(0)
+        .prints("Examples:\n")
+        .stdout;
+    let common = "--aov --checkpoint --denoise --help --integrator --lenient --noise --output --resume --seed --serve --size \
+        --spp --threads --time --version";
+    assert_eq!(flags(&render), common.split_whitespace().collect());
+    assert!(render.lines().count() <= 40, "{render}");
+    assert!(!render.contains("[env"), "{render}");
+    let all = place.run("-h").expect(0).prints("Commands:").stdout;
+    assert!(!all.contains("Exit codes"), "{all}");
+    for command in ["view", "reference", "experiment"] {
+        let help = |flag| place.run(&format!("{command} {flag}")).expect(0).stdout;
+        assert!(
+            flags(&help("-h")).len() < flags(&help("--help")).len(),
+            "{command}"
+        );
+    }
+}
+
+#[test]
+fn topics_of_render_come_in_their_order() {
+    let help = Workplace::new().run("render --help").expect(0).stdout;
+    let topics = "Arguments Options Output Image Stopping Integrator|Shadow rays|Shared light subpaths|Layers|\
+        Checkpoints and parts|Scene and machine|Debugging Examples";
+    let heads = help.lines().filter_map(|line| line.strip_suffix(':'));
+    let heads: Vec<_> = heads.filter(|head| !head.starts_with(' ')).collect();
+    let of_one_word = |text: &str| text.replace(['|', ' '], "");
+    assert_eq!(of_one_word(&heads.concat()), of_one_word(topics));
+}
+
+/// Words that readers would have to translate.
+#[test]
+fn help_is_plain_english() {
+    let place = Workplace::new();
+    for command in known_flags().keys() {
+        for flag in ["-h", "--help"] {
+            let help = place.run(&format!("{command} {flag}")).expect(0).stdout;
+            for word in [
+                "suited",
+                "witness",
+                "told",
+                "tells",
+                "shall ",
+                "picture ",
+                "go on from",
+                "gone on",
+            ] {
+                assert!(!help.contains(word), "{command} {flag} has {word:?}");
+            }
+            let mut starts = help.lines().map(str::trim_start);
+            let has = starts.any(|line| line.starts_with("What ") || line.starts_with("Who "));
+            assert!(!has, "{command} {flag}: {help}");
+        }
+    }
+}
+
+#[test]
+fn the_page_of_all_flags_is_current() {
+    let page = Workplace::new().run("man --markdown").expect(0).stdout;
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/cli.md");
+    let written = fs::read_to_string(file).unwrap_or_default();
+    assert!(
+        page == written,
+        "docs/reference/cli.md is out of date: run `just docs`"
+    );
+    for part in [
+        "## bidir farm slurm",
+        "| `-o`, `--output <FILE>` |",
+        "`BIDIR_SHADOW_RAYS`",
+        "`BIDIR_OIDN`",
+        "| 143 |",
+        "all for bdpt, budget:6 for lvc",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
 }
 
 #[test]

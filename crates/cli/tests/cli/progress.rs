@@ -18,6 +18,8 @@ fn a_render_ends_with_all_of_it() {
             .says("Progress: 100% pass 2 of 2, ")
             .says("wrote room.exr");
     }
+    let ran = progress("--spp 4096");
+    assert_eq!(ran.stderr.matches("100%").count(), 1, "{}", ran.stderr);
     let ran = progress("--progress ndjson");
     let last = objects(&ran.stderr).pop().unwrap();
     assert_eq!(last["progress"].as_f64(), Some(1.0));

@@ -209,14 +209,14 @@ fn an_estimator_is_no_witness_of_itself() {
     let same: [&[&str]; 8] = [
         &["--estimator=bdpt", "--against=bdpt"],
         &["--estimator=bdpt --seed 1", "--against=bdpt --seed 2"],
-        &["--estimator=lvc", "--against=lvc --shadow-rays suited"],
+        &["--estimator=lvc", "--against=lvc --shadow-rays auto"],
         &["--estimator=path", "--against=path --candidates 4"],
         &["--estimator=light", "--against=light --mis power"],
         // Either may be what the other is.
         &["--estimator=auto", "--against=path"],
         &["--estimator=bdpt", "--against=auto"],
         // The first is the usual one.
-        &["--against=bdpt --path-roulette suited"],
+        &["--against=bdpt --path-roulette auto"],
     ];
     for estimators in same {
         reference(estimators)

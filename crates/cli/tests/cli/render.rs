@@ -6,9 +6,9 @@ fn the_image_has_the_name_that_the_scene_says_and_a_picture_beside_it() {
     let ran = place
         .run("render room.pbrt")
         .expect(0)
-        .says("2 spp")
-        .says("wrote room.exr, room.png");
+        .says("\nwrote room.exr and room.png\n2 samples per pixel in ");
     assert_eq!(ran.stdout, "");
+    assert!(!ran.stderr.contains("error"), "{}", ran.stderr);
     assert!(place.path("room.exr").exists() && place.path("room.png").exists());
 }
 
@@ -31,6 +31,98 @@ fn lines_of_progress_end_where_no_terminal_listens() {
         .expect(0)
         .says("Progress: ");
     assert!(!ran.stderr.contains('\r') && !ran.stderr.contains('\x1b'));
+}
+
+#[test]
+fn a_render_ends_with_files_samples_and_error() {
+    let place = Workplace::new();
+    let last = |flags: &str, lines: usize| {
+        let ran = place.run(&format!("render room.pbrt {flags}")).expect(0);
+        let all: Vec<_> = ran.stderr.lines().map(str::to_owned).collect();
+        all[all.len() - lines..].join("\n")
+    };
+    let text = last("--spp 16 --stats s.json --crop 0,0,12,8", 2);
+    let expected =
+        "wrote room.exr, room.png and s.json\n16 samples per pixel of a crop of 12x8 pixels in ";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(text.contains(", relative error "), "{text}");
+    let text = last("--integrator auto -o auto.png", 3);
+    assert!(
+        text.starts_with("wrote auto.png\n2 samples per pixel in "),
+        "{text}"
+    );
+    assert!(text.contains("\nauto chose "), "{text}");
+    let text = last("--passes 4..6 --checkpoint part.film", 2);
+    let expected = "wrote part.film\n2 samples per pixel (passes 4..6) in ";
+    assert!(text.starts_with(expected), "{text}");
+    let text = last("--passes 4..6 --checkpoint part.film --resume", 1);
+    assert!(text.contains(", all of them from the checkpoint"), "{text}");
+    let text = last("--spp 5 --checkpoint all.film", 1);
+    assert!(text.starts_with("5 samples per pixel in "), "{text}");
+    let text = last("--spp 7 --checkpoint all.film --resume", 1);
+    assert!(
+        text.starts_with("7 samples per pixel, 2 of them in "),
+        "{text}"
+    );
+}
+
+/// A triangle without anything else.
+const GLTF: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+"min": [-1, -1, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36,
+"uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+#[test]
+fn a_gltf_file_is_rendered_with_auto_unless_another_integrator_is_named() {
+    let place = Workplace::new();
+    place.write("room.gltf", GLTF);
+    let render = "render room.gltf --size 16x12 --spp 1";
+    place.run(render).expect(0).says("auto chose ");
+    let check = |integrator: &str| {
+        assert_eq!(place.attributes("room.exr")["bidir/integrator"], integrator);
+    };
+    place.run(&format!("{render} --integrator light")).expect(0);
+    check("light");
+    Ran::of(place.command(render).env("BIDIR_INTEGRATOR", "bdpt")).expect(0);
+    check("bdpt");
+}
+
+#[test]
+fn a_scene_that_asks_for_path_gets_a_hint_at_auto_where_light_is_missed() {
+    const NOTE: &str = "note: rendered with `path`, as the scene asks; try --integrator auto";
+    let place = Workplace::new();
+    let path = crate::common::SCENE.replace("Integrator \"bdpt\"", "Integrator \"volpath\"");
+    place.write("path.pbrt", &path);
+    let glass = "WorldBegin\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .1\n";
+    place.write("glass.pbrt", &path.replace("WorldBegin", glass));
+    place.run("render glass.pbrt").expect(0).says(NOTE);
+    for silent in [
+        "glass.pbrt -q",
+        "glass.pbrt --integrator path",
+        "glass.pbrt --integrator auto",
+        "path.pbrt",
+        "room.pbrt",
+    ] {
+        let ran = place.run(&format!("render {silent}")).expect(0);
+        assert!(!ran.stderr.contains("note:"), "{silent}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn older_names_are_accepted_with_a_warning() {
+    let place = Workplace::new();
+    let lvc = "render room.pbrt --integrator lvc -q";
+    let today = format!("{lvc} --light-start power --shadow-rays auto -o a.exr");
+    assert_eq!(place.run(&today).expect(0).stderr, "");
+    let older = format!("{lvc} --emission power --shadow-rays suited -o b.exr");
+    let ran = place.run(&older).expect(0);
+    assert_eq!(
+        ran.stderr,
+        "warning: --emission is now --light-start\nwarning: the value `suited` is now `auto`\n"
+    );
+    place.run("compare a.exr b.exr --exact").expect(0);
 }
 
 /// Checks that two ways to render give the same bits.
@@ -77,7 +169,7 @@ fn settings_change_the_image() {
         "--integrator lvc --proposal uniform",
         "--integrator lvc --samples-per-subpath 4",
         "--integrator lvc --next-events 1",
-        "--integrator lvc --emission power",
+        "--integrator lvc --light-start power",
         "--integrator lvc --candidates 8 --mis-count correlated",
         "--integrator lvc --shadow-rays budget:2 --mis-count resampled",
         "--mis uniform",
@@ -102,11 +194,11 @@ fn time_or_samples_end_a_render_whichever_is_first() {
     place
         .run("render room.pbrt --time 1h --spp 3")
         .expect(0)
-        .says("3 spp");
+        .says("3 samples per pixel");
     place
         .run("render room.pbrt --time 0.000001 --spp 3")
         .expect(0)
-        .says("1 spp");
+        .says("1 of 3 samples per pixel");
     let start = std::time::Instant::now();
     place.run("render room.pbrt --time 0.3").expect(0);
     assert!((0.2..5.0).contains(&start.elapsed().as_secs_f64()));

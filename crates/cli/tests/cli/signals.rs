@@ -44,7 +44,8 @@ fn the_first_signal_ends_after_the_running_pass_with_an_image() {
         // A tenth of the time is told of after a second.
         let arguments = "--spp 1000000000 --time 10";
         let ran = interrupted(&place, arguments, &[("Progress:", signal)]).expect(code);
-        ran.says("wrote room.exr");
+        ran.says("wrote room.exr and room.png")
+            .says(" of 1000000000 samples per pixel");
         place.run("compare room.exr room.exr --exact").expect(0);
     }
 }
@@ -69,7 +70,7 @@ fn a_signal_that_comes_too_late_stops_nothing() {
     // The only pass is running when the signal comes.
     let arguments = "--size 400x400 --spp 1 --time 10";
     let ran = interrupted(&place, arguments, &[("Progress:", "INT")]);
-    ran.expect(0).says("1 spp");
+    ran.expect(0).says("1 sample per pixel");
 }
 
 #[test]
@@ -79,7 +80,8 @@ fn with_a_film_file_the_render_can_go_on() {
     let signals = [("Progress:", "TERM")];
     interrupted(&place, arguments, &signals)
         .expect(75)
-        .says("a.film");
+        .says("wrote room.exr, room.png and a.film")
+        .says("stopped early; the same command with --resume continues");
     let info = place.run("film info a.film --json").expect(0).json();
     assert_eq!(info["stopping"], "time");
 }

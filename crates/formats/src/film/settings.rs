@@ -37,7 +37,7 @@ pub struct SettingsText {
     /// How cached light vertices are chosen.
     pub proposal: &'static str,
     /// How light subpaths choose the light that they begin on.
-    pub emission: &'static str,
+    pub light_start: &'static str,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: u16,
     /// What weights take for the number of samples of a strategy whose light subpaths are shared.
@@ -94,7 +94,7 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
             candidates: parse(flag("candidates")?)?,
             next_events: parse(flag("next-events")?)?,
             proposal: named(&ProposalKind::NAMES, flag("proposal")?)?,
-            emission: named(&EmissionKind::NAMES, flag("emission")?)?,
+            emission: named(&EmissionKind::NAMES, flag("light-start")?)?,
             samples_per_subpath: parse(flag("samples-per-subpath")?)?,
             mis_count: named(&MisCount::NAMES, flag("mis-count")?)?,
         },
@@ -105,13 +105,29 @@ pub fn settings_from_flags(flags: &BTreeMap<String, String>) -> Option<Settings>
     Some(settings)
 }
 
+/// Settings as files name them, by today's names: older files have `emission` for `light-start`, and
+/// rules with the value `suited` for `auto`.
+pub fn renamed(settings: BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let today = |(mut name, mut value): (String, String)| {
+        if name == "emission" {
+            "light-start".clone_into(&mut name);
+        }
+        let is_rule = ["candidates", "path-roulette", "shadow-rays"].contains(&name.as_str());
+        if is_rule && value == "suited" {
+            "auto".clone_into(&mut value);
+        }
+        (name, value)
+    };
+    settings.into_iter().map(today).collect()
+}
+
 /// True where the setting that is called `name` may change an image by `integrator`.
 pub fn has_influence(name: &str, integrator: IntegratorKind) -> bool {
     use IntegratorKind::{Auto, Light, Lvc};
     match name {
         "strategies" | "light-point" | "shadow-rays" => integrator.has_candidates(),
         "light-choice" | "mis" => integrator != Light,
-        "candidates" | "next-events" | "proposal" | "emission" | "mis-count" => {
+        "candidates" | "next-events" | "proposal" | "light-start" | "mis-count" => {
             matches!(integrator, Lvc | Auto)
         }
         "samples-per-subpath" => integrator == Lvc,
@@ -197,7 +213,7 @@ impl From<&Settings> for SettingsText {
             candidates: candidates.to_string(),
             next_events: next_events.to_string(),
             proposal: name_of(&ProposalKind::NAMES, *proposal),
-            emission: name_of(&EmissionKind::NAMES, *emission),
+            light_start: name_of(&EmissionKind::NAMES, *emission),
             samples_per_subpath: samples_per_subpath.get(),
             mis_count: name_of(&MisCount::NAMES, *mis_count),
             sampler: name_of(&SamplerKind::NAMES, *sampler),

@@ -157,13 +157,32 @@ fn a_difference_is_named() {
     };
     assert_eq!(
         with("12,1", "lvc")
-            .difference(&with("suited", "auto"))
+            .difference(&with("auto", "auto"))
             .unwrap(),
         "integrator is lvc here and auto there"
     );
     assert_eq!(
         with("12,1", "lvc").difference(&with("8", "lvc")).unwrap(),
         "candidates is 12,1 here and 8 there"
+    );
+}
+
+#[test]
+fn a_header_with_older_names_is_one_of_todays() {
+    let with = |emission: &str, value: &str| {
+        let settings = [
+            (emission, "power"),
+            ("candidates", value),
+            ("integrator", "auto"),
+        ];
+        let settings = settings.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        FilmHeader::new("bidir", "room.pbrt".to_owned(), settings.into())
+    };
+    let (old, today) = (with("emission", "suited"), with("light-start", "auto"));
+    assert_ne!(old.identity, today.identity);
+    assert_eq!(
+        FilmHeader::from_json(old.to_json().as_bytes()).unwrap(),
+        today
     );
 }
 

@@ -39,7 +39,7 @@ use std::path::Path;
 
 /// How a file is rendered unless the caller says otherwise: the format says nothing of it.
 const SETTINGS: SceneSettings = SceneSettings {
-    integrator: IntegratorKind::Bdpt,
+    integrator: IntegratorKind::Auto,
     max_depth: 12,
     sampler: SamplerKind::Sobol,
     samples_per_pixel: 64,

@@ -83,7 +83,7 @@ const VARIANTS: &[Variant] = &[
     variant(PROPOSALS, SHARED, "lvc uniform", &[("integrator", "lvc"), ("proposal", "uniform")]),
     variant(PROPOSALS, SHARED, "lvc learned", &[("integrator", "lvc"), ("proposal", "learned")]),
 
-    variant(EMISSION, SHARED, "lvc emission by power", &[("integrator", "lvc"), ("emission", "power")]),
+    variant(EMISSION, SHARED, "lvc light start by power", &[("integrator", "lvc"), ("light-start", "power")]),
 
     variant(LIGHT_POINTS, SHARED, "lvc 1 light point", &[("integrator", "lvc"), ("next-events", "1")]),
     variant(LIGHT_POINTS, SHARED, "lvc 4 light points, then 1", &[("integrator", "lvc"), ("next-events", "4,1")]),

@@ -187,7 +187,11 @@ fn changes(section: &mut Section<'_>) -> Result<Changes> {
     let mut changes = Changes::default();
     // The integrator is the first.
     for name in Changes::NAMES {
-        if let Some(entry) = section.take(name) {
+        let entry = match name {
+            "light-start" => section.take_renamed(name, "emission"),
+            _ => section.take(name),
+        };
+        if let Some(entry) = entry {
             entry.read(|value| changes.set(name, value))?;
             let mut deaf = changes.integrator.into_iter();
             if let Some(deaf) = deaf.find(|integrator| !has_influence(name, *integrator)) {
@@ -229,7 +233,7 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
-    let witness = section.take("reference-witness");
+    let witness = section.take_renamed("reference-cross-check", "reference-witness");
     match (image, spp) {
         (Some(image), None) => match strategies.or(witness) {
             Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),

@@ -111,7 +111,7 @@ impl ExperimentError {
                 ..
             } => Some(
                 "it stays where it is; see what more samples say (`reference-spp`), or another witness \
-                 (`reference-witness`), or name as `reference` one of other estimators, by `bidir reference --estimator … --against …`",
+                 (`reference-cross-check`), or name as `reference` one of other estimators, by `bidir reference --estimator … --against …`",
             ),
             Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),

@@ -76,6 +76,19 @@ impl<'a> Section<'a> {
             .map(|value| Entry::new(self.source, value))
     }
 
+    /// The value of a key, which may go by its older name.
+    pub(super) fn take_renamed(
+        &mut self,
+        key: &'static str,
+        older: &'static str,
+    ) -> Option<Entry<'a>> {
+        let entry = self.take(key);
+        entry.or_else(|| {
+            let value = self.table.remove(older)?;
+            Some(Entry::new(self.source, value))
+        })
+    }
+
     /// The value of a key that has to be there.
     pub(super) fn need(&mut self, key: &'static str) -> Result<Entry<'a>> {
         self.take(key)

@@ -179,7 +179,13 @@ fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes, named: Option<Integrator
 
 /// The folder of a reference in that of the results: another reference has another name.
 fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
-    let settings = plan.estimators.each_ref().map(texts);
+    let settings = plan.estimators.each_ref().map(|settings| {
+        // References made under the older name are found again.
+        let mut texts = texts(settings);
+        let start = texts.remove("light-start");
+        texts.extend(start.map(|start| ("emission".to_owned(), start)));
+        texts
+    });
     let [width, height] = stage.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",

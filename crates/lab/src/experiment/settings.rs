@@ -59,7 +59,7 @@ impl Changes {
         "candidates",
         "next-events",
         "proposal",
-        "emission",
+        "light-start",
         "samples-per-subpath",
         "mis-count",
         "mis",
@@ -82,7 +82,8 @@ impl Changes {
             "next-events" => self.next_events = Some(parsed(value)?),
             "samples-per-subpath" => self.samples_per_subpath = Some(parsed(value)?),
             "proposal" => self.proposal = Some(named(&ProposalKind::NAMES, value)?),
-            "emission" => self.emission = Some(named(&EmissionKind::NAMES, value)?),
+            // The latter is the older name.
+            "light-start" | "emission" => self.emission = Some(named(&EmissionKind::NAMES, value)?),
             "mis-count" => self.mis_count = Some(named(&MisCount::NAMES, value)?),
             "mis" => self.mis = Some(named(&MisHeuristic::NAMES, value)?),
             "strategies" => self.strategies = Some(parsed(value)?),

@@ -7,7 +7,7 @@ use bidir::ESTIMATOR_VERSION;
 use bidir::driver::Settings;
 use bidir::film::FilmSettings;
 use bidir::integrator::IntegratorKind;
-use formats::film::SettingsText;
+use formats::film::{SettingsText, renamed};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -113,7 +113,11 @@ impl Provenance {
                 reason,
             });
         }
-        serde_json::from_str(&text).map_err(damaged)
+        let mut provenance: Self = serde_json::from_str(&text).map_err(damaged)?;
+        for record in &mut provenance.estimators {
+            record.settings = renamed(std::mem::take(&mut record.settings));
+        }
+        Ok(provenance)
     }
 
     /// Writes it to the reference in `folder`.

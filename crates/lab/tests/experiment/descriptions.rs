@@ -142,6 +142,30 @@ fn methods_have_the_common_settings() {
 }
 
 #[test]
+fn older_names_are_accepted() {
+    let text = |check: &str, start: &str, auto: &str| {
+        let cross = format!("reference-spp = 16\n{check} = \"lvc\"");
+        let own = format!("integrator = \"lvc\"\n{start} = \"power\"\nshadow-rays = \"{auto}\"");
+        DESCRIPTION
+            .replace("reference-spp = 16", &cross)
+            .replace("shadow-rays = \"per-pair\"", &own)
+            + "[[budget]]\nsamples = 2\n"
+    };
+    let place = Workplace::new();
+    let today = text("reference-cross-check", "light-start", "auto");
+    let older = text("reference-witness", "emission", "suited");
+    let [today, older] = [today, older].map(|text| place.read(&text).unwrap());
+    assert_eq!(format!("{today:?}"), format!("{older:?}"));
+    let both = text(
+        "reference-cross-check",
+        "emission = \"power\"\nlight-start",
+        "auto",
+    );
+    let error = place.read(&both).unwrap_err().to_string();
+    assert!(error.contains("there is no key `emission` here"), "{error}");
+}
+
+#[test]
 fn a_quick_one_has_the_same_methods() {
     let place = Workplace::new();
     let text = DESCRIPTION.replace("seeds = 2", "seeds = 20\nsize = \"640x480\"")

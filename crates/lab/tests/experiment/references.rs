@@ -139,7 +139,7 @@ fn beneath_a_mirror() -> Workplace {
 fn a_witness_that_finds_all_light_can_be_named() {
     let text = format!("{DESCRIPTION}{BUDGET}");
     let naming = |witness: &str| {
-        let named = format!("reference-spp = 1024\nreference-witness = \"{witness}\"");
+        let named = format!("reference-spp = 1024\nreference-cross-check = \"{witness}\"");
         text.replace(MADE, &named)
     };
     let place = beneath_a_mirror();

@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn previews_train_for_nothing() {
-        let rules = ["suited", "per-pair", "ray-roulette"];
+        let rules = ["auto", "per-pair", "ray-roulette"];
         let expected = [
             (Path, Path),
             (Light, Light),

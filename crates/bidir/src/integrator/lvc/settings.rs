@@ -197,11 +197,12 @@ impl FromStr for Candidates {
     type Err = CountError;
 
     fn from_str(text: &str) -> Result<Self, CountError> {
-        if text == "suited" {
+        // The latter is the older name.
+        if ["auto", "suited"].contains(&text) {
             return Ok(Self::Suited);
         }
         text.parse().map(Self::Of).map_err(|error| CountError {
-            expected: "a whole number from 1 to 4096, two of them as in `8,1`, or `suited`",
+            expected: "a whole number from 1 to 4096, two of them as in `8,1`, or `auto`",
             ..error
         })
     }
@@ -233,7 +234,7 @@ impl fmt::Display for Candidates {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Of(count) => count.fmt(f),
-            Self::Suited => write!(f, "suited"),
+            Self::Suited => write!(f, "auto"),
         }
     }
 }
@@ -283,8 +284,9 @@ mod tests {
         ];
         let good = ["1", "3", "4096", "8,1", "1,4096"];
         check::<CandidateCount>(&good, &bad, "from 1 to 4096");
-        check::<Candidates>(&good, &bad, "`suited`");
-        check::<Candidates>(&["suited"], &["Suited"], "from 1 to 4096");
+        check::<Candidates>(&good, &bad, "`auto`");
+        check::<Candidates>(&["auto"], &["Auto"], "from 1 to 4096");
+        assert_eq!("suited".parse(), Ok(Candidates::Suited));
         let bad = ["", "0", "-2", "3", "512", "65536", "x"];
         check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, "from 1 to 256");
     }

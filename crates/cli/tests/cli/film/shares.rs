@@ -225,7 +225,7 @@ fn an_image_says_what_it_was_rendered_with() {
     assert_eq!(lvc["bidir/candidates"], "5,2");
     assert!(!lvc.contains_key("bidir/plan"));
     let auto = attributes("--integrator auto");
-    assert_eq!(auto["bidir/candidates"], "suited");
+    assert_eq!(auto["bidir/candidates"], "auto");
     assert!(auto["bidir/plan"].contains("albedo"), "{auto:?}");
 }
 
@@ -253,7 +253,10 @@ fn a_black_picture_has_no_noise() {
     place.write_dark();
     for integrator in ["path", "bdpt", "lvc"] {
         let render = format!("render dark.pbrt --integrator {integrator} --noise 0.5 --spp 99");
-        place.run(&render).expect(0).says("16 spp");
+        place
+            .run(&render)
+            .expect(0)
+            .says("16 of 99 samples per pixel");
     }
 }
 

@@ -1,0 +1,244 @@
+//! The lines that a render ends with.
+
+use super::Course;
+use crate::settings::{Budget, name_of};
+use bidir::driver::{Plan, Session};
+use bidir::integrator::IntegratorKind;
+use std::time::Duration;
+
+/// Below this number of passes the variance of a pixel is too uncertain for an error.
+const LEAST_PASSES: u64 = 16;
+
+/// How a render went, for people.
+#[derive(Clone, Debug)]
+pub(crate) struct Summary {
+    /// All passes of the film.
+    passes: u64,
+    /// Those of this run.
+    rendered: u64,
+    /// The number of passes to reach. None: there is no limit.
+    wanted: Option<u64>,
+    /// The passes as ranges, for a part of a render.
+    part: Option<String>,
+    /// Width and height of a crop.
+    crop: Option<[u32; 2]>,
+    time: Duration,
+    /// The error of `--noise`. None: it is not known.
+    error: Option<f64>,
+    is_denoised: bool,
+    plan: Option<Plan>,
+}
+
+impl Summary {
+    /// The summary of the render of `session`, which is a part of one where `is_part`.
+    pub(crate) fn new(
+        session: &Session<'_>,
+        budget: Budget,
+        course: Course,
+        [is_part, is_denoised]: [bool; 2],
+    ) -> Self {
+        let film = session.film();
+        let (passes, settings) = (film.passes(), film.settings());
+        let crop = settings.crop;
+        let size = [0, 1].map(|axis| crop.max[axis] - crop.min[axis]);
+        let error = (passes.len() >= LEAST_PASSES).then(|| session.noise());
+        Self {
+            passes: passes.len(),
+            rendered: session.stats().samples / crop.area().max(1),
+            wanted: budget.passes,
+            part: is_part.then(|| passes.to_string()),
+            crop: (size != settings.resolution).then_some(size),
+            time: course.render,
+            error: error.filter(|error| error.is_finite() && *error > 0.0),
+            is_denoised,
+            plan: session.training().and_then(|training| training.plan),
+        }
+    }
+
+    /// A line of samples, time and error, and one of what `auto` chose.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let plan = self.plan.as_ref();
+        let plan = plan.map(|plan| format!("auto chose {}", describe(plan)));
+        std::iter::once(self.samples()).chain(plan).collect()
+    }
+
+    fn samples(&self) -> String {
+        let of = self.wanted.filter(|wanted| self.passes < *wanted);
+        let mut text = match of {
+            Some(wanted) => format!("{} of {wanted} samples per pixel", self.passes),
+            None if self.passes == 1 => "1 sample per pixel".to_owned(),
+            None => format!("{} samples per pixel", self.passes),
+        };
+        if let Some(part) = &self.part {
+            text += &format!(" (passes {part})");
+        }
+        if let Some([width, height]) = self.crop {
+            text += &format!(" of a crop of {width}x{height} pixels");
+        }
+        let time = took(self.time);
+        text += &match self.rendered {
+            0 => ", all of them from the checkpoint".to_owned(),
+            rendered if rendered < self.passes => format!(", {rendered} of them in {time}"),
+            _ => format!(" in {time}"),
+        };
+        if let Some(error) = self.error {
+            text += &format!(", relative error {}", two_digits(error));
+            text += if self.is_denoised {
+                " before denoising"
+            } else {
+                ""
+            };
+        }
+        text
+    }
+}
+
+/// What `auto` renders with, by the names and values of flags.
+fn describe(plan: &Plan) -> String {
+    let name = name_of(&IntegratorKind::NAMES, plan.integrator);
+    if plan.integrator == IntegratorKind::Lvc {
+        let (candidates, rays) = (plan.candidates, plan.shadow_rays);
+        return match plan.samples_per_subpath.get() {
+            1 => format!("{name} with {candidates} candidates and {rays}"),
+            samples => format!(
+                "{name} with {candidates} candidates, {rays} and {samples} samples per light subpath"
+            ),
+        };
+    }
+    if plan.roulette == plan.integrator.roulette() {
+        name.to_owned()
+    } else {
+        format!("{name} with --path-roulette {}", plan.roulette)
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn listed(names: &[String]) -> String {
+    match names {
+        [] => "no file".to_owned(),
+        [name] => name.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// A time as people write it: `0.7 s`, `12 s`, `1 min 30 s`, `2 h 05 min`.
+fn took(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    let whole = seconds.round() as u64;
+    match whole {
+        0 if seconds < 0.095 => format!("{seconds:.2} s"),
+        0..10 => format!("{seconds:.1} s"),
+        10..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole / 60 % 60),
+    }
+}
+
+/// A positive number with two significant digits.
+fn two_digits(number: f64) -> String {
+    // 0.0996 has the digits of 0.10.
+    let rounded = format!("{number:.1e}").parse().unwrap_or(number);
+    let exponent = libm::floor(libm::log10(rounded) + 1e-9);
+    let digits = (1.0 - exponent).clamp(0.0, 12.0) as usize;
+    format!("{number:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary() -> Summary {
+        Summary {
+            passes: 64,
+            rendered: 64,
+            wanted: Some(64),
+            part: None,
+            crop: None,
+            time: Duration::from_millis(700),
+            error: Some(0.2123),
+            is_denoised: false,
+            plan: None,
+        }
+    }
+
+    #[track_caller]
+    fn check(summary: &Summary, expected: &str) {
+        assert_eq!(summary.lines(), [expected]);
+    }
+
+    #[test]
+    fn a_line_has_samples_time_and_error() {
+        let all = summary();
+        check(&all, "64 samples per pixel in 0.7 s, relative error 0.21");
+        let one = Summary {
+            passes: 1,
+            rendered: 1,
+            wanted: None,
+            error: None,
+            ..summary()
+        };
+        check(&one, "1 sample per pixel in 0.7 s");
+        let denoised = Summary {
+            is_denoised: true,
+            ..summary()
+        };
+        check(
+            &denoised,
+            "64 samples per pixel in 0.7 s, relative error 0.21 before denoising",
+        );
+    }
+
+    #[test]
+    fn a_part_says_which_one() {
+        let stopped = Summary {
+            wanted: Some(100),
+            error: None,
+            ..summary()
+        };
+        check(&stopped, "64 of 100 samples per pixel in 0.7 s");
+        let resumed = Summary {
+            rendered: 24,
+            ..stopped.clone()
+        };
+        check(&resumed, "64 of 100 samples per pixel, 24 of them in 0.7 s");
+        let there = Summary {
+            rendered: 0,
+            wanted: Some(64),
+            ..stopped
+        };
+        check(
+            &there,
+            "64 samples per pixel, all of them from the checkpoint",
+        );
+        let part = Summary {
+            part: Some("64..128".to_owned()),
+            crop: Some([8, 4]),
+            error: None,
+            ..summary()
+        };
+        check(
+            &part,
+            "64 samples per pixel (passes 64..128) of a crop of 8x4 pixels in 0.7 s",
+        );
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let time = |seconds| took(Duration::from_secs_f64(seconds));
+        assert_eq!(time(0.014), "0.01 s");
+        assert_eq!(time(0.714), "0.7 s");
+        assert_eq!(time(12.34), "12 s");
+        assert_eq!(time(90.0), "1 min 30 s");
+        assert_eq!(time(7500.0), "2 h 05 min");
+        assert_eq!(two_digits(0.2123), "0.21");
+        assert_eq!(two_digits(0.00316), "0.0032");
+        assert_eq!(two_digits(0.0996), "0.10");
+        assert_eq!(two_digits(0.001), "0.0010");
+        assert_eq!(two_digits(1.26), "1.3");
+        assert_eq!(two_digits(126.0), "126");
+        let names = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(listed(&names), "a, b and c");
+        assert_eq!(listed(&names[..2]), "a and b");
+        assert_eq!(listed(&[]), "no file");
+    }
+}
