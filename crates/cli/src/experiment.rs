@@ -108,13 +108,28 @@ fn stopped(args: &ExperimentArgs) -> Exit {
 fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let file = &args.description;
     let text = std::fs::read_to_string(file);
-    let text = text.map_err(|error| Failure::io(file, "read", &error))?;
+    let text = text.map_err(|error| unreadable(file, &error))?;
     let mut experiment = Experiment::read(&text, file).map_err(failure)?;
     if args.quick {
         experiment = experiment.quick();
     }
     experiment.threads = threads(args, experiment.threads);
     Ok(experiment)
+}
+
+/// Why a description cannot be read; a name near a built-in experiment's is probably that.
+fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
+    let action = match error.kind() {
+        std::io::ErrorKind::NotFound => "open",
+        _ => "read",
+    };
+    let failure = Failure::io(file, action, error);
+    let name = file.to_str().filter(|_| action == "open");
+    let near = name.and_then(|name| experiment::nearest(name, [builtin::PAPER, builtin::BEYOND]));
+    match near {
+        Some(near) => failure.with_hint(format!("did you mean the built-in experiment `{near}`?")),
+        None => failure,
+    }
 }
 
 /// As many as are asked for, or as there are processors: records tell the number.
@@ -160,7 +175,9 @@ fn execute(
 /// What an error is to the shell.
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
-        ExperimentError::Description(_) | ExperimentError::Pyramid { .. } => Exit::Scene,
+        ExperimentError::Description(_)
+        | ExperimentError::Pyramid { .. }
+        | ExperimentError::Strategies { .. } => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,

@@ -34,6 +34,14 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
     warn_unused(args, &plan, console);
+    for (settings, flag) in plan.estimators.iter().zip(["--estimator", "--against"]) {
+        settings::check_strategies(
+            &format!("{flag}: strategies"),
+            &loaded.scene,
+            settings,
+            console,
+        )?;
+    }
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
@@ -270,6 +278,7 @@ pub(crate) fn failure(error: Error) -> Failure {
             let hint = "make one with `bidir reference`, or name another folder";
             Failure::new(Exit::InputOutput, text).with_hint(hint)
         }
+        Error::Session(SessionError::NoPath { .. }) => Failure::usage(text),
         Error::Session(SessionError::Threads(_)) => Failure::new(Exit::RenderFailed, text),
         Error::Session(_) => {
             let hint = "make it smaller with --size, or render a part of it with --crop";

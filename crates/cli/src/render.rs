@@ -48,7 +48,9 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let own = loaded.settings.layers.aovs();
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
-    loaded.tell_warnings(&args.scene, unused, console)?;
+    let lost =
+        settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
+    loaded.tell_warnings(&args.scene, unused + lost, console)?;
     if let Some(target) = args.replay {
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {

@@ -92,7 +92,13 @@ impl Session {
         let begin = Instant::now();
         let (shared, own) = (scene.shared.clone(), settings.clone());
         let session = wait_silently(py, |_| driver::Session::new(shared, own, &resources))?;
-        let session = session.map_err(|error| raise(py, "RenderError", &error.to_string()))?;
+        let session = session.map_err(|error| {
+            let class = match error {
+                driver::SessionError::NoPath { .. } => "SettingsError",
+                _ => "RenderError",
+            };
+            raise(py, class, &error.to_string())
+        })?;
         let identity = SceneIdentity {
             name: &scene.name,
             digest: &scene.digest,

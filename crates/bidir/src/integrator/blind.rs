@@ -7,6 +7,11 @@
 //! along L S+ D S+ E; next-event estimation alone already loses L S+ D. Lights that rays can hit are
 //! found there by hits alone, the rarer the smaller the light is.
 
+mod lists;
+
+pub(crate) use lists::no_path;
+pub use lists::{LostLight, lost_light};
+
 use super::IntegratorKind;
 use crate::camera::Camera;
 use crate::light::Light;
@@ -45,8 +50,7 @@ impl BlindSpot {
     pub const fn description(self) -> &'static str {
         match self {
             Self::Caustics => {
-                "light of points, spots, distant and hidden lamps by mirrors or clear glass, on any \
-                 surface (L S+ D)"
+                "caustics of point, spot, distant and hidden lights (L S+ D)"
             }
             Self::CausticsSeenBySpecular => {
                 "points, spots, distant and hidden lamps themselves in mirrors or clear glass (L S+ E), \

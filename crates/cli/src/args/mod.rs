@@ -7,6 +7,7 @@ mod farm;
 mod film;
 mod layers;
 mod long;
+mod mistakes;
 mod reference;
 mod render;
 mod sources;
@@ -51,8 +52,10 @@ pub(crate) struct Cli {
 impl Cli {
     /// Reads the command line and the environment.
     pub(crate) fn read() -> Result<Self, clap::Error> {
-        let mut command = Self::command();
-        let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+        let mut command = mistakes::accept_negative(Self::command());
+        let arguments: Vec<_> = std::env::args_os().collect();
+        let matches = command.try_get_matches_from_mut(&arguments);
+        let matches = matches.map_err(|error| mistakes::reworded(error, &command, &arguments))?;
         if let Some(("experiment", matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand_mut("experiment")
         {

@@ -31,7 +31,7 @@ fn faults_of_the_command_line_exit_with_2() {
 
 #[test]
 fn names_are_told_whole() {
-    check("render x.pbrt", 4, "error: x.pbrt: cannot open");
+    check("render x.pbrt", 4, "error: cannot open `x.pbrt`: no such file");
     let place = Workplace::new();
     place.write("xx.pbrt", "WorldBegin\nMaterial \"xylophone\"\n");
     place
@@ -151,7 +151,10 @@ fn broken_scenes_exit_with_3_and_show_the_place() {
     check_broken("missing-mesh.pbrt", "no-such-mesh.ply");
     check_broken("misspelt-material.pbrt", "did you mean `diffuse`?");
     check_broken("nan-vertex.pbrt", "nan-vertex.ply");
-    check_broken("unclosed-string.pbrt", "diffuse ");
+    check_broken(
+        "unclosed-string.pbrt",
+        "12:10: the string has no closing quote; write `\"diffuse\"`",
+    );
 }
 
 #[test]

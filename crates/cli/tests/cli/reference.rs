@@ -196,7 +196,7 @@ fn stale_and_damaged_references_are_refused() {
     place
         .run("compare a.reference/picture.exr --reference none.reference")
         .expect(4)
-        .says("none.reference: cannot open: no such file");
+        .says("cannot open `none.reference`: no such file");
 }
 
 #[test]

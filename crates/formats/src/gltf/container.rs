@@ -3,6 +3,7 @@
 use super::place::{GltfFault, Place};
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
+use crate::foreign;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,9 @@ pub(super) struct Container {
 
 /// Reads a `.gltf` or `.glb`; which of them it is, its first bytes say.
 pub(super) fn read(path: &Path, files: &Files) -> Result<Container> {
+    foreign::check_folder(path, files)?;
     let bytes = files.read(path, LARGEST_FILE)?;
+    foreign::check_gltf(path, &bytes)?;
     let container = if bytes.starts_with(MAGIC) {
         chunks(&bytes)
     } else {

@@ -253,7 +253,7 @@ fn broken_images_are_told() {
     let error = || read(&path, None).unwrap_err().to_string();
     let missing = error();
     assert!(
-        missing.ends_with("a.bmp: cannot open: no such file"),
+        missing.ends_with("a.bmp`: no such file"),
         "{missing}"
     );
     std::fs::write(&path, "BM").unwrap();

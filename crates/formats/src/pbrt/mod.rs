@@ -26,6 +26,7 @@ mod v3;
 mod tests;
 
 pub(crate) use build::LARGEST_SIDE;
+pub(crate) use known::is_directive;
 pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load, load_from};
 pub use digest::SceneDigest;
 pub(crate) use digest::{Content, DigestBuilder};

@@ -16,7 +16,7 @@ pub enum ExperimentError {
     #[error(transparent)]
     File(#[from] formats::Error),
     /// The folder of the results cannot be made or read.
-    #[error("{}: {error}", path.display())]
+    #[error("{}", formats::cannot("make", path, error))]
     Folder {
         /// What cannot be made or read.
         path: PathBuf,
@@ -78,6 +78,16 @@ pub enum ExperimentError {
         scene: String,
         /// The method.
         method: String,
+    },
+    /// The strategies of a method make no path in a scene.
+    #[error("scene `{scene}`: method `{method}`: {text}")]
+    Strategies {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+        /// The list, and what it lacks.
+        text: String,
     },
     /// None of the scenes that an experiment has is there.
     #[error("there is no scene to render: {0}")]

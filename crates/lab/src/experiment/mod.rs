@@ -45,6 +45,7 @@ mod error;
 mod identity;
 mod journal;
 mod names;
+pub use names::nearest;
 mod page;
 mod pyramid;
 mod reader;

@@ -67,7 +67,7 @@ pub enum Error {
     #[error(transparent)]
     File(#[from] formats::Error),
     /// The system refused to read or write.
-    #[error("{}: {error}", path.display())]
+    #[error("{}", formats::cannot("use", path, error))]
     Io {
         /// The file or folder.
         path: PathBuf,

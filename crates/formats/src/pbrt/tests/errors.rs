@@ -228,7 +228,7 @@ fn definitions() {
     );
     check(
         "Include \"no.pbrt\"",
-        "s.pbrt:1:9: no.pbrt: cannot open: no such file",
+        "s.pbrt:1:9: cannot open `no.pbrt`: no such file",
     );
 }
 

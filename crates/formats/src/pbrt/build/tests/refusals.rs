@@ -65,7 +65,7 @@ fn wrong_worlds_are_told() {
     check_world(
         "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n\
          Material \"diffuse\" \"texture reflectance\" \"t\"",
-        "s.pbrt:2:53: no.png: cannot open: no such file",
+        "s.pbrt:2:53: cannot open `no.png`: no such file",
     );
     check_world(
         "Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
@@ -85,7 +85,7 @@ fn wrong_worlds_are_told() {
     );
     check_world(
         "Shape \"plymesh\" \"string filename\" \"no.ply\"",
-        "s.pbrt:2:35: no.ply: cannot open: no such file",
+        "s.pbrt:2:35: cannot open `no.ply`: no such file",
     );
     check_world(
         "LightSource \"distant\" \"point3 to\" [0 0 0]",
