@@ -76,8 +76,8 @@ fn check_flags(args: &ExperimentArgs) -> Result<(), Failure> {
     let given = args.beyond.given();
     let other = given.filter(|_| args.description != Path::new(builtin::BEYOND));
     other.map_or(Ok(()), |flag| {
-        let text = format!("{flag} is of `{}` alone", builtin::BEYOND);
-        Err(Failure::usage(text).with_hint("a description says such things itself"))
+        let text = format!("{flag} applies to `{}` alone", builtin::BEYOND);
+        Err(Failure::usage(text).with_hint("write it into the description"))
     })
 }
 
@@ -96,9 +96,9 @@ fn task(args: &ExperimentArgs) -> Result<Task, Failure> {
 fn stopped(args: &ExperimentArgs) -> Exit {
     if !args.quiet {
         say(if args.restart {
-            "stopped: the same command without --restart goes on"
+            "stopped: run the same command without --restart to continue"
         } else {
-            "stopped: the same command goes on"
+            "stopped: run the same command to continue"
         });
     }
     Exit::Checkpoint
@@ -186,7 +186,7 @@ fn failure(error: ExperimentError) -> Failure {
     match (error.hint().map(str::to_owned), error) {
         (hint, ExperimentError::Reference { error, .. }) => {
             let exit = reference::failure(error).exit();
-            let anew = "make it anew with `bidir reference`, or all of it with --restart";
+            let anew = "make it again with `bidir reference`, or start over with --restart";
             Failure::new(exit, text).with_hint(hint.unwrap_or_else(|| anew.to_owned()))
         }
         // These can show their lines.

@@ -51,7 +51,7 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
     unused
         .map(|(flag, on)| {
             let name = args.estimator.sources.name(flag);
-            console.warning(format_args!("{name} has no influence {on}"));
+            console.warning(format_args!("{name} has no effect {on}"));
         })
         .count()
 }
@@ -199,8 +199,8 @@ fn share(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
         return Ok(range);
     }
     let Part { index, of } = part;
-    let message = format!("share {index} of {of} has no passes: there are {passes} in all");
-    Err(Failure::usage(message).with_hint("make fewer shares, or more passes with --spp"))
+    let message = format!("part {index} of {of} has no passes: there are {passes} in all");
+    Err(Failure::usage(message).with_hint("use fewer parts, or more passes with --spp"))
 }
 
 #[cfg(test)]

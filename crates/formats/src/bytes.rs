@@ -106,6 +106,9 @@ mod tests {
     fn a_missing_file_is_told_apart() {
         let error = read(Path::new("no/such/file"), 10).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::MissingFile);
-        assert_eq!(error.to_string(), "cannot open `no/such/file`: no such file");
+        assert_eq!(
+            error.to_string(),
+            "cannot open `no/such/file`: no such file"
+        );
     }
 }

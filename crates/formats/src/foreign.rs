@@ -67,7 +67,9 @@ const PLY: Kind = Kind {
 };
 const IMAGE: Kind = Kind {
     name: "an image",
-    hint: Hint::Text("`bidir view`, `info` and `render` take scenes; `tonemap` and `compare` take images"),
+    hint: Hint::Text(
+        "`bidir view`, `info` and `render` take scenes; `tonemap` and `compare` take images",
+    ),
 };
 const FILM: Kind = Kind {
     name: "a film file",

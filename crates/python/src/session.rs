@@ -221,7 +221,7 @@ fn stopping_of(py: Python<'_>, name: &str) -> PyResult<Stopping> {
     let all = [Stopping::Fixed, Stopping::Time, Stopping::Noise];
     let found = all.into_iter().find(|stopping| stopping.name() == name);
     found.ok_or_else(|| {
-        let message = format!("there is no way to stop `{name}`");
+        let message = format!("there is no reason to stop `{name}`");
         raise(py, "SettingsError", &message)
     })
 }

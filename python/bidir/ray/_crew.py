@@ -184,7 +184,7 @@ class Crew:
             raise NodeRefusedError(f"no node of the cluster can take part: {reasons}")
         elif now - self._worked > self._limits.patience:
             cause = f"; the last one: {self._cause}" if self._cause else ""
-            message = f"no node was there to work for {self._limits.patience:.0f} s{cause}"
+            message = f"no node was available for {self._limits.patience:.0f} s{cause}"
             raise ClusterError(message)
 
     def _hire(self, node: str, host: str, cpus: int) -> None:

@@ -110,7 +110,7 @@ class ExperimentWork:
         logger.warning("%s: the records were lost: %s", self.name(unit), error)
         self._losses += 1
         if self._losses > Limits.losses:
-            raise ClusterError("records are lost again and again before the driver has them")
+            raise ClusterError("records are lost repeatedly before they reach the driver")
         self.again(unit)
 
     def again(self, unit: str) -> None:
@@ -153,7 +153,7 @@ def _fleet() -> tuple[str, int]:
         task: Any = ray.remote(machine).options(num_cpus=0, scheduling_strategy=affinity)
         asked.append(task.remote(cpus))
     if not asked:
-        raise ClusterError("no node of the cluster has processors")
+        raise ClusterError("no node of the cluster has a processor")
     most, _ = Counter(ray.get(asked)).most_common(1)[0]
     return most, json.loads(most)["threads"]
 

@@ -232,9 +232,9 @@ class Keeper:
             return
         film = Film.load(path)
         if film.settings.get("scene-digest") != digest:
-            raise FilmError(f"{os.fspath(path)}: the film of another scene")
+            raise FilmError(f"{os.fspath(path)} is the film of another scene")
         if film.passes and film.passes[-1].stop > spp:
-            raise FilmError(f"{os.fspath(path)}: it has passes beyond the {spp} asked for")
+            raise FilmError(f"{os.fspath(path)}: it has passes beyond the {spp} of this render")
         self.film = film
 
     @property
@@ -308,7 +308,7 @@ def render(
     wish.native(scene)
     passes = scene.spp if spp is None else spp
     if passes < 1 or task_seconds <= 0 or fan_in < 2:
-        raise SettingsError("spp is from 1 on, task_seconds above 0, and fan_in from 2 on")
+        raise SettingsError("spp must be at least 1, task_seconds above 0, and fan_in at least 2")
     path = None if checkpoint is None else Path(checkpoint)
     keeper = Keeper(path, checkpoint_every, passes, scene.digest)
     done = keeper.film.spp if keeper.film else 0

@@ -9,12 +9,24 @@ use std::fmt::Display;
 /// Flags of other programs, and what they are here.
 const ELSEWHERE: [(&[&str], &str, &str); 6] = [
     (
-        &["--width", "--height", "--resolution", "--res", "--film-size"],
+        &[
+            "--width",
+            "--height",
+            "--resolution",
+            "--res",
+            "--film-size",
+        ],
         "--size",
         "the size of the image is --size WIDTHxHEIGHT, such as --size 640x480",
     ),
     (
-        &["--samples", "--samples-per-pixel", "--sample-count", "--pixelsamples", "--nsamples"],
+        &[
+            "--samples",
+            "--samples-per-pixel",
+            "--sample-count",
+            "--pixelsamples",
+            "--nsamples",
+        ],
         "--spp",
         "the number of samples per pixel is --spp N",
     ),
@@ -87,7 +99,9 @@ fn text(error: &Error, kind: ContextKind) -> Option<&str> {
 /// A flag under the name that another program gives it.
 fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
     let given = text(error, ContextKind::InvalidArg)?;
-    let (_, flag, hint) = ELSEWHERE.iter().find(|(names, ..)| names.contains(&given))?;
+    let (_, flag, hint) = ELSEWHERE
+        .iter()
+        .find(|(names, ..)| names.contains(&given))?;
     let has_flag = command
         .get_arguments()
         .any(|arg| arg.get_long() == flag.strip_prefix("--"));
@@ -133,9 +147,14 @@ fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
     let short = arg.get_short().map(|short| format!("-{short}"));
     let is_short = |argument: &OsString| {
         let argument = argument.to_string_lossy();
-        short.as_ref().is_some_and(|short| argument.starts_with(short))
+        short
+            .as_ref()
+            .is_some_and(|short| argument.starts_with(short))
     };
-    if arguments.iter().any(|argument| is_flag(argument) || is_short(argument)) {
+    if arguments
+        .iter()
+        .any(|argument| is_flag(argument) || is_short(argument))
+    {
         return None;
     }
     let name = arg.get_env()?;
@@ -161,9 +180,12 @@ fn expected(arg: &Arg) -> Option<String> {
             Some(most) => most.parse::<u64>().ok(),
             None => most.parse::<u64>().ok().map(|end| end.saturating_sub(1)),
         };
-        Some((least.parse::<u64>().ok()?, most.filter(|most| *most < u64::MAX - 1)))
+        Some((
+            least.parse::<u64>().ok()?,
+            most.filter(|most| *most < u32::MAX.into()),
+        ))
     };
-    let all = [range("0"), range(&u64::MAX.to_string())];
+    let all = [range("0"), range(&i64::MAX.to_string())];
     Some(match all.into_iter().flatten().next() {
         Some((1, None)) => "a whole number above 0".to_owned(),
         Some((least, Some(most))) => format!("a whole number from {least} to {most}"),

@@ -42,30 +42,49 @@ fn scenes_of_other_renderers_are_named() {
 fn meshes_and_scenes_of_modellers_are_named() {
     let of = |name: &str, kind: &str| format!("`{name}` is {kind}; {BY_BLENDER}");
     for (name, bytes, kind) in [
-        ("a.obj", &b"# by hand\nmtllib a.mtl\nv 0 0 0\n"[..], "a Wavefront OBJ file"),
+        (
+            "a.obj",
+            &b"# by hand\nmtllib a.mtl\nv 0 0 0\n"[..],
+            "a Wavefront OBJ file",
+        ),
         ("a.usda", b"#usda 1.0\n(\n)", "a USD file"),
         ("a.usdc", b"PXR-USDC\0\0", "a USD file"),
         ("a.usd", b"PXR-USDC\0\0", "a USD file"),
         ("a.usdz", b"PK\x03\x04\0\0", "a USD file"),
         ("a.fbx", b"Kaydara FBX Binary  \0", "an FBX file"),
         ("a.fbx", b"; FBX 7.4.0 project file", "an FBX file"),
-        ("a.dae", b"<?xml version=\"1.0\"?><COLLADA>", "a COLLADA file"),
+        (
+            "a.dae",
+            b"<?xml version=\"1.0\"?><COLLADA>",
+            "a COLLADA file",
+        ),
         ("a.abc", b"Ogawa\xff", "an Alembic file"),
     ] {
         check(name, bytes, &of(name, kind));
     }
-    assert!(message("a.ply", b"ply\nformat ascii 1.0\n").contains("a PLY mesh; name it in a scene"));
+    assert!(
+        message("a.ply", b"ply\nformat ascii 1.0\n").contains("a PLY mesh; name it in a scene")
+    );
 }
 
 #[test]
 fn a_gltf_file_under_another_name_says_which() {
     let expected = "`a.pbrt` is a glTF file; name it ";
     let said = message("a.pbrt", b"{\"asset\": {\"version\": \"2.0\"}}");
-    assert!(said.starts_with(expected) && said.ends_with("a.gltf"), "{said}");
+    assert!(
+        said.starts_with(expected) && said.ends_with("a.gltf"),
+        "{said}"
+    );
     let said = message("a.pbrt", b"glTF\x02\0\0\0");
-    assert!(said.starts_with("`a.pbrt` is a binary glTF file; name it "), "{said}");
+    assert!(
+        said.starts_with("`a.pbrt` is a binary glTF file; name it "),
+        "{said}"
+    );
     let said = message("a.glb", b"# a room\nLookAt 0 0 0  0 0 1  0 1 0\n");
-    assert!(said.starts_with("`a.glb` is a pbrt scene; name it "), "{said}");
+    assert!(
+        said.starts_with("`a.glb` is a pbrt scene; name it "),
+        "{said}"
+    );
 }
 
 #[test]
@@ -75,7 +94,11 @@ fn what_is_no_gltf_is_named() {
         b"some words",
         &format!("`a.glb` is not a glTF file: it begins with neither `glTF` nor `{{`; {FORMATS}"),
     );
-    check("a.gltf", b"", &format!("`a.gltf` is an empty file; {FORMATS}"));
+    check(
+        "a.gltf",
+        b"",
+        &format!("`a.gltf` is an empty file; {FORMATS}"),
+    );
     check(
         "a.gltf",
         b"\x01\0\0\xfe",
@@ -85,7 +108,11 @@ fn what_is_no_gltf_is_named() {
 
 #[test]
 fn binary_files_are_never_printed() {
-    for bytes in [&b"\x7fELF\x02\x01\x01\0\0\0"[..], b"\xb1\x95\0\0\x01", b"ab\0\x1b[31m"] {
+    for bytes in [
+        &b"\x7fELF\x02\x01\x01\0\0\0"[..],
+        b"\xb1\x95\0\0\x01",
+        b"ab\0\x1b[31m",
+    ] {
         let expected = format!("`a.pbrt` is a binary file, not a scene; {FORMATS}");
         check("a.pbrt", bytes, &expected);
     }
@@ -106,7 +133,10 @@ fn images_films_and_prose_are_named() {
     }
     assert!(message("a.film", b"BIDIRFLM\x01").contains("is a film file; `bidir film develop`"));
     let toml = message("a.toml", b"title = \"a\"\n");
-    assert!(toml.contains("is a TOML file; `bidir experiment`"), "{toml}");
+    assert!(
+        toml.contains("is a TOML file; `bidir experiment`"),
+        "{toml}"
+    );
     let prose = format!("`README.md` is not a scene; {FORMATS}");
     check("README.md", b"# bidir\n\nbidir is a renderer.\n", &prose);
 }
@@ -114,14 +144,24 @@ fn images_films_and_prose_are_named() {
 #[test]
 fn a_folder_is_named_with_a_scene_in_it() {
     let folder = tempfile::tempdir().unwrap();
-    let at = |path: PathBuf| load(&path, &LoadOptions::default()).unwrap_err().to_string();
+    let at = |path: PathBuf| {
+        load(&path, &LoadOptions::default())
+            .unwrap_err()
+            .to_string()
+    };
     let said = at(folder.path().to_owned());
-    assert!(said.ends_with("is a folder; name a scene: .pbrt, .gltf or .glb"), "{said}");
+    assert!(
+        said.ends_with("is a folder; name a scene: .pbrt, .gltf or .glb"),
+        "{said}"
+    );
     std::fs::write(folder.path().join("b.pbrt"), "").unwrap();
     std::fs::write(folder.path().join("a.glb"), "").unwrap();
     let said = at(folder.path().to_owned());
     let scene = folder.path().join("a.glb");
-    let expected = format!("is a folder; name a scene in it, such as {}", scene.display());
+    let expected = format!(
+        "is a folder; name a scene in it, such as {}",
+        scene.display()
+    );
     assert!(said.ends_with(&expected), "{said}");
 }
 
@@ -135,7 +175,13 @@ fn scenes_under_odd_names_are_read_and_slips_are_the_parser_s() {
         assert!(load(&path, &LoadOptions::default()).is_ok(), "{name}");
     }
     let said = message("sky.pbrt", b"LokAt 0 0 0\nWorldBegin\n");
-    assert_eq!(said, "sky.pbrt:1:1: unknown directive `LokAt`; did you mean `LookAt`?");
+    assert_eq!(
+        said,
+        "sky.pbrt:1:1: unknown directive `LokAt`; did you mean `LookAt`?"
+    );
     let said = message("sky.txt", b"LokAt 0 0 0\nWorldBegin\n");
-    assert_eq!(said, "sky.txt:1:1: unknown directive `LokAt`; did you mean `LookAt`?");
+    assert_eq!(
+        said,
+        "sky.txt:1:1: unknown directive `LokAt`; did you mean `LookAt`?"
+    );
 }

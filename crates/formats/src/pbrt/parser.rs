@@ -251,7 +251,9 @@ impl Parser {
             let length = self.scene.sources.text(file).len() as u64;
             let left = self.repeats_left.checked_sub(length);
             self.repeats_left = left.ok_or_else(|| {
-                let message = format!("files are included again, {MOST_REPEATED} bytes in all");
+                let message = format!(
+                    "files are included repeatedly, more than {MOST_REPEATED} bytes in all"
+                );
                 Error::new(ErrorKind::Limit, message).in_file(path)
             })?;
             return Ok(file);

@@ -222,7 +222,7 @@ fn changes(section: &mut Section<'_>) -> Result<Changes> {
             let mut deaf = changes.integrator.into_iter();
             if let Some(deaf) = deaf.find(|integrator| !has_influence(name, *integrator)) {
                 let integrator = name_of(&IntegratorKind::NAMES, deaf);
-                let message = format!("`{name}` has no influence on the integrator `{integrator}`");
+                let message = format!("`{name}` has no effect on the integrator `{integrator}`");
                 return Err(entry.fault(message));
             }
         }

@@ -152,7 +152,7 @@ pub struct MethodSpec {
     pub changes: Changes,
 }
 
-/// What is equal for all methods.
+/// The amounts that are equal for all methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BudgetSpec {
     /// Its name, unlike all others.

@@ -79,7 +79,7 @@ impl<'a> Section<'a> {
         };
         let hint = match nearest(key.get_ref(), known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known here are {}", known.join(", ")),
+            None => format!("known keys are {}", known.join(", ")),
         };
         let message = format!("there is no key `{}` here", key.get_ref());
         Err(self.source.fault(key.span(), message, Some(hint)))

@@ -41,7 +41,10 @@ impl fmt::Display for LostLight {
             Self::Lengths(ranges) => {
                 let ranges: Vec<_> = ranges.iter().map(words).collect();
                 let lengths = ranges.join(", ");
-                write!(f, "loses light: no strategy makes paths of {lengths} vertices")
+                write!(
+                    f,
+                    "loses light: no strategy makes paths of {lengths} vertices"
+                )
             }
             Self::Specular(pattern) => write!(
                 f,
@@ -111,7 +114,9 @@ enum LightKind {
     Delta,
     Area,
     /// A sky; a parallel camera has no image of it by t = 1.
-    Sky { is_parallel: bool },
+    Sky {
+        is_parallel: bool,
+    },
 }
 
 impl LightKind {
@@ -213,7 +218,10 @@ mod tests {
         }
         let long = Some("makes no path of at most 7 vertices");
         check(&scene, "s4t4", 5, long);
-        assert_eq!(lost(&scene, "s4t4", 6).unwrap().split(':').next(), Some("loses light"));
+        assert_eq!(
+            lost(&scene, "s4t4", 6).unwrap().split(':').next(),
+            Some("loses light")
+        );
     }
 
     #[test]
@@ -225,13 +233,14 @@ mod tests {
             ("s0t2,s1t2", "4 to 7"),
             ("all,-s0t2,-s1t1", "2"),
         ] {
-            let expected =
-                format!("loses light: no strategy makes paths of {lengths} vertices");
+            let expected = format!("loses light: no strategy makes paths of {lengths} vertices");
             check(&scene, list, 5, Some(&expected));
         }
         let open = "loses light: no strategy makes paths of 2 to 4, 6 and more vertices";
         check(&scene, "s2t3", 0, Some(open));
-        for list in ["all", "s0", "s1", "t1", "t2", "all,-s0", "all,-t1", "all,-s1"] {
+        for list in [
+            "all", "s0", "s1", "t1", "t2", "all,-s0", "all,-t1", "all,-s1",
+        ] {
             check(&scene, list, 5, None);
         }
     }
