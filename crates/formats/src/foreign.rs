@@ -197,7 +197,7 @@ pub(crate) fn check_pbrt(path: &Path, bytes: &[u8]) -> Result<()> {
     let kind = kind.or_else(|| is_binary(head).then_some(BINARY));
     let kind = kind.or_else(|| {
         let is_other = !is_named_pbrt && !first.is_some_and(is_directive);
-        // Without an ending, or with one that says nothing, a misspelt directive is told by the parser.
+        // The parser reports a misspelt directive, with its place.
         let is_prose = || first.is_some() && !text.contains("WorldBegin");
         is_other.then(|| by_ending(ending.as_deref()).or_else(|| is_prose().then_some(OTHER)))?
     });
@@ -266,24 +266,35 @@ fn by_ending(ending: Option<&str>) -> Option<Kind> {
 /// XML, JSON and OBJ by what they begin with.
 fn by_text(text: &str, ending: Option<&str>) -> Option<Kind> {
     let text = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
-    let has = |word: &str| text.contains(word);
-    if text.starts_with('<') {
-        return Some(match () {
-            () if has("<COLLADA") => COLLADA,
-            () if has("<scene") => MITSUBA,
-            () if ending == Some("dae") => COLLADA,
-            () => XML,
-        });
+    match text.chars().next()? {
+        '<' => Some(xml(text, ending)),
+        '{' => Some(json(text)),
+        _ => {
+            let is_obj = |word| matches!(word, "v" | "vn" | "vt" | "mtllib" | "usemtl" | "o" | "g");
+            first_word(text).is_some_and(is_obj).then_some(OBJ)
+        }
     }
-    if text.starts_with('{') {
-        return Some(match () {
-            () if has("\"asset\"") || has("\"bufferViews\"") || has("\"accessors\"") => GLTF,
-            () if has("\"bsdfs\"") || has("\"primitives\"") => TUNGSTEN,
-            () => JSON,
-        });
+}
+
+fn xml(text: &str, ending: Option<&str>) -> Kind {
+    if text.contains("<COLLADA") || ending == Some("dae") {
+        COLLADA
+    } else if text.contains("<scene") {
+        MITSUBA
+    } else {
+        XML
     }
-    let is_obj = |word| matches!(word, "v" | "vn" | "vt" | "mtllib" | "usemtl" | "o" | "g");
-    first_word(text).is_some_and(is_obj).then_some(OBJ)
+}
+
+fn json(text: &str) -> Kind {
+    let has = |keys: &[&str]| keys.iter().any(|key| text.contains(key));
+    if has(&["\"asset\"", "\"bufferViews\"", "\"accessors\""]) {
+        GLTF
+    } else if has(&["\"bsdfs\"", "\"primitives\""]) {
+        TUNGSTEN
+    } else {
+        JSON
+    }
 }
 
 /// The first word that is no comment of pbrt.
