@@ -126,7 +126,7 @@ class SceneBuilder:
         array = np.asarray(image, "<f4")
         is_color = array.ndim == 3 and array.shape[2] == 3
         if array.size == 0 or not (is_color or array.ndim == 2):
-            raise SettingsError(f"texture: the shape {array.shape} is no image's")
+            raise SettingsError(f"texture: the shape {array.shape} is not that of an image")
         name = self._name("texture")
         head = f"{'PF' if is_color else 'Pf'}\n{array.shape[1]} {array.shape[0]}\n-1.0\n"
         # The rows of the format go upwards.
@@ -320,7 +320,7 @@ def _ply(
     if not is_faces or not np.issubdtype(indices.dtype, np.integer):
         raise SettingsError("faces: whole numbers of the shape (m, 3) or (m, 4) are needed")
     if indices.size and not 0 <= indices.min() <= indices.max() < len(points):
-        raise SettingsError(f"faces: a number is not that of one of the {len(points)} vertices")
+        raise SettingsError(f"faces: an index is not that of one of the {len(points)} vertices")
     packed = np.empty(len(indices), [("count", "u1"), ("index", "<i4", (indices.shape[1],))])
     packed["count"], packed["index"] = indices.shape[1], indices
     head = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]

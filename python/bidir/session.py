@@ -25,7 +25,7 @@ LAYERS: tuple[str, ...] = tuple(_bidir.LAYERS)
 
 
 class ProgressBar(Protocol):
-    """What a progress bar has to have: that of ``tqdm`` is one."""
+    """The interface of a progress bar, such as that of ``tqdm``."""
 
     total: Any
 
@@ -44,7 +44,7 @@ Progress: TypeAlias = ProgressBar | Callable[[int, int | None], object] | type
 
 
 class Reporter(AbstractContextManager["Reporter"]):
-    """Tells a :data:`Progress` what is done."""
+    """Reports to a :data:`Progress`."""
 
     def __init__(self, progress: Progress | None, total: int | None, done: int = 0) -> None:
         """Begin where ``done`` of ``total`` passes are there."""
@@ -84,7 +84,7 @@ class Reporter(AbstractContextManager["Reporter"]):
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is rendered of a scene, beside the passes: what the bits of a film depend on."""
+    """The part of a scene that is rendered, and all else but the passes that a film depends on."""
 
     #: The estimator; None is the scene's.
     integrator: Integrator | None = None

@@ -30,6 +30,11 @@ def test_images_are_arrays(cornell: bidir.Scene) -> None:
     assert len(image.png(exposure=4)) != len(image.png())
 
 
+def test_strategies_that_make_no_path_are_refused(cornell: bidir.Scene) -> None:
+    with pytest.raises(bidir.SettingsError, match="`s0t0` makes no path"):
+        bidir.render(cornell, bidir.Bdpt(strategies="s0t0"), spp=1)
+
+
 def test_statistics_are_those_of_the_film(cornell: bidir.Scene) -> None:
     image = bidir.render(cornell, bidir.Bdpt(shadow_rays="per-pair"), spp=3, seed=7)
     stats = image.stats

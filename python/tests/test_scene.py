@@ -51,7 +51,7 @@ def test_hints_are_given() -> None:
     with pytest.raises(bidir.SceneError, match="did you mean `diffuse`") as raised:
         bidir.from_text('WorldBegin\nMaterial "difuse"')
     assert raised.value.hint == "did you mean `diffuse`?"
-    with pytest.raises(bidir.UnsupportedError, match="not supported yet"):
+    with pytest.raises(bidir.UnsupportedError, match="is not supported"):
         bidir.from_text(SKY + 'Shape "curve" "point3 P" [0 0 0 1 0 0 1 1 0 1 1 1]')
 
 

@@ -82,6 +82,9 @@ fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Fai
     if matches!(error, SessionError::Threads(_)) {
         return Failure::new(Exit::RenderFailed, error.to_string());
     }
+    if matches!(error, SessionError::NoPath { .. }) {
+        return Failure::usage(error.to_string());
+    }
     let [width, height] = loaded.scene.film().resolution;
     let scene = args.scene.scene.display();
     let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");

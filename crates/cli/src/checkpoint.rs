@@ -71,8 +71,8 @@ impl Checkpoint {
             return Ok(());
         }
         let name = self.path.display();
-        let message = format!("{name}: it has the passes {others}, which are not asked for");
-        let hint = "ask for at least the passes that it has, or write to another file";
+        let message = format!("{name} has the passes {others}, which this render does not include");
+        let hint = "render at least those passes, or write to another file";
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 
@@ -82,8 +82,8 @@ impl Checkpoint {
             return Ok(());
         };
         let name = self.path.display();
-        let message = format!("{name}: the film of another render: {difference}");
-        let hint = "render as before, or begin anew with --restart";
+        let message = format!("{name} is the film of another render: {difference}");
+        let hint = "use the settings of before, or start over with --restart";
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 
@@ -110,9 +110,9 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
         if args.restart || !previous.exists() {
             return Ok(());
         }
-        let message = format!("{name}: there is none, but the one before it is there");
+        let message = format!("{name} does not exist, but its previous version does");
         let hint = format!(
-            "rename {} to go on from it, or begin anew with --restart",
+            "rename {} to continue from it, or start over with --restart",
             previous.display()
         );
         return failure(message, hint);
@@ -121,8 +121,8 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
         return Err(film::not_a_film(path, "--checkpoint"));
     }
     if !args.resume && !args.restart {
-        let message = format!("{name}: there is a film file already");
-        let hint = "go on from it with --resume, or begin anew with --restart";
+        let message = format!("{name} exists already");
+        let hint = "continue it with --resume, or start over with --restart";
         return failure(message, hint.into());
     }
     Ok(())
@@ -218,7 +218,7 @@ fn load(path: &Path) -> Result<FilmFile, Failure> {
     scene_io::read_film(path).map_err(|failure| {
         if previous.exists() {
             // Says which film file was written before the one that cannot be read.
-            failure.with_hint(format!("the one before it is {}", previous.display()))
+            failure.with_hint(format!("its previous version is {}", previous.display()))
         } else {
             failure
         }

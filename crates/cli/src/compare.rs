@@ -48,13 +48,15 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
         (Some(reference), images) => (images, reference),
         (None, [image, reference]) => (std::slice::from_ref(image), reference),
         (None, images) => {
-            let message = format!("{} images, but no reference", images.len());
-            let hint = "compare two images, or any number with --reference B";
+            let names = images.iter().map(|image| format!("`{}`", image.display()));
+            let names: Vec<_> = names.collect();
+            let message = format!("nothing to compare {} with", names.join(", "));
+            let hint = "name one image and its reference, or any number of images and --reference";
             return Err(Failure::usage(message).with_hint(hint));
         }
     };
     if args.metrics.error_map.is_some() && images.len() != 1 {
-        return Err(Failure::usage("--error-map is of one image"));
+        return Err(Failure::usage("--error-map takes one image"));
     }
     Ok((images, reference))
 }

@@ -165,5 +165,5 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<Exit, Failure>
 /// A value as indented JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value)
-        .map_err(|error| Failure::new(Exit::RenderFailed, format!("no JSON: {error}")))
+        .map_err(|error| Failure::new(Exit::RenderFailed, format!("not JSON: {error}")))
 }

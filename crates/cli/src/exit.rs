@@ -158,8 +158,7 @@ impl Failure {
 
     /// A file cannot be read or written.
     pub(crate) fn io(path: &Path, action: &str, error: &std::io::Error) -> Self {
-        let message = format!("{}: cannot {action}: {error}", path.display());
-        Self::new(Exit::InputOutput, message)
+        Self::new(Exit::InputOutput, formats::cannot(action, path, error))
     }
 
     /// Adds what to do about it.

@@ -76,8 +76,8 @@ fn check_flags(args: &ExperimentArgs) -> Result<(), Failure> {
     let given = args.beyond.given();
     let other = given.filter(|_| args.description != Path::new(builtin::BEYOND));
     other.map_or(Ok(()), |flag| {
-        let text = format!("{flag} is of `{}` alone", builtin::BEYOND);
-        Err(Failure::usage(text).with_hint("a description says such things itself"))
+        let text = format!("{flag} applies to `{}` alone", builtin::BEYOND);
+        Err(Failure::usage(text).with_hint("write it into the description"))
     })
 }
 
@@ -96,9 +96,9 @@ fn task(args: &ExperimentArgs) -> Result<Task, Failure> {
 fn stopped(args: &ExperimentArgs) -> Exit {
     if !args.quiet {
         say(if args.restart {
-            "stopped: the same command without --restart goes on"
+            "stopped: run the same command without --restart to continue"
         } else {
-            "stopped: the same command goes on"
+            "stopped: run the same command to continue"
         });
     }
     Exit::Checkpoint
@@ -108,13 +108,28 @@ fn stopped(args: &ExperimentArgs) -> Exit {
 fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let file = &args.description;
     let text = std::fs::read_to_string(file);
-    let text = text.map_err(|error| Failure::io(file, "read", &error))?;
+    let text = text.map_err(|error| unreadable(file, &error))?;
     let mut experiment = Experiment::read(&text, file).map_err(failure)?;
     if args.quick {
         experiment = experiment.quick();
     }
     experiment.threads = threads(args, experiment.threads);
     Ok(experiment)
+}
+
+/// Why a description cannot be read; a name near a built-in experiment's is probably that.
+fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
+    let action = match error.kind() {
+        std::io::ErrorKind::NotFound => "open",
+        _ => "read",
+    };
+    let failure = Failure::io(file, action, error);
+    let name = file.to_str().filter(|_| action == "open");
+    let near = name.and_then(|name| experiment::nearest(name, [builtin::PAPER, builtin::BEYOND]));
+    match near {
+        Some(near) => failure.with_hint(format!("did you mean the built-in experiment `{near}`?")),
+        None => failure,
+    }
 }
 
 /// As many as are asked for, or as there are processors: records tell the number.
@@ -160,7 +175,9 @@ fn execute(
 /// What an error is to the shell.
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
-        ExperimentError::Description(_) | ExperimentError::Pyramid { .. } => Exit::Scene,
+        ExperimentError::Description(_)
+        | ExperimentError::Pyramid { .. }
+        | ExperimentError::Strategies { .. } => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,
@@ -169,7 +186,7 @@ fn failure(error: ExperimentError) -> Failure {
     match (error.hint().map(str::to_owned), error) {
         (hint, ExperimentError::Reference { error, .. }) => {
             let exit = reference::failure(error).exit();
-            let anew = "make it anew with `bidir reference`, or all of it with --restart";
+            let anew = "make it again with `bidir reference`, or start over with --restart";
             Failure::new(exit, text).with_hint(hint.unwrap_or_else(|| anew.to_owned()))
         }
         // These can show their lines.

@@ -59,7 +59,9 @@ impl<'a> Plan<'a> {
     fn new(args: &'a FarmArgs) -> Result<Self, Failure> {
         if args.scene == "-" {
             let message = "a scene from standard input cannot be shared";
-            return Err(Failure::usage(message).with_hint("name a file that every machine finds"));
+            return Err(
+                Failure::usage(message).with_hint("name a file that every machine can read")
+            );
         }
         let image = match &args.output {
             Some(image) => image.clone(),
@@ -68,16 +70,13 @@ impl<'a> Plan<'a> {
         scene_io::image_format(Path::new(&image), &[ImageFormat::Exr])?;
         let name = &image[..image.len() - ".exr".len()];
         if Path::new(name).file_name().is_some_and(is_share) {
-            let message = format!("{image}: named like a share of another job");
+            let message = format!("{image} is named like a part of another job");
             let hint = "give it a name without `.part-` and a digit with --output";
             return Err(Failure::usage(message).with_hint(hint));
         }
         if let Some(spp) = args.spp.filter(|spp| *spp < args.parts) {
-            let message = format!(
-                "{} shares of {spp} passes: some would have none",
-                args.parts
-            );
-            return Err(Failure::usage(message).with_hint("make fewer shares, or more passes"));
+            let message = format!("{} parts of {spp} passes: some would have none", args.parts);
+            return Err(Failure::usage(message).with_hint("use fewer parts, or more passes"));
         }
         Ok(Self {
             scene: not_a_flag(&args.scene),
@@ -146,7 +145,7 @@ impl<'a> Plan<'a> {
     /// What the job file is, in a comment's first line.
     fn title(&self) -> String {
         let scene = self.scene.replace(char::is_control, "?");
-        format!("{scene} in {} shares of its passes", self.parts)
+        format!("{scene} in {} parts of its passes", self.parts)
     }
 
     /// Fails here, rather than on every machine, where `bidir render` would not take the flags.
@@ -162,7 +161,7 @@ impl<'a> Plan<'a> {
             let ends = ["\n\nUsage:", "\n\nFor more"].map(|end| text.find(end));
             let end = ends.into_iter().flatten().min().unwrap_or(text.len());
             Failure::usage(text[..end].trim_start_matches("error: "))
-                .with_hint("see `bidir render --help` for what can be given after `--`")
+                .with_hint("see `bidir render --help` for the flags that can follow `--`")
         })?;
         match cli.command {
             Command::Render(_) => Ok(()),
@@ -198,11 +197,11 @@ impl<'a> Plan<'a> {
 }
 
 /// Why flags that name one file are refused.
-const SHARED: &str = "all shares would share it";
+const SHARED: &str = "all parts would use it";
 /// Why flags that end a share early are refused.
-const INCOMPLETE: &str = "shares would end with passes missing";
+const INCOMPLETE: &str = "parts would end with passes missing";
 /// Why flags that say what a share is are refused.
-const OWN: &str = "the job sets what each share renders and keeps";
+const OWN: &str = "the job sets the passes and files of each part";
 /// The flags that are refused after `--`, and why.
 const REFUSED: [(&str, &str); 13] = [
     ("output", SHARED),

@@ -95,8 +95,8 @@ fn verify(files: &[PathBuf], console: Console) -> Exit {
 /// A film file was to replace `path`, which `flag` names and which is none.
 pub(crate) fn not_a_film(path: &Path, flag: &str) -> Failure {
     let name = path.display();
-    let message = format!("{name}: not a film file, and so not replaced by one");
-    Failure::usage(message).with_hint(format!("give {flag} another name"))
+    let message = format!("{name} is not a film file, and is not replaced by one");
+    Failure::usage(message).with_hint(format!("name another file with {flag}"))
 }
 
 /// Adds films of the same render and different passes.
@@ -149,8 +149,11 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     scene_io::check_writable(image)?;
     // An image is no film file, and would replace one.
     if scene_io::is_film(image) || scene_io::target_of(image) == scene_io::target_of(output) {
-        let message = format!("{}: a film file, not replaced by an image", image.display());
-        return Err(Failure::usage(message).with_hint("give --image another name"));
+        let message = format!(
+            "{} is a film file, and is not replaced by an image",
+            image.display()
+        );
+        return Err(Failure::usage(message).with_hint("name another file with --image"));
     }
     Ok(())
 }
@@ -168,14 +171,15 @@ fn check_kept(output: &Path, all: &FilmHeader) -> Result<(), Failure> {
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     };
     if let Some(difference) = there.difference(all) {
-        let message = format!("{name}: the film of another render, not replaced: {difference}");
+        let message =
+            format!("{name} is the film of another render, and is not replaced: {difference}");
         return refused(message, another);
     }
     let lost = there.passes.difference(&all.passes);
     if lost.is_empty() {
         return Ok(());
     }
-    let message = format!("{name}: it has the passes {lost}, which would be lost");
+    let message = format!("{name} has the passes {lost}, which would be lost");
     let hint = "name another file with --output, or list this one among the files";
     refused(message, hint)
 }
@@ -217,7 +221,7 @@ fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
         let first = first.get_or_insert_with(|| header.clone());
         if let Some(difference) = header.difference(first) {
             let message = format!(
-                "{}: the film of another render: {difference}",
+                "{} is the film of another render: {difference}",
                 file.display()
             );
             return Err(Failure::new(Exit::FilmMismatch, message));

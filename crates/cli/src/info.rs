@@ -194,13 +194,13 @@ impl Info {
         estimators.sort_by_key(|(name, _)| !own(name));
         for (name, spots) in estimators {
             if spots.is_empty() {
-                let _ = writeln!(text, "{name:<12} sees all light paths");
+                let _ = writeln!(text, "{name:<12} makes all light paths");
             }
             for spot in spots {
                 let how = if spot.missing {
                     "misses"
                 } else {
-                    "finds by chance only"
+                    "is noisy for"
                 };
                 let _ = writeln!(text, "{name:<12} {how} {}", spot.paths);
             }

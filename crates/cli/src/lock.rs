@@ -80,7 +80,7 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 /// Another process has the lock of this film file.
 fn taken(film: &Path) -> Failure {
     let message = format!("{}: another process is writing this file", film.display());
-    let hint = "let each process have its own file: shares of a render can be merged";
+    let hint = "give each process a file of its own; parts of a render can be merged";
     Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 

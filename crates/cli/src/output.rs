@@ -60,7 +60,7 @@ impl Outputs {
     pub(crate) fn check(&self, args: &RenderArgs) -> Result<(), Failure> {
         let is_kept = self.exr.is_some() || args.long.checkpoint.is_some();
         if args.layers.need_exr() && self.png.is_some() && !is_kept {
-            let message = "a PNG has no room for layers";
+            let message = "a PNG cannot hold layers";
             let hint = "write NAME.exr with --output, or keep a film file with --checkpoint";
             return Err(Failure::usage(message).with_hint(hint));
         }
@@ -74,8 +74,8 @@ impl Outputs {
         for (flag, file) in self.files().chain(film) {
             let target = scene_io::target_of(file);
             if taken.contains(&target) {
-                let message = format!("{}: two files of this name", file.display());
-                let hint = "give the scene, the image, --stats and --checkpoint names of their own";
+                let message = format!("{}: two outputs have this name", file.display());
+                let hint = "give the scene, the image, --stats and --checkpoint different names";
                 return Err(Failure::usage(message).with_hint(hint));
             }
             taken.push(target);
@@ -91,7 +91,7 @@ impl Outputs {
         if !is_share(args) || is_watched || is_kept {
             return Ok(());
         }
-        let message = "a share of a render has no image by default: nothing would be written";
+        let message = "a part of a render writes no image by default: nothing would be written";
         let hint = "keep it with --checkpoint FILE.film, or name an image with --output";
         Err(Failure::usage(message).with_hint(hint))
     }
@@ -124,7 +124,7 @@ pub(crate) fn is_share(args: &RenderArgs) -> bool {
 /// Fails where a file that `flag` names could not be written.
 pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
     if file.is_dir() {
-        let message = format!("{}: cannot write: it is a folder", file.display());
+        let message = format!("cannot write `{}`: it is a folder", file.display());
         return Err(Failure::new(Exit::InputOutput, message));
     }
     scene_io::check_writable(file)
@@ -153,7 +153,7 @@ fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
 fn hint(flag: &str, folder: &Path) -> String {
     let folder_name = folder.display();
     if folder.is_dir() {
-        format!("files cannot be made in `{folder_name}`: check its permissions and free space")
+        format!("cannot create files in `{folder_name}`: check its permissions and free space")
     } else {
         format!("there is no folder `{folder_name}`: make it, or write elsewhere with {flag}")
     }

@@ -35,10 +35,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     if folder.is_dir() {
         return Ok(());
     }
-    std::fs::create_dir(folder).map_err(|error| {
-        let message = format!("{}: cannot make the folder: {error}", folder.display());
-        Failure::new(Exit::InputOutput, message)
-    })
+    std::fs::create_dir(folder).map_err(|error| Failure::io(folder, "make", &error))
 }
 
 /// Writes what `film`, which has this header, keeps of strategies.

@@ -34,6 +34,14 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
     warn_unused(args, &plan, console);
+    for (settings, flag) in plan.estimators.iter().zip(["--estimator", "--against"]) {
+        settings::check_strategies(
+            &format!("{flag}: strategies"),
+            &loaded.scene,
+            settings,
+            console,
+        )?;
+    }
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
@@ -67,7 +75,7 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
     if is_ours || !has_others {
         return Ok(());
     }
-    let message = format!("{}: there already, and no reference", folder.display());
+    let message = format!("{} exists already and is not a reference", folder.display());
     Err(Failure::usage(message).with_hint("name another folder with --output"))
 }
 
@@ -105,9 +113,10 @@ fn plan(
         }
     }
     if plan.is_its_own_witness() {
-        let message = "--estimator and --against are or may be the same estimator, which cannot contradict itself";
+        let message =
+            "--estimator and --against may be the same estimator, which cannot cross-check itself";
         let hint = "give --against another integrator, or other settings than the seed; \
-                    auto may take any but light";
+                    auto may choose any but light";
         return Err(Failure::usage(message).with_hint(hint));
     }
     Ok(plan)
@@ -124,7 +133,7 @@ fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
         let named = named.iter();
         for unused in named.flat_map(|named| settings::unused(&named.0, settings)) {
             console.warning(format_args!(
-                "{flag}: {unused} has no influence on the integrator `{integrator}`"
+                "{flag}: {unused} has no effect on the integrator `{integrator}`"
             ));
         }
     }
@@ -167,7 +176,7 @@ impl Job<'_> {
             Made::Stopped => {
                 let folder = self.folder.display();
                 self.say(format_args!(
-                    "stopped; the same command goes on in {folder}"
+                    "stopped; run the same command to continue in {folder}"
                 ));
                 Ok(Exit::Checkpoint)
             }
@@ -212,7 +221,7 @@ impl Job<'_> {
             if let Some(bias) = agreement.smallest_bias {
                 let percent = 100.0 * bias;
                 self.say(format_args!(
-                    "a bias of {percent:.2} % of the film's mean would have been found"
+                    "a bias of {percent:.2} % of the film's mean would have been detected"
                 ));
             }
             return Exit::Done;
@@ -228,7 +237,7 @@ impl Job<'_> {
         let [a, b] = means;
         self.console.warning(format_args!(
             "the estimators disagree, most in {channel} of the pixels {left},{top} to \
-             {right},{bottom}: {a:.6e} and {b:.6e}; nothing should be measured against this"
+             {right},{bottom}: {a:.6e} and {b:.6e}; do not use this as ground truth"
         ));
         Exit::Validation
     }
@@ -270,25 +279,24 @@ pub(crate) fn failure(error: Error) -> Failure {
             let hint = "make one with `bidir reference`, or name another folder";
             Failure::new(Exit::InputOutput, text).with_hint(hint)
         }
+        Error::Session(SessionError::NoPath { .. }) => Failure::usage(text),
         Error::Session(SessionError::Threads(_)) => Failure::new(Exit::RenderFailed, text),
         Error::Session(_) => {
             let hint = "make it smaller with --size, or render a part of it with --crop";
             Failure::new(Exit::Scene, text).with_hint(hint)
         }
         Error::Refused { .. } => {
-            let hint = "make one anew with `bidir reference`, in another folder or with --restart";
+            let hint = "make one again with `bidir reference`, in another folder or with --restart";
             Failure::new(Exit::Validation, text).with_hint(hint)
         }
         Error::Disagree { .. } => {
-            let hint =
-                "see what more samples say, with --extend, or other estimators, with --against";
+            let hint = "take more samples with --extend, or another estimator with --against";
             Failure::new(Exit::Validation, text).with_hint(hint)
         }
-        Error::TooLong { found, .. } => Failure::new(Exit::FilmMismatch, text).with_hint(format!(
-            "ask for --spp {found}, or begin anew with --restart"
-        )),
+        Error::TooLong { found, .. } => Failure::new(Exit::FilmMismatch, text)
+            .with_hint(format!("use --spp {found}, or start over with --restart")),
         Error::OtherRender { .. } => {
-            let hint = "name another folder with --output, or begin anew with --restart";
+            let hint = "name another folder with --output, or start over with --restart";
             Failure::new(Exit::FilmMismatch, text).with_hint(hint)
         }
     }

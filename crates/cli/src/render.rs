@@ -46,7 +46,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let own = loaded.settings.layers.aovs();
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
-    loaded.tell_warnings(&args.scene, unused, console)?;
+    let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
+    loaded.tell_warnings(&args.scene, unused + lost, console)?;
     if let Some(target) = args.replay {
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {
@@ -84,7 +85,7 @@ pub(crate) fn set_threads(threads: ThreadsArgs) -> Result<(), Failure> {
         .num_threads(threads.count.into())
         .build_global()
         .map_err(|error| {
-            let message = format!("{} threads cannot be started: {error}", threads.count);
+            let message = format!("cannot start {} threads: {error}", threads.count);
             Failure::new(Exit::RenderFailed, message)
         })
 }
@@ -181,7 +182,7 @@ impl Job<'_> {
     /// How the command ends where a signal came before there was anything to write.
     fn stopped(&self, exit: Exit) -> Exit {
         self.console
-            .warning("stopped before the first pass: nothing is written");
+            .warning("stopped before the first pass: nothing was written");
         self.exit(exit)
     }
 

@@ -16,8 +16,8 @@ pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
     };
     let ending = path.extension().unwrap_or_default();
     if !ending.eq_ignore_ascii_case("svg") {
-        let message = format!("{}: a drawing is an SVG", path.display());
-        return Err(Failure::usage(message).with_hint("call it NAME.svg"));
+        let message = format!("cannot write `{}`: drawings are .svg", path.display());
+        return Err(Failure::usage(message).with_hint("name it NAME.svg"));
     }
     output::check_file("--svg", path)
 }

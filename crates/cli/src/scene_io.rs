@@ -117,7 +117,7 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
 /// Tells that there is nothing to be seen. None: there is a light, though it may be a dark one.
 fn light_warning(scene: &Scene) -> Option<String> {
     let is_dark = scene.lights().is_empty();
-    is_dark.then(|| "the scene has no light: the picture will be black".to_owned())
+    is_dark.then(|| "the scene has no light: the image will be black".to_owned())
 }
 
 /// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no
@@ -276,8 +276,10 @@ pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<Image
             ImageFormat::Png => ".png",
         });
         let endings = endings.collect::<Vec<_>>().join(" or ");
-        let message = format!("{}: not the name of an image", path.display());
-        Failure::usage(message).with_hint(format!("end it with {endings}"))
+        let path = path.display();
+        Failure::usage(format!(
+            "cannot write `{path}`: output images are {endings}"
+        ))
     })
 }
 

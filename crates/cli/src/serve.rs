@@ -21,9 +21,11 @@ pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
 pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failure> {
     web::listen(address, more).map_err(|error| {
         let hint = match error.kind() {
-            io::ErrorKind::AddrInUse => "another program has it: take another port, or 0 for any",
-            io::ErrorKind::PermissionDenied => "ports below 1024 are the system's: take another",
-            _ => "take an address of this machine: 127.0.0.1, or 0.0.0.0 for all",
+            io::ErrorKind::AddrInUse => {
+                "another program uses it: choose another port, or 0 for any"
+            }
+            io::ErrorKind::PermissionDenied => "ports below 1024 are the system's: choose another",
+            _ => "use an address of this machine: 127.0.0.1, or 0.0.0.0 for all",
         };
         let message = format!("cannot serve on {address}: {error}");
         Failure::new(Exit::InputOutput, message).with_hint(hint)

@@ -5,7 +5,8 @@ use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::{Session, Settings};
-use bidir::integrator::IntegratorKind;
+use bidir::integrator::{IntegratorKind, LostLight, lost_light};
+use bidir::scene::Scene;
 use formats::film::has_influence;
 use std::ops::Range;
 use std::time::Duration;
@@ -50,7 +51,7 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
     unused
         .map(|(flag, on)| {
             let name = args.estimator.sources.name(flag);
-            console.warning(format_args!("{name} has no influence {on}"));
+            console.warning(format_args!("{name} has no effect {on}"));
         })
         .count()
 }
@@ -80,6 +81,39 @@ pub(crate) fn unused(
     let given = given.into_iter().filter(|(_, is_given)| *is_given);
     let given = given.map(|(flag, _)| flag);
     given.filter(move |flag| !has_influence(flag.trim_start_matches("--"), integrator))
+}
+
+/// Warns of light that the list of strategies loses; `flag` is what gives the list. Returns the number
+/// of warnings.
+///
+/// Errors: a list that makes no path, or an image of nothing but black.
+pub(crate) fn check_strategies(
+    flag: &str,
+    scene: &Scene,
+    settings: &Settings,
+    console: Console,
+) -> Result<usize, Failure> {
+    let path = &settings.path;
+    let Some(lost) = lost_light(scene, settings.integrator, path) else {
+        return Ok(0);
+    };
+    let message = format!("{flag} {} {lost}", path.strategies);
+    match lost {
+        LostLight::All { max_vertices } => {
+            let failure = Failure::usage(message);
+            Err(match max_vertices {
+                Some(_) => failure.with_hint("raise --max-depth: n bounces make n + 2 vertices"),
+                None => failure.with_hint(
+                    "strategy sNtM has N light vertices and M camera vertices: M is at least 1, \
+                     N + M at least 2",
+                ),
+            })
+        }
+        LostLight::Lengths(_) | LostLight::Specular(_) => {
+            console.warning(message);
+            Ok(1)
+        }
+    }
 }
 
 /// When a render is enough: what is reached first.
@@ -165,8 +199,8 @@ fn share(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
         return Ok(range);
     }
     let Part { index, of } = part;
-    let message = format!("share {index} of {of} has no passes: there are {passes} in all");
-    Err(Failure::usage(message).with_hint("make fewer shares, or more passes with --spp"))
+    let message = format!("part {index} of {of} has no passes: there are {passes} in all");
+    Err(Failure::usage(message).with_hint("use fewer parts, or more passes with --spp"))
 }
 
 #[cfg(test)]

@@ -49,6 +49,6 @@ impl Signals {
 
 #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives the value")]
 fn unwatched(error: std::io::Error) -> Failure {
-    let message = format!("signals cannot be watched: {error}");
+    let message = format!("cannot watch signals: {error}");
     Failure::new(Exit::RenderFailed, message)
 }

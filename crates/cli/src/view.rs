@@ -15,7 +15,7 @@ use std::time::Duration;
 use viewer::studio::{Studio, StudioSettings};
 use viewer::{Choices, Status};
 
-/// The port where none is asked for,
+/// The port where no scene was chosen,
 const PORT: u16 = 8080;
 /// and how many after it are tried.
 const MORE_PORTS: u16 = 10;
@@ -31,7 +31,8 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let settings = settings::resolve(&args.estimator, loaded.settings.clone());
     // Every flag may have influence: estimators are switched.
-    loaded.tell_warnings(&args.scene, 0, console)?;
+    let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
+    loaded.tell_warnings(&args.scene, lost, console)?;
     let (server, desk) = serve::start(listener, first_status(args, &loaded), &loaded.warnings)?;
     let studio = studio_settings(args, loaded, settings);
     let studio = Studio::open(studio, desk).map_err(|error| serve::failed(&error))?;

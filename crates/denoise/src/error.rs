@@ -38,7 +38,7 @@ pub enum DenoiseError {
         size: [usize; 2],
     },
     /// There are normals and no albedo, for which the filter is not made.
-    #[error("normals guide only together with albedo")]
+    #[error("normals can guide only together with albedo")]
     NormalAlone,
     /// The library refuses or fails.
     #[error("Open Image Denoise: {message}")]

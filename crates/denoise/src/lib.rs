@@ -203,7 +203,7 @@ mod tests {
         let albedo = None;
         check_refused(
             &Input { albedo, ..input },
-            "normals guide only together with albedo",
+            "normals can guide only together with albedo",
         );
     }
 

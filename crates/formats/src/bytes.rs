@@ -23,11 +23,17 @@ pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<Vec<u8>> {
 /// Errors: among others, a device, whose bytes may have no end.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let file = File::open(path).map_err(|error| Error::io(path, "open", &error))?;
-    if file
-        .metadata()
-        .is_ok_and(|file| is_device(file.file_type()))
-    {
-        return Err(Error::new(ErrorKind::Io, "cannot read: a device").in_file(path));
+    let refused = |what| {
+        let message = format!("cannot read `{}`: it is {what}", path.display());
+        Error::naming(path, ErrorKind::Io, message)
+    };
+    if let Ok(metadata) = file.metadata() {
+        if metadata.is_dir() {
+            return Err(refused("a folder"));
+        }
+        if is_device(metadata.file_type()) {
+            return Err(refused("a device"));
+        }
     }
     if is_packed(path) {
         read_to_limit(MultiGzDecoder::new(BufReader::new(file)), path, limit)
@@ -100,6 +106,9 @@ mod tests {
     fn a_missing_file_is_told_apart() {
         let error = read(Path::new("no/such/file"), 10).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::MissingFile);
-        assert_eq!(error.to_string(), "no/such/file: cannot open: no such file");
+        assert_eq!(
+            error.to_string(),
+            "cannot open `no/such/file`: no such file"
+        );
     }
 }

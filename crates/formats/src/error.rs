@@ -20,6 +20,8 @@ struct Details {
     hint: Option<String>,
     file: Option<PathBuf>,
     place: Option<Place>,
+    /// True where the message has the file's name in it, which then does not stand before it.
+    names_file: bool,
 }
 
 /// Where in a text an error is.
@@ -63,19 +65,24 @@ impl Error {
             hint: None,
             file: None,
             place: None,
+            names_file: false,
         }))
     }
 
-    /// An error of the system with `file`; a missing file is told apart from the rest.
+    /// An error of the system with `file`; a missing file has a kind of its own.
     pub(crate) fn io(file: &Path, action: &str, error: &std::io::Error) -> Self {
-        let (kind, message) = match error.kind() {
-            std::io::ErrorKind::NotFound => (
-                ErrorKind::MissingFile,
-                format!("cannot {action}: no such file"),
-            ),
-            _ => (ErrorKind::Io, format!("cannot {action}: {error}")),
+        let kind = match error.kind() {
+            std::io::ErrorKind::NotFound => ErrorKind::MissingFile,
+            _ => ErrorKind::Io,
         };
-        Self::new(kind, message).in_file(file)
+        Self::naming(file, kind, cannot(action, file, error))
+    }
+
+    /// An error about the whole of `file`, whose name is part of `message`.
+    pub(crate) fn naming(file: &Path, kind: ErrorKind, message: impl Into<String>) -> Self {
+        let mut error = Self::new(kind, message).in_file(file);
+        error.0.names_file = true;
+        error
     }
 
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
@@ -131,9 +138,10 @@ impl fmt::Display for Error {
             hint,
             file,
             place,
+            names_file,
             ..
         } = &*self.0;
-        if let Some(file) = file {
+        if let Some(file) = file.as_ref().filter(|_| !names_file) {
             write!(f, "{}:", file.display())?;
             if let Some(place) = place {
                 write!(f, "{}:{}:", place.line, place.column)?;
@@ -149,6 +157,23 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// The one wording for a file that the system refuses: "cannot open `room.pbrt`: no such file".
+pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
+    use std::io::ErrorKind::{IsADirectory, NotFound, PermissionDenied, StorageFull};
+    let reason = match error.kind() {
+        NotFound => "no such file".to_owned(),
+        IsADirectory => "it is a folder".to_owned(),
+        PermissionDenied => "permission denied".to_owned(),
+        StorageFull => "the disk is full".to_owned(),
+        _ => {
+            let text = error.to_string();
+            let text = text.split(" (os error").next().unwrap_or_default();
+            text.to_owned()
+        }
+    };
+    format!("cannot {action} `{}`: {reason}", file.display())
+}
 
 impl miette::Diagnostic for Error {
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {

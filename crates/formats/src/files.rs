@@ -1,7 +1,7 @@
 //! Where the files of a scene come from: the disk, or memory.
 
 use crate::bytes;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -64,8 +64,8 @@ impl Files {
             (Some(stored), _) => bytes::unpack(stored, path, limit),
             (None, Others::OnDisk) => bytes::read(path, limit),
             (None, Others::Missing) => {
-                let error = Error::new(ErrorKind::MissingFile, "cannot open: no such file");
-                Err(error.in_file(path))
+                let error = std::io::ErrorKind::NotFound.into();
+                Err(Error::io(path, "open", &error))
             }
         }
     }
@@ -77,6 +77,11 @@ impl Files {
             return bytes::read_or_stdin(path, limit);
         }
         self.read(path, limit)
+    }
+
+    /// True for a folder on the disk, where names are looked for there.
+    pub(crate) fn is_folder(&self, path: &Path) -> bool {
+        !self.memory.contains_key(path) && self.others == Others::OnDisk && path.is_dir()
     }
 
     /// Is there such a file?
@@ -99,6 +104,7 @@ impl Files {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::ErrorKind;
     use crate::scene::{LoadOptions, Loaded, load, load_from};
 
     const SCENE: &str = "WorldBegin\n\

@@ -6,6 +6,7 @@
 mod bytes;
 mod error;
 mod files;
+mod foreign;
 mod source;
 mod spectra;
 
@@ -17,5 +18,5 @@ pub mod pbrt;
 pub mod ply;
 pub mod scene;
 
-pub use error::{Error, ErrorKind, Result};
+pub use error::{Error, ErrorKind, Result, cannot};
 pub use source::{FileId, SourceMap, Span};

@@ -81,7 +81,7 @@ pub struct MethodInfo {
     pub settings: BTreeMap<String, String>,
 }
 
-/// What is equal for all methods.
+/// The amounts that are equal for all methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BudgetKind {

@@ -38,7 +38,7 @@ fn wrong(py: Python<'_>, error: &serde_json::Error) -> PyErr {
     raise(
         py,
         "ExperimentError",
-        &format!("no part of an experiment: {error}"),
+        &format!("not a part of an experiment: {error}"),
     )
 }
 

@@ -170,7 +170,7 @@ fn tell(py: Python<'_>, hear: Option<&Py<PyAny>>, told: Heard) -> PyResult<()> {
 fn setup(py: Python<'_>, folder: PathBuf, restart: bool, machine: Option<&str>) -> PyResult<Setup> {
     let machine = match machine {
         Some(json) => serde_json::from_str(json)
-            .map_err(|error| raise(py, "ExperimentError", &format!("no machine: {error}")))?,
+            .map_err(|error| raise(py, "ExperimentError", &format!("not a machine: {error}")))?,
         None => Machine::here(),
     };
     Ok(Setup {

@@ -129,7 +129,10 @@ impl Film {
                 write_png(&path, size, &picture.pixels)
             }),
             _ => {
-                let message = format!("{}: end the name with .exr or .png", path.display());
+                let message = format!(
+                    "cannot write `{}`: output images are .exr or .png",
+                    path.display()
+                );
                 return Err(raise(py, "SettingsError", &message));
             }
         };

@@ -15,7 +15,7 @@ pub(crate) fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<
     let pixel = |bytes: &[u8]| std::array::from_fn(|i| channel(&bytes[4 * i..4 * i + 4]));
     let is_whole = size[0].checked_mul(size[1]).and_then(|n| n.checked_mul(12));
     if is_whole != Some(data.len()) {
-        let message = "an image has not as many numbers as pixels of three channels";
+        let message = "an image needs three values for each pixel";
         return Err(raise(py, "SettingsError", message));
     }
     Ok(Pixels {
@@ -65,7 +65,10 @@ pub(crate) fn write_image(
             py.detach(|| write_png(&path, size.map(|side| side as u32), &pixels.data))
         }
         _ => {
-            let message = format!("{}: end the name with .exr or .png", path.display());
+            let message = format!(
+                "cannot write `{}`: output images are .exr or .png",
+                path.display()
+            );
             return Err(raise(py, "SettingsError", &message));
         }
     };
@@ -102,7 +105,7 @@ fn named(py: Python<'_>, name: &str) -> PyResult<Metric> {
     let found = Metric::NAMES.iter().find(|(known, _)| *known == name);
     found.map(|(_, metric)| *metric).ok_or_else(|| {
         let names = Metric::NAMES.map(|(name, _)| name).join(", ");
-        let message = format!("there is no metric `{name}`; there are {names}");
+        let message = format!("there is no metric `{name}`: expected {names}");
         raise(py, "SettingsError", &message)
     })
 }

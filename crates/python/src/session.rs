@@ -92,7 +92,13 @@ impl Session {
         let begin = Instant::now();
         let (shared, own) = (scene.shared.clone(), settings.clone());
         let session = wait_silently(py, |_| driver::Session::new(shared, own, &resources))?;
-        let session = session.map_err(|error| raise(py, "RenderError", &error.to_string()))?;
+        let session = session.map_err(|error| {
+            let class = match error {
+                driver::SessionError::NoPath { .. } => "SettingsError",
+                _ => "RenderError",
+            };
+            raise(py, class, &error.to_string())
+        })?;
         let identity = SceneIdentity {
             name: &scene.name,
             digest: &scene.digest,
@@ -215,7 +221,7 @@ fn stopping_of(py: Python<'_>, name: &str) -> PyResult<Stopping> {
     let all = [Stopping::Fixed, Stopping::Time, Stopping::Noise];
     let found = all.into_iter().find(|stopping| stopping.name() == name);
     found.ok_or_else(|| {
-        let message = format!("there is no way to stop `{name}`");
+        let message = format!("there is no reason to stop `{name}`");
         raise(py, "SettingsError", &message)
     })
 }

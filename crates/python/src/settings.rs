@@ -55,7 +55,7 @@ pub(crate) fn resolve(py: Python<'_>, wanted: &Wanted, scene: &Settings) -> PyRe
         let known = Aov::NAMES.iter().find(|(known, _)| known == name);
         let (_, aov) = known.ok_or_else(|| {
             let names = Aov::NAMES.map(|(name, _)| name).join(", ");
-            let message = format!("there is no layer `{name}`; there are {names}");
+            let message = format!("there is no layer `{name}`: expected {names}");
             raise(py, "SettingsError", &message)
         })?;
         aovs.push(*aov);

@@ -58,7 +58,7 @@ pub(crate) fn wait<T: Send, M: Send>(
         (_, Some(error)) => Err(error),
         (Ok(value), None) => Ok(value),
         (Err(_), None) => {
-            let message = "the renderer failed where it never should: please report it";
+            let message = "internal error of the renderer: please report it";
             Err(pyo3::exceptions::PyRuntimeError::new_err(message))
         }
     }

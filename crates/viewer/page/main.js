@@ -120,7 +120,7 @@ function showCamera({ camera }) {
   if (!camera) return;
   button("home").disabled = !camera.moved;
   const [origin, target] = [camera.origin, camera.target].map((point) => point.map((part) => Number(part.toFixed(4))).join(", "));
-  say(box("camera-place"), `${camera.moved ? "Moved: at" : "At"} ${origin}, looking at ${target}. In the mode Move, drag to orbit and walk by W A S D.`);
+  say(box("camera-place"), `${camera.moved ? "Moved: at" : "At"} ${origin}, looking at ${target}. In Move mode, drag to orbit and walk by W A S D.`);
 }
 
 /** @param {number | null} seconds */
@@ -129,7 +129,7 @@ function tellBreak(seconds) {
   notice.hidden = seconds === null;
   if (seconds === null) return;
   sample.expire();
-  say(notice, `The server does not answer. What is shown stays; the next try is in ${digits(seconds, 2)} s.`);
+  say(notice, `The server does not answer. The last image stays; the next try is in ${digits(seconds, 2)} s.`);
   const state = box("state");
   state.dataset.state = "away";
   say(state, "away");

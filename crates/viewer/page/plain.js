@@ -19,7 +19,7 @@ export function showPlain(link, reason) {
   for (const id of ["exposure", "operator", "png-shown"]) box(id).setAttribute("disabled", "");
   const note = box("plain-note");
   note.hidden = false;
-  say(note, `${reason}: the picture is the server’s PNG of a, without exposure and values.`);
+  say(note, `${reason}: showing the server’s PNG of a, without exposure and values.`);
   let version = 0;
   const look = () => {
     version += 1;

@@ -119,7 +119,7 @@ export class Pyramid {
     box("pyramid").replaceChildren();
     say(
       box("strategies-hint"),
-      "A path of s + t vertices has s from the light and t from the camera. Images of all strategies need memory and begin the render anew; bdpt and lvc have them.",
+      "A path of s + t vertices has s from the light and t from the camera. Images of all strategies need memory and restart the render; bdpt and lvc have them.",
     );
   }
 
@@ -149,8 +149,8 @@ export class Pyramid {
     get("strategies-sheet", HTMLAnchorElement).href = this.link.url("/strategies.png", { lane, kind });
     const told =
       kind === "weighted"
-        ? "What each strategy adds: all tiles and longer paths together are the picture."
-        : "What each strategy shows alone, without its weight: the same light all along a row, as far as it can make its paths.";
+        ? "The contribution of each strategy: all tiles and longer paths add up to the image."
+        : "Each strategy alone, without its weight: the same light all along a row, as far as it can make its paths.";
     say(box("strategies-hint"), `${told} Longer paths: mean ${digits(report.longerMean, 3)}. ${count(report.passes, "pass")}.`);
     const rows = rowsOf(report.tiles);
     const isSame = box("pyramid").childElementCount === 2 * rows.length;

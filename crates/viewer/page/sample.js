@@ -149,7 +149,7 @@ export class SampleView {
       }))),
     ];
     if (report.zeros.length > 0) {
-      parts.push(make("p", { class: "hint" }, [`Connections that are zero, so that none is traced: ${report.zeros.join(", ")}.`]));
+      parts.push(make("p", { class: "hint" }, [`Connections that are zero and need no ray: ${report.zeros.join(", ")}.`]));
     }
     return parts;
   }

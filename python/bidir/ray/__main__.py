@@ -49,7 +49,7 @@ def main() -> int:
             progress=tell,
         )
     except KeyboardInterrupt:
-        _say("stopped: the same command goes on")
+        _say("stopped: run the same command to continue")
         return 75
     except bidir.ray.ClusterError as error:
         _say(f"error: {error}")

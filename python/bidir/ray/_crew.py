@@ -1,9 +1,9 @@
 """One actor on every node, which does units of work with all threads of the node.
 
 What goes wrong is of two kinds. An error that a unit raises is the *work's*: the unit is tried again,
-and after a few times it is told with its name. The death of a process or of a node, or an object that
+and after a few times it is reported with its name. The death of a process or of a node, or an object that
 is lost, is the *cluster's*: the unit goes to another worker, a node gets a fresh actor, and only what
-happens again and again is told, with its cause.
+happens again and again is report, with its cause.
 """
 
 from __future__ import annotations
@@ -83,30 +83,30 @@ class Worker:
 
 
 class Work(Protocol):
-    """What a crew does."""
+    """The work of a crew."""
 
     #: The class of the actors.
     actor: type
-    #: How many units an actor may be told to begin before it has ended one.
+    #: How many units an actor may be given before it has ended one.
     concurrency: int
 
     def prepare(self, actor: Any, cpus: int) -> Any:
-        """Make an actor ready; return the reference of what it tells of itself."""
+        """Make an actor ready; return the reference of its description."""
         ...
 
-    def check(self, told: dict[str, Any]) -> str | None:
-        """Say why an actor that told this cannot take part. None: it can."""
+    def check(self, report: dict[str, Any]) -> str | None:
+        """Return why an actor with this description cannot take part. None: it can."""
         ...
 
     def next(self, worker: Worker, workers: int) -> Hashable | None:
-        """Return what a worker shall do next. None: nothing, for now."""
+        """Return the next task of a worker. None: nothing, for the moment."""
         ...
 
     def submit(self, worker: Worker, unit: Any) -> tuple[Any, Any]:
-        """Begin a unit; return the references of what is told of it, and of what it gives."""
+        """Begin a unit; return the references of its progress and of its result."""
         ...
 
-    def done(self, worker: Worker, unit: Any, told: dict[str, Any], result: Any) -> None:
+    def done(self, worker: Worker, unit: Any, report: dict[str, Any], result: Any) -> None:
         """Take what a unit gave."""
         ...
 
@@ -184,7 +184,7 @@ class Crew:
             raise NodeRefusedError(f"no node of the cluster can take part: {reasons}")
         elif now - self._worked > self._limits.patience:
             cause = f"; the last one: {self._cause}" if self._cause else ""
-            message = f"no node was there to work for {self._limits.patience:.0f} s{cause}"
+            message = f"no node was available for {self._limits.patience:.0f} s{cause}"
             raise ClusterError(message)
 
     def _hire(self, node: str, host: str, cpus: int) -> None:
@@ -210,9 +210,9 @@ class Crew:
                 unit = self._work.next(worker, len(ready))
                 if unit is None:
                     continue
-                told, result = self._work.submit(worker, unit)
-                worker.units[told] = unit
-                self._results[told] = result
+                report, result = self._work.submit(worker, unit)
+                worker.units[report] = unit
+                self._results[report] = result
 
     def _wait(self) -> None:
         owners = {}
@@ -232,7 +232,7 @@ class Crew:
 
     def _hear(self, worker: Worker, reference: Any) -> None:
         try:
-            told: Any = ray.get(reference)
+            report: Any = ray.get(reference)
         except RayError as error:
             # What an actor needs may be lost on its way to it, which is no fault of the work.
             if isinstance(error, RayTaskError) and not isinstance(error.cause, RayError):
@@ -240,16 +240,16 @@ class Crew:
             else:
                 self._lose(worker, first_line(error))
         else:
-            self._answer(worker, reference, told)
+            self._answer(worker, reference, report)
 
-    def _answer(self, worker: Worker, reference: Any, told: dict[str, Any]) -> None:
+    def _answer(self, worker: Worker, reference: Any, report: dict[str, Any]) -> None:
         if reference != worker.preparing:
             self._deaths[worker.node] = 0
             unit = worker.units.pop(reference)
-            self._work.done(worker, unit, told, self._results.pop(reference))
+            self._work.done(worker, unit, report, self._results.pop(reference))
             return
         worker.preparing = None
-        reason = self._work.check(told)
+        reason = self._work.check(report)
         if reason is not None:
             self._refuse(worker, reason)
 

@@ -32,7 +32,7 @@ def machine(cpus: int) -> str:
 
 
 class Bench:
-    """What runs on a node: it renders blocks of an experiment."""
+    """The actor of a node: it renders blocks of an experiment."""
 
     def prepare(self, description: dict[str, Any], cpus: int) -> dict[str, Any]:
         """Read the description; tell what this node is."""
@@ -76,12 +76,12 @@ class ExperimentWork:
     def prepare(self, actor: Any, cpus: int) -> Any:
         return actor.prepare.remote(self._description, cpus)
 
-    def check(self, told: dict[str, Any]) -> str | None:
+    def check(self, report: dict[str, Any]) -> str | None:
         for name, here in versions().items():
-            if told[name] != here:
-                return f"its {name} of bidir is {told[name]}, here it is {here}"
-        if told["machine"] != self._machine:
-            return f"it is another machine, whose times cannot be compared: {told['machine']}"
+            if report[name] != here:
+                return f"its {name} of bidir is {report[name]}, here it is {here}"
+        if report["machine"] != self._machine:
+            return f"it is another machine, whose times cannot be compared: {report['machine']}"
         return None
 
     def next(self, worker: Worker, workers: int) -> str | None:
@@ -92,10 +92,10 @@ class ExperimentWork:
 
     def submit(self, worker: Worker, unit: str) -> tuple[Any, Any]:
         files, reference = self._scenes[json.loads(unit)["scene"]]
-        told, done = worker.actor.render.options(num_returns=2).remote(unit, files, reference)
-        return told, done
+        report, done = worker.actor.render.options(num_returns=2).remote(unit, files, reference)
+        return report, done
 
-    def done(self, worker: Worker, unit: str, told: dict[str, Any], result: Any) -> None:
+    def done(self, worker: Worker, unit: str, report: dict[str, Any], result: Any) -> None:
         try:
             records: Any = ray.get(result)
         except RayError as error:
@@ -110,7 +110,7 @@ class ExperimentWork:
         logger.warning("%s: the records were lost: %s", self.name(unit), error)
         self._losses += 1
         if self._losses > Limits.losses:
-            raise ClusterError("records are lost again and again before the driver has them")
+            raise ClusterError("records are lost repeatedly before they reach the driver")
         self.again(unit)
 
     def again(self, unit: str) -> None:
@@ -130,7 +130,7 @@ class ExperimentWork:
 
 def _packed(path: str, files: list[Any]) -> list[MemoryFile]:
     """Return the files of a scene by their names."""
-    # `load` tells warnings that the experiment has told already.
+    # `load` reports warnings that the experiment has reported already.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         _, source = load(path).packed()
@@ -153,7 +153,7 @@ def _fleet() -> tuple[str, int]:
         task: Any = ray.remote(machine).options(num_cpus=0, scheduling_strategy=affinity)
         asked.append(task.remote(cpus))
     if not asked:
-        raise ClusterError("no node of the cluster has processors")
+        raise ClusterError("no node of the cluster has a processor")
     most, _ = Counter(ray.get(asked)).most_common(1)[0]
     return most, json.loads(most)["threads"]
 
@@ -228,7 +228,7 @@ def experiment(
 def _hearing(
     progress: Callable[[str, int, int], object] | None,
 ) -> Callable[[str, str, int, int], object]:
-    """Return who is told what happens before records are made."""
+    """Return the listener to events before records are made."""
 
     def hear(kind: str, text: str, done: int, of: int) -> None:
         if kind == "warning":

@@ -37,7 +37,7 @@ def versions() -> dict[str, Any]:
 
 
 class Renderer:
-    """What runs on a node: it reads the scene once, and renders ranges of passes."""
+    """The actor of a node: it reads the scene once, and renders ranges of passes."""
 
     def __init__(self) -> None:
         """Begin without a scene."""
@@ -143,15 +143,15 @@ class RenderWork:
     def prepare(self, actor: Any, cpus: int) -> Any:
         return actor.prepare.remote(self._shipped, self._wanted, cpus)
 
-    def check(self, told: dict[str, Any]) -> str | None:
+    def check(self, report: dict[str, Any]) -> str | None:
         for name, here in versions().items():
-            if told[name] != here:
-                return f"its {name} of bidir is {told[name]}, here it is {here}"
-        if told["scene"] != self._scene.digest:
-            return f"it reads another scene: {told['scene'][:12]}, not {self._scene.digest[:12]}"
+            if report[name] != here:
+                return f"its {name} of bidir is {report[name]}, here it is {here}"
+        if report["scene"] != self._scene.digest:
+            return f"it reads another scene: {report['scene'][:12]}, not {self._scene.digest[:12]}"
         if self.identity is None:
-            self.identity = told["identity"]
-        if told["identity"] != self.identity:
+            self.identity = report["identity"]
+        if report["identity"] != self.identity:
             return "its films are of another render than those that are there"
         return None
 
@@ -169,12 +169,12 @@ class RenderWork:
         return unit
 
     def submit(self, worker: Worker, unit: range) -> tuple[Any, Any]:
-        told, film = worker.actor.render.options(num_returns=2).remote(unit.start, unit.stop)
-        return told, film
+        report, film = worker.actor.render.options(num_returns=2).remote(unit.start, unit.stop)
+        return report, film
 
-    def done(self, worker: Worker, unit: range, told: dict[str, Any], result: Any) -> None:
+    def done(self, worker: Worker, unit: range, report: dict[str, Any], result: Any) -> None:
         self._running -= 1
-        worker.notes["pace"] = max(told["seconds"] / len(unit), 1e-6)
+        worker.notes["pace"] = max(report["seconds"] / len(unit), 1e-6)
         self._tree.add(Part(result, (unit,)))
         self._reporter.advance(len(unit))
 
@@ -232,9 +232,9 @@ class Keeper:
             return
         film = Film.load(path)
         if film.settings.get("scene-digest") != digest:
-            raise FilmError(f"{os.fspath(path)}: the film of another scene")
+            raise FilmError(f"{os.fspath(path)} is the film of another scene")
         if film.passes and film.passes[-1].stop > spp:
-            raise FilmError(f"{os.fspath(path)}: it has passes beyond the {spp} asked for")
+            raise FilmError(f"{os.fspath(path)}: it has passes beyond the {spp} of this render")
         self.film = film
 
     @property
@@ -307,7 +307,7 @@ def render(
     wish.native(scene)
     passes = scene.spp if spp is None else spp
     if passes < 1 or task_seconds <= 0 or fan_in < 2:
-        raise SettingsError("spp is from 1 on, task_seconds above 0, and fan_in from 2 on")
+        raise SettingsError("spp must be at least 1, task_seconds above 0, and fan_in at least 2")
     path = None if checkpoint is None else Path(checkpoint)
     keeper = Keeper(path, checkpoint_every, passes, scene.digest)
     done = keeper.film.spp if keeper.film else 0

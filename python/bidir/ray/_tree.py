@@ -62,8 +62,8 @@ class Tree:
                 num_cpus=0, num_returns=2, max_retries=0, scheduling_strategy="SPREAD"
             )
             answer: Any = task.remote(*[part.film for part in parts])
-            told, film = answer
-            self._merging[told] = (level + 1, parts, film)
+            report, film = answer
+            self._merging[report] = (level + 1, parts, film)
 
     def pending(self) -> list[Any]:
         """Return the references of merges that run."""
@@ -78,11 +78,11 @@ class Tree:
         if not self._merging:
             return lost
         ready, _ = ray.wait(list(self._merging), num_returns=len(self._merging), timeout=0)
-        for told in ready:
-            level, parts, film = self._merging.pop(told)
+        for report in ready:
+            level, parts, film = self._merging.pop(report)
             ranges = tuple(r for part in parts for r in part.ranges)
             try:
-                ray.get(told)
+                ray.get(report)
             except RayError as error:
                 self.cause = first_line(error)
                 logger.warning("films were lost before they were merged: %s", self.cause)

@@ -20,7 +20,9 @@ pub use training::{Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};
-use crate::integrator::{Candidates, EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{
+    Candidates, EmissionKind, IntegratorKind, LostLight, LvcSettings, ProposalKind,
+};
 use crate::path::{MisCount, PathRoulette, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
@@ -135,8 +137,16 @@ pub enum SessionError {
     #[error(transparent)]
     Film(#[from] FilmError),
     /// The system starts no thread.
-    #[error("no thread can be started: {0}")]
+    #[error("cannot start a thread: {0}")]
     Threads(String),
+    /// The list of strategies makes no path within the limit of length.
+    #[error("the list of strategies `{strategies}` {lost}")]
+    NoPath {
+        /// The list.
+        strategies: String,
+        /// [`LostLight::All`].
+        lost: LostLight,
+    },
 }
 
 /// Renders `passes` passes.

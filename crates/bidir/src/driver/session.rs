@@ -12,7 +12,7 @@ use super::features::{Features, Meter};
 use super::training::prepare;
 use super::{Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
-use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size};
+use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
 use crate::path::{Connections, PathContext};
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
@@ -88,6 +88,10 @@ impl<'a> Session<'a> {
         resources: &Resources,
     ) -> Result<Self, SessionError> {
         let scene = scene.into();
+        if let Some(lost) = no_path(settings.integrator, &settings.path) {
+            let strategies = settings.path.strategies.to_string();
+            return Err(SessionError::NoPath { strategies, lost });
+        }
         let layers = settings.layers.clone();
         let film = Film::with_layers(scene.film().clone(), layers, resources.film_memory)?;
         let buffer = PassBuffer::new(scene.film(), film.layers());

@@ -7,6 +7,11 @@
 //! along L S+ D S+ E; next-event estimation alone already loses L S+ D. Lights that rays can hit are
 //! found there by hits alone, the rarer the smaller the light is.
 
+mod lists;
+
+pub(crate) use lists::no_path;
+pub use lists::{LostLight, lost_light};
+
 use super::IntegratorKind;
 use crate::camera::Camera;
 use crate::light::Light;
@@ -44,21 +49,21 @@ impl BlindSpot {
     /// What it is, as a phrase.
     pub const fn description(self) -> &'static str {
         match self {
-            Self::Caustics => {
-                "light of points, spots, distant and hidden lamps by mirrors or clear glass, on any \
-                 surface (L S+ D)"
-            }
+            Self::Caustics => "caustics of point, spot, distant and hidden lights (L S+ D)",
             Self::CausticsSeenBySpecular => {
-                "points, spots, distant and hidden lamps themselves in mirrors or clear glass (L S+ E), \
-                 and the caustics of their light seen in such (L S+ D S+ E)"
+                "point, spot, distant and hidden lights seen in mirrors or clear glass (L S+ E), \
+                 and \
+                 their caustics seen there (L S+ D S+ E)"
             }
             Self::SeenBySpecular => "everything seen in mirrors or through clear glass (S E)",
-            Self::Sky => "the sky itself, as parallel rays see it (L E)",
+            Self::Sky => "the sky in view of a camera with parallel rays (L E)",
             Self::ChanceCaustics => {
-                "light of lamps and skies by mirrors or clear glass on other surfaces (L S+ D)"
+                "caustics (L S+ D): only camera paths that hit the light find them"
             }
             Self::ChanceCausticsSeenBySpecular => {
-                "caustics of lamps and skies seen in mirrors or through clear glass (L S+ D S+ E)"
+                "caustics seen in mirrors or through clear glass (L S+ D S+ E): only camera \
+                 paths that \
+                 hit the light find them"
             }
         }
     }

@@ -15,7 +15,8 @@ mod path;
 mod workspace;
 
 pub use bdpt::Bdpt;
-pub use blind::{BlindSpot, blind_spots};
+pub(crate) use blind::no_path;
+pub use blind::{BlindSpot, LostLight, blind_spots, lost_light};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::{

@@ -144,7 +144,7 @@ fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
 
 /// Why a list of strategies cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("`{0}` is no strategy: expected `all`, or parts like `-s0`, `-t1`, `s2t3`")]
+#[error("`{0}` is not a strategy: expected `all`, or parts like `-s0`, `-t1`, `s2t3`")]
 pub struct StrategiesError(String);
 
 impl FromStr for Strategies {

@@ -194,12 +194,18 @@ impl fmt::Display for ShadowRays {
 
 /// Why a rule cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error(
-    "`{0}` is no choice of shadow rays: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
-     `per-pair`, `ray-roulette[:PART]` (a positive part of the image's mean), `budget:K` \
-     (a positive number of rays) or `auto`"
-)]
-pub struct ShadowRaysError(String);
+pub enum ShadowRaysError {
+    /// There is no such rule.
+    #[error(
+        "there is no rule `{0}`: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
+         `per-pair`, `ray-roulette[:T]` (T above 0, relative to the image's mean), `budget:K` \
+         (K rays, at least 1) or `auto`"
+    )]
+    Unknown(String),
+    /// The rule has a number.
+    #[error("`budget` needs a number of rays, such as budget:4")]
+    NoBudget,
+}
 
 impl FromStr for ShadowRays {
     type Err = ShadowRaysError;
@@ -209,6 +215,9 @@ impl FromStr for ShadowRays {
             Some((name, value)) => (name, Some(value)),
             None => (text, None),
         };
+        if (name, value) == ("budget", None) {
+            return Err(ShadowRaysError::NoBudget);
+        }
         let rule = match (name, value) {
             // The older name.
             ("auto" | "suited", None) => Some(Self::Suited),
@@ -229,7 +238,7 @@ impl FromStr for ShadowRays {
                 .map(Self::Budget),
             _ => None,
         };
-        rule.ok_or_else(|| ShadowRaysError(text.to_owned()))
+        rule.ok_or_else(|| ShadowRaysError::Unknown(text.to_owned()))
     }
 }
 

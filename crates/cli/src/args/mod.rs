@@ -8,6 +8,7 @@ mod film;
 mod help;
 mod layers;
 mod long;
+mod mistakes;
 mod reference;
 mod renamed;
 mod render;
@@ -58,8 +59,9 @@ impl Cli {
     /// Reads the command line and the environment.
     pub(crate) fn read() -> Result<Self, clap::Error> {
         let arguments: Vec<_> = std::env::args_os().collect();
-        let mut command = command(View::asked(&arguments));
-        let matches = command.try_get_matches_from_mut(&arguments)?;
+        let mut command = mistakes::accept_negative(command(View::asked(&arguments)));
+        let matches = command.try_get_matches_from_mut(&arguments);
+        let matches = matches.map_err(|error| mistakes::reworded(error, &command, &arguments))?;
         if let Some(("experiment", matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand_mut("experiment")
         {

@@ -78,7 +78,7 @@ fn check(python: &str) -> Result<(), Failure> {
         return Ok(());
     }
     let said = String::from_utf8_lossy(&output.stderr);
-    let last = said.trim().lines().next_back().unwrap_or("it fails");
+    let last = said.trim().lines().next_back().unwrap_or("it failed");
     Err(missing(python, last))
 }
 

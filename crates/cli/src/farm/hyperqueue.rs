@@ -13,12 +13,12 @@ pub(super) fn script(plan: &Plan<'_>) -> String {
         r#"#!/bin/sh
 # {title}. Written by `bidir farm hyperqueue`.
 #
-#   sh FILE   submits the shares, waits for them, and makes the image when all are done
+#   sh FILE   submits the parts, waits for them, and makes the image when all are done
 #
-# More flags of `hq submit`, such as --cpus=16 or --time-limit=1h, belong into the line below.
-# A share whose worker is lost is started again by HyperQueue, and goes on from its film file. So
-# does one that was stopped early (exit code 75) when this file is started again; shares that are
-# done return at once.
+# More flags of `hq submit`, such as --cpus=16 or --time-limit=1h, belong in the line below.
+# HyperQueue restarts a part whose worker is lost, and the part continues from its film file. A part
+# that was stopped early (exit code 75) continues when this file is started again; finished parts
+# return at once.
 set -eu
 
 if [ -z "${{HQ_TASK_ID:-}}" ]; then
@@ -26,7 +26,7 @@ if [ -z "${{HQ_TASK_ID:-}}" ]; then
   hq job wait "$job"
   failed=$(hq job task-ids "$job" --filter=failed,canceled)
   if [ -n "$failed" ]; then
-    echo "shares $failed of job $job are not done: see \`hq job cat $job stderr\`" >&2
+    echo "parts $failed of job $job are not done: see \`hq job cat $job stderr\`" >&2
     exit 1
   fi
   {merge}

@@ -22,7 +22,7 @@ pub(super) fn manifest(plan: &Plan<'_>) -> String {
 # and where the volume is:
 {last_step}
 #
-# What was stopped goes on when it is created again; shares that are done return at once.
+# A stopped job continues when it is created again; finished parts return at once.
 apiVersion: batch/v1
 kind: Job
 metadata:
@@ -30,23 +30,23 @@ metadata:
 spec:
   completionMode: Indexed
   completions: {parts}
-  # How many run at a time.
+  # The number of parts that run at a time.
   parallelism: {parts}
-  # How often each share may fail; needs Kubernetes 1.29. Before, use backoffLimit.
+  # The number of times each part may fail; needs Kubernetes 1.29. Before, use backoffLimit.
   backoffLimitPerIndex: 3
   podFailurePolicy:
     rules:
-      # Taken from its machine: no fault of its own.
+      # The pod was evicted, which is no failure of the part.
       - action: Ignore
         onPodConditions:
           - type: DisruptionTarget
-      # 75: stopped early, with a film file to go on from.
+      # 75: stopped early, with a film file to continue from.
       - action: Ignore
         onExitCodes:
           containerName: render
           operator: In
           values: [75]
-      # Wrong flags, a wrong scene, a film file of another render, a failed check: all would fail.
+      # Wrong flags, a wrong scene, a film file of another render, a failed check: all parts would fail.
       - action: FailJob
         onExitCodes:
           containerName: render

@@ -11,11 +11,11 @@ pub(super) fn script(plan: &Plan<'_>) -> String {
         r#"#!/bin/sh
 # {title}. Written by `bidir farm shell`.
 #
-#   sh FILE         renders all shares here, one after the other, and makes the image
-#   sh FILE 0 3     renders shares 0 and 3: of several machines with this folder, each its own
-#   sh FILE merge   makes the image of the shares that are there
+#   sh FILE         renders all parts here, one after the other, and makes the image
+#   sh FILE 0 3     renders parts 0 and 3, such as on one of several machines
+#   sh FILE merge   makes the image of the parts that exist
 #
-# What was stopped goes on when it is started again; shares that are done return at once.
+# A stopped part continues when it is started again; finished parts return at once.
 set -eu
 
 render() {{

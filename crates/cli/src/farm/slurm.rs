@@ -18,17 +18,17 @@ pub(super) fn script(plan: &Plan<'_>) -> String {
         r#"#!/bin/sh
 # {title}. Written by `bidir farm slurm`.
 #
-#   sh FILE       submits the shares, and a last job that makes the image when all are done
-#   sbatch FILE   submits the shares alone
+#   sh FILE       submits the parts, and a last job that makes the image when all are done
+#   sbatch FILE   submits the parts alone
 #
-# What was stopped goes on when it is submitted again; shares that are done return at once.
+# A stopped part continues when it is submitted again; finished parts return at once.
 #SBATCH --job-name={job}
 #SBATCH --array=0-{last}
 #SBATCH --requeue
 #SBATCH --open-mode=append
 # The notice before the time is over, in seconds: longer than a pass takes.
 #SBATCH --signal=B:USR1@120
-# Here belongs what your cluster asks for; remove one # where it applies.
+# Add the settings of your cluster; remove one # to use a line.
 ##SBATCH --time=1:00:00
 ##SBATCH --cpus-per-task=16
 ##SBATCH --mem=8G
@@ -41,9 +41,9 @@ if [ -z "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
   exit
 fi
 
-# Shares are counted from the array's first task, so a part of the array would be other shares.
+# Parts are counted from the array's first task, so a section of the array would be other parts.
 if [ "${{SLURM_ARRAY_TASK_COUNT:-{parts}}}" -ne {parts} ]; then
-  echo "submit the whole array: shares that are done return at once" >&2
+  echo "submit the whole array: finished parts return at once" >&2
   exit 2
 fi
 part=$((SLURM_ARRAY_TASK_ID - ${{SLURM_ARRAY_TASK_MIN:-0}}))
@@ -51,7 +51,7 @@ part=$((SLURM_ARRAY_TASK_ID - ${{SLURM_ARRAY_TASK_MIN:-0}}))
 {render} &
 render=$!
 
-# The notice is for this shell alone, TERM for all: then there is only the end to wait for.
+# Only this shell gets the notice; TERM goes to all processes, and the shell waits for their end.
 noticed=
 trap 'noticed=yes; again=yes; kill -s TERM "$render"' USR1
 trap 'again=yes' TERM
@@ -62,7 +62,7 @@ while [ -n "$again" ]; do
   wait "$render" || code=$?
 done
 
-# 75: stopped early, with a film file to go on from. The share goes back to the queue.
+# 75: stopped early, with a film file to continue from. The part goes back to the queue.
 if [ "$code" -eq 75 ] && [ -n "$noticed" ]; then
   scontrol requeue "$SLURM_JOB_ID"
 fi

@@ -149,7 +149,7 @@ fn what_was_interrupted_goes_on_to_the_same_records() {
     place.run("experiment test.toml -o whole").expect(0);
     interrupted(&place, "experiment test.toml -o stopped", "0 of 12 renders")
         .expect(75)
-        .says("stopped: the same command goes on");
+        .says("stopped: run the same command to continue");
     place.run("experiment test.toml -o stopped").expect(0);
     assert_eq!(records(&place, "stopped"), records(&place, "whole"));
 }

@@ -30,8 +30,143 @@ fn faults_of_the_command_line_exit_with_2() {
 }
 
 #[test]
+fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
+    let of = |list: &str| format!("render room.pbrt --spp 1 --strategies {list}");
+    check(
+        &of("s0t0"),
+        2,
+        "error: --strategies s0t0 makes no path\nhint: ",
+    );
+    let long =
+        "error: --strategies s4t3 makes no path of at most 6 vertices\nhint: raise --max-depth";
+    check(&of("s4t3"), 2, long);
+    let lost = "--strategies s2 loses light: no strategy makes paths of 2 vertices";
+    check(&of("s2"), 0, &format!("warning: {lost}\n"));
+    check(&(of("s2") + " --strict"), 6, "1 warning, which --strict");
+    let ran = Workplace::new().run(&of("all,-s0")).expect(0);
+    assert!(!ran.stderr.contains("warning"), "{}", ran.stderr);
+}
+
+#[test]
+fn numbers_out_of_range_are_told_the_range() {
+    for (flags, says) in [
+        ("--spp 0", "error: --spp: `0` is not a whole number above 0"),
+        (
+            "--spp -1",
+            "error: --spp: `-1` is not a whole number above 0",
+        ),
+        (
+            "--spp many",
+            "error: --spp: `many` is not a whole number above 0",
+        ),
+        (
+            "--max-depth -1",
+            "error: --max-depth: `-1` is not a whole number of at least 0",
+        ),
+        (
+            "--seed -1",
+            "error: --seed: `-1` is not a whole number of at least 0",
+        ),
+        ("--noise -1", "expected a number above 0"),
+        ("--time -1", "expected a time such as"),
+        (
+            "--threads 5000",
+            "error: --threads: `5000` is not a whole number from 0 to 1024",
+        ),
+        (
+            "--strategy-layers 1",
+            "error: --strategy-layers: `1` is not a whole number from 2 to",
+        ),
+        (
+            "--shadow-rays budget",
+            "`budget` needs a number of rays, such as budget:4",
+        ),
+    ] {
+        check(&format!("render room.pbrt {flags}"), 2, says);
+    }
+    let mut command = Workplace::new().command("render room.pbrt");
+    Ran::of(command.env("BIDIR_SPP", "x"))
+        .expect(2)
+        .says("error: BIDIR_SPP: `x` is not a whole number above 0");
+    let mut command = Workplace::new().command("render room.pbrt");
+    Ran::of(command.env("BIDIR_INTEGRATOR", "photon"))
+        .expect(2)
+        .says("error: BIDIR_INTEGRATOR: `photon` is not one of path, light, bdpt");
+}
+
+#[test]
+fn flags_of_other_programs_are_recognised() {
+    for (flag, hint) in [
+        (
+            "--width 100",
+            "hint: the size of the image is --size WIDTHxHEIGHT",
+        ),
+        (
+            "--height 100",
+            "hint: the size of the image is --size WIDTHxHEIGHT",
+        ),
+        (
+            "--resolution 100",
+            "hint: the size of the image is --size WIDTHxHEIGHT",
+        ),
+        (
+            "--samples 100",
+            "hint: the number of samples per pixel is --spp N",
+        ),
+        (
+            "--bounces 3",
+            "hint: the maximum number of bounces is --max-depth N",
+        ),
+    ] {
+        let name = flag.split(' ').next().unwrap();
+        let ran = Workplace::new().run(&format!("render room.pbrt {flag}"));
+        ran.expect(2)
+            .says(&format!("error: there is no flag `{name}`\n"))
+            .says(hint);
+    }
+    // A command without such a setting has nothing to suggest.
+    check("tonemap room.exr --width 100", 2, "unexpected argument");
+}
+
+#[test]
+fn foreign_files_are_named_with_the_way_in() {
+    let place = Workplace::new();
+    place.write("room.blend", "BLENDER-v402");
+    place.write("room.xml", "<scene version=\"3.0.0\"></scene>");
+    for command in ["render", "info"] {
+        place
+            .run(&format!("{command} room.blend"))
+            .expect(3)
+            .says("error: `room.blend` is a Blender file; export it as glTF 2.0; docs/guide");
+        place
+            .run(&format!("{command} room.xml"))
+            .expect(3)
+            .says("error: `room.xml` is a Mitsuba scene; bidir reads pbrt-v4 (.pbrt) and glTF 2.0");
+        place
+            .run(&format!("{command} ."))
+            .expect(4)
+            .says("error: `.` is a folder; name a scene in it, such as ./room.pbrt");
+    }
+}
+
+#[test]
+fn experiments_that_are_not_there_are_told_as_other_files_are() {
+    check(
+        "experiment nope.toml -o out",
+        4,
+        "error: cannot open `nope.toml`: no such file",
+    );
+    let near = "hint: did you mean the built-in experiment `paper`?";
+    check("experiment papper -o out", 4, near);
+}
+
+#[test]
 fn names_are_told_whole() {
-    check("render x.pbrt", 4, "error: x.pbrt: cannot open");
+    check(
+        "render x.pbrt",
+        4,
+        "error: cannot open `x.pbrt`: no such file",
+    );
     let place = Workplace::new();
     place.write("xx.pbrt", "WorldBegin\nMaterial \"xylophone\"\n");
     place
@@ -116,7 +251,7 @@ fn warnings_are_errors_where_they_shall_be() {
     place
         .run(light)
         .expect(0)
-        .says("warning: --shadow-rays has no influence");
+        .says("warning: --shadow-rays has no effect");
     place
         .run(&format!("{light} --strict"))
         .expect(6)
@@ -132,7 +267,7 @@ fn warnings_are_errors_where_they_shall_be() {
 fn a_scene_without_light_is_told_of() {
     let place = Workplace::new();
     place.write_dark();
-    let message = "warning: the scene has no light: the picture will be black";
+    let message = "warning: the scene has no light: the image will be black";
     place.run("render dark.pbrt").expect(0).says(message);
     let strict = place.run("render dark.pbrt --strict").expect(6);
     strict.says(message).says("1 warning, which --strict makes");
@@ -155,7 +290,10 @@ fn broken_scenes_exit_with_3_and_show_the_place() {
     check_broken("missing-mesh.pbrt", "no-such-mesh.ply");
     check_broken("misspelt-material.pbrt", "did you mean `diffuse`?");
     check_broken("nan-vertex.pbrt", "nan-vertex.ply");
-    check_broken("unclosed-string.pbrt", "diffuse ");
+    check_broken(
+        "unclosed-string.pbrt",
+        "12:10: the string has no closing quote; write `\"diffuse\"`",
+    );
 }
 
 #[test]

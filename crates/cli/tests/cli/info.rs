@@ -32,13 +32,13 @@ fn light_paths_that_no_strategy_makes_are_told() {
         .run("info glass.pbrt")
         .expect(0)
         .prints("bdpt         misses points, spots")
-        .prints("bdpt         finds by chance only caustics")
+        .prints("bdpt         is noisy for caustics")
         .prints("path         misses light of points")
         .prints("light        misses everything seen in mirrors");
     place
         .run("info room.pbrt")
         .expect(0)
-        .prints("bdpt         sees all light paths");
+        .prints("bdpt         makes all light paths");
     let info = place.run("info glass.pbrt --json").expect(0).json();
     assert_eq!(info["blind_spots"]["bdpt"][0]["missing"], true);
 }
@@ -54,9 +54,9 @@ fn what_a_render_would_refuse_is_listed() {
     place
         .run("info odd.pbrt")
         .expect(0)
-        .prints("the material `hair` is not supported yet")
+        .prints("the material `hair` is not supported")
         .prints("refused      odd.pbrt:")
-        .prints("the shape `curve` is not supported yet");
+        .prints("the shape `curve` is not supported");
     place.run("render odd.pbrt -o odd.exr").expect(3);
 }
 

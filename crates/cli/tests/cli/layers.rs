@@ -192,7 +192,7 @@ fn a_pyramid_needs_a_folder() {
 fn what_cannot_be_kept_is_told() {
     let workplace = workplace();
     let ran = workplace.run(&format!("{ROOM} --aov depth -o a.png"));
-    ran.expect(2).says("a PNG has no room for layers");
+    ran.expect(2).says("a PNG cannot hold layers");
     let ran = workplace.run(&format!("{ROOM} --aov depht"));
     ran.expect(2).says("depth");
     workplace

@@ -81,7 +81,7 @@ fn a_scheduler_is_told_why_a_render_fails() {
         (
             "room.pbrt -o room.jpg",
             2,
-            "openjd_fail: room.jpg: not the name of an image\n",
+            "openjd_fail: cannot write `room.jpg`: output images are .exr or .png\n",
         ),
     ] {
         let ran = place

@@ -14,7 +14,7 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
         .expect(0)
         .says("bdpt, 112 samples per pixel; agrees with path, 112 samples per pixel (p = ")
         .says("level 0.001); wrote room.reference")
-        .says("of the film's mean would have been found");
+        .says("of the film's mean would have been detected");
     assert_eq!(place.names(), ["room.pbrt", "room.reference"]);
     let json = provenance(&place, "room.reference");
     assert_eq!(json["agreement"]["agree"], true);
@@ -119,7 +119,7 @@ fn more_samples_are_added_to_the_same_bits() {
     place
         .run("reference room.pbrt -o b.reference --spp 16 --size 12x8 --crop 2,1,10,7 --estimator bdpt")
         .expect(5)
-        .says("picture-00.film: the film of another render: seed is");
+        .says("picture-00.film is the film of another render: seed is");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn stale_and_damaged_references_are_refused() {
     place
         .run(image)
         .expect(4)
-        .says("a.reference: no reference: there is no provenance.json in it")
+        .says("a.reference is not a reference: it has no provenance.json")
         .says(hint);
     for folder in ["a.reference", "none.reference"] {
         place
@@ -196,7 +196,7 @@ fn stale_and_damaged_references_are_refused() {
     place
         .run("compare a.reference/picture.exr --reference none.reference")
         .expect(4)
-        .says("none.reference: cannot open: no such file");
+        .says("cannot open `none.reference`: no such file");
 }
 
 #[test]

@@ -317,11 +317,11 @@ fn samples_that_do_not_count_are_told() {
     let mut command = place.command("render room.pbrt --passes 1..2 --checkpoint a.film");
     Ran::of(command.env("BIDIR_SPP", "9"))
         .expect(0)
-        .says("BIDIR_SPP has no influence where --passes is given");
+        .says("BIDIR_SPP has no effect where --passes is given");
     place
         .run("render room.pbrt --passes 1..2 --spp 9 --strict -o a.exr")
         .expect(6)
-        .says("--spp has no influence");
+        .says("--spp has no effect");
     place
         .run("render room.pbrt --part 0/2 --spp 9 --strict -o a.exr")
         .expect(0);

@@ -110,7 +110,7 @@ fn with_a_film_file_training_can_be_stopped_too() {
     for signal in ["INT", "TERM"] {
         let place = Workplace::new();
         let ran = stopped_in_training(&place, "--checkpoint a.film", signal).expect(75);
-        ran.says("stopped before the first pass: nothing is written");
+        ran.says("stopped before the first pass: nothing was written");
         assert_eq!(place.names(), ["room.pbrt"]);
     }
 }

@@ -140,7 +140,7 @@ fn the_light_image_is_shown_too() {
     assert_eq!(bits(image.pixels), exr(&place, "a.exr"));
 }
 
-/// A render with and without a viewer at `address`, which takes no images: same bits.
+/// A render with and without a viewer at `address`, which does not accept images: same bits.
 #[track_caller]
 fn check_unseen(address: &str) -> Ran {
     let place = Workplace::new();

@@ -143,7 +143,7 @@ impl FilmHeader {
         if fits && header.exposure.is_finite() {
             Ok(header.renamed())
         } else {
-            Err(broken("damaged: the crop or the exposure makes no film"))
+            Err(broken("damaged: the crop or the exposure is invalid"))
         }
     }
 

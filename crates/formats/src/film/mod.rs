@@ -129,7 +129,8 @@ pub fn decode(bytes: &[u8]) -> Result<FilmFile> {
     }
     let version = take_u32(&mut rest)?;
     if version != VERSION {
-        let message = format!("version {version} of the film format, this program reads {VERSION}");
+        let message =
+            format!("the film has format version {version}; this program reads version {VERSION}");
         return Err(broken(message));
     }
     let length = take_u32(&mut rest)? as usize;

@@ -32,7 +32,7 @@ impl Component {
             _ => {
                 return Err(place
                     .key("componentType")
-                    .scene(format!("{code} is no type of component")));
+                    .scene(format!("{code} is not a component type")));
             }
         })
     }
@@ -103,7 +103,7 @@ impl<'a> Layout<'a> {
             let kind = &accessor.kind;
             let fault = place
                 .key("type")
-                .scene(format!("`{kind}` is no type of accessor"));
+                .scene(format!("`{kind}` is not an accessor type"));
             return Err(fault.with_nearest(kind, KINDS.map(|(name, _)| name)));
         };
         let component = Component::of(accessor.component_type, &place)?;
@@ -137,8 +137,9 @@ impl<'a> Layout<'a> {
         let mut values = match self.accessor.buffer_view {
             Some(view) => self.read_dense(document, view)?,
             None if count.saturating_mul(self.components) > MOST_ZEROS => {
-                let message =
-                    format!("{count} elements of zeros are more than {MOST_ZEROS} components");
+                let message = format!(
+                    "{count} elements of zeros exceed the limit of {MOST_ZEROS} components"
+                );
                 return Err(self.place.fault(ErrorKind::Limit, message));
             }
             None => vec![0.0; count * self.components],
@@ -255,7 +256,8 @@ impl Elements {
                     ..
                 } = self;
                 let message = format!(
-                    "{count} values of {size} bytes from byte {offset} on end beyond the {available} bytes that there are"
+                    "{count} values of {size} bytes from byte {offset} end beyond the \
+                     {available} bytes available"
                 );
                 Err(place
                     .fault(ErrorKind::Data, message)
@@ -275,7 +277,8 @@ impl Document {
         let layout = Layout::new(self, index, user)?;
         if layout.components != N {
             let kind = &layout.accessor.kind;
-            let message = format!("accessor {index} is a {kind}, which has not {N} components");
+            let message =
+                format!("accessor {index} is a {kind}, which does not have {N} components");
             return Err(user.scene(message));
         }
         let values = layout.read(self)?;
@@ -311,7 +314,7 @@ impl Document {
         );
         if layout.components != 1 || !whole {
             return Err(user.scene(format!(
-                "accessor {index} has no indices: they are unsigned scalars"
+                "accessor {index} has no indices, which are unsigned scalars"
             )));
         }
         Ok(layout

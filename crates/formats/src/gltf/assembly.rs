@@ -73,7 +73,7 @@ impl<'a> Assembly<'a> {
             let place = Place::TOP.key("animations");
             context.warn(
                 &place,
-                "animations have no effect: all stands as the nodes say",
+                "animations have no effect: nodes keep their own transformations",
             );
         }
         assembly.add_meshes(context)?;
@@ -148,7 +148,7 @@ impl<'a> Assembly<'a> {
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
-            context.warn(place, "a mesh scaled to nothing is left out");
+            context.warn(place, "a mesh that is scaled to zero is left out");
         }
         Ok(places)
     }
@@ -179,7 +179,7 @@ impl<'a> Assembly<'a> {
         };
         self.summary.instances += of_mesh.places.len();
         if self.summary.instances > MOST_INSTANCES {
-            let message = format!("the scene has more than {MOST_INSTANCES} places of meshes");
+            let message = format!("the scene has more than {MOST_INSTANCES} mesh instances");
             return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
         }
         for map in &of_mesh.places {
@@ -305,7 +305,7 @@ impl<'a> Assembly<'a> {
     fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
         let mut lights = light::all(context, self.document, &self.nodes)?;
         if lights.is_empty() && self.summary.area_lights == 0 {
-            let message = "the scene has no light: an even surrounding of radiance 1 lights it";
+            let message = "the scene has no light; using a uniform environment of radiance 1";
             context.warn(&Place::TOP, message);
             lights.push(Light::Infinite(InfiniteLight::constant([1.0; 3])));
         }

@@ -3,6 +3,7 @@
 use super::place::{GltfFault, Place};
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
+use crate::foreign;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,9 @@ pub(super) struct Container {
 
 /// Reads a `.gltf` or `.glb`; which of them it is, its first bytes say.
 pub(super) fn read(path: &Path, files: &Files) -> Result<Container> {
+    foreign::check_folder(path, files)?;
     let bytes = files.read(path, LARGEST_FILE)?;
+    foreign::check_gltf(path, &bytes)?;
     let container = if bytes.starts_with(MAGIC) {
         chunks(&bytes)
     } else {
@@ -38,7 +41,7 @@ fn text(mut bytes: Vec<u8>) -> Result<String> {
     if bytes.starts_with(b"\xef\xbb\xbf") {
         bytes.drain(..3);
     }
-    let broken = |error| Error::new(ErrorKind::Syntax, format!("the JSON is no UTF-8: {error}"));
+    let broken = |error| Error::new(ErrorKind::Syntax, format!("the JSON is not UTF-8: {error}"));
     String::from_utf8(bytes).map_err(broken)
 }
 
@@ -57,7 +60,7 @@ fn number(bytes: &[u8]) -> Option<(usize, &[u8])> {
 
 /// Takes a `.glb` apart: twelve bytes, then chunks of a length, a name and bytes.
 fn chunks(bytes: &[u8]) -> Result<Container> {
-    let short = || broken("it ends within its header");
+    let short = || broken("it ends inside its header");
     let (version, rest) = number(&bytes[MAGIC.len()..]).ok_or_else(short)?;
     if version != 2 {
         let error = Error::new(ErrorKind::Unsupported, format!("glb version {version}"));
@@ -67,7 +70,7 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
     if length > bytes.len() {
         let have = bytes.len();
         return Err(broken(format!(
-            "it has {have} bytes of the {length} that its header says"
+            "it has {have} of the {length} bytes that its header declares"
         )));
     }
     let (mut json, mut binary) = (None, None);
@@ -106,7 +109,10 @@ pub(super) fn resource(
         return Ok(Resource { bytes, file: None });
     }
     if uri.split_once("://").is_some() {
-        let fault = place.fault(ErrorKind::Unsupported, "a resource of a network");
+        let fault = place.fault(
+            ErrorKind::Unsupported,
+            "a resource on the network is not read",
+        );
         return Err(fault.with_hint("save it beside the file"));
     }
     let path = folder.join(file_of(uri));

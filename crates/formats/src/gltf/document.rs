@@ -142,14 +142,14 @@ impl<'a> Context<'a> {
         stand_in: &str,
     ) -> Result<(), GltfFault> {
         if self.stand_ins == StandIns::Accepted {
-            let message = format!("{what} is not supported yet: {stand_in}");
+            let message = format!("{what} is not supported: {stand_in}");
             self.refused.insert(message.clone());
             self.warn(place, message);
             return Ok(());
         }
-        let message = format!("{what} is recognised but not supported yet");
+        let message = format!("{what} is not supported");
         let fault = place.fault(ErrorKind::Unsupported, message);
-        Err(fault.with_hint(format!("with --lenient: {stand_in}")))
+        Err(fault.with_hint(format!("with --lenient, {stand_in}")))
     }
 
     /// All warnings, each as `file:line:column: message`.
@@ -230,12 +230,12 @@ impl Document {
             }
             resource.bytes
         } else {
-            let missing = || place.scene("it has no uri, and the file no binary chunk for it");
+            let missing = || place.scene("it has no uri, and the file has no binary chunk");
             binary.take().filter(|_| index == 0).ok_or_else(missing)?
         };
         if bytes.len() < buffer.byte_length {
             let (have, wanted) = (bytes.len(), buffer.byte_length);
-            let message = format!("it has {have} bytes of the {wanted} that it should have");
+            let message = format!("it has {have} bytes instead of {wanted}");
             return Err(place.fault(ErrorKind::Data, message));
         }
         // What follows is padding.
@@ -265,7 +265,7 @@ impl Document {
         let bytes = bytes.ok_or_else(|| {
             let (offset, length, have) = (view.byte_offset, view.byte_length, buffer.len());
             let message =
-                format!("{length} bytes from {offset} on end beyond the buffer of {have} bytes");
+                format!("{length} bytes from byte {offset} end beyond the buffer of {have} bytes");
             place.fault(ErrorKind::Data, message)
         })?;
         Ok((bytes, view.byte_stride))
@@ -284,7 +284,10 @@ fn check_version(root: &Root) -> Result<(), GltfFault> {
     if is_read {
         return Ok(());
     }
-    let fault = place.fault(ErrorKind::Unsupported, format!("glTF of version {needed}"));
+    let fault = place.fault(
+        ErrorKind::Unsupported,
+        format!("the file needs glTF {needed}"),
+    );
     Err(fault.with_hint("convert it to glTF 2.0"))
 }
 
@@ -311,7 +314,7 @@ fn check_extensions(context: &mut Context<'_>, root: &Root) -> Result<(), GltfFa
             let place = Place::TOP.key("extensionsUsed").index(i);
             context.warn(
                 &place,
-                format!("the extension `{name}` is not known and has no effect"),
+                format!("the unknown extension `{name}` has no effect"),
             );
         }
     }

@@ -48,7 +48,7 @@ fn build(
     if described.range.is_some() {
         context.warn(
             &place,
-            "light reaches further than its `range`, by the square of the distance",
+            "the `range` of a light has no effect: light falls off with the square of the distance",
         );
     }
     let position = world_from_node.translation.as_vec3();
@@ -70,7 +70,7 @@ fn build(
         other => {
             let fault = place
                 .key("type")
-                .scene(format!("unknown type of light `{other}`"));
+                .scene(format!("unknown light type `{other}`"));
             Err(fault.with_nearest(other, ["directional", "point", "spot"]))
         }
     }
@@ -85,7 +85,7 @@ fn power(described: &Described, place: &Place) -> Result<[f32; 3], GltfFault> {
     if power.iter().all(is_light) {
         return Ok(power);
     }
-    Err(place.scene(format!("the intensity {power:?} is no light")))
+    Err(place.scene(format!("the intensity {power:?} is invalid")))
 }
 
 fn spot(
@@ -100,7 +100,7 @@ fn spot(
     let outer = outer.unwrap_or(std::f32::consts::FRAC_PI_4);
     if !(inner >= 0.0 && inner <= outer && outer > 1e-4 && outer < 1.58) {
         let message =
-            format!("the cone from {inner} to {outer} is none: 0 <= inner < outer <= pi/2");
+            format!("the cone angles {inner} and {outer} are invalid: 0 <= inner < outer <= pi/2");
         return Err(place.key("spot").scene(message));
     }
     Ok(SpotLight::squared(

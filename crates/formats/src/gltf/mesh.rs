@@ -162,7 +162,7 @@ impl Surface {
         if !colors.iter().all(is_near) {
             context.warn(
                 place,
-                "colours of vertices are not interpolated: their mean stands in",
+                "vertex colours are not interpolated: their mean is used",
             );
         }
         self.color = std::array::from_fn(mean);
@@ -228,8 +228,7 @@ fn triangles(
             let place = place.key("indices");
             let indices = document.indices(index, &place)?;
             if let Some(index) = indices.iter().find(|&&index| index as usize >= vertices) {
-                let message =
-                    format!("index {index} is not that of a vertex: there are {vertices}");
+                let message = format!("there is no vertex {index}: the mesh has {vertices}");
                 return Err(place.scene(message));
             }
             indices
@@ -247,7 +246,7 @@ fn triangles(
             .map(|i| triangle([i, i + 1, 0]))
             .collect(),
         mode => {
-            let message = format!("{mode} is no mode of a primitive: they are 0 to 6");
+            let message = format!("{mode} is not a primitive mode: modes are 0 to 6");
             return Err(place.key("mode").scene(message));
         }
     })

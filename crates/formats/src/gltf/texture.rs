@@ -183,7 +183,7 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
     let place = Place::of("textures", index);
     let source = texture.source.ok_or_else(|| {
         let fault = place.fault(ErrorKind::Unsupported, "it has no image in png or jpg");
-        fault.with_hint("export it with one")
+        fault.with_hint("export it as png or jpg")
     })?;
     if source >= root.images.len() {
         let count = root.images.len();
@@ -266,7 +266,7 @@ fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
         33071 => Ok(Beyond::Clamp),
         33648 => Ok(Beyond::Mirror),
         10497 => Ok(Beyond::Repeat),
-        other => Err(place.scene(format!("{other} is no way to wrap a texture"))),
+        other => Err(place.scene(format!("{other} is not a wrap mode"))),
     }
 }
 
@@ -278,12 +278,12 @@ fn remaining(
 ) -> Result<(Vec2, Vec2), GltfFault> {
     if wanted.set != lookup.baked.set {
         let what = "a material with textures of several sets of coordinates";
-        context.unsupported(lookup.place, what, "one set stands in for all")?;
+        context.unsupported(lookup.place, what, "one set is used for all")?;
     }
     let [[su, across, ou], [down, sv, ov]] = wanted.rows;
     if across.abs().max(down.abs()) > 1e-6 {
-        let what = "a material with textures that are turned by different angles";
-        context.unsupported(lookup.place, what, "they are not turned")?;
+        let what = "a material with textures that are rotated by different angles";
+        context.unsupported(lookup.place, what, "they are not rotated")?;
     }
     // Parameters of the mesh go up where those of the file go down.
     Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))

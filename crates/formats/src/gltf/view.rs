@@ -55,7 +55,7 @@ pub(super) fn find(
     let Some(&(node, camera)) = cameras.first() else {
         context.warn(
             &Place::TOP,
-            "the scene has no camera: one looks at all of it from its front",
+            "the scene has no camera; using one in front of it that sees everything",
         );
         return Ok(View {
             world_from_camera: None,
@@ -65,10 +65,7 @@ pub(super) fn find(
         });
     };
     if cameras.len() > 1 {
-        let message = format!(
-            "the scene has {} cameras, of which the first is used",
-            cameras.len()
-        );
+        let message = format!("the scene has {} cameras; using the first", cameras.len());
         context.warn(&Place::of("nodes", node), message);
     }
     let world_from_node = nodes.world_from_node[node].unwrap_or(DAffine3::IDENTITY);
@@ -93,7 +90,7 @@ fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result
         (other, ..) => {
             let fault = place
                 .key("type")
-                .scene(format!("unknown type of camera `{other}`"));
+                .scene(format!("unknown camera type `{other}`"));
             return Err(fault.with_nearest(other, ["perspective", "orthographic"]));
         }
     };
@@ -112,10 +109,10 @@ fn perspective(
 ) -> Result<(Screen, Option<f64>), GltfFault> {
     let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
     if !(yfov > 1e-4 && yfov < 3.1) {
-        return Err(place.scene(format!("`yfov` of {yfov} is no angle of view")));
+        return Err(place.scene(format!("`yfov` is {yfov}, which is not an angle of view")));
     }
     if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
-        return Err(place.scene(format!("`aspectRatio` of {aspect} is no ratio")));
+        return Err(place.scene(format!("`aspectRatio` is {aspect}, which is not a ratio")));
     }
     let screen = Screen::Perspective(libm::tan(yfov / 2.0));
     Ok((screen, aspect))
@@ -130,7 +127,7 @@ fn orthographic(
     let is_size = |side: f64| side > 0.0 && side <= 1e12;
     if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
         return Err(place.scene(format!(
-            "`xmag` of {width} and `ymag` of {height} are no size of a view"
+            "`xmag` {width} and `ymag` {height} are not the size of a view"
         )));
     }
     Ok((Screen::Orthographic(height), Some(width / height)))
@@ -166,7 +163,9 @@ impl View {
         let [width, height] = context.options.resolution.unwrap_or(own);
         let sides = 1..=LARGEST_SIDE;
         if !sides.contains(&width) || !sides.contains(&height) {
-            let message = format!("a film of {width} × {height} pixels is empty or too large");
+            let message = format!(
+                "the film has {width} × {height} pixels; each side can have 1 to {LARGEST_SIDE}"
+            );
             return Err(self.place.fault(ErrorKind::Limit, message));
         }
         let filter = Filter::new(FilterKind::Gaussian { sigma: 0.5 }, Vec2::splat(1.5));
@@ -177,8 +176,7 @@ impl View {
         if film.crop.area() > 0 {
             return Ok(film);
         }
-        let message =
-            format!("the crop asked for has no pixels of this film of {width} × {height}");
+        let message = format!("the crop lies outside the film of {width} × {height} pixels");
         Err(Place::TOP.fault(ErrorKind::Options, message))
     }
 
@@ -211,7 +209,7 @@ impl View {
             })
             .map(Camera::Orthographic),
         };
-        camera.ok_or_else(|| self.place.scene("the camera's place is not finite"))
+        camera.ok_or_else(|| self.place.scene("the camera's position is not finite"))
     }
 
     /// Half the size of what a film of `resolution` shows, z being 0.

@@ -103,7 +103,8 @@ pub(super) fn not_written(message: impl std::fmt::Display) -> Error {
 }
 
 pub(super) fn text(text: &str) -> Result<Text> {
-    Text::new_or_none(text).ok_or_else(|| not_written(format!("`{text}` is not writable as text")))
+    Text::new_or_none(text)
+        .ok_or_else(|| not_written(format!("`{text}` cannot be written as text")))
 }
 
 /// The channels of all layers, each of `pixels` numbers.
@@ -112,7 +113,10 @@ fn channels(layers: &[ExrLayer<'_>], pixels: usize) -> Result<AnyChannels<FlatSa
     for layer in layers {
         let stride = layer.channels.len();
         if layer.data.len() != pixels * stride {
-            let message = format!("the layer `{}` has not the size of the image", layer.name);
+            let message = format!(
+                "the layer `{}` does not have the size of the image",
+                layer.name
+            );
             return Err(not_written(message));
         }
         for (offset, channel) in layer.channels.iter().enumerate() {

@@ -63,7 +63,7 @@ impl Layers {
     fn set_channel(&mut self, name: &str, data: Vec<f32>) -> Result<()> {
         let [width, height] = self.size();
         if data.len() != width * height {
-            let message = format!("the channel `{name}` has not the size of the image");
+            let message = format!("the channel `{name}` does not have the size of the image");
             return Err(not_written(message));
         }
         let channel = AnyChannel::new(text(name)?, FlatSamples::F32(data));
@@ -112,7 +112,7 @@ pub fn read_layers(path: &Path) -> Result<Layers> {
 /// Decodes all channels of an EXR in memory; see [`read_layers`].
 pub fn decode_layers(bytes: &[u8]) -> Result<Layers> {
     let decoded = catch_silently(|| decode(bytes));
-    decoded.unwrap_or_else(|_| Err(broken("the decoder gave up")))
+    decoded.unwrap_or_else(|_| Err(broken("the decoder failed")))
 }
 
 fn decode(bytes: &[u8]) -> Result<Layers> {

@@ -103,9 +103,9 @@ pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
 /// The format that the name of an image says, which is one that is read.
 pub(crate) fn named_format(path: &Path) -> Result<Format> {
     Format::of(path).ok_or_else(|| {
-        let error = Error::new(ErrorKind::Unsupported, "an image format that is not read");
+        let error = Error::new(ErrorKind::Unsupported, "unknown image format");
         error
-            .with_hint("write it as exr, hdr, pfm, png, jpg or tga")
+            .with_hint("use exr, hdr, pfm, png, jpg or tga")
             .in_file(path)
     })
 }
@@ -128,7 +128,7 @@ pub(crate) fn decode_stored(format: Format, bytes: &[u8], encoding: Encoding) ->
         Format::Pfm => pfm::decode(bytes),
         _ => raster::decode(format, bytes, encoding),
     };
-    catch_silently(decode).unwrap_or_else(|_| Err(broken("the decoder gave up")))
+    catch_silently(decode).unwrap_or_else(|_| Err(broken("the decoder failed")))
 }
 
 fn broken(message: impl std::fmt::Display) -> Error {

@@ -20,7 +20,7 @@ pub fn encode_png(size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Vec<u8>> {
     let failed = |message: String| Error::new(ErrorKind::Data, message);
     if pixels.len() as u64 != u64::from(size[0]) * u64::from(size[1]) {
         return Err(failed(
-            "cannot write: the number of pixels is not that of the size".into(),
+            "cannot write: the number of pixels does not match the size".into(),
         ));
     }
     let stored: Vec<u8> = pixels

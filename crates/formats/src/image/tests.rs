@@ -117,7 +117,7 @@ fn a_layer_of_the_wrong_size_is_refused() {
         metadata: &[],
     };
     let error = write_exr(Path::new("never.exr"), &image).unwrap_err();
-    let expected = "never.exr: cannot write: the layer `N` has not the size of the image";
+    let expected = "never.exr: cannot write: the layer `N` does not have the size of the image";
     assert_eq!(error.to_string(), expected);
 }
 
@@ -252,13 +252,9 @@ fn broken_images_are_told() {
     let path = folder.path().join("a.bmp");
     let error = || read(&path, None).unwrap_err().to_string();
     let missing = error();
-    assert!(
-        missing.ends_with("a.bmp: cannot open: no such file"),
-        "{missing}"
-    );
+    assert!(missing.ends_with("a.bmp`: no such file"), "{missing}");
     std::fs::write(&path, "BM").unwrap();
-    let expected =
-        "a.bmp: an image format that is not read; write it as exr, hdr, pfm, png, jpg or tga";
+    let expected = "a.bmp: unknown image format; use exr, hdr, pfm, png, jpg or tga";
     assert!(error().ends_with(expected), "{}", error());
 }
 

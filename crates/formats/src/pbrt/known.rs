@@ -68,6 +68,11 @@ pub(super) const DIRECTIVES: &[(&str, Block)] = &[
     ("WorldBegin", Block::Options),
 ];
 
+/// True for a word that begins a directive of this version or an older one.
+pub(crate) fn is_directive(word: &str) -> bool {
+    DIRECTIVES.iter().any(|(name, _)| *name == word) || v3::directive(word).is_some()
+}
+
 /// The type words that a directive takes.
 pub(super) struct Names {
     /// What they name.

@@ -152,7 +152,13 @@ impl<'t> Tokens<'t> {
             Ok(Raw::Open) => TokenKind::Open,
             Ok(Raw::Close) => TokenKind::Close,
             Ok(Raw::Word) => TokenKind::Word(text),
-            Ok(Raw::Quoted) => TokenKind::Quoted(unescape(&text[1..text.len() - 1], span)?),
+            Ok(Raw::Quoted) => {
+                let inside = &text[1..text.len() - 1];
+                if is_unclosed(inside, self.lexer.remainder()) {
+                    return Err(unclosed(inside, span));
+                }
+                TokenKind::Quoted(unescape(inside, span)?)
+            }
             Ok(Raw::Unterminated) => {
                 let fault = Fault::syntax(span, "the string does not end on its line");
                 return Err(fault.with_hint("add the closing `\"`"));
@@ -161,6 +167,18 @@ impl<'t> Tokens<'t> {
         };
         Ok(Some(Token { kind, span }))
     }
+}
+
+/// True for the text between the opening quotes of two strings, of which the first is not closed: it
+/// ends in a blank, and a word is glued to its end.
+fn is_unclosed(inside: &str, after: &str) -> bool {
+    inside.ends_with([' ', '\t']) && after.starts_with(|next: char| next.is_ascii_alphabetic())
+}
+
+fn unclosed(inside: &str, span: Span) -> Fault {
+    let fault = Fault::syntax(span, "the string has no closing quote");
+    let text = shorten(inside.trim_end());
+    fault.with_hint(format!("write `\"{text}\"`"))
 }
 
 /// Resolves the escapes of what stands between the quotes.

@@ -29,6 +29,7 @@ pub(crate) use build::LARGEST_SIDE;
 pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load, load_from};
 pub use digest::SceneDigest;
 pub(crate) use digest::{Content, DigestBuilder};
+pub(crate) use known::is_directive;
 pub use parameters::{Parameter, ParameterList, ParameterType, Values};
 pub use parser::{parse_file, parse_file_from, parse_text};
 pub use scene::{

@@ -10,6 +10,7 @@ use super::v3;
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::files::Files;
+use crate::foreign;
 use crate::source::{Fault, FileId, Span, line_and_column};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -31,7 +32,10 @@ pub fn parse_file(path: &Path) -> Result<SceneDescription> {
 
 /// The same as [`parse_file`], with files from where `files` says.
 pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
-    let text = decode(path, files.read_or_stdin(path, LONGEST_TEXT)?)?;
+    foreign::check_folder(path, files)?;
+    let bytes = files.read_or_stdin(path, LONGEST_TEXT)?;
+    foreign::check_pbrt(path, &bytes)?;
+    let text = decode(path, bytes)?;
     let folder = if path.as_os_str() == bytes::STDIN {
         None
     } else {
@@ -247,7 +251,9 @@ impl Parser {
             let length = self.scene.sources.text(file).len() as u64;
             let left = self.repeats_left.checked_sub(length);
             self.repeats_left = left.ok_or_else(|| {
-                let message = format!("files are included again, {MOST_REPEATED} bytes in all");
+                let message = format!(
+                    "files are included repeatedly, more than {MOST_REPEATED} bytes in all"
+                );
                 Error::new(ErrorKind::Limit, message).in_file(path)
             })?;
             return Ok(file);

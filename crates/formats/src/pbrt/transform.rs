@@ -73,7 +73,7 @@ pub(super) type Reason = &'static str;
 pub(super) fn rotate(degrees: f64, axis: DVec3) -> Result<DAffine3, Reason> {
     let axis = axis
         .try_normalize()
-        .ok_or("the axis of a rotation is not zero")?;
+        .ok_or("the axis of a rotation must not be zero")?;
     let radians = degrees.to_radians();
     let (sin, cos) = (libm::sin(radians), libm::cos(radians));
     let column = |v: DVec3| cos * v + (1.0 - cos) * axis.dot(v) * axis + sin * axis.cross(v);
@@ -87,8 +87,8 @@ pub(super) fn rotate(degrees: f64, axis: DVec3) -> Result<DAffine3, Reason> {
 pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, Reason> {
     let forward = (target - eye)
         .try_normalize()
-        .ok_or("the eye is not at the target")?;
-    let parallel = "the up vector is not zero and not along the view";
+        .ok_or("the eye must not be at the target")?;
+    let parallel = "the up vector must not be zero or parallel to the view";
     let up = up.try_normalize().ok_or(parallel)?;
     let right = up.cross(forward);
     // Of two unit vectors: 1e-9 is far below what anyone means by an angle.
@@ -123,7 +123,10 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, Reason> {
     ] = *numbers;
     let is_affine = [aw, bw, cw].iter().all(|entry| *entry == 0.0) && tw != 0.0;
     if !is_affine {
-        return Err("the numbers 4, 8, 12 of a matrix are 0 and its last is not: no perspective");
+        return Err(
+            "the numbers 4, 8 and 12 of a matrix must be 0 and its last must not: perspective is \
+             not allowed",
+        );
     }
     let column = |x, y, z| DVec3::new(x, y, z) / tw;
     let linear = DMat3::from_cols(column(ax, ay, az), column(bx, by, bz), column(cx, cy, cz));

@@ -156,7 +156,7 @@ fn header_line(elements: &mut Vec<Element>, words: &[&str]) -> Result<(), Broken
         ["property", kind, name] => {
             push_property(elements, name, PropertyKind::Scalar(Scalar::parse(kind)?))?;
         }
-        _ => return Err(Broken::new("the header has a line that says nothing known")),
+        _ => return Err(Broken::new("the header has an unknown line")),
     }
     Ok(())
 }
@@ -164,7 +164,7 @@ fn header_line(elements: &mut Vec<Element>, words: &[&str]) -> Result<(), Broken
 fn push_property(elements: &mut [Element], name: &str, kind: PropertyKind) -> Result<(), Broken> {
     let element = elements
         .last_mut()
-        .ok_or_else(|| Broken::new("a property of no element"))?;
+        .ok_or_else(|| Broken::new("a property before the first element"))?;
     element.properties.push(Property {
         name: name.into(),
         kind,

@@ -96,9 +96,7 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
         return Err(Broken::new("no faces"));
     };
     if u32::try_from(vertices).is_err() {
-        return Err(Broken::new(
-            "more vertices than indices of 32 bits can tell apart",
-        ));
+        return Err(Broken::new("more vertices than 32-bit indices can address"));
     }
     let mut body = Body::new(header.format, rest, header.lines);
     let mut mesh = PlyMesh::default();
@@ -253,7 +251,7 @@ fn read_corners(
     for corner in &mut corners[..count] {
         let value = body.scalar(item)?;
         if !(value >= 0.0 && value < vertices as f64 && value.fract() == 0.0) {
-            let message = format!("index {value} is not that of a vertex: there are {vertices}");
+            let message = format!("there is no vertex {value}: the mesh has {vertices}");
             return Err(body.broken(message));
         }
         *corner = value as u32;

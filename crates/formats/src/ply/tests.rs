@@ -81,12 +81,12 @@ fn broken_files_are_told_with_element_and_line() {
     check_broken(
         "end_header",
         "end",
-        "m.ply:15:1: the header has a line that says nothing known",
+        "m.ply:15:1: the header has an unknown line",
     );
     check_broken(
         "ascii 1.0",
         "ascii 2.0",
-        "m.ply:2:1: the header has a line that says nothing known",
+        "m.ply:2:1: the header has an unknown line",
     );
     check_broken("ascii", "text", "m.ply:2:1: unknown format `text`");
     check_broken("float x", "real x", "m.ply:5:1: unknown type `real`");
@@ -120,12 +120,12 @@ fn broken_files_are_told_with_element_and_line() {
     check_broken(
         "4 0 1 2 3",
         "4 0 1 2 4",
-        "m.ply:20:9: face 0: index 4 is not that of a vertex: there are 4",
+        "m.ply:20:9: face 0: there is no vertex 4: the mesh has 4",
     );
     check_broken(
         "4 0 1 2 3",
         "4 0 1 -2 3",
-        "m.ply:20:7: face 0: index -2 is not that of a vertex: there are 4",
+        "m.ply:20:7: face 0: there is no vertex -2: the mesh has 4",
     );
     check_broken(
         "2 0 1",

@@ -50,15 +50,17 @@ pub(crate) enum SpectrumError {
 impl fmt::Display for SpectrumError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Empty => f.write_str("a spectrum has at least one pair of wavelength and value"),
+            Self::Empty => {
+                f.write_str("a spectrum needs at least one pair of wavelength and value")
+            }
             Self::Odd => f.write_str("the last wavelength of the spectrum has no value"),
             Self::NotANumber(line) => {
                 write!(
                     f,
-                    "line {line} of the spectrum has something that is no number"
+                    "line {line} of the spectrum has something that is not a number"
                 )
             }
-            Self::Order => f.write_str("the wavelengths of a spectrum increase"),
+            Self::Order => f.write_str("the wavelengths of a spectrum must increase"),
         }
     }
 }

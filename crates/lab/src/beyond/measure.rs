@@ -105,9 +105,7 @@ impl Clock {
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Processors => "processor seconds of all threads, as user and as system",
-            Self::Wall => {
-                "seconds of the clock, as the system does not tell those of the processors"
-            }
+            Self::Wall => "seconds of the clock, as the system does not report processor seconds",
         }
     }
 }

@@ -97,7 +97,7 @@ pub fn run(options: &Options, setup: &Setup, observer: &mut dyn Observer) -> Res
     }
     if places.is_empty() {
         let reason = absent.pop().map(|absent| absent.reason);
-        let reason = reason.unwrap_or_else(|| "none is asked for".to_owned());
+        let reason = reason.unwrap_or_else(|| "no scene was chosen".to_owned());
         return Err(ExperimentError::NoScenes(reason));
     }
     let (end, all) = render(options, &places, &mut absent, setup, observer)?;
@@ -165,16 +165,17 @@ fn concluded(options: &Options, all: Results, absent: &[Absent]) -> Results {
 
 /// What is compared, in paragraphs.
 fn description(absent: &[Absent]) -> String {
-    let about = "What all estimators gain over bidirectional path tracing that traces every shadow ray, in \
-                 equal time and at equal rays, and what each idea behind them gives. The gain is the \
-                 geometric mean over seeds of the ratio of relMSE · cost, training included; time is that \
-                 of the processors where the system tells it.";
-    let light = "Light tracing takes part where it makes all light paths: it misses what is seen in mirrors \
-                 or through clear glass.";
+    let about = "Gains of all estimators over bidirectional path tracing that traces every \
+         shadow ray, in equal time and at equal rays, and the gain of each idea behind them. The \
+         gain is the \
+                 geometric mean over seeds of the ratio of relMSE · cost, training included; \
+                 time is processor time where the system reports it.";
+    let light = "Light tracing takes part where it makes all light paths: it misses everything \
+         seen in mirrors or through clear glass.";
     let same = variants::aliases();
     let same = (!same.is_empty()).then(|| {
         let same = same.join("; ");
-        format!("What has the settings of another is rendered once: {same}.")
+        format!("Variants with the same settings are rendered once: {same}.")
     });
     let missing = absent
         .iter()

@@ -172,10 +172,9 @@ fn targets(results: &Results, amounts: &Amounts) -> Table {
         "lvc, blocks",
     ];
     Table {
-        caption:
-            "Targets: gains that were aimed at and that were reached, with 95 % intervals. auto is \
+        caption: "Targets: gains, the goals and the results, with 95 % intervals. auto is \
                   judged, by pixels."
-                .to_owned(),
+            .to_owned(),
         columns: columns.map(str::to_owned).into(),
         rows: TARGETS.iter().map(row).collect(),
     }

@@ -62,12 +62,12 @@ const fn variant(
 }
 
 const PROPOSALS: &str = "Proposals, uniform or learnt";
-const EMISSION: &str = "Where light subpaths begin, by power instead of what is learnt";
+const EMISSION: &str = "Light subpaths start by power instead of learnt probabilities";
 const LIGHT_POINTS: &str = "Light points for the first camera vertex and those behind it";
 const SUBPATHS: &str = "Samples for each light subpath";
 const CANDIDATES: &str = "Candidates for the first camera vertex and those behind it";
 const SELECTORS: &str = "Shadow-ray selectors";
-const COUNTS: &str = "What weights count as a sample";
+const COUNTS: &str = "Sample counts in the weights";
 const LIGHTS: &str = "Choice of the light, by power instead of the tree";
 
 /// All variants; a base stands before its variants.

@@ -15,6 +15,37 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// Where no number of seeds is given.
 const SEEDS: u64 = 10;
+/// The keys of the whole description.
+const TOP: [&str; 13] = [
+    "title",
+    "description",
+    "seeds",
+    "first-seed",
+    "size",
+    "threads",
+    "metrics",
+    "pyramid",
+    "pyramid-spp",
+    "settings",
+    "scene",
+    "method",
+    "budget",
+];
+/// The keys of `[[scene]]`, and those that are accepted for old descriptions.
+const SCENE: [&str; 7] = [
+    "file",
+    "name",
+    "size",
+    "reference",
+    "reference-spp",
+    "reference-strategies",
+    "reference-cross-check",
+];
+const OLD_SCENE: [&str; 1] = ["reference-witness"];
+/// The keys of `[[budget]]`.
+const BUDGET: [&str; 4] = ["name", "samples", "rays", "seconds"];
+/// Settings that are accepted for old descriptions.
+const OLD_SETTINGS: [&str; 1] = ["emission"];
 /// Samples per pixel of images of strategies, where no number is given.
 const PYRAMID_SPP: u64 = 64;
 
@@ -24,13 +55,14 @@ impl Experiment {
     /// Errors: [`ExperimentError::Description`], with line and column.
     pub fn read(text: &str, file: &Path) -> Result<Self> {
         let mut top = Source { file, text }.parse()?;
+        top.only(&TOP, &[])?;
         let mut defaults = Changes::default();
         for (i, mut section) in top.sections("settings")?.into_iter().enumerate() {
             if i > 0 {
-                return Err(section.fault("there are settings of all methods already"));
+                return Err(section.fault("there is a second [settings]"));
             }
+            section.only(&Changes::NAMES, &OLD_SETTINGS)?;
             defaults = changes(&mut section)?;
-            section.finish()?;
         }
         let folder = formats::file::folder_of(file);
         let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
@@ -49,7 +81,6 @@ impl Experiment {
             pyramid: None,
         };
         experiment.pyramid = pyramid(shown, &experiment.methods)?;
-        top.finish()?;
         Ok(experiment)
     }
 }
@@ -60,7 +91,7 @@ fn pyramid(
     methods: &[MethodSpec],
 ) -> Result<Option<PyramidSpec>> {
     let Some(entry) = method else {
-        let fault = |spp: Entry<'_>| spp.fault("there is no `pyramid` that it could be of");
+        let fault = |spp: Entry<'_>| spp.fault("`pyramid-spp` needs `pyramid`");
         return spp.map_or(Ok(None), |spp| Err(fault(spp)));
     };
     let name = entry.text()?;
@@ -150,7 +181,6 @@ fn all<'a, T: Named>(
             let message = format!("there is another {key} `{}`", one.name());
             return Err(section.fault(message));
         }
-        section.finish()?;
         all.push(one);
     }
     if all.is_empty() {
@@ -196,7 +226,7 @@ fn changes(section: &mut Section<'_>) -> Result<Changes> {
             let mut deaf = changes.integrator.into_iter();
             if let Some(deaf) = deaf.find(|integrator| !has_influence(name, *integrator)) {
                 let integrator = name_of(&IntegratorKind::NAMES, deaf);
-                let message = format!("`{name}` has no influence on the integrator `{integrator}`");
+                let message = format!("`{name}` has no effect on the integrator `{integrator}`");
                 return Err(entry.fault(message));
             }
         }
@@ -205,6 +235,8 @@ fn changes(section: &mut Section<'_>) -> Result<Changes> {
 }
 
 fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
+    let known = ["name"].into_iter().chain(Changes::NAMES);
+    section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
         changes: changes(section)?.or(defaults),
@@ -212,6 +244,7 @@ fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
 }
 
 fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result<SceneSpec> {
+    section.only(&SCENE, &OLD_SCENE)?;
     let file = section.need("file")?.text()?.to_owned();
     let stem = Path::new(&file).file_stem().unwrap_or_default();
     let stem = stem.to_string_lossy();
@@ -233,18 +266,23 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
-    let witness = section.take_renamed("reference-cross-check", "reference-witness");
+    let cross_check = section.take_renamed("reference-cross-check", "reference-witness");
     match (image, spp) {
-        (Some(image), None) => match strategies.or(witness) {
-            Some(entry) => Err(entry.fault("of a reference that is there, nothing can be chosen")),
+        (Some(image), None) => match strategies.or(cross_check) {
+            Some(entry) => Err(entry.fault_with(
+                "an existing reference cannot be changed".to_owned(),
+                "leave this out, or have the reference made with `reference-spp`".to_owned(),
+            )),
             None => Ok(ReferenceSpec::There(folder.join(image.text()?))),
         },
         (None, Some(spp)) => Ok(ReferenceSpec::Make {
             spp: spp.whole(1)?,
             changes: Box::new(reference_changes(strategies, defaults)?),
-            witness: witness.as_ref().map(witness_of).transpose()?,
+            witness: cross_check.as_ref().map(cross_check_of).transpose()?,
         }),
-        (Some(_), Some(spp)) => Err(spp.fault("there is a `reference` already")),
+        (Some(_), Some(spp)) => {
+            Err(spp.fault("`reference` and `reference-spp` exclude each other"))
+        }
         (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
     }
 }
@@ -263,19 +301,20 @@ fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Changes) -> Resul
 }
 
 /// An estimator that can contradict that of the picture.
-fn witness_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
+fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
     let mut changes = Changes::default();
     entry.read(|value| changes.set("integrator", value))?;
     match changes.integrator {
         Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
-            "this witness may be the estimator of the reference itself".to_owned(),
-            "references are made by `bdpt`: take path, light or lvc".to_owned(),
+            "an estimator cannot cross-check itself".to_owned(),
+            "references are made by `bdpt`: use path, light or lvc".to_owned(),
         )),
         Some(witness) => Ok(witness),
     }
 }
 
 fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
+    section.only(&BUDGET, &[])?;
     let name = text_of(section, "name")?;
     let kinds = [
         ("samples", BudgetKind::Samples),

@@ -16,7 +16,7 @@ pub enum ExperimentError {
     #[error(transparent)]
     File(#[from] formats::Error),
     /// The folder of the results cannot be made or read.
-    #[error("{}: {error}", path.display())]
+    #[error("{}", formats::cannot("make", path, error))]
     Folder {
         /// What cannot be made or read.
         path: PathBuf,
@@ -27,7 +27,8 @@ pub enum ExperimentError {
     #[error("{}: the records are of another experiment", .0.display())]
     Mismatch(PathBuf),
     /// The folder has records of another machine, or of another program or number of threads.
-    #[error("{}: the records were made elsewhere, and times of both cannot be compared: {difference}",
+    #[error("{}: the records come from another machine or program, and their times cannot be \
+         compared: {difference}",
         folder.display())]
     Elsewhere {
         /// The folder.
@@ -49,7 +50,8 @@ pub enum ExperimentError {
         expected: [usize; 2],
     },
     /// A reference has pixels with which nothing can be compared.
-    #[error("{}: the reference of `{scene}` has {count} pixels that are not finite, the first at {},{}",
+    #[error("{}: the reference of `{scene}` has {count} pixels that are not finite, the first at \
+         {},{}",
         path.display(), first[0], first[1])]
     NotFinite {
         /// The reference.
@@ -71,13 +73,24 @@ pub enum ExperimentError {
     },
     /// Strategies are to be shown of a method that has none in a scene.
     #[error(
-        "scene `{scene}`: the method `{method}`, whose strategies are to be shown, is not bidirectional there"
+        "scene `{scene}`: the strategies of method `{method}` cannot be shown, as it is not \
+         bidirectional there"
     )]
     Pyramid {
         /// The scene.
         scene: String,
         /// The method.
         method: String,
+    },
+    /// The strategies of a method make no path in a scene.
+    #[error("scene `{scene}`: method `{method}`: {text}")]
+    Strategies {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+        /// The list, and what it lacks.
+        text: String,
     },
     /// None of the scenes that an experiment has is there.
     #[error("there is no scene to render: {0}")]
@@ -99,19 +112,20 @@ impl ExperimentError {
             Self::Description(fault) => fault.hint.as_deref(),
             Self::File(error) => error.hint(),
             Self::Mismatch(_) => {
-                Some("give another folder with -o, or begin anew in this one with --restart")
+                Some("name another folder with -o, or start over in this one with --restart")
             }
             Self::Elsewhere { .. } => Some(
-                "go on there, or with the same --threads; else give another folder with -o, or begin \
-                 anew in this one with --restart",
+                "continue there, or with the same --threads; else name another folder with -o, \
+                 or start over in this one with --restart",
             ),
-            Self::NotFinite { .. } => Some("render it anew, or give these pixels a colour"),
+            Self::NotFinite { .. } => Some("render it again, or give these pixels a colour"),
             Self::Reference {
                 error: reference::Error::Disagree { .. },
                 ..
             } => Some(
-                "it stays where it is; see what more samples say (`reference-spp`), or another witness \
-                 (`reference-cross-check`), or name as `reference` one of other estimators, by `bidir reference --estimator … --against …`",
+                "the reference stays in its folder; take more samples (`reference-spp`) or \
+                 another estimator (`reference-cross-check`), or name a `reference` made by \
+                 `bidir reference --estimator … --against …`",
             ),
             Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),

@@ -47,6 +47,7 @@ mod journal;
 #[cfg(test)]
 mod keys;
 mod names;
+pub use names::nearest;
 mod page;
 mod pyramid;
 mod reader;
@@ -153,7 +154,7 @@ pub struct MethodSpec {
     pub changes: Changes,
 }
 
-/// What is equal for all methods.
+/// The amounts that are equal for all methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BudgetSpec {
     /// Its name, unlike all others.

@@ -1,7 +1,7 @@
 //! Names that people misspell, and names that files can have.
 
 /// The name that `name` was probably meant to be. None: where nothing is near.
-pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A third of the letters may be wrong; two words of three letters are not each other.
     let letters = name.chars().count();
     let allowed = letters.div_ceil(3).min(4);

@@ -1,7 +1,7 @@
 //! Tables of TOML, and where in the file everything stands.
 //!
-//! A [`Section`] remembers which keys were asked for, so that every other one is refused with the
-//! nearest of them.
+//! A [`Section`] is first checked for keys that it does not have: a misspelt key is reported before the
+//! one that is missing for it.
 
 use super::error::{ExperimentError, Fault};
 use super::names::nearest;
@@ -30,7 +30,6 @@ impl<'a> Source<'a> {
             source: self,
             place: 0..0,
             table: table.into_inner(),
-            known: Vec::new(),
         })
     }
 
@@ -56,7 +55,6 @@ pub(super) struct Section<'a> {
     place: Range<usize>,
     /// What was not asked for yet.
     table: DeTable<'a>,
-    known: Vec<&'static str>,
 }
 
 /// A value with its place.
@@ -68,9 +66,27 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Section<'a> {
+    /// Refuses keys that are not in `known`, with the nearest of them. Those in `old` are accepted, but
+    /// not suggested.
+    pub(super) fn only(&self, known: &[&'static str], old: &[&'static str]) -> Result<()> {
+        let is_unknown = |key: &&Spanned<_>| {
+            let key: &str = Spanned::get_ref(*key);
+            !known.contains(&key) && !old.contains(&key)
+        };
+        let unknown = self.table.keys().filter(is_unknown);
+        let Some(key) = unknown.min_by_key(|key| key.span().start) else {
+            return Ok(());
+        };
+        let hint = match nearest(key.get_ref(), known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("known keys are {}", known.join(", ")),
+        };
+        let message = format!("there is no key `{}` here", key.get_ref());
+        Err(self.source.fault(key.span(), message, Some(hint)))
+    }
+
     /// The value of a key.
     pub(super) fn take(&mut self, key: &'static str) -> Option<Entry<'a>> {
-        self.known.push(key);
         self.table
             .remove(key)
             .map(|value| Entry::new(self.source, value))
@@ -115,19 +131,6 @@ impl<'a> Section<'a> {
     pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
         self.source.fault(self.place.clone(), message.into(), None)
     }
-
-    /// Refuses what nobody asked for.
-    pub(super) fn finish(self) -> Result<()> {
-        let unknown = self.table.keys().min_by_key(|key| key.span().start);
-        let Some(key) = unknown else { return Ok(()) };
-        let known = self.known.iter().copied();
-        let hint = match nearest(key.get_ref(), known) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("known here are {}", self.known.join(", ")),
-        };
-        let message = format!("there is no key `{}` here", key.get_ref());
-        Err(self.source.fault(key.span(), message, Some(hint)))
-    }
 }
 
 impl<'a> Entry<'a> {
@@ -156,7 +159,6 @@ impl<'a> Entry<'a> {
                 source: self.source,
                 place: self.place,
                 table,
-                known: Vec::new(),
             }),
             _ => Err(self.fault("expected a table")),
         }
@@ -198,7 +200,7 @@ impl<'a> Entry<'a> {
         };
         // Numbers of JSON are exact up to here.
         let number = number.filter(|number| (least..1 << 53).contains(number));
-        number.ok_or_else(|| self.fault(format!("expected a whole number from {least} on")))
+        number.ok_or_else(|| self.fault(format!("expected a whole number of at least {least}")))
     }
 
     /// A finite number above zero.

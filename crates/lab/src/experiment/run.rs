@@ -12,6 +12,7 @@ use super::settings::texts;
 use super::stage::{Reference, Stage};
 
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
+use bidir::integrator::{LostLight, lost_light};
 use bidir::scene::Isa;
 use formats::scene::Files;
 use std::collections::BTreeMap;
@@ -172,6 +173,7 @@ pub(super) fn begin<'a>(
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));
     }
+    check_strategies(experiment, &stages, observer)?;
     pyramid::check(experiment, &stages)?;
     let given = stages.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
@@ -181,6 +183,39 @@ pub(super) fn begin<'a>(
         machine: machine(experiment, setup),
     };
     Ok((stages, given, owner))
+}
+
+/// Refuses methods whose strategies make no path in a scene, and warns of light that others lose, once
+/// for each method.
+fn check_strategies(
+    experiment: &Experiment,
+    stages: &[Stage<'_>],
+    observer: &mut dyn Observer,
+) -> Result<()> {
+    for method in &experiment.methods {
+        let mut warned = Vec::new();
+        for stage in stages {
+            let settings = method.changes.apply(&stage.settings);
+            let path = &settings.path;
+            let Some(lost) = lost_light(&stage.scene, settings.integrator, path) else {
+                continue;
+            };
+            let text = format!("strategies {} {lost}", path.strategies);
+            if matches!(lost, LostLight::All { .. }) {
+                return Err(ExperimentError::Strategies {
+                    scene: stage.spec.name.clone(),
+                    method: method.name.clone(),
+                    text,
+                });
+            }
+            if !warned.contains(&text) {
+                let warning = format!("method `{}`: {text}", method.name);
+                observer.tell(Event::Warning(&warning));
+                warned.push(text);
+            }
+        }
+    }
+    Ok(())
 }
 
 impl Machine {

@@ -46,21 +46,25 @@ impl Kind {
         let (name, meaning) = match self {
             Self::Weighted => (
                 "weighted images of strategies (s, t)",
-                "A tile is what its strategy adds to the picture; all tiles and longer paths together are the picture.",
+                "Each tile shows the contribution of its strategy; all tiles and longer paths \
+                 add up to the image.",
             ),
             Self::Raw => (
                 "raw images of strategies (s, t)",
-                "A tile is what its strategy shows alone, without its weight: the same light all along a row, as far as \
-                 the strategy can make its paths. Dots and black parts are where it is bad at it, or cannot.",
+                "Each tile shows its strategy alone, without its weight: the same light all \
+                 along a row, as far as the strategy can make its paths. Dots and black parts \
+                 are where the strategy is noisy, or makes no path.",
             ),
         };
         [
             format!("{scene}: {name}, {passes} spp"),
-            "A path of s + t vertices has s from the light and t from the camera. A row has all paths of one length: \
+            "A path of s + t vertices has s from the light and t from the camera. A row has all \
+             paths of one length: \
              to the right s grows, to the left t."
                 .to_owned(),
             meaning.to_owned(),
-            "x8, /8: shown 8 times as bright or as dark as it is, all of a row alike. mean: luminance as it is."
+            "x8, /8: shown 8 times as bright or as dark as it is, all of a row alike. mean: \
+             luminance as it is."
                 .to_owned(),
         ]
     }

@@ -32,7 +32,7 @@ pub struct Agreement {
     pub film: Comparison,
     /// Where the blocks' means differ most.
     pub blocks: Comparison,
-    /// The relative bias of the film's mean, in any channel, that would have been found more often
+    /// The relative bias of the film's mean, in any channel, that would have been detected more often
     /// than not. None: the film is black, or nothing is known of its variance.
     pub smallest_bias: Option<f64>,
 }

@@ -67,7 +67,7 @@ pub enum Error {
     #[error(transparent)]
     File(#[from] formats::Error),
     /// The system refused to read or write.
-    #[error("{}: {error}", path.display())]
+    #[error("{}", formats::cannot("use", path, error))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -75,7 +75,7 @@ pub enum Error {
         error: std::io::Error,
     },
     /// The folder is not there, or has no `provenance.json`.
-    #[error("{}: no reference: there is no {PROVENANCE} in it", .0.display())]
+    #[error("{} is not a reference: it has no {PROVENANCE}", .0.display())]
     Missing(PathBuf),
     /// No render can begin.
     #[error(transparent)]
@@ -106,7 +106,7 @@ pub enum Error {
     },
     /// A film has more passes than are asked for.
     #[error(
-        "{}: it has {found} samples per pixel already, more than the {asked} that are asked for",
+        "{} has {found} samples per pixel already, more than the {asked} requested",
         folder.display()
     )]
     TooLong {
@@ -118,7 +118,7 @@ pub enum Error {
         asked: u64,
     },
     /// The folder has films of another render.
-    #[error("{}: the film of another render: {difference}", path.display())]
+    #[error("{} is the film of another render: {difference}", path.display())]
     OtherRender {
         /// The film file.
         path: PathBuf,
@@ -170,7 +170,7 @@ impl Reference {
         let file = folder.join(PICTURE);
         let [picture, variance] = picture::read(&file)?;
         if digest(&[&picture, &variance]) != provenance.picture {
-            let reason = format!("it is not the picture that {PROVENANCE} is about");
+            let reason = format!("it is not the image that {PROVENANCE} describes");
             return Err(Error::damaged(&file, reason));
         }
         Ok(Self {

@@ -107,7 +107,8 @@ impl Provenance {
         let damaged = |error: serde_json::Error| Error::damaged(&path, error.to_string());
         let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
-            let reason = format!("format {format} of references, this program reads {FORMAT}");
+            let reason =
+                format!("the reference has format {format}; this program reads format {FORMAT}");
             return Err(Error::Refused {
                 folder: folder.to_owned(),
                 reason,

@@ -263,7 +263,7 @@ fn films_of_another_render_are_not_gone_on_from() {
     other.estimators[0].sampler = SamplerKind::Sobol;
     let error = place.made("a", &other, &()).unwrap_err().to_string();
     let expected =
-        "picture-00.film: the film of another render: sampler is sobol here and independent";
+        "picture-00.film is the film of another render: sampler is sobol here and independent";
     assert!(error.contains(expected), "{error}");
     place.loaded = scene(&SCENE.replace("9 8 7", "9 8 8"));
     place.digest = place.loaded.digest.to_string();
@@ -287,7 +287,7 @@ fn damaged_and_stale_references_are_refused() {
     check("[1]", "damaged");
     check(
         &whole.replace("\"format\": 1", "\"format\": 2"),
-        "format 2 of references, this program reads 1",
+        "the reference has format 2; this program reads format 1",
     );
     let version = bidir::ESTIMATOR_VERSION;
     let line = |version: u32| format!("\"estimator_version\": {version}");

@@ -8,9 +8,9 @@ use crate::statistics::RATIOS;
 /// How to make all of it again.
 pub(super) fn again(report: &Report<'_>) -> Element {
     let command = element("pre").child(element("code").text(report.command));
-    super::section("again", "How to make it again")
+    super::section("again", "How to reproduce it")
         .child(element("p").text(format!(
-            "With {} this command renders everything anew and writes this page:",
+            "With {} this command renders everything again and writes this page:",
             report.results.program
         )))
         .child(command)
@@ -50,7 +50,8 @@ fn meaning(metric: Metric) -> &'static str {
         }
         Metric::RelmseTrimmed => "relmse without the 0.1 % of pixels that have the largest error.",
         Metric::RelmseBlock => {
-            "relmse of the means over blocks of 16 × 16 pixels: the error that is left where noise of \
+            "relmse of the means over blocks of 16 × 16 pixels: the error that is left where \
+             noise of \
              single pixels averages out, such as that which neighbours share."
         }
         Metric::Mape => {
@@ -58,11 +59,13 @@ fn meaning(metric: Metric) -> &'static str {
              |image − reference| / (|reference| + 0.01)."
         }
         Metric::Flip => {
-            "What an observer sees when image and reference alternate at the same place on a \
-             screen that shows 0 to 1: 0 is nothing, 1 is black for white. The mean over all pixels."
+            "The difference that an observer sees when image and reference alternate at the same \
+             place on a screen that shows 0 to 1: 0 is none, 1 is black for white. The mean over \
+             all pixels."
         }
         Metric::FlipHdr => {
-            "The same for light of any strength: each pixel at the exposure at which the difference \
+            "The same for light of any strength: each pixel at the exposure at which the \
+             difference \
              is seen best."
         }
     }
@@ -83,21 +86,22 @@ const WORDS: [(&str, &str); 13] = [
     ("ratio", RATIOS),
     (
         "reproduced, not reproduced, undecided",
-        "What is claimed is what was found, or is not, and the intervals leave no doubt; or they do.",
+        "The results confirm the claim, or contradict it, and the intervals leave no doubt; \
+         otherwise it is undecided.",
     ),
     (
         "met, not met, not measured",
-        "What was aimed at is reached, or is not, and the interval leaves no doubt; or nothing was \
-         measured that could tell.",
+        "The target is reached, or is missed, and the interval leaves no doubt; or it was not \
+         measured.",
     ),
     (
         "processor seconds",
-        "What all threads took of the processors, as user and as system, training included: on a \
-         busy machine the same work takes more seconds, but hardly more of these.",
+        "The processor time of all threads, as user and as system, training included: on a busy \
+         machine the same work takes more seconds, but hardly more processor seconds.",
     ),
     (
         "reference",
-        "An image that is as good as exact: rendered with far more samples than what is compared \
+        "An image that is nearly exact: rendered with far more samples than what is compared \
          with it, as described for each scene. Its own noise is in all errors.",
     ),
     (
@@ -111,12 +115,14 @@ const WORDS: [(&str, &str); 13] = [
     ),
     (
         "strategy (s, t)",
-        "A way to make a path: s vertices are walked from a light and t from the camera, and the two \
+        "A way to make a path: s vertices are walked from a light and t from the camera, and the \
+         two \
          ends are joined. A path of n vertices has n strategies, from s = 0 to t = 1.",
     ),
     (
         "weighted, raw",
-        "Of a contribution, with the weight by which strategies share the paths that several of them \
+        "Of a contribution, with the weight by which strategies share the paths that several of \
+         them \
          can make, and without it.",
     ),
     (

@@ -13,7 +13,7 @@ pub(super) fn header(report: &Report<'_>) -> Element {
     };
     let links = [
         ("verdicts", "Verdicts"),
-        ("setting", "What was compared"),
+        ("setting", "Comparison"),
         ("claims", "Claims"),
         ("more", "More"),
         ("strategies", "Strategies"),

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// The section.
 pub(super) fn section(results: &Results) -> Element {
-    super::section("setting", "What was compared")
+    super::section("setting", "Comparison")
         .child(element("p").text(extent(results)))
         .children(methods(&results.methods))
         .child(element("h3").text("Scenes"))
@@ -162,7 +162,7 @@ fn budgets(budgets: &[BudgetInfo]) -> Table {
         ]
     };
     Table {
-        caption: "What is equal for all methods.".into(),
+        caption: "The amounts that are equal for all methods.".into(),
         columns: ["budget", "amount", "of"].map(str::to_owned).to_vec(),
         rows: budgets.iter().map(row).collect(),
     }

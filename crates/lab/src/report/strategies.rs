@@ -24,10 +24,10 @@ pub(super) fn section(results: &Results, sheets: &[Sheet]) -> Element {
     };
     section
         .child(element("p").text(
-            "A path of s + t vertices can be made by s from the light and t from the camera. Weighted \
-             images show what each such strategy (s, t) adds to the picture, raw ones what it would \
-             show alone: all of a row estimate the same light, and where one is noisy its weight \
-             should be small.",
+            "A path of s + t vertices can be made by s from the light and t from the camera. \
+             Weighted images show the contribution of each strategy (s, t) to the image, raw \
+             ones the strategy alone: all images of a row estimate the same light, and where one \
+             is noisy its weight should be small.",
         ))
         .children(results.pyramids.iter().map(scene))
 }
@@ -47,12 +47,12 @@ fn one(pyramid: &Pyramid, scene: Option<&SceneInfo>, sheets: &[Sheet]) -> Elemen
     let figures = [
         (
             "Weighted",
-            "what each strategy adds to the picture",
+            "the contribution of each strategy to the image",
             &pyramid.weighted,
         ),
         (
             "Raw",
-            "what each strategy shows alone, without its weight",
+            "each strategy alone, without its weight",
             &pyramid.raw,
         ),
     ];
@@ -64,7 +64,8 @@ fn one(pyramid: &Pyramid, scene: Option<&SceneInfo>, sheets: &[Sheet]) -> Elemen
         .class("strategies")
         .child(element("h3").text(format!("{}: {method}", pyramid.scene)))
         .child(element("p").text(format!(
-            "{} samples per pixel, seed {seed}, {width} × {height} pixels{smaller}; paths of up to {} \
+            "{} samples per pixel, seed {seed}, {width} × {height} pixels{smaller}; paths of up \
+             to {} \
              vertices. No time or ray of it counts elsewhere in this page.",
             number(*spp as f64),
             pyramid.vertices
@@ -103,12 +104,13 @@ fn description(pyramid: &Pyramid, word: &str) -> String {
     let most = most.map_or(String::new(), |most| {
         let share = 100.0 * most.mean / pyramid.mean;
         format!(
-            " {} adds most to the picture, {share:.0} % of it.",
+            " {} contributes most, {share:.0} % of the image.",
             name(most)
         )
     });
     format!(
-        "{word} images of the strategies of {} in {}, in a pyramid: a row for each number of vertices \
+        "{word} images of the strategies of {} in {}, in a pyramid: a row for each number of \
+         vertices \
          from 2 to {}, s growing from left to right.{most} The table below has all numbers.",
         pyramid.method, pyramid.scene, pyramid.vertices
     )
@@ -122,7 +124,7 @@ fn numbers(pyramid: &Pyramid) -> Table {
     let columns = [
         "strategy",
         "mean",
-        "% of the picture",
+        "% of the image",
         "raw mean",
         "variance",
         "rays / sample",
@@ -191,7 +193,8 @@ fn absent(pyramid: &Pyramid) -> Option<String> {
     let absent: Vec<_> = absent.map(|(s, t)| format!("s={s} t={t}")).collect();
     (!absent.is_empty()).then(|| {
         format!(
-            "Of {} nothing was counted: the method leaves them out, or they make no path of this scene.",
+            "Nothing was counted for {}: the method leaves them out, or they make no path of \
+             this scene.",
             absent.join(", ")
         )
     })

@@ -69,9 +69,10 @@ pub(super) fn table(table: &Table) -> Element {
 }
 
 fn legend() -> Element {
-    element("p")
-        .class("note")
-        .text("★ best of the rows that are compared; ≈ not told from it: the intervals overlap.")
+    element("p").class("note").text(
+        "★ best of the rows that are compared; ≈ not significantly different: the \
+             intervals overlap.",
+    )
 }
 
 fn cell(cell: &Cell, rank: Rank) -> Element {

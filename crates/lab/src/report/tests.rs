@@ -264,7 +264,7 @@ fn strategies_have_sheets_and_numbers() {
         "src=\"data:image/png;base64,Zm9v\"",
         "src=\"data:image/png;base64,YmFy\"",
         "alt=\"Raw images of the strategies of ",
-        "s=1 t=2 adds most to the picture, 25 % of it.",
+        "s=1 t=2 contributes most, 25 % of the image.",
         "2 samples per pixel, seed 3, 4 × 2 pixels",
         "Of s=1 t=1, s=0 t=3, s=2 t=1 nothing was counted",
         "longer paths",

@@ -164,7 +164,7 @@ class Viewer {
   /** Shows the numbers of the pixel under the pointer. */
   showValues() {
     const { a, b, reference } = this.view;
-    const place = this.pixel ? `pixel (${this.pixel.join(", ")})` : "pixel: point at the picture";
+    const place = this.pixel ? `pixel (${this.pixel.join(", ")})` : "pixel: point at the image";
     const line = (/** @type {string} */ word, /** @type {Picture | undefined} */ image) => {
       if (!this.pixel || !image) return "";
       const [column, row] = this.pixel;

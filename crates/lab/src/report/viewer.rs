@@ -129,11 +129,11 @@ fn keys() -> Element {
             "1 – 9",
             "shows the first … ninth image of the scene in place of the one that is shown",
         ),
-        ("S", "divides the picture: A to the left, B to the right"),
-        ("E", "goes on to the next error map"),
+        ("S", "divides the image: A to the left, B to the right"),
+        ("E", "shows the next error map"),
         ("[ ]", "darker, brighter by half a stop"),
         ("+ −", "larger, smaller; the wheel with Ctrl does so, too"),
-        ("← ↑ → ↓", "move the picture, as dragging does"),
+        ("← ↑ → ↓", "move the image, as dragging does"),
         ("R", "puts everything back"),
     ];
     let pair = |(key, meaning): (&str, &str)| {
@@ -144,11 +144,12 @@ fn keys() -> Element {
     };
     element("details")
         .with("id", "keys")
-        .child(element("summary").text("Keys, while the picture has the focus"))
+        .child(element("summary").text("Keys, while the image has the focus"))
         .child(element("dl").children(keys.into_iter().flat_map(pair)))
         .child(element("p").class("note").text(
-            "Pixels are stored with 11 bits of precision and up to 65504; what is no number is \
-             green. Error maps and means in this viewer are computed from these, so their last \
+            "Pixels are stored with 11 bits of precision and up to 65504; pixels that are not \
+             numbers are green. Error maps and means in this viewer are computed from these, so \
+             their last \
              digits may differ from those in the tables.",
         ))
 }

@@ -21,7 +21,24 @@ fn what_is_wrong_is_told_with_its_place() {
         ":1:9: string values must be quoted, expected literal string",
         None,
     );
-    check("sedes = 3\n", ":1:1: there is no [[scene]]", None);
+    // A misspelt key comes before the one that is missing for it.
+    let near = |name: &str| Some(format!("did you mean `{name}`?"));
+    check(
+        "sedes = 3\n",
+        ":1:1: there is no key `sedes` here",
+        near("seeds").as_deref(),
+    );
+    check(
+        &DESCRIPTION.replace("reference-spp", "reference-sp"),
+        ":6:1: there is no key `reference-sp` here",
+        near("reference-spp").as_deref(),
+    );
+    check(
+        &(DESCRIPTION.to_owned() + "[[budget]]\nsample = 2\n"),
+        ":13:1: there is no key `sample` here",
+        near("samples").as_deref(),
+    );
+    check("title = \"a\"\n", ":1:1: there is no [[scene]]", None);
     let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
     check(
         &all.replace("seeds", "sedes"),
@@ -35,7 +52,7 @@ fn what_is_wrong_is_told_with_its_place() {
     );
     check(
         &all.replace("samples = 2", "samples = 0"),
-        ":13:11: expected a whole number from 1 on",
+        ":13:11: expected a whole number of at least 1",
         None,
     );
     check(
@@ -63,12 +80,12 @@ fn what_is_wrong_is_told_with_its_place() {
             "shadow-rays = \"per-pair\"",
             "candidates = \"12,1\"\nintegrator = \"path\"",
         ),
-        ":11:14: `candidates` has no influence on the integrator `path`",
+        ":11:14: `candidates` has no effect on the integrator `path`",
         None,
     );
     check(
         &("[[settings]]\nmis = \"power\"\n[[settings]]\n".to_owned() + &all),
-        ":3:1: there are settings of all methods already",
+        ":3:1: there is a second [settings]",
         None,
     );
     check(
@@ -98,12 +115,12 @@ fn strategies_are_those_of_a_bidirectional_method() {
     );
     check(
         &with("pyramid-spp = 4"),
-        ":1:15: there is no `pyramid` that it could be of",
+        ":1:15: `pyramid-spp` needs `pyramid`",
         None,
     );
     check(
         &with("pyramid = \"all\"\npyramid-spp = 1"),
-        ":2:15: expected a whole number from 2 on",
+        ":2:15: expected a whole number of at least 2",
         None,
     );
     let place = Workplace::new();

@@ -138,8 +138,8 @@ fn beneath_a_mirror() -> Workplace {
 #[test]
 fn a_witness_that_finds_all_light_can_be_named() {
     let text = format!("{DESCRIPTION}{BUDGET}");
-    let naming = |witness: &str| {
-        let named = format!("reference-spp = 1024\nreference-cross-check = \"{witness}\"");
+    let naming = |integrator: &str| {
+        let named = format!("reference-spp = 1024\nreference-cross-check = \"{integrator}\"");
         text.replace(MADE, &named)
     };
     let place = beneath_a_mirror();
@@ -153,8 +153,35 @@ fn a_witness_that_finds_all_light_can_be_named() {
         "{provenance}"
     );
     let error = place.refusal(&naming("bdpt"), "other");
-    assert!(error.to_string().contains(":7:21: "), "{error}");
+    assert!(error.to_string().contains(":7:25: "), "{error}");
     assert!(error.hint().unwrap().contains("path, light or lvc"));
+    // Descriptions of before have another name for it.
+    let old = naming("lvc").replace("reference-cross-check", "reference-witness");
+    assert!(place.read(&old).is_ok());
+}
+
+#[test]
+fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
+    let place = Workplace::new();
+    let text = |list: &str| {
+        let method = format!("integrator = \"bdpt\"\nstrategies = \"{list}\"");
+        format!("{DESCRIPTION}{BUDGET}").replace("shadow-rays = \"per-pair\"", &method)
+    };
+    let error = place.refusal(&text("s0t0"), "none");
+    assert!(
+        error
+            .to_string()
+            .ends_with("method `one`: strategies s0t0 makes no path"),
+        "{error}"
+    );
+    let mut watch = Watch::default();
+    place.run(&text("s2"), "some", &mut watch).unwrap();
+    let lost = "method `one`: strategies s2 loses light: no strategy makes paths of 2 vertices";
+    assert!(
+        watch.warnings.iter().any(|warning| warning == lost),
+        "{:?}",
+        watch.warnings
+    );
 }
 
 #[test]

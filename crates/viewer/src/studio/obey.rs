@@ -73,7 +73,7 @@ impl Painter {
             State::Rendering | State::Paused => Ok(()),
             // Lanes that begin anew will render.
             _ if self.is_stale => Ok(()),
-            _ => Err("the render has ended: `restart` begins anew".to_owned()),
+            _ => Err("the render has ended: `restart` starts over".to_owned()),
         }
     }
 
@@ -116,7 +116,7 @@ impl Painter {
         let most = Layers::MOST_STRATEGY_VERTICES;
         if vertices > most || vertices == 1 {
             return Err(format!(
-                "images of strategies are of paths with 2 to {most} vertices, or 0 for none"
+                "images of strategies need paths of 2 to {most} vertices, or 0 for none"
             ));
         }
         let layers = &self.wanted(lane)?.layers;
@@ -166,7 +166,7 @@ impl Painter {
             let names: Vec<_> = names.map(|(name, _)| *name).collect();
             let integrator = integrator.escape_debug();
             format!(
-                "`{integrator}` is no integrator: there are {}",
+                "there is no integrator `{integrator}`: expected {}",
                 names.join(", ")
             )
         })?;

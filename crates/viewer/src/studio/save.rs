@@ -63,7 +63,7 @@ fn check_name(name: &str) -> Result<(), String> {
     }
     let rule = "letters, digits, spaces, `.`, `-`, `_` and `+`, and `.exr` at the end";
     Err(format!(
-        "`{}` is not saved: a name has {rule}",
+        "`{}` is not saved: a name can have {rule}",
         name.escape_debug()
     ))
 }
@@ -73,9 +73,9 @@ fn reserve(path: &Path, name: &str) -> Result<(), String> {
     let made = OpenOptions::new().write(true).create_new(true).open(path);
     made.map(|_| ()).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => {
-            format!("`{name}` is there already, and is not replaced: take another name")
+            format!("`{name}` exists already and is not replaced: choose another name")
         }
-        _ => format!("`{name}` cannot be written: {error}"),
+        _ => format!("cannot write `{name}`: {error}"),
     })
 }
 

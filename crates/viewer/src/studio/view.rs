@@ -188,7 +188,7 @@ impl View {
     fn check_is_flat(&self, command: &str) -> Result<(), Refusal> {
         match self.camera {
             Camera::Spherical(_) => Err(format!(
-                "`{command}` is not for a camera that sees all around: `walk` moves it"
+                "`{command}` does not apply to a spherical camera: `walk` moves it"
             )),
             Camera::Perspective(_) | Camera::Orthographic(_) => Ok(()),
         }

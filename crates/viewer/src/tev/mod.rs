@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 #[derive(Debug, Error)]
 pub enum TevError {
     /// There is no such host, or nobody who listens.
-    #[error("nobody listens at {address}: {source}")]
+    #[error("cannot connect to {address}: {source}")]
     Absent {
         /// Where.
         address: TevAddress,
@@ -40,7 +40,7 @@ pub enum TevError {
         source: io::Error,
     },
     /// The connection broke, or what was sent was not read.
-    #[error("{address} takes no images: {source}")]
+    #[error("{address} does not accept images: {source}")]
     Broken {
         /// Where.
         address: TevAddress,

@@ -34,7 +34,12 @@ pub(super) async fn serve(
 ) {
     let listener = match TcpListener::from_std(listener) {
         Ok(listener) => listener,
-        Err(error) => return site.link.board().log(&format!("the server fails: {error}")),
+        Err(error) => {
+            return site
+                .link
+                .board()
+                .log(&format!("the server failed: {error}"));
+        }
     };
     let router = routes::router(site);
     let places = Arc::new(Semaphore::new(CONNECTIONS));

@@ -67,7 +67,12 @@ impl Site {
     }
 
     fn ask(&self, request: Request) -> Result<(), Refusal> {
-        let busy = |_| Refusal::new(StatusCode::TOO_MANY_REQUESTS, "too many requests wait");
+        let busy = |_| {
+            Refusal::new(
+                StatusCode::TOO_MANY_REQUESTS,
+                "too many requests are waiting",
+            )
+        };
         self.link.ask(request).map_err(busy)
     }
 }
@@ -141,7 +146,7 @@ pub(super) async fn sample(
         let session = subject.session;
         if session.scene().film().resolution != resolution {
             return Err(Refusal::now(
-                "the camera moves: ask when the picture is whole",
+                "the camera is moving: try again when the image is complete",
             ));
         }
         let replay = session.replay([x, y], pass);

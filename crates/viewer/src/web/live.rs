@@ -48,7 +48,12 @@ pub(super) async fn live(
     upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Result<Response, Refusal> {
     let upgrade = upgrade.map_err(|error| Refusal::new(error.status(), error.body_text()))?;
-    let full = |_| Refusal::new(StatusCode::TOO_MANY_REQUESTS, "too many clients watch");
+    let full = |_| {
+        Refusal::new(
+            StatusCode::TOO_MANY_REQUESTS,
+            "too many clients are connected",
+        )
+    };
     let place = Arc::clone(&site.live.0).try_acquire_owned().map_err(full)?;
     let upgrade = upgrade
         .max_message_size(MOST_READ)
@@ -191,9 +196,9 @@ fn heard(message: Option<Result<Message, axum::Error>>) -> Result<Option<Command
 fn command(text: &str) -> Result<Command, End> {
     serde_json::from_str(text).map_err(|error: serde_json::Error| {
         if error.is_data() {
-            close(close_code::POLICY, &format!("no command: {error}"))
+            close(close_code::POLICY, &format!("not a command: {error}"))
         } else {
-            close(close_code::INVALID, &format!("no JSON: {error}"))
+            close(close_code::INVALID, &format!("not JSON: {error}"))
         }
     })
 }
@@ -204,7 +209,7 @@ fn broken(error: axum::Error) -> End {
     match error.into_inner().downcast_ref::<Error>() {
         Some(Error::Capacity(_)) => too_large(),
         Some(Error::Utf8(_)) => close(close_code::INVALID, "a text is UTF-8"),
-        Some(Error::Protocol(_)) => close(close_code::PROTOCOL, "this is no WebSocket"),
+        Some(Error::Protocol(_)) => close(close_code::PROTOCOL, "this is not a WebSocket"),
         _ => End::Gone,
     }
 }

@@ -32,7 +32,7 @@ pub(super) fn router(site: &Arc<Site>) -> Router {
         .route("/strategies.png", get(images::strategies))
         .fallback(|| async { Refusal::new(StatusCode::NOT_FOUND, "there is no such page") })
         .method_not_allowed_fallback(|| async {
-            Refusal::new(StatusCode::METHOD_NOT_ALLOWED, "nothing here but GET")
+            Refusal::new(StatusCode::METHOD_NOT_ALLOWED, "only GET is allowed")
         })
         .layer(from_fn_with_state(Arc::clone(site), guard))
         .layer(from_fn(dress))

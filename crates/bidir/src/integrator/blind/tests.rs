@@ -11,7 +11,7 @@ use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::{ColorTexture, FloatTexture};
 use std::sync::Arc;
 
-fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
+pub(super) fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
     let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
@@ -34,13 +34,13 @@ fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
     builder.build().unwrap()
 }
 
-fn diffuse() -> Material {
+pub(super) fn diffuse() -> Material {
     Material::Diffuse {
         reflectance: ColorTexture::Constant([0.5; 3]),
     }
 }
 
-fn metal(roughness: f32) -> Material {
+pub(super) fn metal(roughness: f32) -> Material {
     Material::Conductor {
         index: ConductorIndex::Reflectance(ColorTexture::Constant([0.9; 3])),
         roughness: Roughness {
@@ -51,14 +51,14 @@ fn metal(roughness: f32) -> Material {
     }
 }
 
-fn point() -> Light {
+pub(super) fn point() -> Light {
     Light::Point(PointLight {
         position: Vec3::ZERO,
         intensity: [1.0; 3],
     })
 }
 
-fn sky() -> Light {
+pub(super) fn sky() -> Light {
     Light::Infinite(InfiniteLight::constant([1.0; 3]))
 }
 

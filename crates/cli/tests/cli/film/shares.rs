@@ -109,14 +109,14 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         (
             "image.exr",
             2,
-            "not a film file, and so not replaced by one",
-            "give --output another name",
+            "not a film file, and not replaced by one",
+            "name another file with --output",
         ),
         (
             "room.pbrt",
             2,
             "not a film file",
-            "give --output another name",
+            "name another file with --output",
         ),
         (
             "damaged.film",
@@ -133,14 +133,14 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         (
             "seed.film",
             5,
-            "the film of another render, not replaced: seed is 5",
+            "the film of another render, and is not replaced: seed is 5",
             "name another file",
         ),
         (
             "d.exr --image d.exr",
             2,
             "d.exr: a film file, not replaced by an image",
-            "give --image another name",
+            "name another file with --image",
         ),
     ] {
         let names = place.names();

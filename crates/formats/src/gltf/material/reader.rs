@@ -172,7 +172,7 @@ impl Reader<'_, '_> {
             let color = volume.attenuation_color.unwrap_or([1.0; 3]);
             let is_finite = volume.attenuation_distance.is_some_and(f32::is_finite);
             if is_finite && color.iter().any(|&channel| channel < 1.0) {
-                let message = "what a volume absorbs is left out: the inside is clear";
+                let message = "absorption in volumes has no effect: the inside is clear";
                 self.context.warn(&self.place, message);
             }
         }
@@ -189,7 +189,8 @@ impl Reader<'_, '_> {
             let texture = coat.clearcoat_roughness_texture.as_ref();
             material.coat_roughness = self.number(factor, texture, Part::Green)?;
             if coat.clearcoat_normal_texture.is_some() {
-                let message = "a clear coat has the normals of what it covers, not its own";
+                let message = "the normal texture of a clear coat has no effect: the coat has \
+                     the normals of its base";
                 self.context.warn(&self.place, message);
             }
         }
@@ -209,11 +210,11 @@ impl Reader<'_, '_> {
         let departures = [
             (
                 extensions.unlit.is_some(),
-                "a surface without lighting is lit as any other",
+                "an unlit material is lit like any other",
             ),
             (
                 extensions.dispersion.is_some(),
-                "glass bends all colours alike: no dispersion",
+                "dispersion has no effect: glass refracts all colours alike",
             ),
             (
                 extensions.iridescence.is_some(),
@@ -238,7 +239,7 @@ impl Reader<'_, '_> {
             .iter()
             .any(|channel| !channel.is_finite() || *channel < 0.0)
         {
-            let message = format!("the emission {radiance:?} is no light");
+            let message = format!("the emission {radiance:?} is invalid");
             return Err(self.place.key("emissiveFactor").scene(message));
         }
         if radiance.iter().all(|&channel| channel <= 0.0) {

@@ -44,7 +44,7 @@ impl Surface {
         for vertex in &self.joints {
             maps.push(blend(vertex, joints).ok_or_else(|| {
                 place.scene(format!(
-                    "a vertex names a joint that its skin has not: it has {}",
+                    "a vertex names a joint that its skin does not have: the skin has {}",
                     joints.len()
                 ))
             })?);

@@ -104,7 +104,7 @@ fn indices_beyond_the_vertices_are_refused() {
     check(
         &draft,
         ErrorKind::Scene,
-        &["indices: index 3 is not that of a vertex: there are 3"],
+        &["indices: there is no vertex 3: the mesh has 3"],
     );
     draft.primitive()["indices"] = json!(0);
     check(&draft, ErrorKind::Scene, &["has no indices"]);

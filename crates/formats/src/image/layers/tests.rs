@@ -111,7 +111,7 @@ fn other_sizes_and_names_are_refused() {
     let error = layers
         .set_triples(["X", "Y", "Z"], &ramp(1.0)[1..])
         .unwrap_err();
-    let expected = "cannot write: the channel `X` has not the size of the image";
+    let expected = "cannot write: the channel `X` does not have the size of the image";
     assert_eq!(error.to_string(), expected);
     assert!(layers.set_triples(["☃", "Y", "Z"], &ramp(1.0)).is_err());
     assert!(layers.set_text("bidir/denoiser", "☃").is_err());

@@ -50,11 +50,15 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         context.unsupported(
             camera.entity.span,
             "a moving camera",
-            "its first place stands in",
+            "its first position is used",
         )?;
     }
     if let Some(medium) = &camera.medium.outside {
-        context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
+        context.unsupported(
+            medium.span,
+            "a participating medium",
+            "vacuum is used instead",
+        )?;
     }
     let mut reader = Reader::new(&camera.entity);
     let view = match camera.entity.kind.as_str() {
@@ -71,7 +75,7 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         }
         kind => {
             let what = format!("the camera `{kind}`");
-            context.unsupported(camera.entity.span, &what, "`perspective` stands in")?;
+            context.unsupported(camera.entity.span, &what, "`perspective` is used instead")?;
             return Ok(CameraSettings {
                 world_from_camera: place(&camera.transforms),
                 ..CameraSettings::default_at(camera.entity.span)
@@ -117,7 +121,7 @@ impl Screen {
     fn read(reader: &mut Reader<'_>) -> Result<Self, Fault> {
         let window = reader.floats(ParameterType::Float, "screenwindow");
         let span = reader.span();
-        let wrong = |_| Fault::scene(span, "`screenwindow` is left, right, bottom and top");
+        let wrong = |_| Fault::scene(span, "`screenwindow` needs left, right, bottom and top");
         let window = window
             .map(|window| window.try_into().map_err(wrong))
             .transpose()?;
@@ -198,7 +202,7 @@ impl CameraSettings {
         };
         camera.ok_or_else(|| {
             let message =
-                "the camera's screen is empty, or its transformation is sheared or uneven";
+                "the camera's screen is empty, or its transformation is sheared or scaled unevenly";
             Fault::scene(self.span, message)
         })
     }

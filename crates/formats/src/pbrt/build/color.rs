@@ -51,7 +51,7 @@ pub(super) fn read(
 /// A spectrum as a colour. That of a light is its hue alone: the luminance is 1, as the format has it.
 fn of_spectrum(spectrum: &Spectrum, parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
     if !spectrum.is_positive() {
-        let message = format!("the spectrum `{}` has a negative part", parameter.name);
+        let message = format!("the spectrum `{}` has negative values", parameter.name);
         return Err(Fault::scene(parameter.value_span, message));
     }
     let value = match purpose {
@@ -91,7 +91,7 @@ fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
         return Err(above_one(parameter));
     }
     if value.iter().any(|&channel| channel < 0.0) {
-        let message = format!("the colour `{}` has a negative part", parameter.name);
+        let message = format!("the colour `{}` has a negative component", parameter.name);
         return Err(Fault::scene(parameter.value_span, message));
     }
     let value = to_rec709(parameter.color_space, value, purpose);

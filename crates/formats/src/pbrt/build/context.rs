@@ -97,7 +97,8 @@ impl<'a> Context<'a> {
             let message = format!("{}: {message}", path.display());
             Fault::scene(span, message)
         };
-        let text = std::str::from_utf8(&bytes).map_err(|_| refuse("is no text".into()))?;
+        let text =
+            std::str::from_utf8(&bytes).map_err(|_| refuse("the file is not text".into()))?;
         Spectrum::parse(text).map_err(|error| refuse(error.to_string()))
     }
 
@@ -114,14 +115,14 @@ impl<'a> Context<'a> {
         stand_in: &str,
     ) -> Result<(), Fault> {
         if self.stand_ins == StandIns::Accepted {
-            let message = format!("{what} is not supported yet: {stand_in}");
+            let message = format!("{what} is not supported: {stand_in}");
             self.refused.insert(message.clone());
             self.warn(span, message);
             return Ok(());
         }
-        let message = format!("{what} is recognised but not supported yet");
+        let message = format!("{what} is not supported");
         let fault = Fault::new(ErrorKind::Unsupported, span, message);
-        Err(fault.with_hint(format!("with --lenient: {stand_in}")))
+        Err(fault.with_hint(format!("with --lenient, {stand_in}")))
     }
 
     /// Refuses more primitives, or vertices of meshes, than the caller wants.
@@ -132,7 +133,7 @@ impl<'a> Context<'a> {
         }
         let message = format!("the scene has more than {most} primitives or vertices");
         let fault = Fault::new(ErrorKind::Limit, span, message);
-        Err(fault.with_hint("objects with many instances take the place of one"))
+        Err(fault.with_hint("instances share the memory of their object"))
     }
 
     /// Builds something that nobody uses: it must not be wrong, but what is not supported is no

@@ -114,7 +114,8 @@ fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 
     if sides.contains(&width) && sides.contains(&height) {
         return Ok([width, height]);
     }
-    let message = format!("a film of {width} × {height} pixels is empty or too large");
+    let message =
+        format!("the film has {width} × {height} pixels; each side can have 1 to {LARGEST_SIDE}");
     Err(Fault::new(ErrorKind::Limit, span, message))
 }
 
@@ -128,7 +129,8 @@ fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fau
     let given = reader.find(ParameterType::Float, "iso");
     let span = given.map_or(camera.span, |parameter| parameter.value_span);
     let time = camera.exposure_time;
-    let message = format!("the exposure is no finite number: {time:e} seconds · iso {iso:e} / 100");
+    let message =
+        format!("the exposure is not a finite number: {time:e} seconds · iso {iso:e} / 100");
     Err(Fault::scene(span, message))
 }
 
@@ -153,7 +155,7 @@ fn crop(
         return Err(Fault::scene(reader.span(), message));
     }
     let [width, height] = resolution;
-    let message = format!("the crop asked for has no pixels of this film of {width} × {height}");
+    let message = format!("the crop lies outside the film of {width} × {height} pixels");
     Err(Fault::new(ErrorKind::Options, reader.span(), message))
 }
 
@@ -164,8 +166,8 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     if !(0.98..1.02).contains(&stretch) {
         let [width, height] = own;
         let message = format!(
-            "the view of this film of {width} × {height} pixels is kept, so the pixels of the size \
-             asked for are {stretch:.3} times as wide as high"
+            "the scene's film has another aspect ratio, {width} × {height}: pixels are \
+             {stretch:.3} times as wide as high"
         );
         context.warn(span, message);
     }
@@ -211,7 +213,11 @@ fn film_kind(
             Ok(GBUFFER.to_vec())
         }
         kind => {
-            context.unsupported(film.span, &format!("the film `{kind}`"), "`rgb` stands in")?;
+            context.unsupported(
+                film.span,
+                &format!("the film `{kind}`"),
+                "`rgb` is used instead",
+            )?;
             reader.ignore(context, ParameterType::Integer, "nbuckets");
             reader.ignore(context, ParameterType::Float, "lambdamin");
             reader.ignore(context, ParameterType::Float, "lambdamax");
@@ -239,7 +245,7 @@ fn read_crop(
     };
     crop.map(Some).ok_or_else(|| {
         let name = &parameter.name;
-        let message = format!("`{name}` is left, right, top and bottom of a part of the film");
+        let message = format!("`{name}` needs left, right, top and bottom of a part of the film");
         Fault::scene(parameter.value_span, message)
     })
 }

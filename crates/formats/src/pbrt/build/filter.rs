@@ -39,16 +39,16 @@ pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Resul
     );
     reader.finish()?;
     if camera.sees_all_around() && radius.max_element() > 0.5 {
-        let message = "the filter would reach over the edges of a picture of all directions: a box of \
-                       one pixel stands in";
+        let message = "the filter would cross the edges of a spherical image; using a box filter \
+             of one pixel";
         context.warn(entity.span, message);
         return Ok(pixel);
     }
     let narrowest = effective_radius(kind, radius.x).min(effective_radius(kind, radius.y));
     if narrowest < NARROW {
         let message = format!(
-            "the filter is as narrow as a box with a radius of {narrowest:.3} pixels: what \
-             light subpaths splat hits it rarely, so `bdpt` and `light` will be noisy"
+            "the filter is as narrow as a box with a radius of {narrowest:.3} pixels: light \
+             subpaths rarely hit it, so `bdpt` and `light` will be noisy"
         );
         context.warn(entity.span, message);
     }

@@ -18,7 +18,7 @@ pub(super) fn read(reader: &mut Reader<'_>) -> Result<Option<String>, Fault> {
     if !name.is_empty() && name.len() <= LONGEST && name.chars().all(is_plain) {
         return Ok(Some(name.to_owned()));
     }
-    let message = "the name of a group of lights becomes the name of a layer";
+    let message = "the name of a light group becomes the name of a layer";
     let hint = format!("use at most {LONGEST} letters, digits, `-`, `_` and spaces");
     Err(Fault::scene(span, message).with_hint(hint))
 }

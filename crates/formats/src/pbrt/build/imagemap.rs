@@ -102,7 +102,7 @@ fn parse_encoding(name: &str, span: Span) -> Result<Encoding, Fault> {
         None if name == "linear" => Ok(Encoding::Linear),
         Some(("gamma", gamma)) => {
             let gamma = gamma.trim().parse().ok().filter(|&gamma: &f32| gamma > 0.0);
-            let wrong = || Fault::scene(span, "the exponent of `gamma` is no positive number");
+            let wrong = || Fault::scene(span, "the exponent of `gamma` is not a positive number");
             gamma.map(Encoding::Gamma).ok_or_else(wrong)
         }
         _ => {
@@ -139,7 +139,7 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
         "ewa" | "EWA" => {
             context.warn(
                 span,
-                format!("the texture filter `{name}` is taken as `trilinear`"),
+                format!("the texture filter `{name}` is replaced by `trilinear`"),
             );
             Ok(ImageFilter::Trilinear)
         }
@@ -225,7 +225,7 @@ fn read_image<const N: usize>(
         .filter(|value| !value.is_finite());
     let count = replaced.map(|value| *value = 0.0).count();
     if count > 0 {
-        let message = format!("{count} numbers of the image are not finite and taken as 0");
+        let message = format!("{count} values of the image are not finite and count as 0");
         context.warn(file.span, message);
     }
     Image::new(width, texels).ok_or_else(|| Fault::scene(file.span, "the image has no pixels"))

@@ -24,11 +24,15 @@ pub(super) fn build(
     if light.transforms.is_animated() {
         context.warn(
             span,
-            "lights do not move: the first place of the light counts",
+            "lights cannot move: the first position of the light is used",
         );
     }
     if let Some(medium) = &light.medium.outside {
-        context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
+        context.unsupported(
+            medium.span,
+            "a participating medium",
+            "vacuum is used instead",
+        )?;
     }
     let world_from_light = &light.transforms.start;
     let mut reader = Reader::new(&light.entity);
@@ -165,8 +169,9 @@ fn environment(context: &mut Context<'_>, name: &str, span: Span) -> Result<Imag
     let image = radiance_image(context, name, span)?;
     let (width, height) = (image.width(), image.height());
     if width != height {
-        let message =
-            format!("an environment is a square image, this one has {width} × {height} pixels");
+        let message = format!(
+            "the image of an environment is square; this one has {width} × {height} pixels"
+        );
         let hint = "convert longitude and latitude with `imgtool makeequiarea`";
         return Err(Fault::scene(span, message).with_hint(hint));
     }
@@ -189,7 +194,7 @@ pub(super) fn radiance_image(
         .filter(|channel| !is_radiance(channel));
     let count = replaced.map(|channel| *channel = 0.0).count();
     if count > 0 {
-        let message = format!("{count} numbers of the image are no radiance and taken as 0");
+        let message = format!("{count} values of the image are not radiances and count as 0");
         context.warn(span, message);
     }
     Image::new(data.width, texels).ok_or_else(|| Fault::scene(span, "the image has no pixels"))
@@ -219,11 +224,7 @@ fn rotation(context: &mut Context<'_>, span: Span, matrix: &DMat3) -> Result<Mat
         .iter()
         .any(|entry| entry.abs() > 1e-3)
     {
-        context.unsupported(
-            span,
-            "an environment that is sheared",
-            "it is not turned at all",
-        )?;
+        context.unsupported(span, "an environment that is sheared", "it is not rotated")?;
         return Ok(Mat3::IDENTITY);
     }
     Ok(scaled.as_mat3())

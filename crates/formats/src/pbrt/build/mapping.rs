@@ -14,7 +14,10 @@ use glam::DAffine3;
 fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result<DAffine3, Fault> {
     let span = texture.entity.span;
     if texture.transforms.is_animated() {
-        context.warn(span, "a moving texture stays at its first place");
+        context.warn(
+            span,
+            "textures cannot move: the first position of the texture is used",
+        );
     }
     let inverse = texture.transforms.start.inverse();
     if inverse.is_finite() && inverse.as_affine3a().is_finite() {

@@ -136,8 +136,8 @@ impl<'a> Materials<'a> {
             return Err(Fault::scene(span, message));
         }
         self.build(context, textures, index)?.ok_or_else(|| {
-            let message = format!("the material `{}` is no surface", shorten(name));
-            Fault::scene(span, message).with_hint("a mixture is of two surfaces")
+            let message = format!("the material `{}` is not a surface", shorten(name));
+            Fault::scene(span, message).with_hint("a mixture needs two surfaces")
         })
     }
 }
@@ -353,9 +353,9 @@ fn stand_in(
     let mut accept = |stand_in| context.unsupported(entity.span, &what, stand_in);
     let mut reader = Reader::new(entity);
     if entity.kind == "subsurface" {
-        accept("`diffuse` of its reflectance stands in")?;
+        accept("`diffuse` with its reflectance is used instead")?;
         return diffuse(context, textures, &mut reader).map(Some);
     }
-    accept("`diffuse` of 0.5 stands in")?;
+    accept("`diffuse` with reflectance 0.5 is used instead")?;
     Ok(Some(grey()))
 }

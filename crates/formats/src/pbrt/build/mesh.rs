@@ -180,14 +180,14 @@ fn listed_faces<const N: usize>(
     };
     let is_vertex = |&index: &i32| usize::try_from(index).is_ok_and(|index| index < vertices);
     if let Some(index) = indices.iter().find(|index| !is_vertex(index)) {
-        let message = format!("index {index} is not that of a point: there are {vertices}");
+        let message = format!("there is no point {index}: the mesh has {vertices}");
         return Err(Fault::scene(parameter.value_span, message));
     }
     let (faces, rest) = indices.as_chunks::<N>();
     if !rest.is_empty() {
         let what = if N == 3 { "triangles" } else { "patches" };
         let message =
-            format!("the indices are no whole number of {what}: the last ones are left out");
+            format!("the last indices do not make a whole number of {what} and are left out");
         context.warn(parameter.value_span, message);
     }
     let unsigned = |corners: &[i32; N]| corners.map(|corner| corner as u32);

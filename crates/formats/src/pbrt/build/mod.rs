@@ -369,11 +369,15 @@ fn refuse_motion_and_media(
 ) -> Result<(), Fault> {
     if shape.transforms.is_animated() {
         let span = shape.entity.span;
-        context.unsupported(span, "a moving shape", "its first place stands in")?;
+        context.unsupported(span, "a moving shape", "its first position is used")?;
     }
     let medium = &shape.medium;
     if let Some(medium) = medium.inside.as_ref().or(medium.outside.as_ref()) {
-        context.unsupported(medium.span, "a participating medium", "vacuum stands in")?;
+        context.unsupported(
+            medium.span,
+            "a participating medium",
+            "vacuum is used instead",
+        )?;
     }
     Ok(())
 }

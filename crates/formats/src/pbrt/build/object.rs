@@ -16,7 +16,7 @@ impl Assembly<'_> {
         self.summary.instances = description.instances.len();
         for instance in &description.instances {
             if instance.transforms.is_animated() {
-                let stand_in = "its first place stands in";
+                let stand_in = "its first position is used";
                 context.unsupported(instance.span, "a moving object", stand_in)?;
             }
         }
@@ -43,8 +43,7 @@ impl Assembly<'_> {
         let shared = (instances.len() > 1).then(|| self.builder.object());
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
-                let message =
-                    "a shape of an object emits: it is a light at each place of the object";
+                let message = "a shape of an object emits: it becomes a light at every instance";
                 context.warn(light.span, message);
             }
             match shared {

@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
         } else {
             format!("between {min} and {max}")
         };
-        Fault::scene(span, format!("`{name}` is {value}, but has to be {range}"))
+        Fault::scene(span, format!("`{name}` is {value}, but must be {range}"))
     }
 
     pub(super) fn optional_integer(&mut self, name: &'static str) -> Result<Option<i32>, Fault> {

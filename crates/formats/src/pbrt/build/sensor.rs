@@ -23,7 +23,7 @@ pub(super) fn build(
         SENSORS.check(name, span)?;
         if name != "cie1931" {
             let what = format!("the sensor `{name}`");
-            context.unsupported(span, &what, "`cie1931` stands in")?;
+            context.unsupported(span, &what, "`cie1931` is used instead")?;
         }
     }
     Ok(Sensor {
@@ -60,7 +60,8 @@ fn limit(
         return Ok(None);
     }
     let message = format!(
-        "samples are cut at {most}: the picture is darker than the scene, by an amount that depends on \
+        "samples are clamped at {most}: the image is darker than the scene, by an amount that \
+         depends on \
          the integrator"
     );
     context.warn(reader.span(), message);

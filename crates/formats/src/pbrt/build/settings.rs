@@ -56,7 +56,7 @@ pub(super) fn texture_filtering(description: &SceneDescription) -> Result<Textur
             "true" => TextureFiltering::Disabled,
             "false" => TextureFiltering::AsAsked,
             _ => {
-                let message = "the option `disabletexturefiltering` is `true` or `false`";
+                let message = "the option `disabletexturefiltering` must be `true` or `false`";
                 return Err(Fault::scene(option.span, message));
             }
         };
@@ -112,7 +112,7 @@ fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
     if !matches!(entity.kind.as_str(), "independent" | "sobol") {
         context.warn(
             entity.span,
-            format!("the sampler `{}` is taken as `sobol`", entity.kind),
+            format!("the sampler `{}` is replaced by `sobol`", entity.kind),
         );
     }
     if let Some(seed) = reader.optional_integer("seed")? {
@@ -134,8 +134,8 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
         name => {
             // The parameters of another method say nothing about the one that stands in.
             let stand_in = match name {
-                "mlt" | "sppm" => ("`bdpt` stands in", IntegratorKind::Bdpt),
-                _ => ("`path` stands in", IntegratorKind::Path),
+                "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
+                _ => ("`path` is used instead", IntegratorKind::Path),
             };
             context.unsupported(entity.span, &format!("the integrator `{name}`"), stand_in.0)?;
             return Ok((stand_in.1, max_depth));

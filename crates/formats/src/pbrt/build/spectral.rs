@@ -32,7 +32,8 @@ pub(super) fn read<'a>(
     };
     if !(TEMPERATURES[0]..=TEMPERATURES[1]).contains(&kelvin) {
         let [low, high] = TEMPERATURES;
-        let message = format!("a temperature is between {low} and {high:e} kelvin, found {kelvin}");
+        let message =
+            format!("a temperature must be between {low} and {high:e} kelvin, found {kelvin}");
         return Err(Fault::scene(parameter.value_span, message));
     }
     Ok(Some((Spectrum::blackbody(f64::from(kelvin)), parameter)))

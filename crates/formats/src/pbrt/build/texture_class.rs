@@ -155,7 +155,7 @@ impl Class<'_, '_> {
             "marble" => Source::Whole(self.marble::<T>(context)?),
             class => {
                 let what = format!("the texture class `{class}`");
-                context.unsupported(self.texture.entity.span, &what, "0.5 stands in")?;
+                context.unsupported(self.texture.entity.span, &what, "0.5 is used instead")?;
                 return Ok(None);
             }
         }))
@@ -268,7 +268,7 @@ impl Class<'_, '_> {
     fn octaves(&mut self, context: &mut Context<'_>) -> Result<(u32, f32), Fault> {
         let octaves = self.reader.integer("octaves", 8, 0)?;
         if octaves > MOST_OCTAVES {
-            let message = format!("of the octaves of noise the first {MOST_OCTAVES} are taken");
+            let message = format!("only the first {MOST_OCTAVES} octaves of the noise are used");
             context.warn(self.reader.span(), message);
         }
         let roughness = self.reader.float("roughness", 0.5)?;

@@ -91,6 +91,15 @@ fn grammar() {
         "Film \"rgb\" \"string filename\" \"a\n\"",
         "s.pbrt:1:30: the string does not end on its line; add the closing `\"`",
     );
+    // A string that is not closed ends where the next one would begin.
+    check(
+        "Film \"rgb \"integer xresolution\" 5",
+        "s.pbrt:1:6: the string has no closing quote; write `\"rgb\"`",
+    );
+    check(
+        "Camera \"perspective\" \"float fov 45 \"float frameaspectratio\" 1",
+        "s.pbrt:1:22: the string has no closing quote; write `\"float fov 45\"`",
+    );
 }
 
 #[test]
@@ -110,15 +119,16 @@ fn transformations() {
     );
     check(
         "Transform [1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1]",
-        "s.pbrt:1:1: `Transform`: the numbers 4, 8, 12 of a matrix are 0 and its last is not: no perspective",
+        "s.pbrt:1:1: `Transform`: the numbers 4, 8 and 12 of a matrix must be 0 and its last \
+         must not: perspective is not allowed",
     );
     check(
         "Rotate 90 0 0 0",
-        "s.pbrt:1:1: `Rotate`: the axis of a rotation is not zero",
+        "s.pbrt:1:1: `Rotate`: the axis of a rotation must not be zero",
     );
     check(
         "LookAt 0 0 0  0 1 0  0 1 0",
-        "s.pbrt:1:1: `LookAt`: the up vector is not zero and not along the view",
+        "s.pbrt:1:1: `LookAt`: the up vector must not be zero or parallel to the view",
     );
     check(
         "ActiveTransform Both",
@@ -126,7 +136,8 @@ fn transformations() {
     );
     check_world(
         "Scale 1 0 1\nShape \"sphere\"",
-        "s.pbrt:3:7: the current transformation is not invertible; look for a scale by zero or numbers out of range",
+        "s.pbrt:3:7: the current transformation is not invertible; look for a scale by zero or \
+         numbers out of range",
     );
 }
 
@@ -134,7 +145,8 @@ fn transformations() {
 fn blocks() {
     check(
         "",
-        "s.pbrt:1:1: the file ends without `WorldBegin`; put it before the first shape, light or material",
+        "s.pbrt:1:1: the file ends without `WorldBegin`; put it before the first shape, light or \
+         material",
     );
     check(
         "Shape \"sphere\"",
@@ -178,7 +190,8 @@ fn definitions() {
         "s.pbrt:3:15: unknown material `Glas`; did you mean `Glass`?",
     );
     check_world(
-        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"",
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"a\" \"string \
+         type\" \"diffuse\"",
         "s.pbrt:3:19: the material `a` is defined a second time",
     );
     check_world(
@@ -228,7 +241,7 @@ fn definitions() {
     );
     check(
         "Include \"no.pbrt\"",
-        "s.pbrt:1:9: no.pbrt: cannot open: no such file",
+        "s.pbrt:1:9: cannot open `no.pbrt`: no such file",
     );
 }
 
@@ -240,27 +253,33 @@ fn version_3_is_recognised_by_its_marks() {
     };
     check(
         "Film \"image\"",
-        "1:6: this is a pbrt-v3 file: the film `image` is not part of version 4; write `rgb`, and `iso` = 100·scale for `scale`",
+        "1:6: this is a pbrt-v3 file: the film `image` is not part of version 4; write `rgb`, \
+         and `iso` = 100·scale for `scale`",
     );
     check(
         "WorldBegin\nWorldEnd",
-        "2:1: this is a pbrt-v3 file: `WorldEnd` is not part of version 4; leave it out: the world ends with the file",
+        "2:1: this is a pbrt-v3 file: `WorldEnd` is not part of version 4; leave it out: the \
+         world ends with the file",
     );
     check(
         "PixelFilter \"box\" \"float xwidth\" 1",
-        "1:19: this is a pbrt-v3 file: the parameter `xwidth` is not part of version 4; write `xradius`",
+        "1:19: this is a pbrt-v3 file: the parameter `xwidth` is not part of version 4; write \
+         `xradius`",
     );
     check(
         "WorldBegin Material \"matte\"",
-        "1:21: this is a pbrt-v3 file: the material `matte` is not part of version 4; write `diffuse`, and `reflectance` for `Kd`",
+        "1:21: this is a pbrt-v3 file: the material `matte` is not part of version 4; write \
+         `diffuse`, and `reflectance` for `Kd`",
     );
     check(
         "WorldBegin LightSource \"point\" \"color I\" [1 1 1]",
-        "1:32: this is a pbrt-v3 file: the parameter type `color` is not part of version 4; write `rgb`",
+        "1:32: this is a pbrt-v3 file: the parameter type `color` is not part of version 4; \
+         write `rgb`",
     );
     check(
         "Film \"rgb\" \"bool savefp16\" \"true\"",
-        "1:28: this is a pbrt-v3 file: a quoted truth value is not part of version 4; write true or false without quotes",
+        "1:28: this is a pbrt-v3 file: a quoted truth value is not part of version 4; write true \
+         or false without quotes",
     );
 }
 

@@ -281,7 +281,10 @@ fn errors_in_included_files_name_them_and_cycles_are_refused() {
     );
     let expected = "open.pbrt:1:1: `AttributeBegin` is never closed; `AttributeEnd` is missing";
     assert_eq!(message("import.pbrt"), expected);
-    assert_eq!(message("none.pbrt"), "none.pbrt: cannot open: no such file");
+    assert_eq!(
+        message("none.pbrt"),
+        "cannot open `none.pbrt`: no such file"
+    );
 }
 
 #[test]

@@ -57,7 +57,8 @@ fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
         ..STRICT
     };
     for (resolution, name) in [([0, 4], "0 × 4"), ([4, 65537], "4 × 65537")] {
-        let expected = format!("s.pbrt:1:1: a film of {name} pixels is empty or too large");
+        let expected =
+            format!("s.pbrt:1:1: the film has {name} pixels; each side can have 1 to 65536");
         check_asked("WorldBegin", &size(resolution), ErrorKind::Limit, &expected);
     }
     let [warning] = &load_text("WorldBegin", &size([20, 20])).warnings[..] else {
@@ -72,8 +73,8 @@ fn check_narrow(filter: &str, radius: Option<&str>) {
     let loaded = load_text(&format!("PixelFilter {filter} WorldBegin"), &STRICT);
     let expected = radius.map(|radius| {
         format!(
-            "s.pbrt:1:13: the filter is as narrow as a box with a radius of {radius} pixels: what \
-             light subpaths splat hits it rarely, so `bdpt` and `light` will be noisy"
+            "s.pbrt:1:13: the filter is as narrow as a box with a radius of {radius} pixels: \
+             light subpaths rarely hit it, so `bdpt` and `light` will be noisy"
         )
     });
     assert_eq!(loaded.warnings, Vec::from_iter(expected), "{filter}");
@@ -101,12 +102,14 @@ fn filters_much_narrower_than_a_pixel_are_warned_of() {
 #[test]
 fn an_exposure_beyond_all_numbers_is_refused_where_it_stands() {
     check(
-        "Camera \"perspective\" \"float shutterclose\" 1e30\nFilm \"rgb\" \"float iso\" 1e10\nWorldBegin",
-        "s.pbrt:2:24: the exposure is no finite number: 1e30 seconds · iso 1e10 / 100",
+        "Camera \"perspective\" \"float shutterclose\" 1e30\nFilm \"rgb\" \"float iso\" \
+         1e10\nWorldBegin",
+        "s.pbrt:2:24: the exposure is not a finite number: 1e30 seconds · iso 1e10 / 100",
     );
     check(
-        "Camera \"perspective\" \"float shutteropen\" -3e38 \"float shutterclose\" 3e38\nWorldBegin",
-        "s.pbrt:1:8: the exposure is no finite number: inf seconds · iso 1e2 / 100",
+        "Camera \"perspective\" \"float shutteropen\" -3e38 \"float shutterclose\" \
+         3e38\nWorldBegin",
+        "s.pbrt:1:8: the exposure is not a finite number: inf seconds · iso 1e2 / 100",
     );
     let text = "Film \"rgb\" \"float iso\" 3e38 WorldBegin";
     assert!(load_text(text, &STRICT).scene.film().exposure.is_finite());

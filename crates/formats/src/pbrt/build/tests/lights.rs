@@ -10,7 +10,8 @@ use bidir::spectrum::luminance;
 fn power_goes_to_every_triangle_of_a_mesh() {
     let scene = world(
         "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"float power\" 3\n\
-         Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 9 0] \"integer indices\" [0 1 2 0 2 3]",
+         Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 9 0] \"integer indices\" [0 1 \
+         2 0 2 3]",
     );
     assert_eq!(scene.lights().len(), 2);
     for light in scene.lights() {
@@ -28,7 +29,8 @@ fn power_goes_to_every_triangle_of_a_mesh() {
 #[test]
 fn lights_stand_where_they_are_put() {
     let scene = world(
-        "Translate 1 0 0 LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 2 \"point3 from\" [0 1 0]\n\
+        "Translate 1 0 0 LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 2 \"point3 \
+         from\" [0 1 0]\n\
          LightSource \"spot\" \"float power\" 10\n\
          LightSource \"distant\" \"rgb L\" [4 4 4] \"point3 from\" [0 5 0] \"point3 to\" [0 0 0]\n\
          LightSource \"infinite\" \"rgb L\" [1 1 1] \"float illuminance\" 2",
@@ -82,7 +84,7 @@ fn environments_are_square_and_their_numbers_checked() {
     let error = load("wide.exr").unwrap_err();
     assert_eq!(
         error.message(),
-        "an environment is a square image, this one has 2 × 1 pixels"
+        "the image of an environment is square; this one has 2 × 1 pixels"
     );
     let loaded = load("square.exr").unwrap();
     let at = LightPoint::at_infinity(Vec3::X);
@@ -90,7 +92,7 @@ fn environments_are_square_and_their_numbers_checked() {
     let radiance = scene.lights()[0].emitted(&scene.light_context(), &at, -Vec3::X);
     let radiance = Vec3::from(radiance);
     assert_eq!(radiance, Vec3::new(2.0, 0.0, 0.0));
-    assert!(loaded.warnings[0].ends_with("2 numbers of the image are no radiance and taken as 0"));
+    assert!(loaded.warnings[0].ends_with("2 values of the image are not radiances and count as 0"));
 }
 
 #[test]

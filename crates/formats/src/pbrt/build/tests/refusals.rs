@@ -28,7 +28,7 @@ fn wrong_parameters_are_told() {
     );
     check(
         "Film \"rgb\" \"integer xresolution\" 100000 WorldBegin",
-        "s.pbrt:1:6: a film of 100000 × 720 pixels is empty or too large",
+        "s.pbrt:1:6: the film has 100000 × 720 pixels; each side can have 1 to 65536",
     );
     check(
         "Film \"rgb\" \"float cropwindow\" [0 1 0.5 0.5] WorldBegin",
@@ -36,11 +36,12 @@ fn wrong_parameters_are_told() {
     );
     check(
         "Film \"rgb\" \"integer pixelbounds\" [0 1 2] WorldBegin",
-        "s.pbrt:1:34: `pixelbounds` is left, right, top and bottom of a part of the film",
+        "s.pbrt:1:34: `pixelbounds` needs left, right, top and bottom of a part of the film",
     );
     check(
         "Scale 1 2 1 Camera \"perspective\" WorldBegin",
-        "s.pbrt:1:20: the camera's screen is empty, or its transformation is sheared or uneven",
+        "s.pbrt:1:20: the camera's screen is empty, or its transformation is sheared or scaled \
+         unevenly",
     );
     check(
         "Sampler \"sobol\" \"integer pixelsamples\" 0 WorldBegin",
@@ -56,16 +57,17 @@ fn wrong_worlds_are_told() {
     );
     check_world(
         "Material \"diffuse\" \"rgb reflectance\" [0 -1 0]",
-        "s.pbrt:2:38: the colour `reflectance` has a negative part",
+        "s.pbrt:2:38: the colour `reflectance` has a negative component",
     );
     check_world(
-        "Texture \"wood\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture reflectance\" \"wod\"",
+        "Texture \"wood\" \"spectrum\" \"constant\"\nMaterial \"diffuse\" \"texture \
+         reflectance\" \"wod\"",
         "s.pbrt:3:42: unknown spectrum texture `wod`; did you mean `wood`?",
     );
     check_world(
         "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\"\n\
          Material \"diffuse\" \"texture reflectance\" \"t\"",
-        "s.pbrt:2:53: no.png: cannot open: no such file",
+        "s.pbrt:2:53: cannot open `no.png`: no such file",
     );
     check_world(
         "Material \"conductor\" \"rgb reflectance\" [1 1 1] \"rgb k\" [1 1 1]",
@@ -73,7 +75,7 @@ fn wrong_worlds_are_told() {
     );
     check_world(
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
-        "s.pbrt:2:71: index 3 is not that of a point: there are 3",
+        "s.pbrt:2:71: there is no point 3: the mesh has 3",
     );
     check_world(
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]",
@@ -85,7 +87,7 @@ fn wrong_worlds_are_told() {
     );
     check_world(
         "Shape \"plymesh\" \"string filename\" \"no.ply\"",
-        "s.pbrt:2:35: no.ply: cannot open: no such file",
+        "s.pbrt:2:35: cannot open `no.ply`: no such file",
     );
     check_world(
         "LightSource \"distant\" \"point3 to\" [0 0 0]",
@@ -97,29 +99,29 @@ fn wrong_worlds_are_told() {
 fn what_is_not_built_is_refused_by_name() {
     check_world(
         "Material \"subsurface\" Shape \"sphere\"",
-        "s.pbrt:2:10: the material `subsurface` is recognised but not supported yet; \
-         with --lenient: `diffuse` of its reflectance stands in",
+        "s.pbrt:2:10: the material `subsurface` is not supported; \
+         with --lenient, `diffuse` with its reflectance is used instead",
     );
     check_world(
         "Texture \"t\" \"float\" \"ptex\"\n\
          Material \"conductor\" \"texture roughness\" \"t\" Shape \"sphere\"",
-        "s.pbrt:2:21: the texture class `ptex` is recognised but not supported yet; \
-         with --lenient: 0.5 stands in",
+        "s.pbrt:2:21: the texture class `ptex` is not supported; \
+         with --lenient, 0.5 is used instead",
     );
     check_world(
         "Shape \"curve\"",
-        "s.pbrt:2:7: the shape `curve` is recognised but not supported yet; \
-         with --lenient: it is left out",
+        "s.pbrt:2:7: the shape `curve` is not supported; \
+         with --lenient, it is left out",
     );
     check(
         "Integrator \"mlt\" \"integer chains\" 3 WorldBegin",
-        "s.pbrt:1:12: the integrator `mlt` is recognised but not supported yet; \
-         with --lenient: `bdpt` stands in",
+        "s.pbrt:1:12: the integrator `mlt` is not supported; \
+         with --lenient, `bdpt` is used instead",
     );
     check_world(
         "MediumInterface \"fog\" Shape \"sphere\"",
-        "s.pbrt:2:17: a participating medium is recognised but not supported yet; \
-         with --lenient: vacuum stands in",
+        "s.pbrt:2:17: a participating medium is not supported; \
+         with --lenient, vacuum is used instead",
     );
 }
 
@@ -134,10 +136,10 @@ fn with_leniency_something_stands_in_and_is_counted() {
     assert_eq!(
         loaded.warnings,
         [
-            "s.pbrt:1:12: the integrator `sppm` is not supported yet: `bdpt` stands in",
-            "s.pbrt:2:10: the material `subsurface` is not supported yet: \
-             `diffuse` of its reflectance stands in",
-            "s.pbrt:3:22: the shape `curve` is not supported yet: it is left out (2 times)",
+            "s.pbrt:1:12: the integrator `sppm` is not supported: `bdpt` is used instead",
+            "s.pbrt:2:10: the material `subsurface` is not supported: `diffuse` with its \
+             reflectance is used instead",
+            "s.pbrt:3:22: the shape `curve` is not supported: it is left out (2 times)",
         ]
     );
 }
@@ -163,7 +165,8 @@ fn what_nobody_uses_is_refused_where_it_is_wrong() {
         "s.pbrt:2:35: unknown parameter `valeu` of `constant`; did you mean `value`?",
     );
     check_world(
-        "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t.png\" \"string wrap\" \"round\"",
+        "Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t.png\" \"string wrap\" \
+         \"round\"",
         "s.pbrt:2:72: unknown wrap mode `round`",
     );
     check_world(

@@ -94,7 +94,7 @@ fn a_stand_in_is_counted_once_however_often_it_is_used() {
     );
     assert_eq!(
         loaded.warnings,
-        ["s.pbrt:2:27: the texture class `ptex` is not supported yet: 0.5 stands in"]
+        ["s.pbrt:2:27: the texture class `ptex` is not supported: 0.5 is used instead"]
     );
 }
 

@@ -55,8 +55,8 @@ fn pictures_of_all_directions_have_the_filter_of_a_pixel() {
     assert_eq!(
         loaded.warnings,
         [
-            "s.pbrt:2:22: the filter would reach over the edges of a picture of all directions: a box \
-             of one pixel stands in"
+            "s.pbrt:2:22: the filter would cross the edges of a spherical image; using a box \
+             filter of one pixel"
         ]
     );
     check(
@@ -65,8 +65,8 @@ fn pictures_of_all_directions_have_the_filter_of_a_pixel() {
     );
     check(
         "Camera \"realistic\" WorldBegin",
-        "s.pbrt:1:8: the camera `realistic` is recognised but not supported yet; \
-         with --lenient: `perspective` stands in",
+        "s.pbrt:1:8: the camera `realistic` is not supported; \
+         with --lenient, `perspective` is used instead",
     );
 }
 
@@ -90,8 +90,8 @@ fn a_sensor_is_balanced_and_cut() {
     );
     check(
         "Film \"rgb\" \"string sensor\" \"nikon_d850\" WorldBegin",
-        "s.pbrt:1:28: the sensor `nikon_d850` is recognised but not supported yet; \
-         with --lenient: `cie1931` stands in",
+        "s.pbrt:1:28: the sensor `nikon_d850` is not supported; \
+         with --lenient, `cie1931` is used instead",
     );
     check(
         "Film \"rgb\" \"string sensor\" \"nikon_d85\" WorldBegin",
@@ -138,11 +138,11 @@ fn spectra_become_colours() {
     );
     check(
         "WorldBegin LightSource \"point\" \"blackbody I\" -3",
-        "s.pbrt:1:46: a temperature is between 100 and 1e8 kelvin, found -3",
+        "s.pbrt:1:46: a temperature must be between 100 and 1e8 kelvin, found -3",
     );
     check(
         "WorldBegin LightSource \"point\" \"spectrum I\" [500 1 400 1]",
-        "s.pbrt:1:45: the wavelengths of a spectrum increase",
+        "s.pbrt:1:45: the wavelengths of a spectrum must increase",
     );
     check(
         "WorldBegin LightSource \"point\" \"spectrum I\" [500 0 600 0]",

@@ -1,0 +1,289 @@
+//! Light that a list of strategies loses, beside what the estimator loses with all of them.
+//!
+//! Strategy (s, t) makes a path of s + t vertices if the two ends of its connection do not scatter
+//! specularly; s = 0 needs a light that rays can hit. A class of paths is lost if the estimator has
+//! strategies for it and none of them is in the list.
+
+use super::IntegratorKind;
+use crate::camera::Camera;
+use crate::light::Light;
+use crate::material::Material;
+use crate::path::{MAX_VERTICES, PathSettings, Strategies};
+use crate::scene::Scene;
+use std::fmt;
+use std::ops::RangeInclusive;
+
+/// Up to so many vertices, paths with specular vertices are looked at: longer ones need no other
+/// strategies.
+const LONGEST_PATTERN: usize = 7;
+
+/// Light that a list of strategies loses. Its text follows the name of the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LostLight {
+    /// All of it: the list makes no path.
+    All {
+        /// The most vertices of a path, where the list makes longer ones.
+        max_vertices: Option<usize>,
+    },
+    /// The paths of these numbers of vertices.
+    Lengths(Vec<RangeInclusive<usize>>),
+    /// Paths with specular vertices, such as `L S E`.
+    Specular(String),
+}
+
+impl fmt::Display for LostLight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All { max_vertices: None } => f.write_str("makes no path"),
+            Self::All {
+                max_vertices: Some(most),
+            } => write!(f, "makes no path of at most {most} vertices"),
+            Self::Lengths(ranges) => {
+                let ranges: Vec<_> = ranges.iter().map(words).collect();
+                let lengths = ranges.join(", ");
+                write!(
+                    f,
+                    "loses light: no strategy makes paths of {lengths} vertices"
+                )
+            }
+            Self::Specular(pattern) => write!(
+                f,
+                "loses light: no strategy makes paths {pattern} (L light, S mirror or clear glass, \
+                 D other surface, E camera)"
+            ),
+        }
+    }
+}
+
+fn words(range: &RangeInclusive<usize>) -> String {
+    match (*range.start(), *range.end()) {
+        (first, MAX_VERTICES) => format!("{first} and more"),
+        (first, last) if first == last => first.to_string(),
+        (first, last) => format!("{first} to {last}"),
+    }
+}
+
+/// The light that the list of `settings` loses in a scene. None: no more than with all strategies, or
+/// the integrator does not use the list.
+pub fn lost_light(
+    scene: &Scene,
+    integrator: IntegratorKind,
+    settings: &PathSettings,
+) -> Option<LostLight> {
+    let list = &settings.strategies;
+    if !integrator.has_candidates() || list.is_all() {
+        return None;
+    }
+    if let Some(all) = no_path(integrator, settings) {
+        return Some(all);
+    }
+    let kinds = kinds(scene);
+    let lost = |edges: &[bool]| kinds.iter().any(|kind| kind.is_lost(list, edges));
+    let most = settings.max_vertices();
+    let lengths: Vec<_> = (2..=most).filter(|&n| lost(&vec![true; n])).collect();
+    if !lengths.is_empty() {
+        return Some(LostLight::Lengths(ranges(&lengths)));
+    }
+    if !scene.materials_of_surfaces().any(Material::may_be_specular) {
+        return None;
+    }
+    let mut patterns = (3..=most.min(LONGEST_PATTERN)).flat_map(patterns);
+    let pattern = patterns.find(|pattern| lost(pattern))?;
+    Some(LostLight::Specular(name(&pattern)))
+}
+
+/// [`LostLight::All`] where no strategy of the list makes a path within the limit of length.
+pub(crate) fn no_path(integrator: IntegratorKind, settings: &PathSettings) -> Option<LostLight> {
+    let list = &settings.strategies;
+    if !integrator.has_candidates() || list.is_all() {
+        return None;
+    }
+    let makes = |n: usize| (0..n).any(|s| list.contains(s, n - s));
+    let most = settings.max_vertices();
+    if (2..=most).any(makes) {
+        return None;
+    }
+    let max_vertices = (most + 1..=MAX_VERTICES).any(makes).then_some(most);
+    Some(LostLight::All { max_vertices })
+}
+
+/// How light leaves a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LightKind {
+    /// No ray hits it.
+    Delta,
+    Area,
+    /// A sky; a parallel camera has no image of it by t = 1.
+    Sky {
+        is_parallel: bool,
+    },
+}
+
+impl LightKind {
+    /// True where strategy (s, n - s) makes paths of this light whose vertices scatter diffusely where
+    /// `is_diffuse` says so; both ends always do.
+    fn makes(self, s: usize, is_diffuse: &[bool]) -> bool {
+        let n = is_diffuse.len();
+        match (self, s) {
+            (Self::Delta, 0) => false,
+            (_, 0) => true,
+            // Strategy (1, 1): the image of the light itself.
+            (Self::Delta | Self::Sky { is_parallel: true }, 1) if n == 2 => false,
+            _ => is_diffuse[s - 1] && is_diffuse[s],
+        }
+    }
+
+    fn is_lost(self, list: &Strategies, is_diffuse: &[bool]) -> bool {
+        let n = is_diffuse.len();
+        let mut makers = (0..n).filter(|&s| self.makes(s, is_diffuse)).peekable();
+        makers.peek().is_some() && !makers.any(|s| list.contains(s, n - s))
+    }
+}
+
+/// The kinds of lights of a scene, each once.
+fn kinds(scene: &Scene) -> Vec<LightKind> {
+    let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
+    let mut kinds = Vec::new();
+    for light in scene.lights() {
+        let kind = match light {
+            light if light.is_delta() => LightKind::Delta,
+            Light::Infinite(_) => LightKind::Sky { is_parallel },
+            _ => LightKind::Area,
+        };
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+/// All ways for `n` vertices to scatter with a specular one among them; both ends are diffuse.
+fn patterns(n: usize) -> impl Iterator<Item = Vec<bool>> {
+    let inside = n - 2;
+    (1_usize..1 << inside).map(move |bits| {
+        let vertex = |i: usize| i == 0 || i == n - 1 || (bits >> (i - 1)) & 1 == 0;
+        (0..n).map(vertex).collect()
+    })
+}
+
+/// In Heckbert's letters.
+fn name(is_diffuse: &[bool]) -> String {
+    let last = is_diffuse.len() - 1;
+    let letter = |(i, is_diffuse): (usize, &bool)| match i {
+        0 => "L",
+        i if i == last => "E",
+        _ if *is_diffuse => "D",
+        _ => "S",
+    };
+    let letters: Vec<_> = is_diffuse.iter().enumerate().map(letter).collect();
+    letters.join(" ")
+}
+
+/// Numbers in rising order as ranges.
+fn ranges(numbers: &[usize]) -> Vec<RangeInclusive<usize>> {
+    let mut ranges: Vec<RangeInclusive<usize>> = Vec::new();
+    for &number in numbers {
+        match ranges.last_mut() {
+            Some(last) if *last.end() + 1 == number => *last = *last.start()..=number,
+            _ => ranges.push(number..=number),
+        }
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{diffuse, metal, point, scene, sky};
+    use super::*;
+
+    fn lost(scene: &Scene, list: &str, max_depth: u32) -> Option<String> {
+        let settings = PathSettings {
+            strategies: list.parse().unwrap(),
+            max_depth: (max_depth > 0).then_some(max_depth),
+            ..PathSettings::default()
+        };
+        lost_light(scene, IntegratorKind::Bdpt, &settings).map(|lost| lost.to_string())
+    }
+
+    #[track_caller]
+    fn check(scene: &Scene, list: &str, max_depth: u32, expected: Option<&str>) {
+        assert_eq!(lost(scene, list, max_depth).as_deref(), expected, "{list}");
+    }
+
+    #[test]
+    fn lists_that_make_no_path_are_found() {
+        let scene = scene(&[diffuse()], vec![sky()]);
+        for list in ["s0t0", "s0t1", "s1t0", "t0"] {
+            check(&scene, list, 5, Some("makes no path"));
+        }
+        let long = Some("makes no path of at most 7 vertices");
+        check(&scene, "s4t4", 5, long);
+        assert_eq!(
+            lost(&scene, "s4t4", 6).unwrap().split(':').next(),
+            Some("loses light")
+        );
+    }
+
+    #[test]
+    fn lost_lengths_are_named() {
+        let scene = scene(&[diffuse()], vec![sky()]);
+        for (list, lengths) in [
+            ("s2", "2"),
+            ("s2t3", "2 to 4, 6 to 7"),
+            ("s0t2,s1t2", "4 to 7"),
+            ("all,-s0t2,-s1t1", "2"),
+        ] {
+            let expected = format!("loses light: no strategy makes paths of {lengths} vertices");
+            check(&scene, list, 5, Some(&expected));
+        }
+        let open = "loses light: no strategy makes paths of 2 to 4, 6 and more vertices";
+        check(&scene, "s2t3", 0, Some(open));
+        for list in [
+            "all", "s0", "s1", "t1", "t2", "all,-s0", "all,-t1", "all,-s1",
+        ] {
+            check(&scene, list, 5, None);
+        }
+    }
+
+    #[test]
+    fn lights_that_no_ray_hits_need_connections() {
+        let scene = scene(&[diffuse()], vec![point()]);
+        let lost = "loses light: no strategy makes paths of 3 to 7 vertices";
+        check(&scene, "s0", 5, Some(lost));
+        // The light itself is invisible: there are no paths of two vertices to lose.
+        for list in ["s1", "s2,s1t2", "all,-s1t1", "t1"] {
+            check(&scene, list, 5, None);
+        }
+    }
+
+    #[test]
+    fn mirrors_need_hits_and_light_images() {
+        let words = |pattern: &str| {
+            format!(
+                "loses light: no strategy makes paths {pattern} (L light, S mirror or clear glass, \
+                 D other surface, E camera)"
+            )
+        };
+        let mirror = |light| scene(&[diffuse(), metal(0.0)], vec![light]);
+        check(&mirror(sky()), "all,-s0", 5, Some(&words("L S E")));
+        check(&mirror(sky()), "all,-t1", 5, None);
+        check(&mirror(point()), "all,-s0", 5, None);
+        check(&mirror(point()), "all,-t1", 5, Some(&words("L S D E")));
+        check(&mirror(point()), "all,-s1", 5, Some(&words("L D S E")));
+        // Too short for it.
+        check(&mirror(point()), "all,-t1", 1, None);
+    }
+
+    #[test]
+    fn only_estimators_with_connections_use_the_list() {
+        let scene = scene(&[diffuse()], vec![sky()]);
+        let settings = PathSettings {
+            strategies: "s0t0".parse().unwrap(),
+            ..PathSettings::default()
+        };
+        for (_, integrator) in IntegratorKind::NAMES {
+            let lost = lost_light(&scene, integrator, &settings);
+            assert_eq!(lost.is_some(), integrator.has_candidates());
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Errors of the command line that clap words for programmers: numbers out of range, values of
+//! variables, and flags under the names that other programs give them.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command, Error};
+use std::ffi::{OsStr, OsString};
+use std::fmt::Display;
+
+/// Flags of other programs, and what they are here.
+const ELSEWHERE: [(&[&str], &str, &str); 6] = [
+    (
+        &[
+            "--width",
+            "--height",
+            "--resolution",
+            "--res",
+            "--film-size",
+        ],
+        "--size",
+        "the size of the image is --size WIDTHxHEIGHT, such as --size 640x480",
+    ),
+    (
+        &[
+            "--samples",
+            "--samples-per-pixel",
+            "--sample-count",
+            "--pixelsamples",
+            "--nsamples",
+        ],
+        "--spp",
+        "the number of samples per pixel is --spp N",
+    ),
+    (
+        &["--depth", "--bounces", "--max-bounces", "--maxdepth"],
+        "--max-depth",
+        "the maximum number of bounces is --max-depth N",
+    ),
+    (
+        &["--outfile", "--out"],
+        "--output",
+        "the image is written to --output FILE.exr",
+    ),
+    (
+        &["--nthreads", "--jobs", "--cores"],
+        "--threads",
+        "the number of threads is --threads N",
+    ),
+    (
+        &["--method", "--algorithm", "--renderer"],
+        "--integrator",
+        "the method is --integrator NAME",
+    ),
+];
+
+/// Lets every flag with a value take a negative number, so that it is refused with the range.
+pub(super) fn accept_negative(command: Command) -> Command {
+    let command = command.mut_args(|arg| {
+        let has_value = arg.get_action().takes_values() && !arg.is_positional();
+        if has_value {
+            arg.allow_negative_numbers(true)
+        } else {
+            arg
+        }
+    });
+    command.mut_subcommands(accept_negative)
+}
+
+/// The same error in plain words, where clap's are not.
+pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) -> Error {
+    let command = called(command, arguments);
+    let better = match error.kind() {
+        ErrorKind::UnknownArgument => elsewhere(&error, command),
+        ErrorKind::ValueValidation | ErrorKind::InvalidValue => value(&error, command, arguments),
+        _ => None,
+    };
+    better.unwrap_or(error)
+}
+
+/// The subcommand that the arguments call.
+fn called<'c>(command: &'c Command, arguments: &[OsString]) -> &'c Command {
+    let mut called = command;
+    for argument in arguments.iter().skip(1) {
+        let named = argument.to_str();
+        match named.and_then(|name| called.find_subcommand(name)) {
+            Some(subcommand) => called = subcommand,
+            None => break,
+        }
+    }
+    called
+}
+
+fn text(error: &Error, kind: ContextKind) -> Option<&str> {
+    match error.get(kind)? {
+        ContextValue::String(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// A flag under the name that another program gives it.
+fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
+    let given = text(error, ContextKind::InvalidArg)?;
+    let (_, flag, hint) = ELSEWHERE
+        .iter()
+        .find(|(names, ..)| names.contains(&given))?;
+    let has_flag = command
+        .get_arguments()
+        .any(|arg| arg.get_long() == flag.strip_prefix("--"));
+    let message = format!("there is no flag `{given}`");
+    has_flag.then(|| raw(error.kind(), message, Some(hint)))
+}
+
+/// A value that is no number in the range, or that a variable has.
+fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
+    let named = text(error, ContextKind::InvalidArg)?;
+    let given = text(error, ContextKind::InvalidValue)?;
+    let flag = named.split([' ', '=']).next()?.strip_prefix("--")?;
+    let arg = command
+        .get_arguments()
+        .find(|arg| arg.get_long() == Some(flag))?;
+    let variable = variable(arg, given, arguments);
+    let reason = std::error::Error::source(error).map(ToString::to_string);
+    let is_of_a_number = reason.as_deref().is_some_and(is_of_a_number);
+    let expected = is_of_a_number.then(|| expected(arg)).flatten();
+    if variable.is_none() && expected.is_none() {
+        return None;
+    }
+    let at = variable.unwrap_or_else(|| format!("--{flag}"));
+    let reason = match (expected, reason) {
+        (Some(expected), _) => format!("`{given}` is not {expected}"),
+        (None, Some(reason)) => reason,
+        (None, None) => {
+            let values = arg.get_possible_values();
+            let names: Vec<_> = values.iter().map(|value| value.get_name()).collect();
+            format!("`{given}` is not one of {}", names.join(", "))
+        }
+    };
+    Some(raw(error.kind(), format!("{at}: {reason}"), None))
+}
+
+/// The variable that a value comes from. None: it stands on the command line.
+fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
+    let long = format!("--{}", arg.get_long()?);
+    let is_flag = |argument: &OsString| {
+        let argument = argument.to_string_lossy();
+        argument == *long || argument.starts_with(&format!("{long}="))
+    };
+    let short = arg.get_short().map(|short| format!("-{short}"));
+    let is_short = |argument: &OsString| {
+        let argument = argument.to_string_lossy();
+        short
+            .as_ref()
+            .is_some_and(|short| argument.starts_with(short))
+    };
+    if arguments
+        .iter()
+        .any(|argument| is_flag(argument) || is_short(argument))
+    {
+        return None;
+    }
+    let name = arg.get_env()?;
+    (std::env::var_os(name)? == OsStr::new(given)).then(|| name.to_string_lossy().into_owned())
+}
+
+/// True for what the standard library and clap say of whole numbers.
+fn is_of_a_number(reason: &str) -> bool {
+    let starts = ["invalid digit", "number too", "cannot parse integer"];
+    starts.iter().any(|start| reason.starts_with(start)) || reason.contains(" is not in ")
+}
+
+/// The whole numbers that a flag takes, in words: clap names the range where it refuses one.
+fn expected(arg: &Arg) -> Option<String> {
+    let range = |probe: &str| {
+        let flag = Arg::new("probe").long("probe");
+        let flag = flag.value_parser(arg.get_value_parser().clone());
+        let command = Command::new("probe").arg(flag);
+        let refused = command.try_get_matches_from(["probe", "--probe", probe]);
+        let reason = std::error::Error::source(&refused.err()?)?.to_string();
+        let (least, most) = reason.split_once(" is not in ")?.1.split_once("..")?;
+        let most = match most.strip_prefix('=') {
+            Some(most) => most.parse::<u64>().ok(),
+            None => most.parse::<u64>().ok().map(|end| end.saturating_sub(1)),
+        };
+        Some((
+            least.parse::<u64>().ok()?,
+            most.filter(|most| *most < u32::MAX.into()),
+        ))
+    };
+    let all = [range("0"), range(&i64::MAX.to_string())];
+    Some(match all.into_iter().flatten().next() {
+        Some((1, None)) => "a whole number above 0".to_owned(),
+        Some((least, Some(most))) => format!("a whole number from {least} to {most}"),
+        Some((least, None)) => format!("a whole number of at least {least}"),
+        None => "a whole number of at least 0".to_owned(),
+    })
+}
+
+/// An error as [`crate::console::Console`] writes it.
+fn raw(kind: ErrorKind, message: impl Display, hint: Option<&str>) -> Error {
+    let hint = hint.map(|hint| format!("\nhint: {hint}"));
+    Error::raw(kind, format!("{message}{}\n", hint.unwrap_or_default()))
+}
