@@ -194,13 +194,13 @@ pub(crate) fn check_pbrt(path: &Path, bytes: &[u8]) -> Result<()> {
     let ending = ending(path);
     let is_named_pbrt = path.as_os_str() == "-" || ending.as_deref() == Some("pbrt");
     let kind = by_magic(head, ending.as_deref()).or_else(|| by_text(&text, ending.as_deref()));
+    let is_other = !is_named_pbrt && !first.is_some_and(is_directive);
+    // The parser reports a misspelt directive, with its place.
+    let is_prose = is_other && first.is_some() && !text.contains("WorldBegin");
+    let by_ending = || by_ending(ending.as_deref()).filter(|_| is_other);
+    let kind = kind.or_else(by_ending);
     let kind = kind.or_else(|| is_binary(head).then_some(BINARY));
-    let kind = kind.or_else(|| {
-        let is_other = !is_named_pbrt && !first.is_some_and(is_directive);
-        // The parser reports a misspelt directive, with its place.
-        let is_prose = || first.is_some() && !text.contains("WorldBegin");
-        is_other.then(|| by_ending(ending.as_deref()).or_else(|| is_prose().then_some(OTHER)))?
-    });
+    let kind = kind.or_else(|| is_prose.then_some(OTHER));
     kind.map_or(Ok(()), |kind| Err(refusal(path, kind)))
 }
 

@@ -143,7 +143,7 @@ fn a_reference_can_be_stopped_and_gone_on_with() {
     assert!(!place.path("room.reference/provenance.json").exists());
     // With less it cannot go on in the replicate that is done.
     let least = "reference room.pbrt --size 48x32 --spp 16";
-    place.run(least).expect(5).says("ask for --spp 4096");
+    place.run(least).expect(5).says("use --spp 4096");
 }
 
 #[test]

@@ -160,7 +160,7 @@ fn nobody_has_to_listen() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     drop(listener);
-    let said = format!("--display-server: nobody listens at {address}");
+    let said = format!("--display-server: cannot connect to {address}");
     check_unseen(&address).says(&said);
 }
 

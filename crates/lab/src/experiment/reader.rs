@@ -69,11 +69,8 @@ impl<'a> Section<'a> {
     /// Refuses keys that are not in `known`, with the nearest of them. Those in `old` are accepted, but
     /// not suggested.
     pub(super) fn only(&self, known: &[&'static str], old: &[&'static str]) -> Result<()> {
-        let is_unknown = |key: &&Spanned<_>| {
-            let key: &str = Spanned::get_ref(*key);
-            !known.contains(&key) && !old.contains(&key)
-        };
-        let unknown = self.table.keys().filter(is_unknown);
+        let is_known = |name: &str| known.iter().chain(old).any(|known| *known == name);
+        let unknown = self.table.keys().filter(|key| !is_known(key.get_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
             return Ok(());
         };

@@ -127,7 +127,7 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         (
             "a.film",
             5,
-            "a.film: it has the passes 0..1, which would be lost",
+            "a.film has the passes 0..1, which would be lost",
             "list this one among the files",
         ),
         (

@@ -38,19 +38,19 @@ fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
         small,
         &crop(Crop::Pixels([40, 50, 0, 10])),
         ErrorKind::Options,
-        "s.pbrt:1:6: the crop asked for has no pixels of this film of 40 × 20",
+        "s.pbrt:1:6: the crop lies outside the film of 40 × 20 pixels",
     );
     check_asked(
         "WorldBegin",
         &crop(Crop::Pixels([1300, 1400, 0, 10])),
         ErrorKind::Options,
-        "s.pbrt:1:1: the crop asked for has no pixels of this film of 1280 × 720",
+        "s.pbrt:1:1: the crop lies outside the film of 1280 × 720 pixels",
     );
     check_asked(
         "WorldBegin",
         &crop(Crop::Fractions([0.0, 1.0, 0.5, 0.5])),
         ErrorKind::Options,
-        "s.pbrt:1:1: the crop asked for has no pixels of this film of 1280 × 720",
+        "s.pbrt:1:1: the crop lies outside the film of 1280 × 720 pixels",
     );
     let size = |resolution| LoadOptions {
         resolution: Some(resolution),

@@ -160,6 +160,6 @@ fn misspelt_parameters_of_materials_are_refused() {
     );
     check_world(
         "Material \"diffusetransmission\" \"float scale\" -1 Shape \"sphere\"",
-        "s.pbrt:2:46: `scale` is -1, but has to be at least 0",
+        "s.pbrt:2:46: `scale` is -1, but must be at least 0",
     );
 }

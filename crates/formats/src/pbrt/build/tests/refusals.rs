@@ -16,7 +16,7 @@ fn wrong_parameters_are_told() {
     );
     check(
         "Camera \"perspective\" \"float fov\" 190 WorldBegin",
-        "s.pbrt:1:34: `fov` is 190, but has to be between 0.001 and 179.999",
+        "s.pbrt:1:34: `fov` is 190, but must be between 0.001 and 179.999",
     );
     check(
         "Camera \"perspective\" \"float shutterclose\" 0 WorldBegin",
@@ -24,7 +24,7 @@ fn wrong_parameters_are_told() {
     );
     check(
         "Film \"rgb\" \"integer xresolution\" -3 WorldBegin",
-        "s.pbrt:1:34: `xresolution` is -3, but has to be at least 1",
+        "s.pbrt:1:34: `xresolution` is -3, but must be at least 1",
     );
     check(
         "Film \"rgb\" \"integer xresolution\" 100000 WorldBegin",
@@ -45,7 +45,7 @@ fn wrong_parameters_are_told() {
     );
     check(
         "Sampler \"sobol\" \"integer pixelsamples\" 0 WorldBegin",
-        "s.pbrt:1:40: `pixelsamples` is 0, but has to be at least 1",
+        "s.pbrt:1:40: `pixelsamples` is 0, but must be at least 1",
     );
 }
 

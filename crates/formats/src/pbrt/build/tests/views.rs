@@ -86,7 +86,7 @@ fn a_sensor_is_balanced_and_cut() {
     assert!((cut - Vec3::new(5.0, 2.5, 0.0)).length() < 1e-6, "{cut}");
     check(
         "Film \"rgb\" \"float whitebalance\" 20 WorldBegin",
-        "s.pbrt:1:33: `whitebalance` is 20, but has to be between 1000 and 25000",
+        "s.pbrt:1:33: `whitebalance` is 20, but must be between 1000 and 25000",
     );
     check(
         "Film \"rgb\" \"string sensor\" \"nikon_d850\" WorldBegin",
