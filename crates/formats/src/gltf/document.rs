@@ -10,7 +10,7 @@ use crate::source::{Fault, FileId, SourceMap, Span};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Extensions that are understood, as docs/gltf.md says how far.
+/// Extensions that are understood, as docs/reference/gltf.md says how far.
 pub(super) const EXTENSIONS: [&str; 16] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",

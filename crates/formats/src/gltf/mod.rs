@@ -6,7 +6,7 @@
 //!
 //! The format lets programs leave out extensions that a file does not require. What is left out, or
 //! replaced by something simpler, is a warning; what the format itself demands and the renderer has
-//! not is refused, and [`LoadOptions::lenient`] lets something stand in. docs/gltf.md has it all.
+//! not is refused, and [`LoadOptions::lenient`] lets something stand in. docs/reference/gltf.md has it all.
 //!
 //! A file without a camera is seen from its front, +z, as a whole; one without light stands in an
 //! even white surrounding. Units are taken as they are: nothing is divided by 683 lm/W.

@@ -1,6 +1,6 @@
 //! Layered materials against a walk between their surfaces, which decides by chance at each: the
 //! albedo of both, over roughness, angle and base. `BIDIR_TEST_SHOW` prints the tables of
-//! docs/pbrt-compatibility.md.
+//! docs/data/layer-albedos.csv.
 
 use super::{direction, numbers};
 use crate::bsdf::coat::{Layer, Reflections};
