@@ -1,7 +1,7 @@
 // Makes the pictures of README and of the guide that show a page, and JPEGs of renders:
 //
 //     node pictures.js view OUT.jpg            two integrators side by side in `bidir view`
-//     node pictures.js report REPORT.html OUT.jpg   the head of an experiment's report
+//     node pictures.js report REPORT.html OUT.jpg   the first chart of an experiment's report
 //     node pictures.js photo IN.png OUT.jpg    an image as a JPEG, at its own size
 
 import { readFileSync } from "node:fs";
@@ -16,6 +16,9 @@ const WINDOW = { width: 1280, height: 800 };
 const QUALITY = 80;
 /** How long both integrators render before the picture is taken. Unit: milliseconds. */
 const RENDERING = 40_000;
+
+/** The part of the window above the chart, which shows a table. Unit: pixels. */
+const ABOVE_CHART = 240;
 
 /** @param {Page} page @param {string} file */
 async function shoot(page, file) {
@@ -39,9 +42,13 @@ async function view(browser, out) {
 }
 
 /** @param {Browser} browser @param {string} report @param {string} out */
-async function head(browser, report, out) {
+async function chart(browser, report, out) {
   const page = await browser.newPage({ viewport: WINDOW });
   await page.goto(pathToFileURL(path.resolve(report)).href);
+  await page.evaluate((above) => {
+    const chart = document.querySelector("figure");
+    window.scrollBy({ top: (chart?.getBoundingClientRect().top ?? above) - above, behavior: "instant" });
+  }, ABOVE_CHART);
   await shoot(page, out);
 }
 
@@ -57,7 +64,7 @@ async function photo(browser, image, out) {
 }
 
 /** @type {Record<string, (browser: Browser, ...files: string[]) => Promise<void>>} */
-const PICTURES = { view, report: head, photo };
+const PICTURES = { view, report: chart, photo };
 
 const [kind, ...files] = process.argv.slice(2);
 const make = PICTURES[kind];
