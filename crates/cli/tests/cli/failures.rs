@@ -84,11 +84,12 @@ fn numbers_out_of_range_are_told_the_range() {
     ] {
         check(&format!("render room.pbrt {flags}"), 2, says);
     }
-    let mut command = Workplace::new().command("render room.pbrt");
+    let place = Workplace::new();
+    let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_SPP", "x"))
         .expect(2)
         .says("error: BIDIR_SPP: `x` is not a whole number above 0");
-    let mut command = Workplace::new().command("render room.pbrt");
+    let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_INTEGRATOR", "photon"))
         .expect(2)
         .says("error: BIDIR_INTEGRATOR: `photon` is not one of path, light, bdpt");
@@ -205,7 +206,7 @@ fn the_environment_is_read_after_flags() {
     };
     spp("render room.pbrt", "3").expect(0).says("3 spp");
     spp("render room.pbrt --spp 1", "3").expect(0).says("1 spp");
-    spp("render room.pbrt", "many").expect(2).says("--spp");
+    spp("render room.pbrt", "many").expect(2).says("BIDIR_SPP");
     let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_ISA", "neon"))
         .expect(2)
