@@ -69,6 +69,8 @@ fn numbers_out_of_range_are_told_the_range() {
         ),
         ("--noise -1", "expected a number above 0"),
         ("--time -1", "expected a time such as"),
+        ("--time -1s", "error: --time: `-1s` is negative"),
+        ("--crop -1,0,4,4", "error: --crop: `-1,0,4,4` is negative"),
         (
             "--threads 5000",
             "error: --threads: `5000` is not a whole number from 0 to 1024",
@@ -138,7 +140,7 @@ fn foreign_files_are_named_with_the_way_in() {
         place
             .run(&format!("{command} room.blend"))
             .expect(3)
-            .says("error: `room.blend` is a Blender file; export it as glTF 2.0; docs/guide");
+            .says("error: `room.blend` is a Blender file; export it as glTF 2.0 (docs/guide");
         place
             .run(&format!("{command} room.xml"))
             .expect(3)
