@@ -35,11 +35,11 @@ enum Hint {
 
 const FORMATS: &str = "bidir reads pbrt-v4 (.pbrt) and glTF 2.0 (.gltf, .glb)";
 const BY_BLENDER: Hint =
-    Hint::Text("import it into Blender and export it as glTF 2.0; docs/guide/blender.md");
+    Hint::Text("import it into Blender and export it as glTF 2.0 (docs/guide/blender.md)");
 
 const BLENDER: Kind = Kind {
     name: "a Blender file",
-    hint: Hint::Text("export it as glTF 2.0; docs/guide/blender.md"),
+    hint: Hint::Text("export it as glTF 2.0 (docs/guide/blender.md)"),
 };
 const FBX: Kind = by_blender("an FBX file");
 const USD: Kind = by_blender("a USD file");

@@ -69,7 +69,9 @@ pub(super) fn accept_negative(command: Command) -> Command {
 pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) -> Error {
     let command = called(command, arguments);
     let better = match error.kind() {
-        ErrorKind::UnknownArgument => elsewhere(&error, command),
+        ErrorKind::UnknownArgument => {
+            elsewhere(&error, command).or_else(|| negative(&error, arguments))
+        }
         ErrorKind::ValueValidation | ErrorKind::InvalidValue => value(&error, command, arguments),
         _ => None,
     };
@@ -107,6 +109,24 @@ fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
         .any(|arg| arg.get_long() == flag.strip_prefix("--"));
     let message = format!("there is no flag `{given}`");
     has_flag.then(|| raw(error.kind(), message, Some(hint)))
+}
+
+/// A value such as `-1s` or `-1,0,4,4`, which clap takes for a flag.
+fn negative(error: &Error, arguments: &[OsString]) -> Option<Error> {
+    let given = text(error, ContextKind::InvalidArg)?;
+    let digits = given.strip_prefix('-')?;
+    if !digits.starts_with(|digit: char| digit.is_ascii_digit()) {
+        return None;
+    }
+    let texts: Vec<_> = arguments
+        .iter()
+        .map(|text| text.to_string_lossy())
+        .collect();
+    let pair = texts.windows(2).find(|pair| pair[1].starts_with(given))?;
+    let [flag, value] = pair else { return None };
+    let message = format!("{flag}: `{value}` is negative");
+    flag.starts_with("--")
+        .then(|| raw(error.kind(), message, None))
 }
 
 /// A value that is no number in the range, or that a variable has.

@@ -102,10 +102,10 @@ fn what_is_wrong_with_flags_is_told() {
     run("beyond --seeds 0").expect(2).says("--seeds");
     run("paper --seeds 3")
         .expect(2)
-        .says("--seeds is of `beyond` alone");
+        .says("--seeds applies to `beyond` alone");
     run("test.toml --size 8x6")
         .expect(2)
-        .says("--size is of `beyond` alone");
+        .says("--size applies to `beyond` alone");
     run("beyond --scenes coffee,living-room")
         .expect(4)
         .says("there is no scene to render: BIDIR_SCENES is not set")

@@ -121,7 +121,7 @@ fn faults_are_told() {
         .expect(2);
     for (arguments, code, says) in [
         ("noisy.exr", 2, "--output"),
-        ("noisy.exr -o out.jpg", 2, "end it with .exr or .png"),
+        ("noisy.exr -o out.jpg", 2, "output images are .exr or .png"),
         ("missing.exr -o out.exr", 4, "missing.exr"),
         ("room.pbrt -o out.exr", 4, "name an image that ends in .exr"),
     ] {

@@ -213,7 +213,7 @@ fn a_cluster_needs_the_python_package() {
     place
         .run("experiment a.toml -o out --ray local --scenes coffee --seconds 3 --size 8x8")
         .expect(2)
-        .says("--scenes is of `beyond` alone");
+        .says("--scenes applies to `beyond` alone");
 }
 
 #[cfg(unix)]

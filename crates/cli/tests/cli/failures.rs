@@ -69,6 +69,8 @@ fn numbers_out_of_range_are_told_the_range() {
         ),
         ("--noise -1", "expected a number above 0"),
         ("--time -1", "expected a time such as"),
+        ("--time -1s", "error: --time: `-1s` is negative"),
+        ("--crop -1,0,4,4", "error: --crop: `-1,0,4,4` is negative"),
         (
             "--threads 5000",
             "error: --threads: `5000` is not a whole number from 0 to 1024",
@@ -84,11 +86,12 @@ fn numbers_out_of_range_are_told_the_range() {
     ] {
         check(&format!("render room.pbrt {flags}"), 2, says);
     }
-    let mut command = Workplace::new().command("render room.pbrt");
+    let place = Workplace::new();
+    let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_SPP", "x"))
         .expect(2)
         .says("error: BIDIR_SPP: `x` is not a whole number above 0");
-    let mut command = Workplace::new().command("render room.pbrt");
+    let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_INTEGRATOR", "photon"))
         .expect(2)
         .says("error: BIDIR_INTEGRATOR: `photon` is not one of path, light, bdpt");
@@ -137,7 +140,7 @@ fn foreign_files_are_named_with_the_way_in() {
         place
             .run(&format!("{command} room.blend"))
             .expect(3)
-            .says("error: `room.blend` is a Blender file; export it as glTF 2.0; docs/guide");
+            .says("error: `room.blend` is a Blender file; export it as glTF 2.0 (docs/guide");
         place
             .run(&format!("{command} room.xml"))
             .expect(3)
@@ -209,7 +212,7 @@ fn the_environment_is_read_after_flags() {
     spp("render room.pbrt --spp 1", "3")
         .expect(0)
         .says("1 sample per pixel");
-    spp("render room.pbrt", "many").expect(2).says("--spp");
+    spp("render room.pbrt", "many").expect(2).says("BIDIR_SPP");
     let mut command = place.command("render room.pbrt");
     Ran::of(command.env("BIDIR_ISA", "neon"))
         .expect(2)

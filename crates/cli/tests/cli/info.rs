@@ -31,9 +31,9 @@ fn light_paths_that_no_strategy_makes_are_told() {
     place
         .run("info glass.pbrt")
         .expect(0)
-        .prints("bdpt         misses points, spots")
+        .prints("bdpt         misses point, spot")
         .prints("bdpt         is noisy for caustics")
-        .prints("path         misses light of points")
+        .prints("path         misses caustics of point")
         .prints("light        misses everything seen in mirrors");
     place
         .run("info room.pbrt")

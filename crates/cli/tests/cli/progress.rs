@@ -76,7 +76,11 @@ fn a_scheduler_is_told_why_a_render_fails() {
         "Camera \"perspective\"\nWorldBegin\nMaterial \"difuse\"\n",
     );
     for (scene, code, fails) in [
-        ("missing.pbrt", 4, "openjd_fail: missing.pbrt: "),
+        (
+            "missing.pbrt",
+            4,
+            "openjd_fail: cannot open `missing.pbrt`: ",
+        ),
         ("bad.pbrt", 3, "openjd_fail: bad.pbrt:3:"),
         (
             "room.pbrt -o room.jpg",

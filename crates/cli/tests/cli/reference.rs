@@ -153,7 +153,7 @@ fn what_disagrees_is_written_and_refused() {
     place
         .run("reference room.pbrt --spp 32")
         .expect(5)
-        .says("it has 64 samples per pixel already, more than the 32");
+        .says("has 64 samples per pixel already, more than the 32");
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn stale_and_damaged_references_are_refused() {
         place
             .run(&format!("reference room.pbrt -o {folder} --extend 16"))
             .expect(4)
-            .says("no reference")
+            .says("is not a reference")
             .says(hint);
     }
     place
@@ -241,9 +241,9 @@ fn a_wrong_command_line_is_told() {
         ("--spp 4 --extend 4", "cannot be used with"),
         ("--extend 4 --size 4x4", "cannot be used with"),
         ("--extend 4 --crop 0,0,4,4", "cannot be used with"),
-        ("--spp 0", "invalid value '0'"),
+        ("--spp 0", "`0` is not a whole number"),
         ("--against photons", "invalid value 'photons'"),
-        ("-o .", "there already, and no reference"),
+        ("-o .", ". exists already and is not a reference"),
     ] {
         place
             .run(&format!("reference room.pbrt {arguments}"))

@@ -188,7 +188,7 @@ fn a_drawing_that_cannot_be_written_is_refused_before_a_scene_is_read() {
     run("--svg a.svg").expect(2).says("--replay");
     run("--replay 1,1,1 --svg a.png")
         .expect(2)
-        .says("a drawing is an SVG")
+        .says("drawings are .svg")
         .says("NAME.svg");
     run("--replay 1,1,1 --svg none/a.svg")
         .expect(4)

@@ -139,7 +139,7 @@ fn a_reference_can_be_stopped_and_gone_on_with() {
     let stderr = child.stderr.as_mut().unwrap();
     stderr.read_to_string(&mut told).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(75), "{told}");
-    assert!(told.contains("the same command goes on"), "{told}");
+    assert!(told.contains("run the same command to continue"), "{told}");
     assert!(!place.path("room.reference/provenance.json").exists());
     // With less it cannot go on in the replicate that is done.
     let least = "reference room.pbrt --size 48x32 --spp 16";

@@ -113,7 +113,7 @@ fn faults_are_told() {
     write_image(&place, "in.pfm", &[[1.0; 3]]);
     for (arguments, code, says) in [
         ("in.pfm", 2, "--output"),
-        ("in.pfm -o out.jpg", 2, "end it with .png"),
+        ("in.pfm -o out.jpg", 2, "output images are .png"),
         (
             "in.pfm -o out.png --operator aces",
             2,

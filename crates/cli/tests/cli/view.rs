@@ -101,7 +101,7 @@ fn a_port_that_is_taken_is_an_error_with_a_hint() {
             .run(&command)
             .expect(4)
             .says(&format!("cannot serve on 127.0.0.1:{port}"))
-            .says("hint: another program has it");
+            .says("hint: another program uses it");
     }
     // An address that documents are about.
     place

@@ -17,11 +17,11 @@ fn check(name: &str, bytes: &[u8], expected: &str) {
 }
 
 const FORMATS: &str = "bidir reads pbrt-v4 (.pbrt) and glTF 2.0 (.gltf, .glb)";
-const BY_BLENDER: &str = "import it into Blender and export it as glTF 2.0; docs/guide/blender.md";
+const BY_BLENDER: &str = "import it into Blender and export it as glTF 2.0 (docs/guide/blender.md)";
 
 #[test]
 fn files_of_blender_are_named_packed_or_not() {
-    let expected = "`room.blend` is a Blender file; export it as glTF 2.0; docs/guide/blender.md";
+    let expected = "`room.blend` is a Blender file; export it as glTF 2.0 (docs/guide/blender.md)";
     check("room.blend", b"BLENDER-v402REND", expected);
     check("room.blend", b"\x28\xb5\x2f\xfd\0\0\0", expected);
     check("room.blend", b"\x1f\x8b\x08\0\0", expected);

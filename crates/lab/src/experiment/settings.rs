@@ -231,7 +231,7 @@ mod tests {
             wrong("light-point", "x"),
             "there is no `x`: expected fresh, shared"
         );
-        assert!(wrong("strategies", "s").contains("no strategy"));
+        assert!(wrong("strategies", "s").contains("is not a strategy"));
         assert_eq!(wrong("max-depth", "-1"), "expected a whole number");
         assert!(wrong("candidates", "0").contains("from 1 to 4096"));
     }

@@ -266,7 +266,7 @@ fn strategies_have_sheets_and_numbers() {
         "alt=\"Raw images of the strategies of ",
         "s=1 t=2 contributes most, 25 % of the image.",
         "2 samples per pixel, seed 3, 4 × 2 pixels",
-        "Of s=1 t=1, s=0 t=3, s=2 t=1 nothing was counted",
+        "Nothing was counted for s=1 t=1, s=0 t=3, s=2 t=1:",
         "longer paths",
     ] {
         assert!(section.contains(part), "{part}: {section}");

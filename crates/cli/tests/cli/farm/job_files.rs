@@ -84,18 +84,24 @@ fn a_job_file_for_a_shell_says_what_is_started() {
 const FAULTS: [(&str, &str); 18] = [
     ("", "slurm"),
     ("slurm room.pbrt", "--parts"),
-    ("slurm room.pbrt --parts 0", "0 is not in 1.."),
+    (
+        "slurm room.pbrt --parts 0",
+        "`0` is not a whole number from 1 to 100000",
+    ),
     ("slurm room.pbrt --parts 8 --spp 4", "some would have none"),
     ("pbs room.pbrt --parts 8", "pbs"),
     ("shell - --parts 8", "standard input cannot be shared"),
-    ("shell room.pbrt --parts 8 -o room.png", "end it with .exr"),
+    (
+        "shell room.pbrt --parts 8 -o room.png",
+        "output images are .exr",
+    ),
     (
         "shell room.pbrt --parts 8 -- --integrator photon",
         "[possible values: path, light, bdpt, lvc, auto]",
     ),
     (
         "shell room.pbrt --parts 8 -o room.part-2.exr",
-        "named like a share",
+        "named like a part",
     ),
     (
         "shell room.pbrt --parts 8 -- --spp 4",

@@ -211,7 +211,7 @@ fn hyperqueue_makes_no_image_without_all_shares() {
     install(&place, "hq", HQ);
     place.write(&format!("{NAME}.part-1-of-3.film"), "this is no film");
     let ran = Ran::of(&mut shell(&place, &["job"])).expect(1);
-    ran.says("shares 1 of job 7 are not done");
+    ran.says("parts 1 of job 7 are not done");
     assert!(!place.path(&format!("{NAME}.exr")).exists());
 }
 

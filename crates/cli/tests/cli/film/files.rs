@@ -41,7 +41,7 @@ fn files_that_are_no_films_are_not_replaced_by_one() {
     place
         .run(&format!("{render} room.pbrt"))
         .expect(2)
-        .says("two files of this name");
+        .says("two outputs have this name");
     place.run(&format!("{render} a.exr -o a.exr")).expect(2);
     fs::write(place.path("copy.pbrt"), &scene).unwrap();
     place
@@ -109,7 +109,7 @@ fn what_needs_no_scene_is_told_before_one_is_read() {
     place
         .run(&format!("{render} a.film"))
         .expect(2)
-        .says("there is a film file already");
+        .says("exists already");
     place.write("b.film", "BIDIRFLM and then nothing");
     place
         .run(&format!("{render} b.film --resume"))

@@ -109,7 +109,7 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         (
             "image.exr",
             2,
-            "not a film file, and not replaced by one",
+            "is not a film file, and is not replaced by one",
             "name another file with --output",
         ),
         (
@@ -139,7 +139,7 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         (
             "d.exr --image d.exr",
             2,
-            "d.exr: a film file, not replaced by an image",
+            "d.exr is a film file, and is not replaced by an image",
             "name another file with --image",
         ),
     ] {
@@ -172,7 +172,7 @@ fn a_film_of_passes_that_are_not_asked_for_is_not_gone_on_from() {
     let resume = "render room.pbrt -q --checkpoint a.film --resume";
     for fewer in ["--spp 2", "--passes 4..6", "--part 1/2 --spp 8"] {
         let ran = place.run(&format!("{resume} {fewer}")).expect(5);
-        ran.says("which are not asked for");
+        ran.says("which this render does not include");
     }
     // Where nothing is left to do the file stays as it is.
     place.run(&format!("{resume} --spp 4")).expect(0);
