@@ -15,7 +15,7 @@ fn beyond_judges_what_there_is_and_goes_on() {
         .says("wrote out/report.html")
         .prints("Estimators in equal time")
         .prints("Shadow-ray selectors: gains at equal rays")
-        .prints("Targets: gains that were aimed at")
+        .prints("Targets: gains, the goals and the results")
         .prints("not measured  in-equal-time-veach-ajar-over-bdpt-all");
     let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
     let records = results["records"].as_array().unwrap();

@@ -11,8 +11,10 @@ fn flags(help: &str) -> BTreeSet<&str> {
             .split_once(", ")
             .filter(|(short, _)| short.len() == 2)
             .map_or(line, |l| l.1);
-        line.starts_with("--")
-            .then(|| line.split_whitespace().next())?
+        // A wrapped line may begin with a flag in the middle of a sentence.
+        let flag = line.split_whitespace().next()?;
+        let flag = flag.trim_end_matches(|end: char| !end.is_alphanumeric());
+        flag.starts_with("--").then_some(flag)
     });
     heads.collect()
 }
