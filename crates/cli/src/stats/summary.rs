@@ -63,33 +63,29 @@ impl Summary {
     }
 
     fn samples(&self) -> String {
-        let of = self.wanted.filter(|wanted| self.passes < *wanted);
-        let mut text = match of {
+        let time = took(self.time);
+        let count = match self.wanted.filter(|wanted| self.passes < *wanted) {
             Some(wanted) => format!("{} of {wanted} samples per pixel", self.passes),
             None if self.passes == 1 => "1 sample per pixel".to_owned(),
             None => format!("{} samples per pixel", self.passes),
         };
-        if let Some(part) = &self.part {
-            text += &format!(" (passes {part})");
-        }
-        if let Some([width, height]) = self.crop {
-            text += &format!(" of a crop of {width}x{height} pixels");
-        }
-        let time = took(self.time);
-        text += &match self.rendered {
+        let part = self.part.as_ref().map(|part| format!(" (passes {part})"));
+        let crop = self.crop;
+        let crop = crop.map(|[width, height]| format!(" of a crop of {width}x{height} pixels"));
+        let run = match self.rendered {
             0 => ", all of them from the checkpoint".to_owned(),
             rendered if rendered < self.passes => format!(", {rendered} of them in {time}"),
             _ => format!(" in {time}"),
         };
-        if let Some(error) = self.error {
-            text += &format!(", relative error {}", two_digits(error));
-            text += if self.is_denoised {
-                " before denoising"
-            } else {
-                ""
-            };
-        }
-        text
+        let noisy = if self.is_denoised {
+            " before denoising"
+        } else {
+            ""
+        };
+        let error = self.error.map(two_digits);
+        let error = error.map(|error| format!(", relative error {error}{noisy}"));
+        let parts = [Some(count), part, crop, Some(run), error];
+        parts.into_iter().flatten().collect()
     }
 }
 
