@@ -17,7 +17,7 @@ test FILTER="":
 # The statistical tests, with other random numbers where SEED is given.
 stat SEED="1":
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --lib tests::
-    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test analytic --test layers
+    BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir --test suite -- analytic:: layers::
     BIDIR_TEST_SEED={{SEED}} cargo test --release -p bidir-formats --test estimators --test real_scenes
 
 # Writes the pages that are generated.

@@ -3,9 +3,9 @@
 They are chosen to be the fastest that can notice.
 """
 
-PATH = ("bidir", "--test path_identities", "")
-RUNNING = ("bidir", "--test running_weights", "")
-ANALYTIC = "--test analytic"
+SUITE = "--test suite"
+PATH = ("bidir", SUITE, "path_identities::")
+RUNNING = ("bidir", SUITE, "running_weights::")
 ESTIMATORS = "--test estimators"
 
 
@@ -16,22 +16,22 @@ def unit(filter_):
 
 def layers(filter_):
     """Tests of what a film keeps beside the picture."""
-    return ("bidir", "--test layers", filter_)
+    return ("bidir", SUITE, filter_)
 
 
 def analytic(filter_):
     """Tests against known images."""
-    return ("bidir", ANALYTIC, filter_)
+    return ("bidir", SUITE, "analytic::" + filter_)
 
 
 def materials(filter_):
     """Tests of estimators against each other on every material."""
-    return ("bidir", "--test materials", filter_)
+    return ("bidir", SUITE, "materials::" + filter_)
 
 
 def relief(filter_):
     """Tests of surfaces whose shading normals are bumped, and of what pixels cover of textures."""
-    return ("bidir", "--test relief", filter_)
+    return ("bidir", SUITE, "relief::" + filter_)
 
 
 def reader(filter_):
@@ -46,7 +46,7 @@ def lab(filter_):
 
 def experiment(filter_):
     """Tests of experiments as a host runs them."""
-    return ("bidir-lab", "--test experiment", filter_)
+    return ("bidir-lab", SUITE, filter_)
 
 
 def formats(filter_):

@@ -12,7 +12,8 @@ use crate::trees::build;
 fn check_rays(primitives: &[Primitive], random: &mut Random) {
     let bvh = build(primitives);
     let bounds = bvh.bounds();
-    for _ in 0..500 {
+    // A ray may meet every primitive.
+    for _ in 0..500.min(400_000 / primitives.len()) {
         let target = bounds.center() + bounds.extent() * 0.5 * random.cube();
         let origin = bounds.center() + bounds.extent() * random.cube();
         let ray = Ray::new(origin, target - origin);

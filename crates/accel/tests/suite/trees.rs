@@ -39,6 +39,16 @@ impl Trees {
         expected
     }
 
+    /// Whether there is any hit, by one tree and one question, other ones with every `turn`.
+    pub(crate) fn is_hit_in_turn(&self, turn: usize, ray: &Ray) -> bool {
+        let bvh = &self.0[turn % self.0.len()];
+        match turn / self.0.len() % 3 {
+            0 => bvh.closest(ray, accept_all).is_some(),
+            1 => bvh.occluded(ray, accept_all),
+            _ => bvh.is_blocked(ray),
+        }
+    }
+
     /// Whether there is any hit, without a filter.
     #[track_caller]
     pub(crate) fn is_blocked(&self, ray: &Ray) -> bool {

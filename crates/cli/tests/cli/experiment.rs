@@ -144,7 +144,7 @@ fn what_was_interrupted_goes_on_to_the_same_records() {
     // The first render is long enough to be stopped.
     place.write(
         "test.toml",
-        &DESCRIPTION.replace("samples = 2", "samples = 3000"),
+        &DESCRIPTION.replace("samples = 2", "samples = 800"),
     );
     place.run("experiment test.toml -o whole").expect(0);
     interrupted(&place, "experiment test.toml -o stopped", "0 of 12 renders")

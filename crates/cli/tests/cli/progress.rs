@@ -48,7 +48,7 @@ fn quiet_leaves_the_progress_that_is_asked_for() {
 #[test]
 fn lines_come_now_and_then() {
     let place = Workplace::new();
-    let arguments = "--spp 1000000000 --time 2.5 --progress ndjson -q";
+    let arguments = "--spp 1000000000 --time 1.5 --threads 1 --progress ndjson -q";
     let ran = place
         .run(&format!("render room.pbrt {arguments}"))
         .expect(0);
@@ -64,7 +64,7 @@ fn lines_come_now_and_then() {
         assert!(numbers(key).is_sorted(), "{key}: {}", ran.stderr);
     }
     for (seconds, left) in numbers("seconds").iter().zip(numbers("left")) {
-        assert!((seconds + left - 2.5).abs() < 0.3, "{}", ran.stderr);
+        assert!((seconds + left - 1.5).abs() < 0.3, "{}", ran.stderr);
     }
 }
 
@@ -109,8 +109,8 @@ fn a_render_that_is_stopped_does_not_say_that_it_is_done() {
     use std::process::{Command, Stdio};
 
     let place = Workplace::new();
-    // A pass is long enough for the signal to come while it runs.
-    let arguments = "--size 1000x600 --threads 1 --spp 1000000 --time 10m --progress openjd";
+    // A tenth of the time is reported after a second.
+    let arguments = "--size 500x300 --threads 1 --spp 1000000 --time 10 --progress openjd";
     let mut command = place.command(&format!("render room.pbrt {arguments}"));
     let mut child = command
         .stdout(Stdio::piped())

@@ -27,7 +27,7 @@ fn lines_of_progress_end_where_no_terminal_listens() {
         .expect(2);
     assert!(!ran.stderr.contains('\r'));
     let ran = Workplace::new()
-        .run("render room.pbrt --time 1.3")
+        .run("render room.pbrt --time 1.3 --threads 1")
         .expect(0)
         .says("Progress: ");
     assert!(!ran.stderr.contains('\r') && !ran.stderr.contains('\x1b'));
@@ -200,7 +200,9 @@ fn time_or_samples_end_a_render_whichever_is_first() {
         .expect(0)
         .says("1 of 3 samples per pixel");
     let start = std::time::Instant::now();
-    place.run("render room.pbrt --time 0.3").expect(0);
+    place
+        .run("render room.pbrt --time 0.3 --threads 1")
+        .expect(0);
     assert!((0.2..5.0).contains(&start.elapsed().as_secs_f64()));
 }
 

@@ -170,7 +170,7 @@ fn a_listener_that_never_reads_stops_nothing() {
     let address = listener.local_addr().unwrap().to_string();
     let place = Workplace::new();
     // More than the system keeps for a connection that nobody reads.
-    let command = "render room.pbrt --size 2400x1600 --integrator path --max-depth 1 --spp 1";
+    let command = "render room.pbrt --size 1600x1000 --integrator path --max-depth 1 --spp 1";
     place.run(&format!("{command} -q -o alone.exr")).expect(0);
     let ran = place
         .run(&format!("{command} -o seen.exr --display-server {address}"))

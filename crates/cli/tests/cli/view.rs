@@ -136,7 +136,8 @@ fn a_scene_that_is_wrong_is_told_before_anything_is_served() {
 #[test]
 fn a_render_is_watched_until_it_ends() {
     let place = Workplace::new();
-    let command = "render room.pbrt --serve :0 --spp 1000000000 --time 2 -q -o served.exr";
+    let command =
+        "render room.pbrt --serve :0 --spp 1000000000 --time 2 --threads 1 -q -o served.exr";
     let served = Served::new(&place, command);
     let start = Instant::now();
     while !served.get("/status").contains(r#""state":"rendering""#) {

@@ -179,10 +179,11 @@ impl Observer for Host {
 #[test]
 fn everything_works_small() {
     let folder = tempfile::tempdir().unwrap();
-    let options = Options {
+    let mut options = Options {
         scenes: vec!["room-direct".to_owned(), "coffee".to_owned()],
         ..options()
     };
+    options.amounts.seeds = 1;
     let mut host = Host {
         most: Some(3),
         ..Host::default()
@@ -213,12 +214,24 @@ fn everything_works_small() {
             .iter()
             .all(|image| folder.path().join(image).exists())
     );
-    check_tables(&results, &options.amounts);
+    check_tables(results, &options);
 }
 
-/// Every gain in the scene that was rendered has an interval.
-fn check_tables(results: &Results, amounts: &Amounts) {
-    let sections = sections(results, amounts);
+/// Every gain in the scene that was rendered has an interval, were there a second seed with other
+/// errors.
+fn check_tables(mut results: Results, options: &Options) {
+    let mut others = results.records.clone();
+    for (i, record) in others.iter_mut().enumerate() {
+        let factor = 1.0 + 0.1 * (i % 5) as f64;
+        record.seed += 1;
+        record
+            .metrics
+            .values_mut()
+            .for_each(|error| *error *= factor);
+    }
+    results.records.extend(others);
+    let results = concluded(options, results, &[]);
+    let sections = sections(&results, &options.amounts);
     let nothing = Cell::Text("–".to_owned());
     for table in sections.iter().flat_map(|section| &section.tables) {
         check_shape(table);

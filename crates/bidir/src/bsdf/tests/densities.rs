@@ -3,8 +3,8 @@ use crate::bsdf::TransportMode;
 use crate::testing::{Battery, Domain, Grid, samples};
 
 /// Directions are drawn as the density says, and what it lacks to 1 is lost below the surface.
-#[test]
-fn samples_follow_the_density() {
+#[track_caller]
+fn check(is_taken: impl Fn(&str) -> bool) {
     let grid = Grid {
         domain: Domain::sphere(),
         columns: 20,
@@ -12,8 +12,9 @@ fn samples_follow_the_density() {
     };
     let mut battery = Battery::new("BSDF densities");
     for (name, bsdf, wo) in cases().filter(|(_, bsdf, _)| !bsdf.is_delta()) {
-        if is_two_sided(&bsdf) && wo.z < 0.0 {
-            continue; // The same as from above.
+        // From below a two-sided surface looks the same.
+        if !is_taken(&name) || is_two_sided(&bsdf) && wo.z < 0.0 {
+            continue;
         }
         let draws = samples(&name, 1 << 20).map(|sample| {
             let (u_lobe, u) = numbers(&sample);
@@ -24,4 +25,15 @@ fn samples_follow_the_density() {
         battery.chi2(&name, &grid, |wi| bsdf.pdf(wo, wi), draws);
     }
     battery.check();
+}
+
+#[test]
+fn samples_follow_the_density() {
+    check(|name| name.contains("oblique"));
+}
+
+#[test]
+#[ignore = "statistics: .ci/run statistics"]
+fn statistics_of_samples_along_the_normal_and_grazing() {
+    check(|name| !name.contains("oblique"));
 }

@@ -27,7 +27,7 @@ fn what_killed_writers_left_behind_is_removed() {
 #[test]
 fn two_writers_of_one_film_are_kept_apart() {
     let place = Workplace::new();
-    let render = "render room.pbrt -q --time 20s --checkpoint a.film";
+    let render = "render room.pbrt -q --time 20s --threads 1 --checkpoint a.film";
     let mut first = place.command(render).stderr(Stdio::null()).spawn().unwrap();
     let lock = place.path("a.film.lock");
     while !lock.exists() {

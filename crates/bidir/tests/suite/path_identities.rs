@@ -4,8 +4,10 @@
 //! other strategy would have made it. The product that is stored with a subpath is so compared
 //! with one that is computed from scratch.
 
-mod common;
-
+use crate::common;
+use crate::common::walks::{
+    for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals,
+};
 use bidir::bsdf::TransportMode;
 use bidir::light::Part;
 use bidir::math::Vec2;
@@ -16,7 +18,6 @@ use bidir::path::{
 };
 use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
-use common::walks::{for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals};
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
     PathSettings {

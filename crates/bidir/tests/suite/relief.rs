@@ -4,8 +4,8 @@
 //! What a pixel covers decides how fine textures and bumps are. It must be the same from
 //! whichever end a path was walked.
 
-mod common;
-
+use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
+use crate::common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
@@ -19,8 +19,6 @@ use bidir::texture::{
     Beyond, Cells, Change, Checkerboard, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap,
     Mapping, Noise, NoiseKind, TextureSpace, Wrap,
 };
-use common::statistics::{Replicates, WHOLE, check_agree, replicates};
-use common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
 use std::sync::Arc;
 
 /// Pixels in a row: wide enough for bumps and texels to be finer than some, and coarser than others.

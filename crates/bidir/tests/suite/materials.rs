@@ -3,8 +3,11 @@
 //!
 //! What a material does by a Dirac lobe, and what it does beside it, has to count once in each.
 
-mod common;
-
+use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
+use crate::common::{
+    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
+    principled_smooth, quad, sphere, varnish,
+};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::material::Material;
@@ -13,11 +16,6 @@ use bidir::path::{MisHeuristic, PathSettings};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::texture::TexturePoint;
-use common::statistics::{Replicates, WHOLE, check_agree, replicates};
-use common::{
-    add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
-    principled_smooth, quad, sphere, varnish,
-};
 
 /// The film's mean and its quarters.
 const QUARTERS: &[usize] = &[WHOLE, 4];
@@ -29,8 +27,8 @@ fn scene(material: Material) -> Scene {
     add_walls(&mut builder, wall);
     let light = quad(Vec3::new(-0.7, 1.9, -0.5), Vec3::X * 1.4, Vec3::Z);
     builder.shape(Shape::Mesh(light), wall, emission([6.0, 5.0, 4.0]));
-    let bulb = sphere(Vec3::new(0.9, -0.6, 0.9), 0.15);
-    builder.shape(bulb, wall, emission([30.0, 40.0, 50.0]));
+    let bulb = sphere(Vec3::new(0.9, -0.6, 0.9), 0.3);
+    builder.shape(bulb, wall, emission([8.0, 10.0, 12.0]));
     let floor = quad(Vec3::new(-1.9, -1.3, -1.5), Vec3::Z * 3.3, Vec3::X * 3.8);
     builder.shape(Shape::Mesh(floor), material, None);
     builder.shape(sphere(Vec3::new(-0.5, -0.6, 0.9), 0.6), material, None);
@@ -49,11 +47,11 @@ fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Repli
         ..Settings::default()
     };
     let passes = match integrator {
-        IntegratorKind::Path => 32768,
-        IntegratorKind::Light => 20480,
+        IntegratorKind::Path => 12288,
+        IntegratorKind::Light => 8192,
         // Weights that do not look at densities leave the tails heavy.
-        IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 28672,
-        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => 4096,
+        IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 12288,
+        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => 2048,
     };
     replicates(scene, &settings, passes)
 }

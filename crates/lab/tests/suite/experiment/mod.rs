@@ -1,7 +1,5 @@
 //! Experiments as a host runs them.
 
-#![allow(clippy::unwrap_used, reason = "tests may panic")]
-
 mod common;
 mod descriptions;
 mod pyramid;

@@ -1,7 +1,6 @@
 //! A contribution that is not finite is dropped, counted and listed, and harms nothing else.
 
-mod common;
-
+use crate::common::{add_walls, builder, diffuse, emission, quad};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir::material::Material;
@@ -10,7 +9,6 @@ use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::stats::LISTED_DROPS;
 use bidir::texture::{Beyond, Change, ColorTexture, Image, ImageFilter, ImageMap, Mapping, Wrap};
-use common::{add_walls, builder, diffuse, emission, quad};
 use std::sync::Arc;
 
 /// A lit room with a panel whose texture has one NaN texel out of four.

@@ -1,4 +1,4 @@
-use crate::common::{DESCRIPTION, Watch, Workplace, without_times};
+use super::common::{DESCRIPTION, Watch, Workplace, without_times};
 use bidir_lab::experiment::{End, ExperimentError, Setup, Start, run};
 use bidir_lab::results::{Machine, Results};
 use std::fs;

@@ -3,7 +3,7 @@
 //! `CHROME` names the browser; otherwise the first of the usual names on the path is taken. Without
 //! one the test is skipped, and says so.
 
-#[path = "../examples/report/sample.rs"]
+#[path = "../../examples/report/sample.rs"]
 mod sample;
 
 use std::io;

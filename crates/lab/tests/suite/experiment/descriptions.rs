@@ -1,4 +1,4 @@
-use crate::common::{DESCRIPTION, Workplace};
+use super::common::{DESCRIPTION, Workplace};
 use bidir_lab::experiment::{BudgetSpec, Experiment, ExperimentError, ReferenceSpec};
 use bidir_lab::results::BudgetKind;
 

@@ -1,8 +1,8 @@
 //! Strategies by themselves: their images, with and without the weight, and how much they vary.
 
+use super::lit_room::{LAMPS, lit_room};
+use super::{film, settings};
 use crate::common::statistics::{WHOLE, check_agree, replicates, replicates_of};
-use crate::lit_room::{LAMPS, lit_room};
-use crate::{film, settings};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Film, Layers};
 use bidir::integrator::{

@@ -1,6 +1,5 @@
 //! Tests with Open Image Denoise, where the system or `BIDIR_OIDN` has it.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
 #![allow(clippy::print_stderr, reason = "a test tells why it is skipped")]
 
 use bidir_denoise::{DenoiseError, Denoiser, Input};

@@ -1,7 +1,7 @@
 //! Features of a plane, all of which are known, and what pixels cost.
 
+use super::{FEATURES, film, layer, settings};
 use crate::common::{add_walls, builder, diffuse, quad, tilt};
-use crate::{FEATURES, film, layer, settings};
 use bidir::driver::{Progress, Resources, Session};
 use bidir::film::{Aov, LayerImage, Layers};
 use bidir::integrator::IntegratorKind;

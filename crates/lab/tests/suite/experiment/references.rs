@@ -1,4 +1,4 @@
-use crate::common::{DESCRIPTION, SCENE, Watch, Workplace};
+use super::common::{DESCRIPTION, SCENE, Watch, Workplace};
 use bidir_lab::experiment::ExperimentError;
 use bidir_lab::reference::Error;
 use bidir_lab::results::Results;

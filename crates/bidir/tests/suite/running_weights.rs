@@ -1,8 +1,8 @@
 //! Weights from running sums are those of the pure form, for every path that pairs of subpaths
 //! make, and for every way to weigh them.
 
-mod common;
-
+use crate::common;
+use crate::common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
@@ -14,7 +14,6 @@ use bidir::path::{
 };
 use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
-use common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
 const TOLERANCE: f32 = 1e-6;

@@ -5,11 +5,9 @@
     reason = "the modules belong to a crate where they are reached"
 )]
 
-extern crate bidir_lab as lab;
-
-#[path = "../../../fuzz/src/experiments.rs"]
+#[path = "../../../../fuzz/src/experiments.rs"]
 mod experiments;
-#[path = "../../../fuzz/src/mutation.rs"]
+#[path = "../../../../fuzz/src/mutation.rs"]
 mod mutation;
 
 use std::path::Path;

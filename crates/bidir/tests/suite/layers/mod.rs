@@ -1,8 +1,6 @@
 //! What a film keeps beside the picture: known features of a plane, parts that add up, and groups of
 //! lights that are what the lights alone would give.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod films;
 mod groups;
 mod lit_room;

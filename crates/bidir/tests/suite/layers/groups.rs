@@ -1,8 +1,8 @@
 //! Groups of lights.
 
+use super::lit_room::{LAMPS, lit_room};
+use super::{film, layer, settings};
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates, replicates_of_each};
-use crate::lit_room::{LAMPS, lit_room};
-use crate::{film, layer, settings};
 use bidir::driver::Settings;
 use bidir::film::{Film, LayerImage, Layers, Picture};
 use bidir::integrator::IntegratorKind;

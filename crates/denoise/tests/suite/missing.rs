@@ -1,7 +1,5 @@
 //! Tests of what is told where Open Image Denoise is not there, or is something else.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
-
 use bidir_denoise::{DenoiseError, Denoiser, Input, names};
 use std::fs;
 use std::path::{Path, PathBuf};

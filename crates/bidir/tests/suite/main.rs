@@ -1,0 +1,13 @@
+//! The crate from outside: whole paths, estimators and films, in scenes made in memory.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod analytic;
+mod dropped;
+mod layers;
+mod materials;
+mod path_identities;
+mod relief;
+mod reproducibility;
+mod running_weights;
