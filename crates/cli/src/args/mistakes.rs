@@ -1,6 +1,7 @@
 //! Errors of the command line that clap words for programmers: numbers out of range, values of
 //! variables, and flags under the names that other programs give them.
 
+use clap::builder::PossibleValue;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
 use std::ffi::{OsStr, OsString};
@@ -140,7 +141,7 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
     let variable = variable(arg, given, arguments);
     let reason = std::error::Error::source(error).map(ToString::to_string);
     let is_of_a_number = reason.as_deref().is_some_and(is_of_a_number);
-    let expected = is_of_a_number.then(|| expected(arg)).flatten();
+    let expected = is_of_a_number.then(|| expected(arg));
     if variable.is_none() && expected.is_none() {
         return None;
     }
@@ -150,7 +151,7 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
         (None, Some(reason)) => reason,
         (None, None) => {
             let values = arg.get_possible_values();
-            let names: Vec<_> = values.iter().map(|value| value.get_name()).collect();
+            let names: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
             format!("`{given}` is not one of {}", names.join(", "))
         }
     };
@@ -188,7 +189,7 @@ fn is_of_a_number(reason: &str) -> bool {
 }
 
 /// The whole numbers that a flag takes, in words: clap names the range where it refuses one.
-fn expected(arg: &Arg) -> Option<String> {
+fn expected(arg: &Arg) -> String {
     let range = |probe: &str| {
         let flag = Arg::new("probe").long("probe");
         let flag = flag.value_parser(arg.get_value_parser().clone());
@@ -206,12 +207,12 @@ fn expected(arg: &Arg) -> Option<String> {
         ))
     };
     let all = [range("0"), range(&i64::MAX.to_string())];
-    Some(match all.into_iter().flatten().next() {
+    match all.into_iter().flatten().next() {
         Some((1, None)) => "a whole number above 0".to_owned(),
         Some((least, Some(most))) => format!("a whole number from {least} to {most}"),
         Some((least, None)) => format!("a whole number of at least {least}"),
         None => "a whole number of at least 0".to_owned(),
-    })
+    }
 }
 
 /// An error as [`crate::console::Console`] writes it.
