@@ -55,7 +55,7 @@ fn passes(integrator: IntegratorKind, most: u64) -> u64 {
         IntegratorKind::Path
         | IntegratorKind::Bdpt
         | IntegratorKind::Lvc
-        | IntegratorKind::Auto => most / 4,
+        | IntegratorKind::Auto => most / 8,
     }
 }
 
@@ -88,7 +88,7 @@ fn every_limit_of_depth_cuts_the_same_paths() {
         let expected = 1.0 - halved(depth + 1);
         for (name, integrator) in estimators() {
             let settings = settings(integrator, Some(depth));
-            let result = replicates(&scene, &settings, passes(integrator, 8192));
+            let result = replicates(&scene, &settings, passes(integrator, 5120));
             check_expectation(&format!("{name}, depth {depth}"), &result, expected);
         }
     }
@@ -107,53 +107,58 @@ fn roulette_does_not_change_the_mean() {
         for (name, integrator) in estimators() {
             let mut settings = settings(integrator, Some(8));
             settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
-            let result = replicates(&scene, &settings, passes(integrator, 2048));
+            let result = replicates(&scene, &settings, passes(integrator, 4096));
             let expected = 1.0 - halved(9);
             check_expectation(&format!("{name}, {roulette}"), &result, expected);
         }
     }
 }
 
-/// Checks that the mean of a closed sphere with roulette on and off is the known one, 1 - ρ^(d+1)
-/// after d scatterings, where a bias of `bias` would show. Passes are those of path tracing and of
-/// bidirectional path tracing.
-#[track_caller]
-fn check_roulette(scene: &Scene, reflectance: Rgb, passes: [u64; 2], bias: f64) {
-    let depth = 2;
-    for roulette in ["albedo:0", "throughput:0", "off"] {
-        for (integrator, passes) in [IntegratorKind::Path, IntegratorKind::Bdpt]
-            .into_iter()
-            .zip(passes)
-        {
-            let mut settings = settings(integrator, Some(depth));
-            settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
-            let result = replicates(scene, &settings, passes);
-            let radiance = |rho: f32| 1.0 - libm::pow(f64::from(rho), f64::from(depth + 1));
-            let exact = result.exactly(reflectance.map(radiance));
-            let name = format!("{integrator:?}, {roulette}");
-            check_agree_to(&name, &result, &exact, &[WHOLE], bias);
+/// Comparisons that need millions of samples.
+mod statistics {
+    use super::*;
+
+    /// Checks that the mean of a closed sphere with roulette on and off is the known one, 1 - ρ^(d+1)
+    /// after d scatterings, where a bias of `bias` would show. Passes are those of path tracing and of
+    /// bidirectional path tracing.
+    #[track_caller]
+    fn check_roulette(scene: &Scene, reflectance: Rgb, passes: [u64; 2], bias: f64) {
+        let depth = 2;
+        for roulette in ["albedo:0", "throughput:0", "off"] {
+            for (integrator, passes) in [IntegratorKind::Path, IntegratorKind::Bdpt]
+                .into_iter()
+                .zip(passes)
+            {
+                let mut settings = settings(integrator, Some(depth));
+                settings.path.roulette = roulette.parse::<PathRoulette>().expect("a roulette");
+                let result = replicates(scene, &settings, passes);
+                let radiance = |rho: f32| 1.0 - libm::pow(f64::from(rho), f64::from(depth + 1));
+                let exact = result.exactly(reflectance.map(radiance));
+                let name = format!("{integrator:?}, {roulette}");
+                check_agree_to(&name, &result, &exact, &[WHOLE], bias);
+            }
         }
     }
-}
 
-#[test]
-#[ignore = "statistics: .ci/run statistics"]
-fn roulette_changes_the_mean_by_less_than_a_thousandth() {
-    let scene = closed_sphere_of(builder(32, 0.0), [0.5; 3]);
-    check_roulette(&scene, [0.5; 3], [4096, 2048], 0.001);
-}
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn roulette_changes_the_mean_by_less_than_a_thousandth() {
+        let scene = closed_sphere_of(builder(32, 0.0), [0.5; 3]);
+        check_roulette(&scene, [0.5; 3], [4096, 2048], 0.001);
+    }
 
-#[test]
-#[ignore = "statistics: .ci/run statistics"]
-fn roulette_keeps_colours_under_a_filter_with_negative_lobes() {
-    let mitchell = FilterKind::Mitchell {
-        b: 1.0 / 3.0,
-        c: 1.0 / 3.0,
-    };
-    let filter = Filter::new(mitchell, Vec2::splat(2.0));
-    let colours = [0.3, 0.5, 0.6];
-    let scene = closed_sphere_of(builder_with(32, 0.0, filter), colours);
-    check_roulette(&scene, colours, [2048, 1280], 0.002);
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn roulette_keeps_colours_under_a_filter_with_negative_lobes() {
+        let mitchell = FilterKind::Mitchell {
+            b: 1.0 / 3.0,
+            c: 1.0 / 3.0,
+        };
+        let filter = Filter::new(mitchell, Vec2::splat(2.0));
+        let colours = [0.3, 0.5, 0.6];
+        let scene = closed_sphere_of(builder_with(32, 0.0, filter), colours);
+        check_roulette(&scene, colours, [2048, 1280], 0.002);
+    }
 }
 
 /// An object in an environment of radiance 1 that absorbs nothing: it cannot be seen.
@@ -177,7 +182,7 @@ fn white_objects_vanish_in_a_white_environment() {
             IntegratorKind::Bdpt,
             IntegratorKind::Lvc,
         ] {
-            let result = replicates(&scene, &settings(integrator, None), 8192);
+            let result = replicates(&scene, &settings(integrator, None), 1024);
             check_expectation(&format!("{name}, {integrator:?}"), &result, 1.0);
         }
     }
@@ -191,11 +196,11 @@ fn an_empty_scene_shows_the_environment() {
         IntegratorKind::Bdpt,
         IntegratorKind::Lvc,
     ] {
-        let result = replicates(&scene, &settings(integrator, None), 1024);
+        let result = replicates(&scene, &settings(integrator, None), 512);
         check_expectation(&format!("{integrator:?}"), &result, 1.0);
     }
     // Few rays from infinity meet the lens's view: only the mean of the film is sharp.
-    let result = replicates(&scene, &settings(IntegratorKind::Light, None), 131072);
+    let result = replicates(&scene, &settings(IntegratorKind::Light, None), 32768);
     check_expectation("light", &result, 1.0);
 }
 
@@ -259,7 +264,7 @@ fn counts_of_weights_keep_the_closed_sphere() {
         settings.shadow_rays = ShadowRays::Budget(2);
         settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
         settings.lvc.mis_count = mis_count;
-        let result = replicates(&scene, &settings, 1024);
+        let result = replicates(&scene, &settings, 512);
         check_expectation(name, &result, 1.0 - halved(9));
     }
 }
@@ -276,7 +281,7 @@ fn selection_keeps_the_closed_sphere() {
     ] {
         let mut settings = settings(IntegratorKind::Bdpt, Some(8));
         settings.shadow_rays = rule.parse::<ShadowRays>().expect("a rule");
-        let result = replicates(&scene, &settings, 2048);
+        let result = replicates(&scene, &settings, 1024);
         check_expectation(rule, &result, 1.0 - halved(9));
     }
 }

@@ -121,9 +121,9 @@ fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates 
 #[test]
 fn estimators_agree_on_relief() {
     let scene = room();
-    let path = render(&scene, IntegratorKind::Path, 256);
-    let bdpt = render(&scene, IntegratorKind::Bdpt, 64);
-    let light = render(&scene, IntegratorKind::Light, 256);
+    let path = render(&scene, IntegratorKind::Path, 128);
+    let bdpt = render(&scene, IntegratorKind::Bdpt, 48);
+    let light = render(&scene, IntegratorKind::Light, 128);
     let quarters = [WHOLE, SIZE as usize / 2];
     check_agree("bdpt and path", &bdpt, &path, &quarters);
     check_agree("light and path", &light, &path, &quarters);

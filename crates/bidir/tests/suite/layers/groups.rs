@@ -71,11 +71,11 @@ fn a_group_is_what_its_lights_alone_would_give() {
     let scene = lit_room(8, &LAMPS);
     let layers = Layers::new(&[], scene.group_names(), 0);
     // The smaller and the nearer a lamp, the more its image varies.
-    let passes = LAMPS.into_iter().zip([24576, 16384, 2048]);
+    let passes = LAMPS.into_iter().zip([24576, 4096, 1024]);
     let alone: Vec<Replicates> = passes
         .map(|(lamp, passes)| replicates(&lit_room(8, &[lamp]), &Settings::default(), passes))
         .collect();
-    for (integrator, passes) in [(IntegratorKind::Path, 24576), (IntegratorKind::Bdpt, 16384)] {
+    for (integrator, passes) in [(IntegratorKind::Path, 32768), (IntegratorKind::Bdpt, 12288)] {
         let settings = settings(integrator, layers.clone());
         let groups = replicates_of_each(&scene, &settings, passes, pictures_of_groups);
         for ((group, alone), name) in groups.iter().zip(&alone).zip(scene.group_names()) {
