@@ -146,6 +146,17 @@ fn filters_with_and_without_negative_lobes() {
     check_filter("mitchell", 4);
 }
 
+mod long_statistics {
+    use super::check_filter;
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn filters_of_wide_lobes() {
+        check_filter("gaussian", 3);
+        check_filter("sinc", 16);
+    }
+}
+
 /// The path tracer meets the lamp rarely, and the wider the lobes the more that varies: it takes `effort`
 /// times the passes.
 #[track_caller]
@@ -208,7 +219,8 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
                 settings.shadow_rays = rule.parse().expect("a rule");
             })
         };
-        let all = render(case, "all");
+        let part = case.with_part(2);
+        let all = render(part, "all");
         let (effort, blocks) = match mis {
             MisHeuristic::Balance | MisHeuristic::Power => (1, PIXELS),
             MisHeuristic::Uniform => (6, QUARTERS),
@@ -223,7 +235,7 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
             "budget:2",
         ] {
             let name = format!("{rule}, {mis_name}");
-            check_paired(&name, &render(case, rule), &all, QUARTERS);
+            check_paired(&name, &render(part, rule), &all, QUARTERS);
         }
     }
 }
