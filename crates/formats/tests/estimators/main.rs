@@ -75,11 +75,11 @@ fn half_covered_lens() {
 #[test]
 fn parallel_rays() {
     let loaded = open("parallel.pbrt");
-    let case = Case::new(&loaded, 576);
+    let case = Case::new(&loaded, 1152);
     case.check_bdpt(&case.path());
     // Nothing but the camera's own rays can see the sky: below it is the ground.
     let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
-    let case = Case::new(&ground, 4608);
+    let case = Case::new(&ground, 6144);
     case.check_light(&case.path());
 }
 
@@ -96,7 +96,7 @@ fn shading_normals_that_disagree_with_the_geometry() {
     let case = Case::new(&loaded, 576);
     let reference = case.path();
     case.check_bdpt(&reference);
-    case.with_effort(4).check_light(&reference);
+    case.with_effort(8).check_light(&reference);
 }
 
 #[test]
@@ -335,7 +335,7 @@ fn single_strategies_at_fixed_length() {
     };
     // Few light subpaths reach the lens's view, and few walks of the camera the lamp: those that
     // meet it after two bounces are too few to compare.
-    for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 8, [(2, 5), (3, 12)])] {
+    for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 8, [(2, 6), (3, 24)])] {
         let next_event = single(1, length, effort);
         for (s, effort) in others {
             let name = format!("s{s}t{} against s1", length - s);
