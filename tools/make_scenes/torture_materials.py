@@ -161,7 +161,7 @@ def separated(project):
         out.mesh(towards_camera(x - 1, x + 1, 0.5, 3, 4.0))
     out = start(project, "separated", [
         "Surfaces far apart, for testing single strategies.",
-        "A light panel, a floor and upright walls, all far from each other: every distance in",
+        "A wide light panel, a floor and upright walls, all far from each other: every distance in",
         "a path is bounded below, so each sampling strategy of each path length has a small",
         "variance by itself and can be tested on its own."],
         ((0, 2.0, -6), (0, 1.2, 2), 45, ""))
@@ -171,7 +171,7 @@ def separated(project):
     panel(1.5, (0.3, 0.5, 0.7))
     diffuse(out, (0.6, 0.6, 0.6))
     out.mesh(quad((-4, 0.5, -1), (-4, 3, -1), (-4, 3, 2), (-4, 0.5, 2)))
-    light(out, down(-1, 1, 5, -1, 1), (10, 10, 10))
+    light(out, down(-2.5, 2.5, 5, -2.5, 2.5), (2, 2, 2))
     out.finish()
 
 

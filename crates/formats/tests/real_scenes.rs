@@ -74,16 +74,6 @@ fn veach_bidir() {
 }
 
 #[test]
-fn veach_mis() {
-    check("pbrt-v4/veach-mis/veach-mis.pbrt", 1024, 4);
-}
-
-#[test]
-fn veach_ajar() {
-    check("pbrt-v4/veach-ajar/veach-ajar.pbrt", 3072, 3);
-}
-
-#[test]
 fn cornell_box() {
     check("pbrt-v4/cornell-box-w3ntao/cornell-box.pbrt", 256, 8);
 }
@@ -94,11 +84,6 @@ fn coffee() {
 }
 
 #[test]
-fn living_room() {
-    check("pbrt-v4/living-room/living-room.pbrt", 1024, 4);
-}
-
-#[test]
 fn gltf_cornell_box() {
     check("gltf/CornellBox/CornellBox.glb", 256, 4);
 }
@@ -106,6 +91,28 @@ fn gltf_cornell_box() {
 #[test]
 fn gltf_flight_helmet() {
     check("gltf/FlightHelmet/FlightHelmet.gltf", 128, 2);
+}
+
+mod long_statistics {
+    use super::check;
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn veach_mis() {
+        check("pbrt-v4/veach-mis/veach-mis.pbrt", 1024, 4);
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn veach_ajar() {
+        check("pbrt-v4/veach-ajar/veach-ajar.pbrt", 3072, 3);
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn living_room() {
+        check("pbrt-v4/living-room/living-room.pbrt", 1024, 4);
+    }
 }
 
 /// The film of a large comparison.

@@ -66,6 +66,14 @@ impl<'a> Case<'a> {
         }
     }
 
+    /// The case with one part in `parts` of the passes, for estimators that share their noise.
+    pub(crate) fn with_part(self, parts: u64) -> Self {
+        Self {
+            passes: self.passes.div_ceil(parts),
+            ..self
+        }
+    }
+
     /// Renders with settings changed by `change`. The path tracer is cheap and gets more passes.
     pub(crate) fn render(
         &self,

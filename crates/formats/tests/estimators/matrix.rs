@@ -1,22 +1,24 @@
-//! Every integrator with every choice of shadow rays, and `auto` with what it may choose besides, on
-//! every scene: a part of it always, all of it at night.
+//! Every integrator with every choice of shadow rays, and `auto` with plans that it may choose, on every
+//! scene: a part of it always, all of it among the long statistics.
 
 use crate::case::{Case, PIXELS, QUARTERS, open};
-use crate::statistics::{Replicates, agree, check_agree};
+use crate::statistics::{BIAS, Comparison, Replicates};
 use bidir::integrator::{
     CandidateCount, Candidates, IntegratorKind, LvcSettings, SamplesPerSubpath,
 };
 use bidir::select::ShadowRays;
 
-/// The rules of `--shadow-rays`.
-const RULES: [&str; 6] = [
-    "all",
+/// The rules of `--shadow-rays` but `all`.
+const RULES: [&str; 5] = [
     "per-light-vertex",
     "per-camera-vertex",
     "per-pair",
     "ray-roulette",
     "budget:2",
 ];
+
+/// Comparisons by pairs take this part of the passes: what the estimators share goes away.
+const PART_OF_PAIRS: u64 = 4;
 
 /// Plans of `auto` that are no integrator's default: candidates of a camera vertex, shadow rays of a
 /// sample, and the binary logarithm of the samples for each light subpath.
@@ -66,30 +68,30 @@ impl World {
 /// Those that no other test is about.
 const WORLDS: [World; 8] = [
     world("picture-lamp", [512, 2], Light::Whole(2)),
-    world("sky-alone", [512, 2], Light::Whole(32)).by_blocks(),
+    world("sky-alone", [256, 2], Light::Whole(32)).by_blocks(),
     world("within-glass", [512, 2], Light::Partial),
     world("bulb", [1024, 4], Light::Partial),
     world("narrow-spot", [768, 12], Light::Whole(2)),
     world("shapes", [768, 2], Light::Whole(2)),
     world("leaves", [512, 3], Light::Whole(2)),
-    world("empty-sky", [256, 1], Light::Whole(12)),
+    world("empty-sky", [128, 1], Light::Whole(12)).by_blocks(),
 ];
 
-/// Those that have tests of their own, and are in the matrix at night.
+/// Those that have tests of their own, and are in the matrix among the long statistics.
 const OTHERS: [World; 13] = [
-    world("conductor", [4608, 1], Light::Partial),
-    world("crop", [9216, 1], Light::Whole(2)),
-    world("glass", [4608, 1], Light::Partial),
-    world("lens", [3072, 2], Light::Whole(16)),
-    world("lights", [6912, 1], Light::Whole(2)),
-    world("mirror", [1536, 1], Light::Whole(2)),
-    world("parallel", [2304, 1], Light::Partial),
-    world("around-longitude", [2304, 1], Light::Whole(2)),
-    world("around-octahedron", [2304, 1], Light::Whole(2)),
-    world("red-light-blue-surfaces", [768, 4], Light::Whole(2)),
-    world("scale-tiny", [768, 2], Light::Whole(2)),
-    world("shading-normal", [2304, 1], Light::Whole(2)),
-    world("touching", [1024, 1], Light::Whole(2)),
+    world("conductor", [2880, 1], Light::Partial),
+    world("crop", [1536, 1], Light::Whole(10)).by_blocks(),
+    world("glass", [2048, 1], Light::Partial),
+    world("lens", [2048, 1], Light::Whole(6)),
+    world("lights", [768, 1], Light::Whole(4)).by_blocks(),
+    world("mirror", [512, 1], Light::Whole(2)),
+    world("parallel", [1024, 1], Light::Partial).by_blocks(),
+    world("around-longitude", [1024, 1], Light::Whole(2)).by_blocks(),
+    world("around-octahedron", [1024, 1], Light::Whole(2)).by_blocks(),
+    world("red-light-blue-surfaces", [512, 4], Light::Whole(2)),
+    world("scale-tiny", [512, 2], Light::Whole(2)),
+    world("shading-normal", [768, 1], Light::Whole(4)),
+    world("touching", [768, 1], Light::Whole(2)),
 ];
 
 /// An estimator of a scene, and how it is compared.
@@ -104,73 +106,105 @@ struct Entrant {
     blocks: &'static [usize],
 }
 
-impl World {
-    /// Compares the bidirectional path tracers under each of `rules`, the light tracer where it sees
-    /// all, and those of `others`, with the path tracer.
-    #[track_caller]
-    fn check(
-        &self,
-        rules: impl IntoIterator<Item = &'static str>,
-        others: impl IntoIterator<Item = Entrant>,
-    ) {
-        let loaded = open(&format!("{}.pbrt", self.name));
-        let case = Case::new(&loaded, self.passes);
-        let reference = self.reference(case);
-        for entrant in self.entrants(rules).into_iter().chain(others) {
-            self.compare(case, &entrant, &reference);
+impl Entrant {
+    /// An estimator with its own settings, under a rule.
+    fn new(integrator: IntegratorKind, rays: ShadowRays) -> Self {
+        Self {
+            name: format!("{integrator:?}, {rays}"),
+            integrator,
+            rays,
+            lvc: LvcSettings::default(),
+            effort: 1,
+            blocks: QUARTERS,
         }
     }
 
-    fn reference(&self, case: Case<'_>) -> Replicates {
-        case.with_effort(self.effort).path()
+    fn render(&self, case: Case<'_>) -> Replicates {
+        let case = case.with_effort(self.effort);
+        case.render(self.integrator, |settings| {
+            settings.shadow_rays = self.rays;
+            settings.lvc = self.lvc;
+        })
+    }
+}
+
+/// An image that others are compared with.
+struct Reference<'a> {
+    entrant: &'a Entrant,
+    image: Replicates,
+}
+
+impl<'a> Reference<'a> {
+    fn new(entrant: &'a Entrant, case: Case<'_>) -> Self {
+        let image = entrant.render(case);
+        Self { entrant, image }
     }
 
-    fn entrants(&self, rules: impl IntoIterator<Item = &'static str>) -> Vec<Entrant> {
-        let connected = rules.into_iter().flat_map(|rule| {
-            [IntegratorKind::Bdpt, IntegratorKind::Lvc].map(|integrator| Entrant {
-                name: format!("{}, {integrator:?}, {rule}", self.name),
-                integrator,
-                rays: rule.parse().expect("a rule"),
-                lvc: LvcSettings::default(),
-                effort: 1,
-                blocks: if rule == "all" { self.blocks } else { QUARTERS },
-            })
-        });
-        let light = match self.light {
+    /// Compares an image with this one: by pairs where both estimators make the same subpaths.
+    fn comparison<'b>(&'b self, entrant: &Entrant, image: &'b Replicates) -> Comparison<'b> {
+        let comparison = Comparison::new(image, &self.image, entrant.blocks);
+        if entrant.integrator == self.entrant.integrator {
+            comparison.paired()
+        } else {
+            comparison
+        }
+    }
+}
+
+impl World {
+    /// Compares the bidirectional path tracers that trace all shadow rays, the light tracer where it sees
+    /// all, and `others` with the path tracer. Under each of `rules` the same light subpaths and camera
+    /// subpaths are made, and so these are compared with all shadow rays, pair by pair.
+    #[track_caller]
+    fn check(&self, rules: &[&str], others: impl IntoIterator<Item = Entrant>) {
+        let loaded = open(&format!("{}.pbrt", self.name));
+        let case = Case::new(&loaded, self.passes);
+        let path = Entrant {
+            effort: self.effort,
+            ..Entrant::new(IntegratorKind::Path, ShadowRays::All)
+        };
+        let path = Reference::new(&path, case);
+        for integrator in [IntegratorKind::Bdpt, IntegratorKind::Lvc] {
+            let all = Entrant {
+                blocks: self.blocks,
+                ..Entrant::new(integrator, ShadowRays::All)
+            };
+            self.compare(case, &all, &path);
+            let case = case.with_part(PART_OF_PAIRS);
+            let all = Reference::new(&all, case);
+            for rule in rules {
+                let entrant = Entrant::new(integrator, rule.parse().expect("a rule"));
+                self.compare(case, &entrant, &all);
+            }
+        }
+        for entrant in self.light().into_iter().chain(others) {
+            self.compare(case, &entrant, &path);
+        }
+    }
+
+    /// The light tracer, where it sees all.
+    fn light(&self) -> Option<Entrant> {
+        match self.light {
             Light::Partial => None,
             Light::Whole(effort) => Some(Entrant {
-                name: format!("{}, light", self.name),
-                integrator: IntegratorKind::Light,
-                rays: ShadowRays::All,
-                lvc: LvcSettings::default(),
                 effort,
-                blocks: QUARTERS,
+                ..Entrant::new(IntegratorKind::Light, ShadowRays::All)
             }),
-        };
-        connected.chain(light).collect()
+        }
     }
 
     /// `auto`, and its plans that are no integrator's default.
     fn planned(&self) -> Vec<Entrant> {
-        let auto = Entrant {
-            name: format!("{}, auto", self.name),
-            integrator: IntegratorKind::Auto,
-            rays: ShadowRays::Suited,
-            lvc: LvcSettings::default(),
-            effort: 1,
-            blocks: QUARTERS,
-        };
         let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
-            name: format!("{}, {first},{deeper} candidates, budget:{rays}", self.name),
-            integrator: IntegratorKind::Lvc,
-            rays: ShadowRays::Budget(rays),
+            name: format!("{first},{deeper} candidates, budget:{rays}"),
             lvc: LvcSettings {
                 candidates: Candidates::Of(CandidateCount::new(first, deeper)),
                 samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
                 ..LvcSettings::default()
             },
-            ..auto.clone()
+            ..Entrant::new(IntegratorKind::Lvc, ShadowRays::Budget(rays))
         });
+        let auto = Entrant::new(IntegratorKind::Auto, ShadowRays::Suited);
         plans.into_iter().chain([auto]).collect()
     }
 
@@ -178,21 +212,17 @@ impl World {
     /// anything: these are made again, with other random numbers and more of them, by which chance goes away
     /// and a fault stays.
     #[track_caller]
-    fn compare(&self, case: Case<'_>, entrant: &Entrant, reference: &Replicates) {
-        let render = |case: Case<'_>| {
-            let case = case.with_effort(entrant.effort);
-            case.render(entrant.integrator, |settings| {
-                settings.shadow_rays = entrant.rays;
-                settings.lvc = entrant.lvc;
-            })
-        };
-        let result = render(case);
-        if agree(&result, reference, entrant.blocks) {
-            check_agree(&entrant.name, &result, reference, entrant.blocks);
+    fn compare(&self, case: Case<'_>, entrant: &Entrant, reference: &Reference<'_>) {
+        let name = format!("{}, {}", self.name, entrant.name);
+        let image = entrant.render(case);
+        let first = reference.comparison(entrant, &image);
+        if first.agrees() {
+            first.check(&name, BIAS);
         } else {
-            let again = case.again();
-            let reference = self.reference(again);
-            check_agree(&entrant.name, &render(again), &reference, entrant.blocks);
+            let case = case.again();
+            let reference = Reference::new(reference.entrant, case);
+            let image = entrant.render(case);
+            reference.comparison(entrant, &image).check(&name, BIAS);
         }
     }
 }
@@ -202,10 +232,10 @@ impl World {
 fn check(name: &str) {
     let is_meant = |world: &World| world.name == name;
     let i = WORLDS.iter().position(is_meant).expect("a world");
-    let rule = RULES[1 + i % (RULES.len() - 1)];
+    let rule = RULES[i % RULES.len()];
     let mut planned = WORLDS[i].planned();
     let one = i % planned.len();
-    WORLDS[i].check(["all", rule], planned.drain(one..=one));
+    WORLDS[i].check(&[rule], planned.drain(one..=one));
 }
 
 #[test]
@@ -248,8 +278,8 @@ fn a_sky_over_nothing() {
     check("empty-sky");
 }
 
-/// One test for each world, so that they run side by side and each tells of itself.
-mod every_choice_of_shadow_rays {
+/// One test for each world, so that they run side by side and each has a result of its own.
+mod long_statistics {
     use super::{OTHERS, RULES, WORLDS};
 
     #[track_caller]
@@ -257,7 +287,7 @@ mod every_choice_of_shadow_rays {
         let mut worlds = WORLDS.iter().chain(&OTHERS);
         let world = worlds.find(|world| world.name.replace('-', "_") == name);
         let world = world.expect("a world");
-        world.check(RULES, world.planned());
+        world.check(&RULES, world.planned());
     }
 
     /// A test with the name of each world.
@@ -265,14 +295,14 @@ mod every_choice_of_shadow_rays {
         ($($name:ident)*) => {
             $(
                 #[test]
-                #[ignore = "takes long: just nightly"]
+                #[ignore = "long statistics: .ci/run statistics"]
                 fn $name() {
                     check(stringify!($name));
                 }
             )*
 
             #[test]
-            fn is_asked_of_every_world() {
+            fn have_every_world() {
                 let names = [$(stringify!($name)),*];
                 let worlds = WORLDS.iter().chain(&OTHERS).map(|world| world.name.replace('-', "_"));
                 assert_eq!(worlds.collect::<Vec<_>>(), names);

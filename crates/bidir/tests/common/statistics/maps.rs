@@ -1,6 +1,7 @@
 //! Pictures of a failed comparison: both means and their difference in standard deviations.
 
-use super::{Moments, Replicates};
+use super::Replicates;
+use super::t_test::Moments;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 

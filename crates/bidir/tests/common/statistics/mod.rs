@@ -3,29 +3,40 @@
     clippy::print_stderr,
     reason = "the comparisons are shown when asked for"
 )]
-//! Do two estimators have the same expectation? Welch's t-test on means of pixels, blocks, films.
+//! Do two estimators have the same expectation? T-tests on means of pixels, blocks, films.
 //!
-//! Each estimator renders independent replicates (other seeds, independent sampler), and the
-//! comparison asks at several resolutions: a bias of the whole image shows in the film's mean, a
-//! local one in blocks, a bias of one pixel in that pixel. The level is shared among resolutions,
-//! and within each the smallest p-value is corrected for the number of means [Sidak67]. The
-//! variance is that of both film layers together. Means over whole renders are close to normal
-//! even where single samples have heavy tails; where pixels are not, blocks are asked alone.
+//! Each estimator renders independent replicates, and the comparison looks at several resolutions: a
+//! bias of the whole image shows in the film's mean, a local one in blocks, a bias of one pixel in that
+//! pixel. The level is shared among resolutions, and within each the smallest p-value is corrected for
+//! the number of means [Sidak67]. The variance is that of both film layers together. Means over whole
+//! renders are close to normal even where single samples have heavy tails; where pixels are not, blocks
+//! are compared alone.
 //!
-//! The variable BIDIR_TEST_SHOW prints what every comparison found; see CONTRIBUTING.md for the
+//! Replicates are runs of passes, far apart, of a few sessions, and the sampler is independent. Given the
+//! training of its session an estimator has to be unbiased, so replicates need no training of their own.
+//! Random numbers are addressed, so two estimators that make the same subpaths have nearly the same noise
+//! in replicates of the same number: [`check_paired`] compares these one by one (common random numbers),
+//! and needs a fraction of the samples of [`check_agree`], which is for estimators that share little.
+//!
+//! The variable BIDIR_TEST_SHOW prints the result of every comparison; see CONTRIBUTING.md for the
 //! others.
 
 mod maps;
+mod t_test;
 
-use bidir::driver::{Resources, Settings, render};
+use bidir::driver::{Resources, Session, Settings};
 use bidir::film::Film;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::spectrum::Rgb;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use t_test::{Moments, RandomNumbers, corrected, p_value};
 
 /// Replicates of each estimator.
 const REPLICATES: usize = 32;
+/// Sessions that these are rendered by, each with a seed and a training of its own.
+const SESSIONS: usize = 2;
+/// The passes from the beginning of a session's replicate to that of the next.
+const STRIDE: u64 = 1 << 24;
 /// The level of a whole comparison, the probability that equal estimators are called different, where
 /// BIDIR_TEST_LEVEL does not set it.
 const LEVEL: f64 = 1e-3;
@@ -67,31 +78,43 @@ pub(crate) fn replicates_of_each<const N: usize>(
     develop: impl Fn(&Film) -> [Vec<Rgb>; N],
 ) -> [Replicates; N] {
     let passes = (passes * effort()).div_ceil(REPLICATES as u64);
-    // A pass of so small a film is over before a second thread is awake.
-    let resources = Resources {
-        threads: 1,
-        ..Resources::default()
-    };
     let crop = scene.film().crop;
     let mut of_each = [(); N].map(|()| Replicates {
         width: crop.width() as usize,
         height: crop.height() as usize,
         pictures: Vec::with_capacity(REPLICATES),
     });
-    for replicate in 0..REPLICATES as u64 {
-        let settings = Settings {
-            seed: (settings.seed.wrapping_mul(1000).wrapping_add(first_seed())).wrapping_mul(1000)
-                + replicate,
-            sampler: SamplerKind::Independent,
-            ..settings.clone()
-        };
-        let film = render(scene, &settings, passes, &resources).expect("the film is small");
-        for (replicates, pixels) in of_each.iter_mut().zip(develop(&film)) {
-            let picture = pixels.iter().map(|pixel| pixel.map(f64::from));
-            replicates.pictures.push(picture.collect());
+    for number in 0..SESSIONS as u64 {
+        let mut session = session(scene, settings, number);
+        for replicate in 0..(REPLICATES / SESSIONS) as u64 {
+            session.start_at(replicate * STRIDE);
+            for _ in 0..passes {
+                session.step(&());
+            }
+            let (film, _) = session.take_film();
+            for (replicates, pixels) in of_each.iter_mut().zip(develop(&film)) {
+                let picture = pixels.iter().map(|pixel| pixel.map(f64::from));
+                replicates.pictures.push(picture.collect());
+            }
         }
     }
     of_each
+}
+
+/// The session with this number, of independent samples.
+fn session<'a>(scene: &'a Scene, settings: &Settings, number: u64) -> Session<'a> {
+    let seed = settings.seed.wrapping_mul(1000).wrapping_add(first_seed());
+    let settings = Settings {
+        seed: seed.wrapping_mul(1000) + number,
+        sampler: SamplerKind::Independent,
+        ..settings.clone()
+    };
+    // A pass of so small a film is over before a second thread is awake.
+    let resources = Resources {
+        threads: 1,
+        ..Resources::default()
+    };
+    Session::new(scene, settings, &resources).expect("the film is small")
 }
 
 impl Replicates {
@@ -135,51 +158,22 @@ impl Replicates {
         sums.into_iter().map(|(sum, n)| sum / n).collect()
     }
 
-    /// The mean over replicates and the variance of that mean, of every block and channel.
-    fn moments(&self, block: usize) -> Vec<Moments> {
+    /// The means of every block and channel, each of all replicates.
+    fn series(&self, block: usize) -> Vec<Vec<f64>> {
         let replicates = 0..self.pictures.len();
         let means: Vec<Vec<f64>> = replicates.map(|r| self.block_means(r, block)).collect();
-        let of = |i: usize| Moments::of(means.iter().map(|replicate| replicate[i]));
+        let of = |i: usize| means.iter().map(|replicate| replicate[i]).collect();
         (0..means[0].len()).map(of).collect()
     }
-}
 
-/// An estimate of a mean.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Moments {
-    mean: f64,
-    /// Of the mean, not of the values.
-    variance: f64,
-}
-
-impl Moments {
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
-        let n = values.clone().count() as f64;
-        let mean = values.clone().sum::<f64>() / n;
-        let square = values.map(|value| (value - mean) * (value - mean));
-        Self {
-            mean,
-            variance: square.sum::<f64>() / (n - 1.0) / n,
-        }
+    /// The mean over replicates and the variance of that mean, of every block and channel.
+    fn moments(&self, block: usize) -> Vec<Moments> {
+        let of = |values: &Vec<f64>| Moments::of(values.iter().copied());
+        self.series(block).iter().map(of).collect()
     }
 }
 
-/// The two-sided p-value of Welch's t-test.
-fn welch(a: Moments, b: Moments) -> f64 {
-    let variance = a.variance + b.variance;
-    let scale = a.mean.abs() + b.mean.abs();
-    // Estimators without variance must agree to rounding.
-    if variance.sqrt() <= 1e-6 * scale {
-        return f64::from((a.mean - b.mean).abs() <= 1e-5 * scale);
-    }
-    let squares = a.variance * a.variance + b.variance * b.variance;
-    let freedom = variance * variance / squares * (REPLICATES as f64 - 1.0);
-    let t = (a.mean - b.mean) / variance.sqrt();
-    let distribution = StudentsT::new(0.0, 1.0, freedom).expect("freedom is positive");
-    2.0 * distribution.cdf(-t.abs())
-}
-
-/// What a comparison found where two estimators differ most.
+/// The place where two estimators differ most.
 #[derive(Clone, Copy, Debug)]
 #[expect(dead_code, reason = "shown when a test fails")]
 struct Verdict {
@@ -190,35 +184,101 @@ struct Verdict {
     means: [f64; 2],
 }
 
-/// 1 - (1 - p)ⁿ, exact for small p too [Sidak67].
-fn corrected(p: f64, n: usize) -> f64 {
-    -libm::expm1(n as f64 * libm::log1p(-p))
+/// Two estimators, and the sizes of the blocks in which they are compared.
+#[derive(Clone, Copy)]
+pub(crate) struct Comparison<'a> {
+    a: &'a Replicates,
+    b: &'a Replicates,
+    blocks: &'a [usize],
+    numbers: RandomNumbers,
 }
 
-/// Of each block and channel the p-value, corrected for their number, and the means.
-fn tests(a: &Replicates, b: &Replicates, block: usize) -> Vec<(f64, [f64; 2])> {
-    let (a, b) = (a.moments(block), b.moments(block));
-    let n = a.len();
-    let test = |(x, y): (Moments, Moments)| (corrected(welch(x, y), n), [x.mean, y.mean]);
-    a.into_iter().zip(b).map(test).collect()
-}
-
-/// Where two estimators differ most, at any of the resolutions.
-fn compare(a: &Replicates, b: &Replicates, blocks: &[usize]) -> Verdict {
-    let at = |block: usize| {
-        let tests = tests(a, b, block).into_iter().enumerate();
-        let least = tests.min_by(|(_, x), (_, y)| x.0.total_cmp(&y.0));
-        let (index, (p, means)) = least.expect("a block");
-        Verdict {
-            p: corrected(p, blocks.len()),
-            block,
-            index,
-            means,
+impl<'a> Comparison<'a> {
+    pub(crate) fn new(a: &'a Replicates, b: &'a Replicates, blocks: &'a [usize]) -> Self {
+        Self {
+            a,
+            b,
+            blocks,
+            numbers: RandomNumbers::Own,
         }
-    };
-    let verdicts = blocks.iter().map(|block| at(*block));
-    let smallest = verdicts.min_by(|x, y| x.p.total_cmp(&y.p));
-    smallest.expect("a comparison has a resolution")
+    }
+
+    /// The same by the differences of replicates of the same number: for estimators that share random
+    /// numbers, which need the same settings but for those that are compared.
+    pub(crate) fn paired(self) -> Self {
+        Self {
+            numbers: RandomNumbers::Common,
+            ..self
+        }
+    }
+
+    /// Of each block and channel the p-value, corrected for their number, and the means.
+    fn tests(&self, block: usize) -> Vec<(f64, [f64; 2])> {
+        let (a, b) = (self.a.series(block), self.b.series(block));
+        let n = a.len();
+        let test = |(a, b): (Vec<f64>, Vec<f64>)| {
+            let (p, means) = p_value(&a, &b, self.numbers);
+            (corrected(p, n), means)
+        };
+        a.into_iter().zip(b).map(test).collect()
+    }
+
+    /// The largest difference, at any of the resolutions.
+    fn verdict(&self) -> Verdict {
+        let at = |block: usize| {
+            let tests = self.tests(block).into_iter().enumerate();
+            let least = tests.min_by(|(_, x), (_, y)| x.0.total_cmp(&y.0));
+            let (index, (p, means)) = least.expect("a block");
+            Verdict {
+                p: corrected(p, self.blocks.len()),
+                block,
+                index,
+                means,
+            }
+        };
+        let verdicts = self.blocks.iter().map(|block| at(*block));
+        let smallest = verdicts.min_by(|x, y| x.p.total_cmp(&y.p));
+        smallest.expect("a comparison has a resolution")
+    }
+
+    /// The verdict, had the first estimator a relative `bias`.
+    fn biased(&self, bias: f64) -> Verdict {
+        let a = &self.a.scaled(1.0 + bias);
+        Comparison { a, ..*self }.verdict()
+    }
+
+    /// The smallest relative bias, to a tenth of itself, that is seen.
+    fn smallest_seen(&self) -> f64 {
+        let mut bias = 1e-4;
+        while bias < 1.0 && self.biased(bias).p >= level() {
+            bias *= 1.1;
+        }
+        bias
+    }
+
+    /// True where the estimators agree at the level of one comparison, which would see [`BIAS`].
+    pub(crate) fn agrees(&self) -> bool {
+        self.verdict().p > level() && self.biased(BIAS).p < level()
+    }
+
+    /// Fails where the estimators differ, and where a relative `bias` of the first would not be seen.
+    #[track_caller]
+    pub(crate) fn check(&self, name: &str, bias: f64) {
+        let verdict = self.verdict();
+        if verdict.p <= level() {
+            let maps = maps::write(name, self.a, self.b);
+            panic!("{name}: {verdict:?}; {maps}");
+        }
+        if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
+            let seen = self.smallest_seen();
+            eprintln!("{name}: {verdict:?}, sees a relative bias of {seen:.4}");
+        }
+        let biased = self.biased(bias);
+        assert!(
+            biased.p < level(),
+            "{name}: blind to a relative bias of {bias}: {biased:?}"
+        );
+    }
 }
 
 /// Checks that two estimators agree in blocks of all the given sizes, and that the same test
@@ -226,16 +286,6 @@ fn compare(a: &Replicates, b: &Replicates, blocks: &[usize]) -> Verdict {
 #[track_caller]
 pub(crate) fn check_agree(name: &str, a: &Replicates, b: &Replicates, blocks: &[usize]) {
     check_agree_to(name, a, b, blocks, BIAS);
-}
-
-/// True where two estimators agree at the level of one comparison, which would see [`BIAS`].
-pub(crate) fn agree(a: &Replicates, b: &Replicates, blocks: &[usize]) -> bool {
-    compare(a, b, blocks).p > level() && compare_biased(a, b, blocks, BIAS).p < level()
-}
-
-/// [`compare`], had the first a relative `bias`.
-fn compare_biased(a: &Replicates, b: &Replicates, blocks: &[usize], bias: f64) -> Verdict {
-    compare(&a.scaled(1.0 + bias), b, blocks)
 }
 
 /// As [`check_agree`], for another `bias` that must be seen.
@@ -247,27 +297,22 @@ pub(crate) fn check_agree_to(
     blocks: &[usize],
     bias: f64,
 ) {
-    let verdict = compare(a, b, blocks);
-    if verdict.p <= level() {
-        let maps = maps::write(name, a, b);
-        panic!("{name}: {verdict:?}; {maps}");
-    }
-    if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
-        let seen = smallest_seen(a, b, blocks);
-        eprintln!("{name}: {verdict:?}, sees a relative bias of {seen:.4}");
-    }
-    let biased = compare_biased(a, b, blocks, bias);
-    assert!(
-        biased.p < level(),
-        "{name}: blind to a relative bias of {bias}: {biased:?}"
-    );
+    Comparison::new(a, b, blocks).check(name, bias);
+}
+
+/// As [`check_agree`], for estimators that share random numbers: for each replicate of one, the other has
+/// the one of the same seed and the same passes.
+#[track_caller]
+pub(crate) fn check_paired(name: &str, a: &Replicates, b: &Replicates, blocks: &[usize]) {
+    Comparison::new(a, b, blocks).paired().check(name, BIAS);
 }
 
 /// The blocks of `block` × `block` pixels in which two estimators look different at the level of one
 /// comparison: left, top, right, bottom.
 pub(crate) fn suspects(a: &Replicates, b: &Replicates, block: usize) -> Vec<[u32; 4]> {
     let columns = a.width.div_ceil(block);
-    let tests = tests(a, b, block).into_iter().enumerate();
+    let tests = Comparison::new(a, b, &[block]).tests(block);
+    let tests = tests.into_iter().enumerate();
     let differing = tests.filter(|(_, (p, _))| *p <= level());
     // Of a mean of each channel.
     let mut blocks: Vec<_> = differing.map(|(i, _)| i / 3).collect();
@@ -283,23 +328,14 @@ pub(crate) fn suspects(a: &Replicates, b: &Replicates, block: usize) -> Vec<[u32
 /// Checks that the means of whole films agree, and that these or [`suspects`] would show [`BIAS`].
 #[track_caller]
 pub(crate) fn check_means(name: &str, a: &Replicates, b: &Replicates, block: usize) {
-    let verdict = compare(a, b, &[WHOLE]);
+    let comparison = Comparison::new(a, b, &[WHOLE]);
+    let verdict = comparison.verdict();
     assert!(verdict.p > level(), "{name}: {verdict:?}");
-    let biased = a.scaled(1.0 + BIAS);
-    let is_seen = compare(&biased, b, &[WHOLE]).p <= level();
+    let is_seen = comparison.biased(BIAS).p <= level();
     assert!(
-        is_seen || !suspects(&biased, b, block).is_empty(),
+        is_seen || !suspects(&a.scaled(1.0 + BIAS), b, block).is_empty(),
         "{name}: blind to {BIAS}"
     );
-}
-
-/// The smallest relative bias, to a tenth of itself, that a comparison would see.
-fn smallest_seen(a: &Replicates, b: &Replicates, blocks: &[usize]) -> f64 {
-    let mut bias = 1e-4;
-    while bias < 1.0 && compare_biased(a, b, blocks, bias).p >= level() {
-        bias *= 1.1;
-    }
-    bias
 }
 
 /// How many times the usual passes tests render: the variable BIDIR_TEST_EFFORT, else 1.
