@@ -91,7 +91,11 @@ fn grammar() {
         "Film \"rgb\" \"string filename\" \"a\n\"",
         "s.pbrt:1:30: the string does not end on its line; add the closing `\"`",
     );
-    // A string that is not closed ends where the next one would begin.
+}
+
+/// A string that is not closed ends where the next one would begin.
+#[test]
+fn closing_quotes() {
     check(
         "Film \"rgb \"integer xresolution\" 5",
         "s.pbrt:1:6: the string has no closing quote; write `\"rgb\"`",
