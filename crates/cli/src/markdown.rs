@@ -138,19 +138,25 @@ fn section(page: &mut String, path: &str, command: &Command, tables: &mut Tables
 
 /// The arguments of a command under their headings, positional ones first.
 fn by_heading(command: &Command) -> Vec<(&str, Vec<&Arg>)> {
+    let own = || command.get_arguments().filter(|arg| is_own(arg));
+    let is_plain = |arg: &&Arg| !arg.is_positional() && arg.get_help_heading().is_none();
+    let without_topic = match (
+        own().any(Arg::is_positional),
+        own().any(|arg| is_plain(&arg)),
+    ) {
+        (true, true) => "Arguments and options",
+        (true, false) => "Arguments",
+        (false, _) => "Options",
+    };
     let mut headings: Vec<(&str, Vec<&Arg>)> = Vec::new();
-    for arg in command.get_arguments().filter(|arg| is_own(arg)) {
-        let heading = match arg.get_help_heading() {
-            _ if arg.is_positional() => "Arguments",
-            Some(heading) => heading,
-            None => "Options",
-        };
+    for arg in own() {
+        let heading = arg.get_help_heading().unwrap_or(without_topic);
         match headings.iter_mut().find(|(known, _)| *known == heading) {
             Some((_, args)) => args.push(arg),
             None => headings.push((heading, vec![arg])),
         }
     }
-    headings.sort_by_key(|(heading, _)| *heading != "Arguments");
+    headings.sort_by_key(|(heading, _)| *heading != without_topic);
     headings
 }
 
