@@ -1,7 +1,7 @@
 //! `bidir render --pyramid DIR`: what each strategy (s, t) does, weighted and raw, as layers of one
 //! EXR and as contact sheets ([`lab::pyramid`]).
 
-use crate::exit::{Exit, Failure};
+use crate::exit::Failure;
 use crate::film_header;
 use crate::scene_io::{self, Developed, FilmHeader};
 use bidir::film::{Film, LayerImage};
