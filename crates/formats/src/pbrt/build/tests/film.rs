@@ -64,7 +64,9 @@ fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
     let [warning] = &load_text("WorldBegin", &size([20, 20])).warnings[..] else {
         panic!("the pixels are not square");
     };
-    assert!(warning.starts_with("s.pbrt:1:1: the view of this film of 1280 × 720 pixels is kept"));
+    let expected =
+        "s.pbrt:1:1: the scene's film has another aspect ratio, 1280 × 720: pixels are 1.778";
+    assert!(warning.starts_with(expected), "{warning}");
 }
 
 /// Checks the radius that a filter is warned of. None: it is not.
