@@ -51,7 +51,7 @@ static RED_LIGHT: LazyLock<World> = LazyLock::new(|| World::new("red-light-blue-
 fn glass_smooth_and_rough() {
     // The light tracer cannot see through smooth glass, and so is not asked.
     let loaded = open("glass.pbrt");
-    let case = Case::new(&loaded, 2048);
+    let case = Case::new(&loaded, 2304);
     case.check_bdpt(&case.path());
 }
 
@@ -65,11 +65,10 @@ fn metal_smooth_rough_and_anisotropic() {
 #[test]
 fn half_covered_lens() {
     let loaded = open("lens.pbrt");
-    let case = Case::new(&loaded, 2048);
-    let reference = case.path();
-    case.check_bdpt(&reference);
-    // Splats from what is close to the lens are few and bright.
-    case.with_effort(6).check_light(&reference);
+    // Splats from what is close to the lens are few and bright: the light tracer needs so many samples that
+    // it is compared among the long statistics of the matrix.
+    let case = Case::new(&loaded, 2560);
+    case.check_bdpt(&case.path());
 }
 
 #[test]
@@ -142,8 +141,8 @@ fn a_crop_is_the_same_part_of_the_whole() {
 
 #[test]
 fn filters_with_and_without_negative_lobes() {
-    check_filter("triangle", 3);
-    check_filter("mitchell", 4);
+    check_filter("triangle", 2);
+    check_filter("mitchell", 2);
 }
 
 mod long_statistics {
@@ -152,7 +151,7 @@ mod long_statistics {
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
     fn filters_of_wide_lobes() {
-        check_filter("gaussian", 3);
+        check_filter("gaussian", 2);
         check_filter("sinc", 16);
     }
 }

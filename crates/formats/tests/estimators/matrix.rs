@@ -82,7 +82,7 @@ const OTHERS: [World; 13] = [
     world("conductor", [2880, 1], Light::Partial),
     world("crop", [1536, 1], Light::Whole(10)).by_blocks(),
     world("glass", [2048, 1], Light::Partial),
-    world("lens", [2048, 1], Light::Whole(6)),
+    world("lens", [2048, 1], Light::Whole(18)),
     world("lights", [768, 1], Light::Whole(4)).by_blocks(),
     world("mirror", [512, 1], Light::Whole(2)),
     world("parallel", [1024, 1], Light::Partial).by_blocks(),
@@ -90,7 +90,7 @@ const OTHERS: [World; 13] = [
     world("around-octahedron", [1024, 1], Light::Whole(2)).by_blocks(),
     world("red-light-blue-surfaces", [512, 4], Light::Whole(2)),
     world("scale-tiny", [512, 2], Light::Whole(2)),
-    world("shading-normal", [768, 1], Light::Whole(4)),
+    world("shading-normal", [768, 1], Light::Whole(6)),
     world("touching", [768, 1], Light::Whole(2)),
 ];
 
