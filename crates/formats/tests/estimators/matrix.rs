@@ -193,21 +193,6 @@ impl World {
         }
     }
 
-    /// `auto`, and its plans that are no integrator's default.
-    fn planned(&self) -> Vec<Entrant> {
-        let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
-            name: format!("{first},{deeper} candidates, budget:{rays}"),
-            lvc: LvcSettings {
-                candidates: Candidates::Of(CandidateCount::new(first, deeper)),
-                samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
-                ..LvcSettings::default()
-            },
-            ..Entrant::new(IntegratorKind::Lvc, ShadowRays::Budget(rays))
-        });
-        let auto = Entrant::new(IntegratorKind::Auto, ShadowRays::Suited);
-        plans.into_iter().chain([auto]).collect()
-    }
-
     /// Of hundreds of comparisons some look different by chance, or a rare bright path keeps them from seeing
     /// anything: these are made again, with other random numbers and more of them, by which chance goes away
     /// and a fault stays.
@@ -227,15 +212,30 @@ impl World {
     }
 }
 
+/// `auto`, and its plans that are no integrator's default.
+fn planned() -> Vec<Entrant> {
+    let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
+        name: format!("{first},{deeper} candidates, budget:{rays}"),
+        lvc: LvcSettings {
+            candidates: Candidates::Of(CandidateCount::new(first, deeper)),
+            samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
+            ..LvcSettings::default()
+        },
+        ..Entrant::new(IntegratorKind::Lvc, ShadowRays::Budget(rays))
+    });
+    let auto = Entrant::new(IntegratorKind::Auto, ShadowRays::Suited);
+    plans.into_iter().chain([auto]).collect()
+}
+
 /// A scene with all shadow rays, with one of the other rules, and with `auto` or one of its plans.
 #[track_caller]
 fn check(name: &str) {
     let is_meant = |world: &World| world.name == name;
     let i = WORLDS.iter().position(is_meant).expect("a world");
     let rule = RULES[i % RULES.len()];
-    let mut planned = WORLDS[i].planned();
-    let one = i % planned.len();
-    WORLDS[i].check(&[rule], planned.drain(one..=one));
+    let mut plans = planned();
+    let one = i % plans.len();
+    WORLDS[i].check(&[rule], plans.drain(one..=one));
 }
 
 #[test]
@@ -280,14 +280,14 @@ fn a_sky_over_nothing() {
 
 /// One test for each world, so that they run side by side and each has a result of its own.
 mod long_statistics {
-    use super::{OTHERS, RULES, WORLDS};
+    use super::{OTHERS, RULES, WORLDS, planned};
 
     #[track_caller]
     fn check(name: &str) {
         let mut worlds = WORLDS.iter().chain(&OTHERS);
         let world = worlds.find(|world| world.name.replace('-', "_") == name);
         let world = world.expect("a world");
-        world.check(&RULES, world.planned());
+        world.check(&RULES, planned());
     }
 
     /// A test with the name of each world.
