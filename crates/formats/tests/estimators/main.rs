@@ -78,7 +78,7 @@ fn parallel_rays() {
     case.check_bdpt(&case.path());
     // Nothing but the camera's own rays can see the sky: below it is the ground.
     let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
-    let case = Case::new(&ground, 6144);
+    let case = Case::new(&ground, 9216);
     case.check_light(&case.path());
 }
 
@@ -222,7 +222,7 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
         let all = render(part, "all");
         let (effort, blocks) = match mis {
             MisHeuristic::Balance | MisHeuristic::Power => (1, PIXELS),
-            MisHeuristic::Uniform => (6, QUARTERS),
+            MisHeuristic::Uniform => (4, QUARTERS),
         };
         let more = render(case.with_effort(effort), "all");
         check_agree(mis_name, &more, &RED_LIGHT.reference, blocks);
@@ -283,7 +283,7 @@ fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
 fn weights_that_count_samples_in_other_ways() {
     let bulb = World::new("bulb", 256, 6);
     for (name, world, effort) in [
-        ("red-light-blue-surfaces", &*RED_LIGHT, 1),
+        ("red-light-blue-surfaces", &*RED_LIGHT, 2),
         ("bulb", &bulb, 3),
     ] {
         for (count_name, mis_count) in MisCount::NAMES {
@@ -310,7 +310,7 @@ fn shared_light_points_and_missing_strategies() {
         ("all,-s1", 4, QUARTERS),
         ("all,-s2", 1, PIXELS),
         ("all,-t1", 1, PIXELS),
-        ("all,-s1,-t1", 20, QUARTERS),
+        ("all,-s1,-t1", 14, QUARTERS),
         ("s0,s1", 1, PIXELS),
     ];
     for (list, effort, blocks) in lists {

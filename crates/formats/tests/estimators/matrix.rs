@@ -69,11 +69,11 @@ impl World {
 const WORLDS: [World; 8] = [
     world("picture-lamp", [512, 2], Light::Whole(2)),
     world("sky-alone", [256, 2], Light::Whole(32)).by_blocks(),
-    world("within-glass", [512, 2], Light::Partial),
-    world("bulb", [1024, 4], Light::Partial),
-    world("narrow-spot", [768, 12], Light::Whole(2)),
+    world("within-glass", [256, 2], Light::Partial),
+    world("bulb", [640, 4], Light::Partial),
+    world("narrow-spot", [512, 12], Light::Whole(2)),
     world("shapes", [768, 2], Light::Whole(2)),
-    world("leaves", [512, 3], Light::Whole(2)),
+    world("leaves", [320, 3], Light::Whole(3)),
     world("empty-sky", [128, 1], Light::Whole(12)).by_blocks(),
 ];
 
