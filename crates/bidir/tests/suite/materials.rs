@@ -47,7 +47,7 @@ fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Repli
         ..Settings::default()
     };
     let passes = match integrator {
-        IntegratorKind::Path => 8192,
+        IntegratorKind::Path => 10240,
         IntegratorKind::Light => 5120,
         // Weights that do not look at densities leave the tails heavy.
         IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 8192,
