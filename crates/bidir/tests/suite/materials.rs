@@ -47,11 +47,11 @@ fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Repli
         ..Settings::default()
     };
     let passes = match integrator {
-        IntegratorKind::Path => 8192,
+        IntegratorKind::Path => 12288,
         IntegratorKind::Light => 5120,
         // Weights that do not look at densities leave the tails heavy.
-        IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 8192,
-        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => 1536,
+        IntegratorKind::Bdpt if mis == MisHeuristic::Uniform => 12288,
+        IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => 2048,
     };
     replicates(scene, &settings, passes)
 }

@@ -75,7 +75,7 @@ fn a_group_is_what_its_lights_alone_would_give() {
     let alone: Vec<Replicates> = passes
         .map(|(lamp, passes)| replicates(&lit_room(8, &[lamp]), &Settings::default(), passes))
         .collect();
-    for (integrator, passes) in [(IntegratorKind::Path, 32768), (IntegratorKind::Bdpt, 12288)] {
+    for (integrator, passes) in [(IntegratorKind::Path, 40960), (IntegratorKind::Bdpt, 14336)] {
         let settings = settings(integrator, layers.clone());
         let groups = replicates_of_each(&scene, &settings, passes, pictures_of_groups);
         for ((group, alone), name) in groups.iter().zip(&alone).zip(scene.group_names()) {
