@@ -80,17 +80,17 @@ fn cornell_box() {
 
 #[test]
 fn coffee() {
-    check("pbrt-v4/coffee/coffee.pbrt", 256, 8);
+    check("pbrt-v4/coffee/coffee.pbrt", 160, 8);
 }
 
 #[test]
 fn gltf_cornell_box() {
-    check("gltf/CornellBox/CornellBox.glb", 256, 4);
+    check("gltf/CornellBox/CornellBox.glb", 640, 4);
 }
 
 #[test]
 fn gltf_flight_helmet() {
-    check("gltf/FlightHelmet/FlightHelmet.gltf", 128, 2);
+    check("gltf/FlightHelmet/FlightHelmet.gltf", 64, 2);
 }
 
 mod long_statistics {

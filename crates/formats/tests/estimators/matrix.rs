@@ -264,11 +264,6 @@ fn a_narrow_spot() {
 }
 
 #[test]
-fn shapes_of_all_kinds() {
-    check("shapes");
-}
-
-#[test]
 fn leaves_cut_out_and_placed_many_times() {
     check("leaves");
 }
