@@ -140,7 +140,7 @@ fn texts_are_not_included_again_and_again() {
         fs::write(folder.path().join(name), text).unwrap();
     }
     let error = load(&folder.path().join("a.pbrt"), &LoadOptions::default()).unwrap_err();
-    check(&error, ErrorKind::Limit, "included again");
+    check(&error, ErrorKind::Limit, "included repeatedly");
 }
 
 #[test]
