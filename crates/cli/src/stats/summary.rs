@@ -89,23 +89,21 @@ impl Summary {
     }
 }
 
-/// What `auto` renders with, by the names and values of flags.
+/// The flags that render as `auto` does.
 fn describe(plan: &Plan) -> String {
     let name = name_of(&IntegratorKind::NAMES, plan.integrator);
+    let mut flags = format!("--integrator {name}");
     if plan.integrator == IntegratorKind::Lvc {
         let (candidates, rays) = (plan.candidates, plan.shadow_rays);
-        return match plan.samples_per_subpath.get() {
-            1 => format!("{name} with {candidates} candidates and {rays}"),
-            samples => format!(
-                "{name} with {candidates} candidates, {rays} and {samples} samples per light subpath"
-            ),
-        };
+        let samples = plan.samples_per_subpath.get();
+        flags += &format!(
+            " --candidates {candidates} --shadow-rays {rays} --samples-per-subpath {samples}"
+        );
     }
-    if plan.roulette == plan.integrator.roulette() {
-        name.to_owned()
-    } else {
-        format!("{name} with --path-roulette {}", plan.roulette)
+    if plan.roulette != plan.integrator.roulette() {
+        flags += &format!(" --path-roulette {}", plan.roulette);
     }
+    flags
 }
 
 /// `a`, `a and b`, `a, b and c`.

@@ -149,6 +149,12 @@ impl<'a> Entry<'a> {
         self.source.fault(self.place.clone(), message, Some(hint))
     }
 
+    /// An error of this value, and what to do about it, if that is known.
+    pub(super) fn fault_hinted(&self, message: String, hint: Option<&str>) -> ExperimentError {
+        let hint = hint.map(str::to_owned);
+        self.source.fault(self.place.clone(), message, hint)
+    }
+
     /// A table.
     pub(super) fn section(self) -> Result<Section<'a>> {
         match self.value {
