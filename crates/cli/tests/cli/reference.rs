@@ -82,7 +82,7 @@ fn a_difference_is_tested_where_both_know_their_noise() {
     place
         .run("compare a.exr c.exr")
         .expect(0)
-        .prints("z_blocks    p ")
+        .prints("z_blocks     p ")
         .prints(" standard errors");
 }
 

@@ -107,7 +107,7 @@ fn a_port_that_is_taken_is_an_error_with_a_hint() {
     place
         .run("view room.pbrt --bind 192.0.2.1")
         .expect(4)
-        .says("hint: take an address of this machine");
+        .says("hint: use an address of this machine");
     assert_eq!(place.names(), ["room.pbrt"]);
 }
 

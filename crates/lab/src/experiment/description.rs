@@ -223,7 +223,7 @@ fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Resu
     // The integrator is the first.
     for name in Changes::NAMES {
         let entry = match name {
-            "light-start" => section.take_renamed(name, "emission"),
+            "light-start" => section.take_renamed(name, "emission")?,
             _ => section.take(name),
         };
         if let Some(entry) = entry {
@@ -287,7 +287,7 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
-    let cross_check = section.take_renamed("reference-cross-check", "reference-witness");
+    let cross_check = section.take_renamed("reference-cross-check", "reference-witness")?;
     match (image, spp) {
         (Some(image), None) => match strategies.or(cross_check) {
             Some(entry) => Err(entry.fault_with(
