@@ -21,20 +21,7 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
     if let Some(path) = &args.metrics.error_map {
         scene_io::image_format(path, IMAGES)?;
     }
-    let name = reference;
-    let reference = Noisy::reference(name)?;
-    let mut replicates = Independence::default();
-    let comparisons: Vec<Comparison> = images
-        .iter()
-        .map(|image| {
-            let noisy = Noisy::read(image)?;
-            replicates.add(image, &noisy.pixels);
-            compare(args, [image, name], noisy, &reference)
-        })
-        .collect::<Result<_, _>>()?;
-    for warning in &replicates.warnings {
-        console.warning(warning);
-    }
+    let comparisons = compare_all(args, images, reference, console)?;
     match &comparisons[..] {
         [one] if args.json => print_json(one)?,
         [one] => print(&one.text())?,
@@ -70,6 +57,29 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
         return Err(Failure::usage("--error-map takes one image"));
     }
     Ok((images, reference))
+}
+
+/// Compares every image, and warns of those that share their noise.
+fn compare_all(
+    args: &CompareArgs,
+    images: &[PathBuf],
+    name: &Path,
+    console: Console,
+) -> Result<Vec<Comparison>, Failure> {
+    let reference = Noisy::reference(name)?;
+    let mut independence = Independence::default();
+    let comparisons = images
+        .iter()
+        .map(|image| {
+            let noisy = Noisy::read(image)?;
+            independence.add(image, &noisy.pixels);
+            compare(args, [image, name], noisy, &reference)
+        })
+        .collect::<Result<_, _>>();
+    for warning in &independence.warnings {
+        console.warning(warning);
+    }
+    comparisons
 }
 
 /// Compares one image.

@@ -270,7 +270,9 @@ fn joined(folder: &Path, file: &str) -> PathBuf {
             // The folder above the target of a link is another one.
             && !path.is_symlink();
         match part {
-            _ if is_detour => drop(path.pop()),
+            _ if is_detour => {
+                path.pop();
+            }
             Component::CurDir => {}
             part => path.push(part),
         }
