@@ -1,12 +1,14 @@
 //! `bidir compare`: images and a reference, in numbers.
 
+mod independence;
 mod noise;
 mod report;
 
 use crate::args::{CompareArgs, MetricArgs};
-use crate::console::{print, print_json, say};
+use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, IMAGES, MetadataValue};
+use independence::Independence;
 use lab::image::{Pair, Pixels, resample};
 use lab::metric::{ErrorMap, Metric, mean_ratio};
 use noise::{Noisy, Significance};
@@ -14,16 +16,12 @@ use report::{Bits, Comparison, MEAN_RATIO, Number, Replicates};
 use std::path::{Path, PathBuf};
 
 /// Compares images with a reference.
-pub(crate) fn run(args: &CompareArgs) -> Result<Exit, Failure> {
+pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure> {
     let (images, reference) = files(args)?;
     if let Some(path) = &args.metrics.error_map {
         scene_io::image_format(path, IMAGES)?;
     }
-    let reference = Noisy::reference(reference)?;
-    let comparisons: Vec<Comparison> = images
-        .iter()
-        .map(|image| compare(args, Noisy::read(image)?, &reference))
-        .collect::<Result<_, _>>()?;
+    let comparisons = compare_all(args, images, reference, console)?;
     match &comparisons[..] {
         [one] if args.json => print_json(one)?,
         [one] => print(&one.text())?,
@@ -61,8 +59,36 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
     Ok((images, reference))
 }
 
+/// Compares every image, and warns of those that share their noise.
+fn compare_all(
+    args: &CompareArgs,
+    images: &[PathBuf],
+    name: &Path,
+    console: Console,
+) -> Result<Vec<Comparison>, Failure> {
+    let reference = Noisy::reference(name)?;
+    let mut independence = Independence::default();
+    let comparisons = images
+        .iter()
+        .map(|image| {
+            let noisy = Noisy::read(image)?;
+            independence.add(image, &noisy.pixels);
+            compare(args, [image, name], noisy, &reference)
+        })
+        .collect::<Result<_, _>>();
+    for warning in &independence.warnings {
+        console.warning(warning);
+    }
+    comparisons
+}
+
 /// Compares one image.
-fn compare(args: &CompareArgs, image: Noisy, reference: &Noisy) -> Result<Comparison, Failure> {
+fn compare(
+    args: &CompareArgs,
+    names: [&Path; 2],
+    image: Noisy,
+    reference: &Noisy,
+) -> Result<Comparison, Failure> {
     let significance = Significance::of(&image, reference);
     let (image, reference) = (image.pixels, &reference.pixels);
     let identical = Bits::of(&image, reference);
@@ -70,7 +96,7 @@ fn compare(args: &CompareArgs, image: Noisy, reference: &Noisy) -> Result<Compar
     let (numbers, size) = match fitted.pair(reference) {
         Some(pair) => (numbers(&args.metrics, &pair)?, Some(pair.size())),
         None if args.exact => (no_numbers(&args.metrics), None),
-        None => return Err(sizes_differ(fitted.image.size, reference.size)),
+        None => return Err(sizes_differ(names, [fitted.image.size, reference.size])),
     };
     Ok(Comparison {
         numbers,
@@ -114,8 +140,9 @@ impl Fitted {
     }
 }
 
-fn sizes_differ([aw, ah]: [usize; 2], [bw, bh]: [usize; 2]) -> Failure {
-    let message = format!("the images differ in size: A is {aw}x{ah}, B is {bw}x{bh}");
+fn sizes_differ(names: [&Path; 2], [[aw, ah], [bw, bh]]: [[usize; 2]; 2]) -> Failure {
+    let [a, b] = names.map(Path::display);
+    let message = format!("the images differ in size: `{a}` is {aw}x{ah}, `{b}` is {bw}x{bh}");
     Failure::new(Exit::InputOutput, message).with_hint("average the larger one with --resample")
 }
 

@@ -7,6 +7,7 @@
 use crate::args::{DenoiseArgs, ThreadsArgs};
 use crate::console::say;
 use crate::exit::{Exit, Failure};
+use crate::output;
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
@@ -125,6 +126,7 @@ impl Guides {
 /// Writes an image without its noise.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let format = scene_io::image_format(&args.output, IMAGES)?;
+    output::check_file("--output", &args.output)?;
     let mut layers = scene_io::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;
     let guides = Guides::of(&layers);

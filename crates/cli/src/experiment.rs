@@ -126,9 +126,26 @@ fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
     let failure = Failure::io(file, action, error);
     let name = file.to_str().filter(|_| action == "open");
     let near = name.and_then(|name| experiment::nearest(name, [builtin::PAPER, builtin::BEYOND]));
-    match near {
-        Some(near) => failure.with_hint(format!("did you mean the built-in experiment `{near}`?")),
-        None => failure,
+    match (near, action) {
+        (Some(near), _) => {
+            failure.with_hint(format!("did you mean the built-in experiment `{near}`?"))
+        }
+        (None, "open") => failure.with_hint(other_file(file)),
+        (None, _) => failure,
+    }
+}
+
+/// A file that a missing description may be meant to be.
+fn other_file(file: &Path) -> String {
+    let listed = Path::new("experiments").join(file).with_extension("toml");
+    let listed = Some(listed).filter(|listed| listed.is_file());
+    match listed.or_else(|| scene_io::nearest_file(file)) {
+        Some(near) => format!("did you mean `{}`?", near.display()),
+        None => format!(
+            "name `{}`, `{}` or a .toml file",
+            builtin::PAPER,
+            builtin::BEYOND
+        ),
     }
 }
 
@@ -177,7 +194,8 @@ fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_)
         | ExperimentError::Pyramid { .. }
-        | ExperimentError::Strategies { .. } => Exit::Scene,
+        | ExperimentError::Strategies { .. }
+        | ExperimentError::NoEffect { .. } => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,
         ExperimentError::Render { .. } => Exit::RenderFailed,
         _ => Exit::InputOutput,

@@ -5,6 +5,7 @@ use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::lock::FilmLock;
+use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
 use serde::Serialize;
@@ -49,7 +50,7 @@ fn tell(header: &FilmHeader) -> Result<Exit, Failure> {
 
 fn develop(file: &Path, output: &Path) -> Result<Exit, Failure> {
     scene_io::image_format(output, IMAGES)?;
-    scene_io::check_writable(output)?;
+    output::check_file("--output", output)?;
     let FilmFile { header, film } = scene_io::read_film(file)?;
     if film.passes().is_empty() {
         let message = format!("{}: the film has no passes", file.display());
@@ -138,7 +139,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
 /// Fails before films are read where a file could not be written, or is no film file to be replaced.
 fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     let MergeArgs { output, image, .. } = args;
-    scene_io::check_writable(output)?;
+    output::check_file("--output", output)?;
     if output.is_file() && !scene_io::is_film(output) {
         return Err(not_a_film(output, "--output"));
     }
@@ -146,7 +147,7 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
         return Ok(());
     };
     scene_io::image_format(image, IMAGES)?;
-    scene_io::check_writable(image)?;
+    output::check_file("--image", image)?;
     // An image is no film file, and would replace one.
     if scene_io::is_film(image) || scene_io::target_of(image) == scene_io::target_of(output) {
         let message = format!(

@@ -68,7 +68,7 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Reference(args) => reference::run(args, console)
             .inspect_err(|failure| progress::tell_failure(args.talk, failure)),
         Command::Info(args) => info::run(args, console),
-        Command::Compare(args) => compare::run(args),
+        Command::Compare(args) => compare::run(args, console),
         Command::Experiment(args) => experiment::run(args, console),
         Command::Film(command) => film::run(command, console),
         Command::Merge(args) => film::merge(args),

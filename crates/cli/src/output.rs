@@ -155,7 +155,7 @@ fn hint(flag: &str, folder: &Path) -> String {
     if folder.is_dir() {
         format!("cannot create files in `{folder_name}`: check its permissions and free space")
     } else {
-        format!("there is no folder `{folder_name}`: make it, or write elsewhere with {flag}")
+        format!("make the folder `{folder_name}`, or write elsewhere with {flag}")
     }
 }
 

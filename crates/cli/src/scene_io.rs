@@ -47,8 +47,8 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         isa: args.isa,
         ..LoadOptions::default()
     };
-    let loaded = formats::scene::load(&args.scene, &options)
-        .map_err(|error| Failure::diagnostic(exit_of_scene(&error), error))?;
+    let loaded =
+        formats::scene::load(&args.scene, &options).map_err(|error| refused(&args.scene, error))?;
     let mut settings = Settings {
         integrator: loaded.settings.integrator,
         sampler: loaded.settings.sampler,
@@ -130,11 +130,40 @@ pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     }
 }
 
+/// Why a scene cannot be read; for one that is not there, a file with a name near its own.
+fn refused(scene: &Path, error: formats::Error) -> Failure {
+    let exit = exit_of_scene(&error);
+    let is_missing = error.kind() == ErrorKind::MissingFile && error.line().is_none();
+    match nearest_file(scene).filter(|_| is_missing) {
+        Some(near) => Failure::new(exit, error.to_string())
+            .with_hint(format!("did you mean `{}`?", near.display())),
+        None => Failure::diagnostic(exit, error),
+    }
+}
+
+/// The file of the same folder and ending whose name is nearest. None: no name is near.
+pub(crate) fn nearest_file(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?;
+    let entries = std::fs::read_dir(folder_of(path)).ok()?;
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut names: Vec<_> = names
+        .filter(|name| Path::new(name).extension() == path.extension())
+        .collect();
+    names.sort();
+    let near = lab::experiment::nearest(name, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(near))
+}
+
 /// Reads an image.
 pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     let image = formats::image::read(path, None)
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))?;
     Ok(Pixels::from(&image))
+}
+
+/// The seed of the render that an image comes from. None: it does not say.
+pub(crate) fn seed_of(path: &Path) -> Option<String> {
+    formats::image::read_layers(path).ok()?.text("bidir/seed")
 }
 
 /// The layers of an image that tell how sure it is. None: it has no such.
@@ -271,6 +300,9 @@ pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<Image
         _ => None,
     };
     said.filter(|said| written.contains(said)).ok_or_else(|| {
+        if path.is_dir() {
+            return is_folder(path, written);
+        }
         let endings = written.iter().map(|format| match format {
             ImageFormat::Exr => ".exr",
             ImageFormat::Png => ".png",
@@ -281,6 +313,18 @@ pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<Image
             "cannot write `{path}`: output images are {endings}"
         ))
     })
+}
+
+/// The error of an output whose name is that of a folder.
+fn is_folder(path: &Path, written: &[ImageFormat]) -> Failure {
+    let message = format!("cannot write `{}`: it is a folder", path.display());
+    let file = if written.contains(&ImageFormat::Exr) {
+        "NAME.exr"
+    } else {
+        "NAME.png"
+    };
+    let hint = format!("name a file, such as {}", path.join(file).display());
+    Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 
 /// Reads a film file.

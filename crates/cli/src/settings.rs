@@ -6,6 +6,7 @@ use crate::console::Console;
 use crate::exit::Failure;
 use bidir::driver::{Session, Settings};
 use bidir::integrator::{IntegratorKind, LostLight, lost_light};
+use bidir::path::MAX_VERTICES;
 use bidir::scene::Scene;
 use formats::film::has_influence;
 use std::ops::Range;
@@ -102,7 +103,12 @@ pub(crate) fn check_strategies(
         LostLight::All { max_vertices } => {
             let failure = Failure::usage(message);
             Err(match max_vertices {
-                Some(_) => failure.with_hint("raise --max-depth: n bounces make n + 2 vertices"),
+                Some(most) if most < MAX_VERTICES => failure.with_hint(format!(
+                    "raise --max-depth: paths of {} bounces have {most} vertices, and no path has more \
+                     than {MAX_VERTICES}",
+                    most - 2
+                )),
+                Some(_) => failure.with_hint("no path has more vertices"),
                 None => failure.with_hint(
                     "strategy sNtM has N light vertices and M camera vertices: M is at least 1, \
                      N + M at least 2",

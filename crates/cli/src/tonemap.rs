@@ -11,6 +11,7 @@ mod neutral;
 use crate::args::TonemapArgs;
 use crate::console::say;
 use crate::exit::{Exit, Failure};
+use crate::output;
 use crate::scene_io::{self, ImageFormat};
 
 /// How light of any strength is brought into [0, 1].
@@ -48,7 +49,7 @@ impl Operator {
 pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     // A picture for the screen is a PNG.
     scene_io::image_format(&args.output, &[ImageFormat::Png])?;
-    scene_io::check_writable(&args.output)?;
+    output::check_file("--output", &args.output)?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);
     for color in &mut image.data {

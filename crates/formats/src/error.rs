@@ -162,6 +162,8 @@ impl std::error::Error for Error {}
 pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
     use std::io::ErrorKind::{IsADirectory, NotFound, PermissionDenied, StorageFull};
     let reason = match error.kind() {
+        // Writing makes the file, but not its folder.
+        NotFound if action == "write" => "no such folder".to_owned(),
         NotFound => "no such file".to_owned(),
         IsADirectory => "it is a folder".to_owned(),
         PermissionDenied => "permission denied".to_owned(),

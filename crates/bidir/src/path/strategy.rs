@@ -119,6 +119,14 @@ impl Strategies {
         self.rules.last() == Some(&Rule::ALL)
     }
 
+    /// True where the list adds a strategy for paths of more than `most` vertices alone.
+    pub(crate) fn has_longer_than(&self, most: usize) -> bool {
+        self.rules.iter().any(|rule| {
+            let (s, t): (usize, usize) = (rule.s.unwrap_or(0).into(), rule.t.unwrap_or(1).into());
+            rule.enable && s + t > most && t > 0 && self.contains(s, t)
+        })
+    }
+
     /// True where strategy (s, t) takes part.
     #[inline]
     pub fn contains(&self, s: usize, t: usize) -> bool {

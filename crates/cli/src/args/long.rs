@@ -89,7 +89,8 @@ impl Part {
             Ok(Self { index, of })
         } else {
             Err(format!(
-                "there is no share {index} of {of}: the first is 0, the last is {of} - 1"
+                "there is no part {index} of {of}: parts are 0 to {}",
+                of.saturating_sub(1)
             ))
         }
     }

@@ -4,11 +4,13 @@
 use clap::builder::PossibleValue;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
+use lab::experiment::nearest;
 use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
+use std::path::Path;
 
 /// Flags of other programs, and what they are here.
-const ELSEWHERE: [(&[&str], &str, &str); 6] = [
+const ELSEWHERE: [(&[&str], &str, &str); 7] = [
     (
         &[
             "--width",
@@ -47,10 +49,25 @@ const ELSEWHERE: [(&[&str], &str, &str); 6] = [
         "the number of threads is --threads N",
     ),
     (
+        &["--exposure", "--tonemap", "--gamma"],
+        "--spp",
+        "images keep the light of the scene; `bidir tonemap IMAGE.exr --exposure STOPS` writes a PNG",
+    ),
+    (
         &["--method", "--algorithm", "--renderer"],
         "--integrator",
         "the method is --integrator NAME",
     ),
+];
+
+/// Flags that belong to another, which comes first.
+const NEEDS: [(&str, &[&str]); 3] = [
+    ("--replay", &["--svg", "--json"]),
+    (
+        "--checkpoint",
+        &["--resume", "--restart", "--checkpoint-every"],
+    ),
+    ("--error-map", &["--metric", "--error-max"]),
 ];
 
 /// Lets every flag with a value take a negative number, so that it is refused with the range.
@@ -68,12 +85,16 @@ pub(super) fn accept_negative(command: Command) -> Command {
 
 /// The same error in plain words, where clap's are not.
 pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) -> Error {
-    let command = called(command, arguments);
+    let root = command;
+    let command = called(root, arguments);
     let better = match error.kind() {
-        ErrorKind::UnknownArgument => {
-            elsewhere(&error, command).or_else(|| negative(&error, arguments))
-        }
+        ErrorKind::UnknownArgument => elsewhere(&error, command)
+            .or_else(|| negative(&error, arguments))
+            .or_else(|| one_hyphen(&error, command, arguments))
+            .or_else(|| of_another(&error, command, root)),
         ErrorKind::ValueValidation | ErrorKind::InvalidValue => value(&error, command, arguments),
+        ErrorKind::InvalidSubcommand => file(&error),
+        ErrorKind::MissingRequiredArgument => needed(&error, arguments),
         _ => None,
     };
     better.unwrap_or(error)
@@ -105,11 +126,38 @@ fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
     let (_, flag, hint) = ELSEWHERE
         .iter()
         .find(|(names, ..)| names.contains(&given))?;
-    let has_flag = command
-        .get_arguments()
-        .any(|arg| arg.get_long() == flag.strip_prefix("--"));
     let message = format!("there is no flag `{given}`");
-    has_flag.then(|| raw(error.kind(), message, Some(hint)))
+    has_flag(command, flag).then(|| raw(error.kind(), message, Some(hint)))
+}
+
+fn has_flag(command: &Command, flag: &str) -> bool {
+    let long = flag.strip_prefix("--");
+    long.is_some() && command.get_arguments().any(|arg| arg.get_long() == long)
+}
+
+/// A long flag with one hyphen, which clap takes for short flags.
+fn one_hyphen(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
+    let given = text(error, ContextKind::InvalidArg)?;
+    let words = arguments.iter().filter_map(|argument| argument.to_str());
+    let flags = words.map(|word| word.split('=').next().unwrap_or_default());
+    let mut flags = flags.filter(|flag| flag.starts_with(given));
+    let flag = flags.find(|flag| has_flag(command, &format!("-{flag}")))?;
+    let message = format!("there is no flag `{flag}`");
+    Some(raw(
+        error.kind(),
+        message,
+        Some(&format!("did you mean `-{flag}`?")),
+    ))
+}
+
+/// A flag of another command alone.
+fn of_another(error: &Error, command: &Command, root: &Command) -> Option<Error> {
+    let given = text(error, ContextKind::InvalidArg)?;
+    let mut others = root.get_subcommands();
+    let other = others.find(|other| has_flag(other, given))?;
+    let message = format!("`{}` has no flag `{given}`", command.get_name());
+    let hint = format!("it is a flag of `bidir {}`", other.get_name());
+    Some(raw(error.kind(), message, Some(&hint)))
 }
 
 /// A value such as `-1s` or `-1,0,4,4`, which clap takes for a flag.
@@ -140,31 +188,66 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
         .find(|arg| arg.get_long() == Some(flag))?;
     let variable = variable(arg, given, arguments);
     let reason = std::error::Error::source(error).map(ToString::to_string);
-    let is_of_a_number = reason.as_deref().is_some_and(is_of_a_number);
-    let expected = is_of_a_number.then(|| expected(arg));
-    if variable.is_none() && expected.is_none() {
+    if given.is_empty() && reason.is_none() {
         return None;
     }
     let at = variable.unwrap_or_else(|| format!("--{flag}"));
-    let reason = match (expected, reason) {
-        (Some(expected), _) => format!("`{given}` is not {expected}"),
-        (None, Some(reason)) => reason,
-        (None, None) => {
-            let values = arg.get_possible_values();
-            let names: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
-            format!("`{given}` is not one of {}", names.join(", "))
+    let values = arg.get_possible_values();
+    let names: Vec<_> = values.iter().map(PossibleValue::get_name).collect();
+    let quoted = format!("`{given}`");
+    let message = match reason {
+        Some(reason) if is_of_a_number(&reason) => {
+            format!("{at}: {quoted} is not {}", expected(arg))
         }
+        // Some reasons name the value.
+        Some(reason) if reason.contains(&quoted) => format!("{at}: {reason}"),
+        Some(reason) => format!("{at}: {quoted}: {reason}"),
+        None => format!("{at}: {quoted} is not one of {}", names.join(", ")),
     };
-    Some(raw(error.kind(), format!("{at}: {reason}"), None))
+    let near = nearest(given, names).map(|near| format!("did you mean `{near}`?"));
+    Some(raw(error.kind(), message, near.as_deref()))
+}
+
+/// A file where a command is expected.
+fn file(error: &Error) -> Option<Error> {
+    let given = text(error, ContextKind::InvalidSubcommand)?;
+    let ending = Path::new(given).extension()?.to_str()?;
+    let hint = match ending.to_ascii_lowercase().as_str() {
+        "pbrt" | "gltf" | "glb" => format!("bidir render {given}"),
+        "toml" => format!("bidir experiment {given} -o FOLDER"),
+        "film" => format!("bidir film info {given}"),
+        _ => return None,
+    };
+    let message = format!("there is no command `{given}`");
+    Some(raw(error.kind(), message, Some(&hint)))
+}
+
+/// A flag without the one that it belongs to.
+fn needed(error: &Error, arguments: &[OsString]) -> Option<Error> {
+    let ContextValue::Strings(missing) = error.get(ContextKind::InvalidArg)? else {
+        return None;
+    };
+    let (flag, needed) = missing.iter().find_map(|missing| {
+        let needed = missing.split(' ').next()?;
+        let (_, flags) = NEEDS.iter().find(|(name, _)| *name == needed)?;
+        let flag = flags.iter().find(|flag| is_given(arguments, flag))?;
+        Some((flag, missing.replace(['<', '>'], "")))
+    })?;
+    Some(raw(error.kind(), format!("{flag} needs {needed}"), None))
+}
+
+/// True where a flag is among the arguments, alone or as `--flag=value`.
+fn is_given(arguments: &[OsString], flag: &str) -> bool {
+    arguments.iter().any(|argument| {
+        let argument = argument.to_string_lossy();
+        let rest = argument.strip_prefix(flag);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+    })
 }
 
 /// The variable that a value comes from. None: it stands on the command line.
 fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
     let long = format!("--{}", arg.get_long()?);
-    let is_flag = |argument: &OsString| {
-        let argument = argument.to_string_lossy();
-        argument == *long || argument.starts_with(&format!("{long}="))
-    };
     let short = arg.get_short().map(|short| format!("-{short}"));
     let is_short = |argument: &OsString| {
         let argument = argument.to_string_lossy();
@@ -172,10 +255,7 @@ fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
             .as_ref()
             .is_some_and(|short| argument.starts_with(short))
     };
-    if arguments
-        .iter()
-        .any(|argument| is_flag(argument) || is_short(argument))
-    {
+    if is_given(arguments, &long) || arguments.iter().any(is_short) {
         return None;
     }
     let name = arg.get_env()?;

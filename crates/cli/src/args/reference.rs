@@ -1,7 +1,7 @@
 //! The flags of `bidir reference`.
 
 use super::render::{EstimatorArgs, FilmArgs, TalkArgs};
-use super::{SceneArgs, ThreadsArgs};
+use super::{SceneArgs, ThreadsArgs, mistakes};
 use clap::{Args, FromArgMatches, ValueHint};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -88,9 +88,11 @@ impl FromStr for EstimatorFlags {
         if words.first().is_some_and(|word| !word.starts_with('-')) {
             words.insert(0, "--integrator");
         }
-        let matches = command.try_get_matches_from(words);
+        let matches = command.clone().try_get_matches_from(words);
         let flags = matches.and_then(|matches| EstimatorArgs::from_arg_matches(&matches));
-        flags.map(Self).map_err(|error| first_line(&error))
+        flags
+            .map(Self)
+            .map_err(|error| first_line(&mistakes::reworded(error, &command, &[])))
     }
 }
 
@@ -116,7 +118,7 @@ mod tests {
         let EstimatorFlags(args) = "--max-depth 3".parse().unwrap();
         assert_eq!((args.integrator, args.max_depth), (None, Some(3)));
         for (text, part) in [
-            ("photons", "invalid value 'photons'"),
+            ("photons", "--integrator: `photons` is not one of path"),
             ("bdpt --spp 4", "unexpected argument '--spp'"),
             ("bdpt path", "unexpected argument 'path'"),
         ] {

@@ -161,7 +161,7 @@ pub(crate) struct EstimatorArgs {
     ///
     /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
     /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
-    /// few samples and takes the one with the least variance × time. A glTF file names no integrator
+    /// few samples and takes the one with the least variance × cost, counted in rays. A glTF file names no integrator
     /// and is rendered with auto.
     #[arg(long, env = "BIDIR_INTEGRATOR", value_name = "NAME")]
     #[arg(value_parser = named(IntegratorKind::NAMES))]

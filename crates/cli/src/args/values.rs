@@ -3,6 +3,7 @@
 use bidir::film::PixelRect;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// A parser of the names in a table of the library, which stay in that one place.
@@ -39,24 +40,45 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = text
+        let side = |side: &str| side.trim().parse::<u64>().ok();
+        let sides = text
             .split_once(['x', 'X'])
-            .and_then(|(width, height)| Some([positive(width)?, positive(height)?]));
-        numbers
-            .map(Self)
-            .ok_or_else(|| "expected WIDTHxHEIGHT, such as 1920x1080".into())
+            .and_then(|(width, height)| Some([side(width)?, side(height)?]));
+        let [width, height] = sides.ok_or_else(|| expected_size(text))?;
+        let side = |side| u32::try_from(side).ok().filter(|side| SIDES.contains(side));
+        let size = side(width).and_then(|width| Some([width, side(height)?]));
+        size.map(Self).ok_or_else(|| {
+            format!(
+                "each side has 1 to {} pixels, such as 1920x1080",
+                SIDES.end()
+            )
+        })
     }
 }
 
+/// The form of a size, with the width that `text` may be.
+fn expected_size(text: &str) -> String {
+    let width = text.trim().parse::<u16>().ok();
+    let width = width.filter(|width| *width > 0).map(u32::from);
+    let size = width.map_or([1920, 1080], |width| [width, (width * 3).div_ceil(4)]);
+    format!("expected WIDTHxHEIGHT, such as {}x{}", size[0], size[1])
+}
+
+/// The sides that a film can have. Unit: pixels.
+const SIDES: RangeInclusive<u32> = 1..=1 << 16;
+
 /// A finite number above zero.
 pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
+    let percent = text.trim().strip_suffix('%');
+    if let Some(percent) = percent.and_then(|percent| percent.trim().parse::<f64>().ok()) {
+        return Err(format!(
+            "write a fraction without a percent sign: {}",
+            percent / 100.0
+        ));
+    }
     let number = text.trim().parse::<f64>().ok();
     let number = number.filter(|number| *number > 0.0 && number.is_finite());
     number.ok_or_else(|| "expected a number above 0, such as 0.01".into())
-}
-
-fn positive(text: &str) -> Option<u32> {
-    text.trim().parse().ok().filter(|&number| number > 0)
 }
 
 /// Numbers between commas, as many as there must be.
@@ -174,7 +196,7 @@ impl FromStr for Duration {
         }
         let time = std::time::Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
         if time.is_zero() {
-            Err(expected())
+            Err("a time is above 0, such as 90s".to_owned())
         } else {
             Ok(Self(time))
         }

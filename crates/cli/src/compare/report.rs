@@ -203,7 +203,7 @@ struct Lines {
 impl Lines {
     fn add(&mut self, name: &str, value: &str) {
         // Writing to a string cannot fail.
-        let _ = writeln!(self.text, "{name:<11} {value}");
+        let _ = writeln!(self.text, "{name:<12} {value}");
     }
 
     fn add_resampled(&mut self, which: Option<&str>, size: Option<[usize; 2]>) {
@@ -259,11 +259,11 @@ mod tests {
         assert_eq!(json["images"], 5);
         let text = replicates.text();
         assert!(
-            text.contains("images      5, with intervals of 95 %"),
+            text.contains("images       5, with intervals of 95 %"),
             "{text}"
         );
         assert!(
-            text.contains("rmse        3.000000e0  1.036757e0 to 4.963243e0"),
+            text.contains("rmse         3.000000e0  1.036757e0 to 4.963243e0"),
             "{text}"
         );
     }

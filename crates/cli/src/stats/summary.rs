@@ -25,6 +25,8 @@ pub(crate) struct Summary {
     time: Duration,
     /// The error of `--noise`. None: it is not known.
     error: Option<f64>,
+    /// True where `--noise` asks for an error that too few passes cannot give.
+    lacks_error: bool,
     is_denoised: bool,
     plan: Option<Plan>,
 }
@@ -50,6 +52,7 @@ impl Summary {
             crop: (size != settings.resolution).then_some(size),
             time: course.render,
             error: error.filter(|error| error.is_finite() && *error > 0.0),
+            lacks_error: budget.noise.is_some() && passes.len() < LEAST_PASSES,
             is_denoised,
             plan: session.training().and_then(|training| training.plan),
         }
@@ -84,28 +87,28 @@ impl Summary {
         };
         let error = self.error.map(two_digits);
         let error = error.map(|error| format!(", relative error {error}{noisy}"));
+        let lacks = format!(", no relative error below {LEAST_PASSES} samples");
+        let error = error.or_else(|| self.lacks_error.then_some(lacks));
         let parts = [Some(count), part, crop, Some(run), error];
         parts.into_iter().flatten().collect()
     }
 }
 
-/// What `auto` renders with, by the names and values of flags.
+/// The flags that render as `auto` does.
 fn describe(plan: &Plan) -> String {
     let name = name_of(&IntegratorKind::NAMES, plan.integrator);
+    let mut flags = format!("--integrator {name}");
     if plan.integrator == IntegratorKind::Lvc {
         let (candidates, rays) = (plan.candidates, plan.shadow_rays);
-        return match plan.samples_per_subpath.get() {
-            1 => format!("{name} with {candidates} candidates and {rays}"),
-            samples => format!(
-                "{name} with {candidates} candidates, {rays} and {samples} samples per light subpath"
-            ),
-        };
+        let samples = plan.samples_per_subpath.get();
+        flags += &format!(
+            " --candidates {candidates} --shadow-rays {rays} --samples-per-subpath {samples}"
+        );
     }
-    if plan.roulette == plan.integrator.roulette() {
-        name.to_owned()
-    } else {
-        format!("{name} with --path-roulette {}", plan.roulette)
+    if plan.roulette != plan.integrator.roulette() {
+        flags += &format!(" --path-roulette {}", plan.roulette);
     }
+    flags
 }
 
 /// `a`, `a and b`, `a, b and c`.
@@ -152,6 +155,7 @@ mod tests {
             crop: None,
             time: Duration::from_millis(700),
             error: Some(0.2123),
+            lacks_error: false,
             is_denoised: false,
             plan: None,
         }
@@ -174,6 +178,18 @@ mod tests {
             ..summary()
         };
         check(&one, "1 sample per pixel in 0.7 s");
+        let asked = Summary {
+            passes: 8,
+            rendered: 8,
+            wanted: Some(8),
+            error: None,
+            lacks_error: true,
+            ..summary()
+        };
+        check(
+            &asked,
+            "8 samples per pixel in 0.7 s, no relative error below 16 samples",
+        );
         let denoised = Summary {
             is_denoised: true,
             ..summary()

@@ -15,8 +15,8 @@ fn numbers_come_as_text_and_as_json() {
     place
         .run("compare a.exr a.exr")
         .expect(0)
-        .prints("identical   yes")
-        .prints("mean_ratio  1.0000");
+        .prints("identical    yes")
+        .prints("mean_ratio   1.0000");
     let same = place.run("compare a.exr a.exr --json").expect(0).json();
     assert_eq!(
         (&same["rmse"], &same["identical"]),
@@ -38,7 +38,7 @@ fn exactness_is_told_by_the_exit_code() {
     place
         .run("compare a.exr b.exr --exact")
         .expect(6)
-        .prints("identical   no");
+        .prints("identical    no");
     let other = place
         .run("compare a.exr c.exr --exact --json")
         .expect(6)
@@ -47,7 +47,7 @@ fn exactness_is_told_by_the_exit_code() {
     place
         .run("compare a.exr c.exr --reference a.exr --exact")
         .expect(6)
-        .prints("rmse        none: the sizes differ");
+        .prints("rmse         none: the sizes differ");
 }
 
 #[test]
@@ -58,12 +58,12 @@ fn other_sizes_are_an_error_unless_averaged() {
     place
         .run("compare a.exr b.exr")
         .expect(4)
-        .says("A is 24x16, B is 12x8")
+        .says("`a.exr` is 24x16, `b.exr` is 12x8")
         .says("--resample");
     place
         .run("compare a.exr b.exr --resample")
         .expect(0)
-        .prints("resampled   A to 12x8");
+        .prints("resampled    A to 12x8");
     let json = place
         .run("compare b.exr a.exr --resample --json")
         .expect(0)
@@ -106,8 +106,8 @@ fn all_numbers_have_their_keys_and_flip_comes_when_asked_for() {
     place
         .run("compare a.exr b.exr --flip")
         .expect(0)
-        .prints("relmse_trim ")
-        .prints("flip_hdr    ");
+        .prints("relmse_trim  ")
+        .prints("flip_hdr     ");
 }
 
 #[test]
@@ -131,7 +131,26 @@ fn several_seeds_have_intervals() {
     place
         .run("compare 1.exr 2.exr --reference 0.exr")
         .expect(0)
-        .prints("images      2, with intervals of 95 %");
+        .prints("images       2, with intervals of 95 %");
+    for (images, warning) in [
+        ("1.exr 1.exr", "`1.exr` is given twice"),
+        ("1.exr copy.exr", "`1.exr` and `copy.exr` are identical"),
+        (
+            "1.exr more.exr",
+            "`1.exr` and `more.exr` have the same seed, 1",
+        ),
+    ] {
+        std::fs::copy(place.path("1.exr"), place.path("copy.exr")).unwrap();
+        image(&place, "more.exr", "--seed 1 --spp 3");
+        place
+            .run(&format!("compare {images} --reference 0.exr"))
+            .expect(0)
+            .says(&format!(
+                "warning: {warning}: intervals need images with different seeds\n"
+            ));
+    }
+    let independent = place.run("compare 1.exr 2.exr --reference 0.exr");
+    assert!(independent.stderr.is_empty(), "{}", independent.stderr);
     // One image has none.
     let same = place
         .run("compare 2.exr --reference 0.exr --json")
@@ -167,7 +186,7 @@ fn errors_are_written_as_numbers_and_as_colours() {
     place
         .run("compare a.exr b.exr --error-map map.png --metric flip --error-max 0.5")
         .expect(0)
-        .prints("flip        ");
+        .prints("flip         ");
     let map = formats::image::read(&place.path("map.png"), None).unwrap();
     assert_eq!((map.width, map.height, map.channels), (24, 16, 3));
     for (arguments, says) in [

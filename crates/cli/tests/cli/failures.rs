@@ -37,8 +37,18 @@ fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
         2,
         "error: --strategies s0t0 makes no path\nhint: ",
     );
-    let long =
-        "error: --strategies s4t3 makes no path of at most 6 vertices\nhint: raise --max-depth";
+    let long = "error: --strategies s4t3 makes no path of at most 6 vertices\nhint: raise --max-depth: \
+                paths of 4 bounces have 6 vertices, and no path has more than 1024\n";
+    check(
+        &of("s9999t2"),
+        2,
+        "error: --strategies s9999t2 makes no path of at most 6 vertices\nhint: raise --max-depth",
+    );
+    check(
+        &of("s9999t2 --max-depth 0"),
+        2,
+        "makes no path of at most 1024 vertices\nhint: no path has more vertices\n",
+    );
     check(&of("s4t3"), 2, long);
     let lost = "--strategies s2 loses light: no strategy makes paths of 2 vertices";
     check(&of("s2"), 0, &format!("warning: {lost}\n"));
@@ -67,8 +77,40 @@ fn numbers_out_of_range_are_told_the_range() {
             "--seed -1",
             "error: --seed: `-1` is not a whole number of at least 0",
         ),
-        ("--noise -1", "expected a number above 0"),
-        ("--time -1", "expected a time such as"),
+        (
+            "--noise -1",
+            "error: --noise: `-1`: expected a number above 0",
+        ),
+        (
+            "--noise 5%",
+            "error: --noise: `5%`: write a fraction without a percent sign: 0.05\n",
+        ),
+        (
+            "--size 320",
+            "error: --size: `320`: expected WIDTHxHEIGHT, such as 320x240\n",
+        ),
+        ("--time -1", "error: --time: `-1`: expected a time such as"),
+        (
+            "--time 0",
+            "error: --time: `0`: a time is above 0, such as 90s\n",
+        ),
+        (
+            "--size 256x0",
+            "error: --size: `256x0`: each side has 1 to 65536 pixels, such as 1920x1080\n",
+        ),
+        (
+            "--size 1000000x1000000",
+            "error: --size: `1000000x1000000`: each side has 1 to 65536 pixels",
+        ),
+        (
+            "--part 16/16",
+            "error: --part: `16/16`: there is no part 16 of 16: parts are 0 to 15\n",
+        ),
+        (
+            "--integrator BDPT",
+            "error: --integrator: `BDPT` is not one of path, light, bdpt, lvc, auto\n\
+             hint: did you mean `bdpt`?\n",
+        ),
         ("--time -1s", "error: --time: `-1s` is negative"),
         ("--crop -1,0,4,4", "error: --crop: `-1,0,4,4` is negative"),
         (
@@ -95,6 +137,70 @@ fn numbers_out_of_range_are_told_the_range() {
     Ran::of(command.env("BIDIR_INTEGRATOR", "photon"))
         .expect(2)
         .says("error: BIDIR_INTEGRATOR: `photon` is not one of path, light, bdpt");
+}
+
+#[test]
+fn flags_without_the_one_that_they_belong_to_name_it() {
+    for (arguments, says) in [
+        ("render room.pbrt --json", "--json needs --replay X,Y,PASS"),
+        (
+            "render room.pbrt --svg a.svg",
+            "--svg needs --replay X,Y,PASS",
+        ),
+        (
+            "render room.pbrt --resume",
+            "--resume needs --checkpoint FILE.film",
+        ),
+        (
+            "render room.pbrt --restart",
+            "--restart needs --checkpoint FILE.film",
+        ),
+        (
+            "render room.pbrt --checkpoint-every=1m",
+            "--checkpoint-every needs --checkpoint FILE.film",
+        ),
+        (
+            "compare a.exr b.exr --error-max 2",
+            "--error-max needs --error-map FILE",
+        ),
+    ] {
+        check(arguments, 2, &format!("error: {says}\n"));
+    }
+}
+
+#[test]
+fn files_in_the_place_of_a_command_are_given_one() {
+    for (file, hint) in [
+        ("scenes/room.pbrt", "bidir render scenes/room.pbrt"),
+        ("room.GLB", "bidir render room.GLB"),
+        ("a.toml", "bidir experiment a.toml -o FOLDER"),
+        ("a.film", "bidir film info a.film"),
+    ] {
+        let says = format!("error: there is no command `{file}`\nhint: {hint}\n");
+        check(file, 2, &says);
+    }
+}
+
+#[test]
+fn names_near_a_file_are_hints() {
+    let near = "no such file\nhint: did you mean `room.pbrt`?\n";
+    check("render rom.pbrt", 4, near);
+    check(
+        "info ./roomm.pbrt",
+        4,
+        "hint: did you mean `./room.pbrt`?\n",
+    );
+    let place = Workplace::new();
+    place
+        .run("experiment shadow-rays -o out")
+        .expect(4)
+        .says("hint: name `paper`, `beyond` or a .toml file\n");
+    std::fs::create_dir(place.path("experiments")).unwrap();
+    place.write("experiments/shadow-rays.toml", "");
+    place
+        .run("experiment shadow-rays -o out")
+        .expect(4)
+        .says("hint: did you mean `experiments/shadow-rays.toml`?\n");
 }
 
 #[test]
@@ -127,6 +233,21 @@ fn flags_of_other_programs_are_recognised() {
             .says(&format!("error: there is no flag `{name}`\n"))
             .says(hint);
     }
+    check(
+        "render room.pbrt --exposure 1",
+        2,
+        "error: there is no flag `--exposure`\nhint: images keep the light of the scene; `bidir tonemap",
+    );
+    check(
+        "render room.pbrt -spp 4",
+        2,
+        "error: there is no flag `-spp`\nhint: did you mean `--spp`?\n",
+    );
+    check(
+        "info room.pbrt --integrator path",
+        2,
+        "error: `info` has no flag `--integrator`\nhint: it is a flag of `bidir render`\n",
+    );
     // A command without such a setting has nothing to suggest.
     check("tonemap room.exr --width 100", 2, "unexpected argument");
 }
@@ -235,11 +356,18 @@ fn what_cannot_be_read_or_written_exits_with_4_before_anything_is_rendered() {
         let render = format!("render room.pbrt {far} {flag} {file}");
         let ran = Workplace::new().run(&render).expect(4).says(file);
         let flag = flag.split(' ').next_back().unwrap();
-        let elsewhere = format!("make it, or write elsewhere with {flag}\n");
-        ran.says("hint: there is no folder `missing`")
-            .says(&elsewhere);
+        let elsewhere =
+            format!("hint: make the folder `missing`, or write elsewhere with {flag}\n");
+        ran.says("no such folder\n").says(&elsewhere);
     }
     let place = Workplace::new();
+    std::fs::create_dir(place.path("out")).unwrap();
+    place
+        .run(&format!("render room.pbrt {far} -o out"))
+        .expect(4)
+        .says(
+            "error: cannot write `out`: it is a folder\nhint: name a file, such as out/NAME.exr\n",
+        );
     std::fs::create_dir(place.path("folder.exr")).unwrap();
     place
         .run(&format!("render room.pbrt {far} -o folder.exr"))

@@ -82,7 +82,7 @@ fn a_difference_is_tested_where_both_know_their_noise() {
     place
         .run("compare a.exr c.exr")
         .expect(0)
-        .prints("z_blocks    p ")
+        .prints("z_blocks     p ")
         .prints(" standard errors");
 }
 
@@ -242,7 +242,10 @@ fn a_wrong_command_line_is_told() {
         ("--extend 4 --size 4x4", "cannot be used with"),
         ("--extend 4 --crop 0,0,4,4", "cannot be used with"),
         ("--spp 0", "`0` is not a whole number"),
-        ("--against photons", "invalid value 'photons'"),
+        (
+            "--against photons",
+            "--against: --integrator: `photons` is not one of path",
+        ),
         ("-o .", ". exists already and is not a reference"),
     ] {
         place

@@ -51,7 +51,7 @@ fn a_render_ends_with_files_samples_and_error() {
         text.starts_with("wrote auto.png\n2 samples per pixel in "),
         "{text}"
     );
-    assert!(text.contains("\nauto chose "), "{text}");
+    assert!(text.contains("\nauto chose --integrator "), "{text}");
     let text = last("--passes 4..6 --checkpoint part.film", 2);
     let expected = "wrote part.film\n2 samples per pixel (passes 4..6) in ";
     assert!(text.starts_with(expected), "{text}");

@@ -192,5 +192,5 @@ fn a_drawing_that_cannot_be_written_is_refused_before_a_scene_is_read() {
         .says("NAME.svg");
     run("--replay 1,1,1 --svg none/a.svg")
         .expect(4)
-        .says("there is no folder `none`");
+        .says("hint: make the folder `none`, or write elsewhere with --svg");
 }

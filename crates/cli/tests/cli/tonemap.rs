@@ -117,7 +117,7 @@ fn faults_are_told() {
         (
             "in.pfm -o out.png --operator aces",
             2,
-            "possible values: srgb, agx, neutral",
+            "`aces` is not one of srgb, agx, neutral",
         ),
         (
             "in.pfm -o out.png --exposure bright",
@@ -127,7 +127,11 @@ fn faults_are_told() {
         ("in.pfm -o out.png --exposure inf", 2, "a number of stops"),
         ("missing.exr -o out.png", 4, "missing.exr"),
         ("room.pbrt -o out.png", 4, "room.pbrt"),
-        ("in.pfm -o missing/out.png", 4, "missing/out.png"),
+        (
+            "in.pfm -o missing/out.png",
+            4,
+            "hint: make the folder `missing`, or",
+        ),
     ] {
         place
             .run(&format!("tonemap {arguments}"))

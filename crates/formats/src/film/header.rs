@@ -179,6 +179,11 @@ impl FilmHeader {
     /// Why a film of `self` is not one of `other`; None: it is. The first setting that differs is
     /// named with both values: the integrator, which decides what others usually are, before them.
     pub fn difference(&self, other: &Self) -> Option<String> {
+        self.difference_between(other, ["here", "there"])
+    }
+
+    /// [`Self::difference`] with phrases for both places, such as `in the film`.
+    pub fn difference_between(&self, other: &Self, [here, there]: [&str; 2]) -> Option<String> {
         if self.identity == other.identity {
             return None;
         }
@@ -194,7 +199,7 @@ impl FilmHeader {
         for name in names {
             let (a, b) = (value(self, name), value(other, name));
             if a != b {
-                return Some(format!("{name} is {a} here and {b} there"));
+                return Some(format!("{name} is {a} {here} and {b} {there}"));
             }
         }
         Some("their identities differ".to_owned())

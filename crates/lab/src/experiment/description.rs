@@ -3,13 +3,13 @@
 use super::error::ExperimentError;
 use super::names::{file_name, nearest};
 use super::reader::{Entry, Section, Source};
-use super::settings::{Changes, named};
+use super::settings::{Changes, named, no_effect};
 use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use bidir::integrator::IntegratorKind;
-use formats::film::{has_influence, name_of};
-use std::path::Path;
+use formats::film::has_influence;
+use std::path::{Component, Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -42,6 +42,9 @@ const SCENE: [&str; 7] = [
     "reference-cross-check",
 ];
 const OLD_SCENE: [&str; 1] = ["reference-witness"];
+/// How to mend a setting without effect on an integrator that another table sets.
+const INHERITED: &str =
+    "[settings] sets this integrator: give the method its own, or leave the setting out";
 /// The keys of `[[budget]]`.
 const BUDGET: [&str; 4] = ["name", "samples", "rays", "seconds"];
 /// Settings that are accepted for old descriptions.
@@ -62,7 +65,7 @@ impl Experiment {
                 return Err(section.fault("there is a second [settings]"));
             }
             section.only(&Changes::NAMES, &OLD_SETTINGS)?;
-            defaults = changes(&mut section)?;
+            defaults = changes(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
         let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
@@ -212,22 +215,23 @@ impl Named for BudgetSpec {
     }
 }
 
-/// The settings of a table, under the names of flags.
-fn changes(section: &mut Section<'_>) -> Result<Changes> {
+/// The settings of a table, under the names of flags; `inherited` is the integrator of `[settings]`.
+///
+/// Errors: a setting without effect on the integrator.
+fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Changes> {
     let mut changes = Changes::default();
     // The integrator is the first.
     for name in Changes::NAMES {
         let entry = match name {
-            "light-start" => section.take_renamed(name, "emission"),
+            "light-start" => section.take_renamed(name, "emission")?,
             _ => section.take(name),
         };
         if let Some(entry) = entry {
             entry.read(|value| changes.set(name, value))?;
-            let mut deaf = changes.integrator.into_iter();
-            if let Some(deaf) = deaf.find(|integrator| !has_influence(name, *integrator)) {
-                let integrator = name_of(&IntegratorKind::NAMES, deaf);
-                let message = format!("`{name}` has no effect on the integrator `{integrator}`");
-                return Err(entry.fault(message));
+            let integrator = changes.integrator.or(inherited);
+            if let Some(deaf) = integrator.filter(|integrator| !has_influence(name, *integrator)) {
+                let hint = changes.integrator.is_none().then_some(INHERITED);
+                return Err(entry.fault_hinted(no_effect(name, deaf), hint));
             }
         }
     }
@@ -239,7 +243,7 @@ fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
-        changes: changes(section)?.or(defaults),
+        changes: changes(section, defaults.integrator)?.or(defaults),
     })
 }
 
@@ -250,11 +254,30 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result
     let stem = stem.to_string_lossy();
     Ok(SceneSpec {
         name: or(text_of(section, "name")?, &stem),
-        path: folder.join(&file),
+        path: joined(folder, &file),
         size: size(section)?,
         reference: reference(section, folder, defaults)?,
         file,
     })
+}
+
+/// A file relative to `folder`, without detours such as `out/..`.
+fn joined(folder: &Path, file: &str) -> PathBuf {
+    let mut path = PathBuf::new();
+    for part in folder.join(file).components() {
+        let is_detour = part == Component::ParentDir
+            && matches!(path.components().next_back(), Some(Component::Normal(_)))
+            // The folder above the target of a link is another one.
+            && !path.is_symlink();
+        match part {
+            _ if is_detour => {
+                path.pop();
+            }
+            Component::CurDir => {}
+            part => path.push(part),
+        }
+    }
+    path
 }
 
 /// A reference that is there, or how many samples the one that is made has.
@@ -266,7 +289,7 @@ fn reference(
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
-    let cross_check = section.take_renamed("reference-cross-check", "reference-witness");
+    let cross_check = section.take_renamed("reference-cross-check", "reference-witness")?;
     match (image, spp) {
         (Some(image), None) => match strategies.or(cross_check) {
             Some(entry) => Err(entry.fault_with(
@@ -321,19 +344,22 @@ fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
         ("rays", BudgetKind::Rays),
         ("seconds", BudgetKind::Seconds),
     ];
-    let mut budgets = Vec::new();
-    for (key, kind) in kinds {
-        if let Some(entry) = section.take(key) {
-            let amount = match kind {
-                BudgetKind::Samples => entry.whole(1)? as f64,
-                _ => entry.positive()?,
-            };
-            budgets.push(BudgetSpec::new(kind, amount));
-        }
-    }
-    let (Some(budget), true) = (budgets.pop(), budgets.is_empty()) else {
+    let given = kinds.map(|(key, kind)| (key, kind, section.take(key)));
+    let mut given = given
+        .into_iter()
+        .filter_map(|(key, kind, entry)| Some((key, kind, entry?)));
+    let Some((key, kind, entry)) = given.next() else {
         return Err(section.fault("expected one of `samples`, `rays` and `seconds`"));
     };
+    if let Some((other, _, entry)) = given.next() {
+        let message = format!("this budget has both `{key}` and `{other}`");
+        return Err(entry.fault_with(message, "write one [[budget]] for each".to_owned()));
+    }
+    let amount = match kind {
+        BudgetKind::Samples => entry.whole(1)? as f64,
+        _ => entry.positive()?,
+    };
+    let budget = BudgetSpec::new(kind, amount);
     Ok(BudgetSpec {
         name: name.unwrap_or_else(|| budget.name.clone()),
         ..budget

@@ -92,6 +92,16 @@ pub enum ExperimentError {
         /// The list, and what it lacks.
         text: String,
     },
+    /// A setting of a method has no effect on the integrator of a scene.
+    #[error("scene `{scene}`: method `{method}`: {text}, which the scene sets")]
+    NoEffect {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+        /// The setting and the integrator.
+        text: String,
+    },
     /// None of the scenes that an experiment has is there.
     #[error("there is no scene to render: {0}")]
     NoScenes(String),
@@ -128,6 +138,7 @@ impl ExperimentError {
                  `bidir reference --estimator … --against …`",
             ),
             Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
+            Self::NoEffect { .. } => Some("set `integrator` in [settings] or in the method"),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
             Self::Size { .. } => Some("give the scene the size of its reference"),
             _ => None,

@@ -90,16 +90,20 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key, which may go by its older name.
+    ///
+    /// Errors: both names.
     pub(super) fn take_renamed(
         &mut self,
         key: &'static str,
         older: &'static str,
-    ) -> Option<Entry<'a>> {
-        let entry = self.take(key);
-        entry.or_else(|| {
-            let value = self.table.remove(older)?;
-            Some(Entry::new(self.source, value))
-        })
+    ) -> Result<Option<Entry<'a>>> {
+        match [self.take(key), self.take(older)] {
+            [Some(_), Some(old)] => {
+                let message = format!("`{older}` is the older name of `{key}`: write one of them");
+                Err(old.fault(message))
+            }
+            [entry, old] => Ok(entry.or(old)),
+        }
     }
 
     /// The value of a key that has to be there.
@@ -147,6 +151,12 @@ impl<'a> Entry<'a> {
     /// An error of this value, and what to do about it.
     pub(super) fn fault_with(&self, message: String, hint: String) -> ExperimentError {
         self.source.fault(self.place.clone(), message, Some(hint))
+    }
+
+    /// An error of this value, and what to do about it, if that is known.
+    pub(super) fn fault_hinted(&self, message: String, hint: Option<&str>) -> ExperimentError {
+        let hint = hint.map(str::to_owned);
+        self.source.fault(self.place.clone(), message, hint)
     }
 
     /// A table.

@@ -1,15 +1,15 @@
 //! From a description to results.
 
-use super::Experiment;
-use super::analysis::{ReferenceNoise, reference_noise};
+use super::analysis::{ReferenceNoise, overruns, reference_noise};
 use super::cell::Cell;
 use super::error::ExperimentError;
 use super::identity::identity;
 use super::journal::{Journal, Owner};
 use super::pyramid;
 use super::reference;
-use super::settings::texts;
+use super::settings::{no_effect, texts};
 use super::stage::{Reference, Stage};
+use super::{Experiment, MethodSpec};
 
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
 use bidir::integrator::{LostLight, lost_light};
@@ -144,6 +144,9 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
         observer.tell(Event::Warning(&noise.words()));
     }
+    for warning in overruns(&results) {
+        observer.tell(Event::Warning(&warning));
+    }
     write_results(&setup.folder, &results)?;
     Ok(Outcome {
         end,
@@ -196,6 +199,7 @@ fn check_strategies(
         let mut warned = Vec::new();
         for stage in stages {
             let settings = method.changes.apply(&stage.settings);
+            check_effect(method, stage)?;
             let path = &settings.path;
             let Some(lost) = lost_light(&stage.scene, settings.integrator, path) else {
                 continue;
@@ -216,6 +220,20 @@ fn check_strategies(
         }
     }
     Ok(())
+}
+
+/// Refuses a setting without effect on the integrator that the scene brings.
+fn check_effect(method: &MethodSpec, stage: &Stage<'_>) -> Result<()> {
+    let changes = &method.changes;
+    let integrator = stage.settings.integrator;
+    match changes.without_effect(integrator) {
+        Some(name) if changes.integrator.is_none() => Err(ExperimentError::NoEffect {
+            scene: stage.spec.name.clone(),
+            method: method.name.clone(),
+            text: no_effect(name, integrator),
+        }),
+        _ => Ok(()),
+    }
 }
 
 impl Machine {

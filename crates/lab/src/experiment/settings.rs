@@ -11,7 +11,7 @@ use bidir::path::{
 };
 use bidir::sampler::SamplerKind;
 use bidir::select::ShadowRays;
-use formats::film::SettingsText;
+use formats::film::{SettingsText, has_influence, name_of};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::str::FromStr;
@@ -122,6 +122,26 @@ impl Changes {
         }
     }
 
+    /// The first setting here without effect on `integrator`.
+    pub(super) fn without_effect(&self, integrator: IntegratorKind) -> Option<&'static str> {
+        let given = [
+            ("shadow-rays", self.shadow_rays.is_some()),
+            ("candidates", self.candidates.is_some()),
+            ("next-events", self.next_events.is_some()),
+            ("proposal", self.proposal.is_some()),
+            ("light-start", self.emission.is_some()),
+            ("samples-per-subpath", self.samples_per_subpath.is_some()),
+            ("mis-count", self.mis_count.is_some()),
+            ("mis", self.mis.is_some()),
+            ("strategies", self.strategies.is_some()),
+            ("light-point", self.light_point.is_some()),
+            ("light-choice", self.light_choice.is_some()),
+        ];
+        let given = given.into_iter().filter(|(_, is_given)| *is_given);
+        let mut names = given.map(|(name, _)| name);
+        names.find(|name| !has_influence(name, integrator))
+    }
+
     /// The settings of a scene with these changes.
     pub fn apply(&self, scene: &Settings) -> Settings {
         let mut settings = scene.clone();
@@ -151,6 +171,12 @@ impl Changes {
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         settings
     }
+}
+
+/// The message for a setting without effect on an integrator.
+pub(super) fn no_effect(name: &str, integrator: IntegratorKind) -> String {
+    let integrator = name_of(&IntegratorKind::NAMES, integrator);
+    format!("`{name}` has no effect on the integrator `{integrator}`")
 }
 
 /// All settings but the seed, by the names of [`Changes::NAMES`] and as [`Changes::set`] takes them.

@@ -16,6 +16,8 @@ use std::ops::RangeInclusive;
 /// Up to so many vertices, paths with specular vertices are looked at: longer ones need no other
 /// strategies.
 const LONGEST_PATTERN: usize = 7;
+/// At most so many of the lost patterns are named.
+const EXAMPLES: usize = 3;
 
 /// Light that a list of strategies loses. Its text follows the name of the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,7 +29,7 @@ pub enum LostLight {
     },
     /// The paths of these numbers of vertices.
     Lengths(Vec<RangeInclusive<usize>>),
-    /// Paths with specular vertices, such as `L S E`.
+    /// Paths with specular vertices: the shortest patterns, such as `L S E, L S D E`.
     Specular(String),
 }
 
@@ -48,7 +50,7 @@ impl fmt::Display for LostLight {
             }
             Self::Specular(pattern) => write!(
                 f,
-                "loses light: no strategy makes paths {pattern} (L light, S mirror or clear glass, \
+                "loses light: no strategy makes paths such as {pattern} (L light, S mirror or clear glass, \
                  D other surface, E camera)"
             ),
         }
@@ -87,9 +89,24 @@ pub fn lost_light(
     if !scene.materials_of_surfaces().any(Material::may_be_specular) {
         return None;
     }
-    let mut patterns = (3..=most.min(LONGEST_PATTERN)).flat_map(patterns);
-    let pattern = patterns.find(|pattern| lost(pattern))?;
-    Some(LostLight::Specular(name(&pattern)))
+    let patterns = (3..=most.min(LONGEST_PATTERN)).flat_map(patterns);
+    let lost: Vec<_> = patterns.filter(|pattern| lost(pattern)).collect();
+    let named = examples(&lost);
+    (!named.is_empty()).then(|| LostLight::Specular(named.join(", ")))
+}
+
+/// The names of the shortest patterns in which no two neighbours scatter alike; else of the shortest.
+fn examples(lost: &[Vec<bool>]) -> Vec<String> {
+    let varied = lost.iter().filter(|pattern| {
+        let inside = &pattern[1..pattern.len() - 1];
+        inside.windows(2).all(|pair| pair[0] != pair[1])
+    });
+    let varied: Vec<_> = varied.take(EXAMPLES).map(|pattern| name(pattern)).collect();
+    if varied.is_empty() {
+        lost.iter().take(1).map(|pattern| name(pattern)).collect()
+    } else {
+        varied
+    }
 }
 
 /// [`LostLight::All`] where no strategy of the list makes a path within the limit of length.
@@ -103,8 +120,10 @@ pub(crate) fn no_path(integrator: IntegratorKind, settings: &PathSettings) -> Op
     if (2..=most).any(makes) {
         return None;
     }
-    let max_vertices = (most + 1..=MAX_VERTICES).any(makes).then_some(most);
-    Some(LostLight::All { max_vertices })
+    let makes_longer = (most + 1..=MAX_VERTICES).any(makes) || list.has_longer_than(MAX_VERTICES);
+    Some(LostLight::All {
+        max_vertices: makes_longer.then_some(most),
+    })
 }
 
 /// How light leaves a light.
@@ -217,7 +236,11 @@ mod tests {
             check(&scene, list, 5, Some("makes no path"));
         }
         let long = Some("makes no path of at most 7 vertices");
-        check(&scene, "s4t4", 5, long);
+        for list in ["s4t4", "s9999t2", "t1025"] {
+            check(&scene, list, 5, long);
+        }
+        let longest = Some("makes no path of at most 1024 vertices");
+        check(&scene, "s9999t2", 0, longest);
         assert_eq!(
             lost(&scene, "s4t4", 6).unwrap().split(':').next(),
             Some("loses light")
@@ -260,16 +283,37 @@ mod tests {
     fn mirrors_need_hits_and_light_images() {
         let words = |pattern: &str| {
             format!(
-                "loses light: no strategy makes paths {pattern} (L light, S mirror or clear glass, \
+                "loses light: no strategy makes paths such as {pattern} (L light, S mirror or clear glass, \
                  D other surface, E camera)"
             )
         };
         let mirror = |light| scene(&[diffuse(), metal(0.0)], vec![light]);
-        check(&mirror(sky()), "all,-s0", 5, Some(&words("L S E")));
+        check(
+            &mirror(sky()),
+            "all,-s0",
+            5,
+            Some(&words("L S E, L S D S E, L S D S D S E")),
+        );
         check(&mirror(sky()), "all,-t1", 5, None);
+        check(
+            &mirror(sky()),
+            "s1",
+            5,
+            Some(&words("L S E, L S D E, L S D S E")),
+        );
         check(&mirror(point()), "all,-s0", 5, None);
-        check(&mirror(point()), "all,-t1", 5, Some(&words("L S D E")));
-        check(&mirror(point()), "all,-s1", 5, Some(&words("L D S E")));
+        check(
+            &mirror(point()),
+            "all,-t1",
+            5,
+            Some(&words("L S D E, L S D S D E")),
+        );
+        check(
+            &mirror(point()),
+            "all,-s1",
+            5,
+            Some(&words("L D S E, L D S D S E")),
+        );
         // Too short for it.
         check(&mirror(point()), "all,-t1", 1, None);
     }

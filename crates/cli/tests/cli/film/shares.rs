@@ -1,6 +1,6 @@
 //! Shares of a render: merged, missing, refused, and gone on from.
 
-use crate::common::Workplace;
+use crate::common::{SCENE, Workplace};
 use std::fs;
 
 #[test]
@@ -94,6 +94,11 @@ fn films_that_do_not_belong_together_are_refused() {
         .run(resumed)
         .expect(5)
         .says("the film of another render");
+    place.write("room.pbrt", SCENE);
+    place
+        .run(&(resumed.to_owned() + " --seed 3"))
+        .expect(5)
+        .says("another render: seed is 3 in this render and 0 in the film");
 }
 
 #[test]

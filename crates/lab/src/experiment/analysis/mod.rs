@@ -8,16 +8,20 @@
 //!
 //! whose costs have training in them, as the columns of rays and of seconds have.
 //!
+//! Renders that take far more rays than their budget are found by [`overruns`].
+//!
 //! How much of the errors is the reference's is told by [`reference_noise`].
 //! Where several budgets are of one kind there is a plot of each metric over them. All intervals are
 //! of 95 %; a single seed has a number and no interval.
 
 mod curves;
 mod noise;
+mod overrun;
 #[cfg(test)]
 mod tests;
 
 pub use noise::{ReferenceNoise, reference_noise};
+pub use overrun::overruns;
 
 use crate::results::{Cell, Plot, Record, Results, SceneInfo, Table};
 use crate::statistics::{Interval, mean_interval, ratio_interval};

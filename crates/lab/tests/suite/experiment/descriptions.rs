@@ -57,6 +57,11 @@ fn what_is_wrong_is_told_with_its_place() {
     );
     check(
         &all.replace("samples = 2", "samples = 2\nrays = 3"),
+        ":14:8: this budget has both `samples` and `rays`",
+        Some("write one [[budget]] for each"),
+    );
+    check(
+        &all.replace("samples = 2", ""),
         ":12:1: expected one of `samples`, `rays` and `seconds`",
         None,
     );
@@ -92,6 +97,41 @@ fn what_is_wrong_is_told_with_its_place() {
         &all.replace("reference-spp = 16", ""),
         ":4:1: `reference` or `reference-spp` is missing",
         None,
+    );
+}
+
+#[test]
+fn paths_of_scenes_have_no_detours() {
+    let place = Workplace::new();
+    for file in ["out/../room.pbrt", "./room.pbrt"] {
+        let text = DESCRIPTION.replace("room.pbrt", file) + "[[budget]]\nsamples = 2\n";
+        let experiment = place.read(&text).unwrap();
+        assert_eq!(experiment.scenes[0].path, place.path("room.pbrt"));
+    }
+}
+
+#[test]
+fn settings_without_effect_on_the_integrator_of_a_method_are_refused() {
+    let of_all =
+        format!("{DESCRIPTION}[settings]\nintegrator = \"path\"\n[[budget]]\nsamples = 2\n");
+    let hint = "[settings] sets this integrator: give the method its own, or leave the setting out";
+    check(
+        &of_all,
+        ":11:15: `shadow-rays` has no effect on the integrator `path`",
+        Some(hint),
+    );
+    let own = of_all.replace("shadow-rays =", "integrator = \"bdpt\"\nshadow-rays =");
+    Workplace::new().read(&own).unwrap();
+    // The scene may bring the integrator.
+    let place = Workplace::new();
+    let scene = std::fs::read_to_string(place.path("room.pbrt")).unwrap();
+    let scene = scene.replace("Integrator \"bdpt\"", "Integrator \"path\"");
+    std::fs::write(place.path("room.pbrt"), scene).unwrap();
+    let text = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
+    assert_eq!(
+        place.refusal(&text, "out").to_string(),
+        "scene `room`: method `one`: `shadow-rays` has no effect on the integrator `path`, which the \
+         scene sets"
     );
 }
 
@@ -179,7 +219,8 @@ fn older_names_are_accepted() {
         "auto",
     );
     let error = place.read(&both).unwrap_err().to_string();
-    assert!(error.contains("there is no key `emission` here"), "{error}");
+    let both = "`emission` is the older name of `light-start`: write one of them";
+    assert!(error.ends_with(both), "{error}");
 }
 
 #[test]

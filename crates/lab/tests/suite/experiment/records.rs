@@ -159,3 +159,28 @@ fn training_is_paid_for() {
     );
     assert_eq!(results.records[0].rays.training, 0);
 }
+
+#[test]
+fn a_first_pass_far_beyond_the_budget_is_a_warning() {
+    let place = Workplace::new();
+    let warnings = |rays: &str| {
+        let mut watch = Watch::default();
+        let text = with_budget(&format!("rays = {rays}"));
+        place
+            .run(&text, &format!("out-{rays}"), &mut watch)
+            .unwrap();
+        watch.warnings.retain(|text| text.contains("equal rays"));
+        watch.warnings
+    };
+    let small = warnings("1");
+    assert_eq!(small.len(), 2, "{small:?}");
+    assert!(
+        small[0].starts_with("scene `room`: `all` takes ")
+            && small[0].ends_with(
+                " rays per pixel for training and its first pass, and the budget is 1: these results \
+                 are not at equal rays"
+            ),
+        "{small:?}"
+    );
+    assert_eq!(warnings("200"), [""; 0]);
+}
