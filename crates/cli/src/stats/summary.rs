@@ -97,18 +97,19 @@ impl Summary {
 /// The flags that render as `auto` does.
 fn describe(plan: &Plan) -> String {
     let name = name_of(&IntegratorKind::NAMES, plan.integrator);
-    let mut flags = format!("--integrator {name}");
-    if plan.integrator == IntegratorKind::Lvc {
-        let (candidates, rays) = (plan.candidates, plan.shadow_rays);
-        let samples = plan.samples_per_subpath.get();
-        flags += &format!(
-            " --candidates {candidates} --shadow-rays {rays} --samples-per-subpath {samples}"
-        );
-    }
-    if plan.roulette != plan.integrator.roulette() {
-        flags += &format!(" --path-roulette {}", plan.roulette);
-    }
-    flags
+    let is_lvc = plan.integrator == IntegratorKind::Lvc;
+    let (candidates, rays) = (plan.candidates, plan.shadow_rays);
+    let samples = plan.samples_per_subpath.get();
+    let has_own = plan.roulette != plan.integrator.roulette();
+    let flags = [
+        Some(format!("--integrator {name}")),
+        is_lvc.then(|| format!("--candidates {candidates}")),
+        is_lvc.then(|| format!("--shadow-rays {rays}")),
+        is_lvc.then(|| format!("--samples-per-subpath {samples}")),
+        has_own.then(|| format!("--path-roulette {}", plan.roulette)),
+    ];
+    let flags: Vec<_> = flags.into_iter().flatten().collect();
+    flags.join(" ")
 }
 
 /// `a`, `a and b`, `a, b and c`.
