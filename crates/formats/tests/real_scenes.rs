@@ -69,18 +69,8 @@ fn check(name: &str, passes: u64, factor: u64) {
 }
 
 #[test]
-fn veach_bidir() {
-    check("pbrt-v4/veach-bidir/veach-bidir.pbrt", 512, 8);
-}
-
-#[test]
 fn cornell_box() {
     check("pbrt-v4/cornell-box-w3ntao/cornell-box.pbrt", 256, 8);
-}
-
-#[test]
-fn coffee() {
-    check("pbrt-v4/coffee/coffee.pbrt", 160, 8);
 }
 
 #[test]
@@ -95,6 +85,18 @@ fn gltf_flight_helmet() {
 
 mod long_statistics {
     use super::check;
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn coffee() {
+        check("pbrt-v4/coffee/coffee.pbrt", 160, 8);
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn veach_bidir() {
+        check("pbrt-v4/veach-bidir/veach-bidir.pbrt", 512, 8);
+    }
 
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]

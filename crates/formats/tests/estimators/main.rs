@@ -268,24 +268,23 @@ fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
 }
 
 /// Two of many candidates are traced: what counts as a sample depends on how weights count.
+#[track_caller]
+fn check_counts(name: &str, world: &World, effort: u64) {
+    for (count_name, mis_count) in MisCount::NAMES {
+        let case = world.case().with_effort(effort);
+        let result = case.render(IntegratorKind::Lvc, |settings| {
+            settings.shadow_rays = ShadowRays::Budget(2);
+            settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
+            settings.lvc.mis_count = mis_count;
+        });
+        let name = format!("{name}, {count_name}");
+        check_agree(&name, &result, &world.reference, QUARTERS);
+    }
+}
+
 #[test]
 fn weights_that_count_samples_in_other_ways() {
-    let bulb = World::new("bulb", 256, 6);
-    for (name, world, effort) in [
-        ("red-light-blue-surfaces", &*RED_LIGHT, 2),
-        ("bulb", &bulb, 3),
-    ] {
-        for (count_name, mis_count) in MisCount::NAMES {
-            let case = world.case().with_effort(effort);
-            let result = case.render(IntegratorKind::Lvc, |settings| {
-                settings.shadow_rays = ShadowRays::Budget(2);
-                settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
-                settings.lvc.mis_count = mis_count;
-            });
-            let name = format!("{name}, {count_name}");
-            check_agree(&name, &result, &world.reference, QUARTERS);
-        }
-    }
+    check_counts("red-light-blue-surfaces", &RED_LIGHT, 2);
 }
 
 #[test]
@@ -315,31 +314,39 @@ fn check_strategies(list: &str, effort: u64, blocks: &[usize]) {
     check_agree(list, &result, &RED_LIGHT.reference, blocks);
 }
 
-#[test]
-fn single_strategies_at_fixed_length() {
-    let loaded = open("separated.pbrt");
-    let case = Case::new(&loaded, 1024);
-    let single = |s: usize, length: usize, effort: u64| {
-        let only = format!("s{s}t{}", length - s);
-        case.with_effort(effort).bdpt(|settings| {
-            settings.path.strategies = only.parse().expect("a strategy");
-            settings.path.max_depth = Some(length as u32 - 2);
-        })
-    };
-    // Few light subpaths reach the lens's view, and few walks of the camera the lamp: those that
-    // meet it after two bounces are too few to compare.
-    for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 8, [(2, 6), (3, 24)])] {
-        let next_event = single(1, length, effort);
-        for (s, effort) in others {
-            let name = format!("s{s}t{} against s1", length - s);
-            check_agree(&name, &single(s, length, effort), &next_event, QUARTERS);
-        }
-    }
-}
-
 /// Comparisons that need many samples.
 mod long_statistics {
-    use super::{QUARTERS, check_filter, check_strategies};
+    use super::case::{Case, open};
+    use super::{QUARTERS, World, check_agree, check_counts, check_filter, check_strategies};
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn single_strategies_at_fixed_length() {
+        let loaded = open("separated.pbrt");
+        let case = Case::new(&loaded, 1024);
+        let single = |s: usize, length: usize, effort: u64| {
+            let only = format!("s{s}t{}", length - s);
+            case.with_effort(effort).bdpt(|settings| {
+                settings.path.strategies = only.parse().expect("a strategy");
+                settings.path.max_depth = Some(length as u32 - 2);
+            })
+        };
+        // Few light subpaths reach the lens's view, and few walks of the camera the lamp: those that
+        // meet it after two bounces are too few to compare.
+        for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 8, [(2, 6), (3, 24)])] {
+            let next_event = single(1, length, effort);
+            for (s, effort) in others {
+                let name = format!("s{s}t{} against s1", length - s);
+                check_agree(&name, &single(s, length, effort), &next_event, QUARTERS);
+            }
+        }
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn weights_that_count_samples_in_other_ways() {
+        check_counts("bulb", &World::new("bulb", 256, 6), 3);
+    }
 
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]

@@ -65,8 +65,8 @@ impl World {
     }
 }
 
-/// Those that no other test is about; `picture-lamp`, `shapes` and `leaves` take so long that they are
-/// among the long statistics alone.
+/// Those that no other test is about. All but three of them take so long that they are among the long
+/// statistics alone.
 const WORLDS: [World; 8] = [
     world("picture-lamp", [512, 2], Light::Whole(2)),
     world("sky-alone", [256, 2], Light::Whole(32)).by_blocks(),
@@ -240,18 +240,8 @@ fn check(name: &str) {
 }
 
 #[test]
-fn a_picture_of_the_sky_alone() {
-    check("sky-alone");
-}
-
-#[test]
 fn a_camera_within_glass() {
     check("within-glass");
-}
-
-#[test]
-fn a_lamp_within_glass_seen_in_a_mirror() {
-    check("bulb");
 }
 
 #[test]

@@ -104,7 +104,9 @@ fn a_scene_whose_method_has_no_strategies_is_refused() {
     let scene = fs::read_to_string(place.path("room.pbrt")).unwrap();
     let scene = scene.replace("Integrator \"bdpt\"", "Integrator \"path\"");
     fs::write(place.path("room.pbrt"), scene).unwrap();
-    let error = place.run(&description(), "out", &mut Watch::default());
+    let other = "shadow-rays = \"per-pair\"";
+    let description = description().replace(other, &format!("integrator = \"bdpt\"\n{other}"));
+    let error = place.run(&description, "out", &mut Watch::default());
     let error = error.unwrap_err();
     assert!(matches!(error, ExperimentError::Pyramid { .. }), "{error}");
     assert_eq!(error.hint(), Some("give the method integrator = \"bdpt\""));
