@@ -141,16 +141,16 @@ fn a_crop_is_the_same_part_of_the_whole() {
 
 #[test]
 fn filters_with_and_without_negative_lobes() {
-    check_filter("triangle", 2);
-    check_filter("mitchell", 2);
+    check_filter("triangle", 512, 2);
+    check_filter("mitchell", 512, 2);
 }
 
 /// The path tracer meets the lamp rarely, and the wider the lobes the more that varies: it takes `effort`
 /// times the passes. Lobes blur edges and leave means of blocks alone, so pixels are compared.
 #[track_caller]
-fn check_filter(name: &str, effort: u64) {
+fn check_filter(name: &str, passes: u64, effort: u64) {
     let loaded = open(&format!("filter-{name}.pbrt"));
-    let case = Case::new(&loaded, 512);
+    let case = Case::new(&loaded, passes);
     let reference = case.bdpt(|_| ());
     case.check_light(&reference);
     let case = case.with_effort(2 * effort);
@@ -357,7 +357,7 @@ mod long_statistics {
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
     fn filters_of_wide_lobes() {
-        check_filter("gaussian", 2);
-        check_filter("sinc", 16);
+        check_filter("gaussian", 512, 2);
+        check_filter("sinc", 1024, 24);
     }
 }
