@@ -1,5 +1,5 @@
 //! Every integrator with every choice of shadow rays, and `auto` with plans that it may choose, on every
-//! scene: a part of it always, all of it among the long statistics.
+//! scene: a part of it always, more among the long statistics, and all of it at night.
 
 use crate::case::{Case, PIXELS, QUARTERS, open};
 use crate::statistics::{BIAS, Comparison, Replicates};
@@ -78,7 +78,7 @@ const WORLDS: [World; 8] = [
     world("empty-sky", [128, 1], Light::Whole(12)).by_blocks(),
 ];
 
-/// Those that have tests of their own, and are in the matrix among the long statistics.
+/// Those that have tests of their own, and are in the matrix at night.
 const OTHERS: [World; 13] = [
     world("conductor", [2880, 1], Light::Partial),
     world("crop", [1536, 1], Light::Whole(10)).by_blocks(),
@@ -254,8 +254,42 @@ fn a_sky_over_nothing() {
     check("empty-sky");
 }
 
-/// One test for each world, so that they run side by side and each has a result of its own.
 mod long_statistics {
+    use super::check;
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn lamps_that_are_pictures() {
+        check("picture-lamp");
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn a_picture_of_the_sky_alone() {
+        check("sky-alone");
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn a_lamp_within_glass_seen_in_a_mirror() {
+        check("bulb");
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn shapes_of_all_kinds() {
+        check("shapes");
+    }
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn leaves_cut_out_and_placed_many_times() {
+        check("leaves");
+    }
+}
+
+/// One test for each world, so that they run side by side and each has a result of its own.
+mod every_choice_of_shadow_rays {
     use super::{OTHERS, RULES, WORLDS, planned};
 
     #[track_caller]
@@ -271,7 +305,7 @@ mod long_statistics {
         ($($name:ident)*) => {
             $(
                 #[test]
-                #[ignore = "long statistics: .ci/run statistics"]
+                #[ignore = "takes long: just nightly"]
                 fn $name() {
                     check(stringify!($name));
                 }
