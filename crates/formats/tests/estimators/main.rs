@@ -65,8 +65,8 @@ fn metal_smooth_rough_and_anisotropic() {
 #[test]
 fn half_covered_lens() {
     let loaded = open("lens.pbrt");
-    // Splats from what is close to the lens are few and bright: the light tracer needs so many samples that
-    // it is compared among the long statistics of the matrix.
+    // Splats from close to the lens are few and bright: the light tracer needs so many samples that it is
+    // compared among the long statistics.
     let case = Case::new(&loaded, 2560);
     case.check_bdpt(&case.path());
 }
@@ -318,6 +318,15 @@ fn check_strategies(list: &str, effort: u64, blocks: &[usize]) {
 mod long_statistics {
     use super::case::{Case, open};
     use super::{QUARTERS, World, check_agree, check_counts, check_filter, check_strategies};
+
+    #[test]
+    #[ignore = "long statistics: .ci/run statistics"]
+    fn light_tracing_to_a_half_covered_lens() {
+        let loaded = open("lens.pbrt");
+        let case = Case::new(&loaded, 3072);
+        let reference = case.with_effort(2).path();
+        case.with_effort(12).check_light(&reference);
+    }
 
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
