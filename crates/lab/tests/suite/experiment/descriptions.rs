@@ -39,6 +39,10 @@ fn what_is_wrong_is_told_with_its_place() {
         near("samples").as_deref(),
     );
     check("title = \"a\"\n", ":1:1: there is no [[scene]]", None);
+}
+
+#[test]
+fn wrong_values_are_told_with_their_place() {
     let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
     check(
         &all.replace("seeds", "sedes"),
