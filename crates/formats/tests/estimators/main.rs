@@ -241,7 +241,7 @@ fn several_light_points_for_each_camera_vertex() {
                 .case()
                 .with_effort(effort)
                 .render(IntegratorKind::Lvc, |settings| {
-                    settings.lvc.next_events = CandidateCount::new(first, deeper)
+                    settings.lvc.next_events = CandidateCount::new(first, deeper);
                 });
             let name = format!("{name}, {first} and {deeper} light points");
             check_agree(&name, &result, &world.reference, QUARTERS);
