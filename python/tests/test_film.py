@@ -83,7 +83,7 @@ def test_images_are_kept_in_files(cornell: bidir.Scene, tmp_path: Path) -> None:
     assert np.abs(shown - np.clip(image.pixels, 0, 1)).max() < 0.01
     bidir.write_image(tmp_path / "b.exr", 2 * image.pixels)
     assert bidir.identical(bidir.read_image(tmp_path / "b.exr"), 2 * image.pixels)
-    with pytest.raises(bidir.SettingsError, match="output images are .exr or .png"):
+    with pytest.raises(bidir.SettingsError, match=r"output images are \.exr or \.png"):
         image.save(tmp_path / "a.jpg")
     with pytest.raises(bidir.SettingsError, match=r"the shape \(rows, columns, 3\)"):
         bidir.write_image(tmp_path / "c.exr", np.zeros((4, 4)))
