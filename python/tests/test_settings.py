@@ -85,7 +85,7 @@ def test_auto_decides(cornell: bidir.Scene) -> None:
     ("settings", "words"),
     [
         ({"mis": "balence"}, "mis: there is no `balence`: did you mean `balance`"),
-        ({"shadow_rays": "budget:0"}, "shadow_rays: `budget:0` is no choice"),
+        ({"shadow_rays": "budget:0"}, "shadow_rays: there is no rule `budget:0`"),
         ({"strategies": "s"}, "strategies"),
         ({"max_depth": -1}, "max_depth: expected a whole number"),
     ],
