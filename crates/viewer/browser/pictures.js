@@ -13,7 +13,7 @@ import { MISSING, ROOT, Renderer, launch, open, sleep } from "./stand.js";
 
 const WINDOW = { width: 1280, height: 800 };
 /** Keeps photographs of noise under 200 KB. Unit: percent. */
-const QUALITY = 80;
+const QUALITY = 70;
 /** How long both integrators render before the picture is taken. Unit: milliseconds. */
 const RENDERING = 40_000;
 
