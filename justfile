@@ -24,6 +24,9 @@ stat SEED="1":
 docs:
     cargo build --release
     ${CARGO_TARGET_DIR:-target}/release/bidir man --markdown > docs/reference/cli.md
+    BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys
+    python3 tools/tables
+    python3 tools/python_reference
 
 # The libraries' documentation.
 doc:

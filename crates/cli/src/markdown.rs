@@ -195,7 +195,7 @@ fn environment(page: &mut String, root: &Command) {
     }
 }
 
-/// What a table calls an argument: `-o`, `--output <FILE>`.
+/// Returns the name of an argument in a table: `-o`, `--output <FILE>`.
 fn name(arg: &Arg) -> String {
     let names = arg.get_value_names().unwrap_or_default();
     let takes_value = arg.get_action().takes_values();

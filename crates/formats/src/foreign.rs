@@ -1,8 +1,8 @@
 //! Files of other programs, recognised by their first bytes and their ending, so that a message names
 //! them and the way in.
 //!
-//! What the bytes say counts first, then a word of the expected format, and the ending last: a scene
-//! under an odd name is still read.
+//! The bytes count first, then a word of the expected format, and the ending last: a scene under an odd
+//! name is still read.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
@@ -22,7 +22,7 @@ struct Kind {
     hint: Hint,
 }
 
-/// What to do with a file.
+/// The way in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hint {
     /// These words.

@@ -19,7 +19,7 @@ use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use viewer::tev::TevAddress;
 
-/// What is rendered, how, for how long, and where it goes. Headings of `--help` come in the order of
+/// The flags of `bidir render`. Headings of `--help` come in the order of
 /// their first fields.
 #[derive(Args, Debug)]
 #[command(after_help = "\

@@ -14,7 +14,7 @@ const LEAST_PASSES: u64 = 16;
 pub(crate) struct Summary {
     /// All passes of the film.
     passes: u64,
-    /// Those of this run.
+    /// The passes of this run.
     rendered: u64,
     /// The number of passes to reach. None: there is no limit.
     wanted: Option<u64>,

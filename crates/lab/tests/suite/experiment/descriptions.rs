@@ -42,7 +42,7 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
-fn wrong_values_are_told_with_their_place() {
+fn wrong_values_are_refused_with_their_place() {
     let all = DESCRIPTION.to_owned() + "[[budget]]\nsamples = 2\n";
     check(
         &all.replace("seeds", "sedes"),
