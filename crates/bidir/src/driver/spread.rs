@@ -41,7 +41,6 @@ pub(super) fn permutation(crop: &PixelRect) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::training::blocks::{BLOCKS, Blocks};
     use crate::integrator::group_size;
 
     const SIZES: [[u32; 2]; 10] = [
@@ -56,25 +55,6 @@ mod tests {
         [1024, 5],
         [3, 2000],
     ];
-
-    #[test]
-    fn points_are_spread_over_films_of_all_sizes() {
-        for max in &SIZES[..6] {
-            let crop = PixelRect {
-                min: [0; 2],
-                max: *max,
-            };
-            let blocks = Blocks::new(crop);
-            let mut counts = [0; BLOCKS];
-            for i in 0..16 * BLOCKS as u64 {
-                let [x, y] = point(&crop, 32_768 + i).map(i64::from);
-                counts[blocks.of(crop.index(x, y).expect("a pixel of the film"))] += 1;
-            }
-            let most = counts.iter().max().copied().unwrap_or(0);
-            let least = counts.iter().min().copied().unwrap_or(0);
-            assert!(least >= 8 && most <= 24, "{max:?}: {least} to {most}");
-        }
-    }
 
     /// The group of each pixel, in row order.
     fn groups(crop: &PixelRect) -> Vec<u64> {

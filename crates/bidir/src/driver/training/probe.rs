@@ -153,9 +153,34 @@ impl Probe<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::driver::training::blocks::{BLOCKS, Blocks};
     use crate::driver::training::trial::tests::lamp;
     use crate::film::PixelRect;
     use crate::sampler::{Dimension, Purpose};
+
+    #[test]
+    fn samples_are_spread_over_films_of_all_sizes() {
+        let sizes = [
+            [2560, 1440],
+            [920, 680],
+            [720, 480],
+            [1920, 1080],
+            [320, 240],
+            [4096, 64],
+        ];
+        for max in sizes {
+            let crop = PixelRect { min: [0; 2], max };
+            let blocks = Blocks::new(crop);
+            let mut counts = [0; BLOCKS];
+            for i in 0..16 * BLOCKS as u64 {
+                let [x, y] = spread::point(&crop, 32_768 + i).map(i64::from);
+                counts[blocks.of(crop.index(x, y).expect("a pixel of the film"))] += 1;
+            }
+            let most = counts.iter().max().copied().unwrap_or(0);
+            let least = counts.iter().min().copied().unwrap_or(0);
+            assert!(least >= 8 && most <= 24, "{max:?}: {least} to {most}");
+        }
+    }
 
     /// As in the image: points of a sequence are even where none is left out.
     #[test]
