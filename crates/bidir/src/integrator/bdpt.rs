@@ -107,11 +107,7 @@ pub(super) fn light_images(context: &PathContext<'_>, sample: &Sample, workspace
         let Some(image) = light_image(context, &light.vertices[..s], &lens) else {
             continue;
         };
-        let weight = weights.weight(context, &image.path);
-        if weight <= 0.0 {
-            continue;
-        }
-        let image = image.weighted(weight);
+        let image = image.weighted(weights.weight(context, &image.path));
         workspace.splat(context, sample, &image);
     }
 }

@@ -2,6 +2,10 @@
 
 use super::densities::{PathDensities, VertexDensities};
 
+/// What is left of a share that is cut off: too little to be seen, and enough to find the value without
+/// the weight again.
+const LEFT: f64 = 1e-9;
+
 /// How strategies that can make the same path share it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MisHeuristic {
@@ -34,7 +38,7 @@ impl MisHeuristic {
     }
 
     /// The share of (1, 1), the light image of a lamp or a sky, where that of (0, 2), which hits it, is
-    /// `hit`: zero where the image has at most twice as many samples there (the cutoff heuristic
+    /// `hit`: a billionth of it where the image has at most twice as many samples there (the cutoff heuristic
     /// \[Veach97, §9.2.3\] for these two).
     ///
     /// Where light that is seen directly covers a pixel evenly, hits have no variance, but the number
@@ -45,7 +49,7 @@ impl MisHeuristic {
             Self::Balance | Self::Power => self.share(2.0) * hit,
             Self::Uniform => 0.0,
         };
-        if image > cutoff { image } else { 0.0 }
+        if image > cutoff { image } else { LEFT * image }
     }
 
     /// The weight of a strategy with density `p`, where one other, with density `q` in the same
@@ -188,10 +192,10 @@ mod tests {
         ) {
             let n = path.vertices.len();
             let share = |j: usize| heuristic.share(counts[j] * density(&path, j));
-            // Light seen directly: an image of twice as many samples as hits or fewer is left out.
+            // Light seen directly: an image of twice as many samples as hits or fewer is cut off.
             let few = heuristic != MisHeuristic::Uniform
                 && counts[1] * density(&path, 1) <= 2.0 * counts[0] * density(&path, 0);
-            let kept = |s: usize| if n == 2 && s == 1 && few { 0.0 } else { share(s) };
+            let kept = |s: usize| if n == 2 && s == 1 && few { 1e-9 * share(s) } else { share(s) };
             let total: f64 = (0..n).map(kept).sum();
             let mut sum = 0.0;
             for s in (0..n).filter(|&s| share(s) > 0.0) {
