@@ -7,23 +7,19 @@ use super::parameters::{Parameter, parse_list};
 use super::scene::{Entity, MaterialDescription, SceneDescription, TextureKind, warn};
 use super::state::{OpenBlock, Opener, Scope};
 use super::v3;
-use crate::bytes;
+use crate::bytes::{self, FileBytes};
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::files::Files;
 use crate::foreign;
+use crate::limits::{self, Allowance, LONGEST_TEXT};
 use crate::source::{Fault, FileId, Span, line_and_column};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Files within files within files.
-const DEEPEST: usize = 64;
-/// Bytes of texts that are included again, each time: ends exponential nests.
-const MOST_REPEATED: u64 = 1 << 28;
-/// Blocks within blocks.
-const MOST_BLOCKS: usize = 1 << 16;
-/// Bytes of one text: places in it are 32-bit numbers.
-const LONGEST_TEXT: u64 = u32::MAX as u64;
+/// How to have the same things in many places.
+const REPEAT_BY_OBJECTS: &str =
+    "make an object of what is repeated (ObjectBegin), and instances of it (ObjectInstance)";
 
 /// Parses a scene file; `-` is standard input.
 pub fn parse_file(path: &Path) -> Result<SceneDescription> {
@@ -33,7 +29,7 @@ pub fn parse_file(path: &Path) -> Result<SceneDescription> {
 /// The same as [`parse_file`], with files from where `files` says.
 pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
     foreign::check_folder(path, files)?;
-    let bytes = files.read_or_stdin(path, LONGEST_TEXT)?;
+    let FileBytes { bytes, stored } = files.read_or_stdin(path, LONGEST_TEXT)?;
     foreign::check_pbrt(path, &bytes)?;
     let text = decode(path, bytes)?;
     let folder = if path.as_os_str() == bytes::STDIN {
@@ -42,16 +38,23 @@ pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
         path.parent()
     };
     let parser = Parser::new(folder.unwrap_or(Path::new("")), files.clone());
-    parse(parser, path, text)
+    parse(parser, path, (text, stored))
 }
 
 /// Parses a scene that is already in memory; files are looked for in the working directory.
 pub fn parse_text(name: &str, text: &str) -> Result<SceneDescription> {
     let parser = Parser::new(Path::new(""), Files::default());
-    parse(parser, Path::new(name), text.to_owned())
+    let text = (text.to_owned(), text.len() as u64);
+    parse(parser, Path::new(name), text)
 }
 
-fn parse(mut parser: Parser, name: &Path, text: String) -> Result<SceneDescription> {
+/// Parses a text that takes `stored` bytes on the disk.
+fn parse(
+    mut parser: Parser,
+    name: &Path,
+    (text, stored): (String, u64),
+) -> Result<SceneDescription> {
+    parser.scene.stored = stored;
     parser.scene.texts.push(name.to_owned());
     let file = parser.scene.sources.add(name, text)?;
     match parser.top(name, file) {
@@ -96,10 +99,21 @@ pub(super) struct Parser {
     /// The files that are being read, outermost first.
     open: Vec<PathBuf>,
     texts: BTreeMap<PathBuf, FileId>,
+    /// The files that were included, by the names that the scene has for them, beside it.
+    included: BTreeMap<PathBuf, (PathBuf, FileId)>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
-    /// Bytes that may be included again.
-    repeats_left: u64,
+    counts: Counts,
+}
+
+/// How much was read, for limits.
+#[derive(Debug, Default)]
+struct Counts {
+    inclusions: u64,
+    /// Bytes of texts that were included again.
+    again: u64,
+    directives: u64,
+    parameters: u64,
 }
 
 impl Parser {
@@ -126,7 +140,8 @@ impl Parser {
             texts: BTreeMap::new(),
             texture_names: BTreeSet::new(),
             medium_names: BTreeSet::new(),
-            repeats_left: MOST_REPEATED,
+            included: BTreeMap::new(),
+            counts: Counts::default(),
         }
     }
 
@@ -156,6 +171,9 @@ impl Parser {
             let message = format!("expected a directive, found {}", token.describe());
             return Err(Fault::syntax(token.span, message));
         };
+        self.counts.directives += 1;
+        let directives = (self.counts.directives, "directives");
+        self.check_count(directives, limits::DIRECTIVES, token.span)?;
         if let Some(hint) = v3::directive(word) {
             return Err(v3::fault(token.span, &format!("`{word}`"), hint));
         }
@@ -177,13 +195,36 @@ impl Parser {
     }
 
     /// Parses the parameters that follow.
-    pub(super) fn parameters(&self, tokens: &mut Tokens<'_>) -> Result<Vec<Parameter>, Fault> {
-        parse_list(tokens, self.scope.state.color_space)
+    pub(super) fn parameters(&mut self, tokens: &mut Tokens<'_>) -> Result<Vec<Parameter>, Fault> {
+        let list = parse_list(tokens, self.scope.state.color_space)?;
+        if let Some(last) = list.last() {
+            self.counts.parameters += list.len() as u64;
+            let parameters = (self.counts.parameters, "parameters");
+            self.check_count(parameters, limits::PARAMETERS, last.span)?;
+        }
+        Ok(list)
+    }
+
+    /// Refuses more of something than the texts have the bytes for: packed or included again, a few
+    /// bytes can stand for any number.
+    fn check_count(
+        &self,
+        (count, what): (u64, &str),
+        allowance: Allowance,
+        span: Span,
+    ) -> Result<(), Fault> {
+        let stored = self.scene.stored;
+        let most = allowance.of(stored);
+        if count <= most {
+            return Ok(());
+        }
+        let message = format!("texts of {stored} bytes stand for more than {most} {what}");
+        Err(Fault::new(ErrorKind::Limit, span, message).with_hint(REPEAT_BY_OBJECTS))
     }
 
     /// Parses a type word and parameters.
     pub(super) fn entity(
-        &self,
+        &mut self,
         tokens: &mut Tokens<'_>,
         names: &known::Names,
         defaults: &Arc<Vec<Parameter>>,
@@ -208,20 +249,23 @@ impl Parser {
 
     /// Reads `Include`d files with the state as it is.
     pub(super) fn include(&mut self, name: &str, span: Span) -> Result<(), Fault> {
-        if self.open.len() >= DEEPEST {
-            let message = format!("files include files more than {DEEPEST} deep");
-            return Err(Fault::new(ErrorKind::Limit, span, message));
-        }
-        let path = self.scene.resolve(name);
+        self.check_inclusion(span)?;
+        let beside = self.scene.folder.join(name);
+        let known = self.included.get(&beside).cloned();
+        let path = known
+            .as_ref()
+            .map_or_else(|| self.scene.resolve(name), |(path, _)| path.clone());
         if self.open.contains(&path) {
             return Err(Fault::scene(
                 span,
                 format!("`{}` includes itself", path.display()),
             ));
         }
-        let file = self
-            .load(&path)
-            .map_err(|error| Fault::from_error(span, &error))?;
+        let file = match known {
+            Some((_, file)) => self.load_again(file, span)?,
+            None => self.load(&path, span)?,
+        };
+        self.included.insert(beside, (path.clone(), file));
         self.open.push(path);
         let result = self.file(file);
         self.open.pop();
@@ -241,32 +285,54 @@ impl Parser {
         Ok(())
     }
 
-    fn load(&mut self, path: &Path) -> Result<FileId> {
+    fn check_inclusion(&mut self, span: Span) -> Result<(), Fault> {
+        let limit = |message| Err(Fault::new(ErrorKind::Limit, span, message));
+        let deepest = limits::DEEPEST_INCLUSION;
+        if self.open.len() >= deepest {
+            return limit(format!("files include files more than {deepest} deep"));
+        }
+        self.counts.inclusions += 1;
+        let most = limits::MOST_INCLUSIONS;
+        if self.counts.inclusions > most {
+            return limit(format!("files are included more than {most} times in all"));
+        }
+        Ok(())
+    }
+
+    /// Reads a file under a name that is new.
+    fn load(&mut self, path: &Path, span: Span) -> Result<FileId, Fault> {
         // One file has many names.
         let key = self.scene.files.identity(path);
-        if !self.scene.texts.iter().any(|known| known == path) {
-            self.scene.texts.push(path.to_owned());
-        }
         if let Some(&file) = self.texts.get(&key) {
-            let length = self.scene.sources.text(file).len() as u64;
-            let left = self.repeats_left.checked_sub(length);
-            self.repeats_left = left.ok_or_else(|| {
-                let message = format!(
-                    "files are included repeatedly, more than {MOST_REPEATED} bytes in all"
-                );
-                Error::new(ErrorKind::Limit, message).in_file(path)
-            })?;
-            return Ok(file);
+            self.scene.texts.push(path.to_owned());
+            return self.load_again(file, span);
         }
-        let text = decode(path, self.scene.files.read(path, LONGEST_TEXT)?)?;
-        let file = self.scene.sources.add(path, text)?;
+        let file = self
+            .read_text(path)
+            .map_err(|error| Fault::from_error(span, &error))?;
+        self.scene.texts.push(path.to_owned());
         self.texts.insert(key, file);
         Ok(file)
     }
 
+    fn read_text(&mut self, path: &Path) -> Result<FileId> {
+        let FileBytes { bytes, stored } = self.scene.files.read(path, LONGEST_TEXT)?;
+        self.scene.stored += stored;
+        self.scene.sources.add(path, decode(path, bytes)?)
+    }
+
+    /// Counts a text that is included again.
+    fn load_again(&mut self, file: FileId, span: Span) -> Result<FileId, Fault> {
+        self.counts.again += self.scene.sources.text(file).len() as u64;
+        let again = (self.counts.again, "bytes that are included again");
+        self.check_count(again, limits::TEXTS_AGAIN, span)?;
+        Ok(file)
+    }
+
     pub(super) fn open_block(&mut self, opener: Opener, span: Span) -> Result<(), Fault> {
-        if self.scope.blocks.len() >= MOST_BLOCKS {
-            let message = format!("blocks within blocks, more than {MOST_BLOCKS} deep");
+        let deepest = limits::DEEPEST_BLOCK;
+        if self.scope.blocks.len() >= deepest {
+            let message = format!("blocks within blocks, more than {deepest} deep");
             return Err(Fault::new(ErrorKind::Limit, span, message));
         }
         let saved = self.scope.state.clone();

@@ -30,13 +30,13 @@ mod texture;
 mod texture_class;
 
 pub use film::Crop;
-pub(crate) use film::LARGEST_SIDE;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
 use super::scene::{SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
+use crate::limits;
 use crate::source::{Fault, SourceMap, Span};
 use bidir::math::Vec3;
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
@@ -64,17 +64,15 @@ pub struct LoadOptions {
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
     /// The most primitives of the scene, and the most vertices of its meshes, those of shared objects
-    /// counted once. None: 2²⁸.
+    /// counted once. None: 2²², and 16 more for every byte of the scene's files; at most 2²⁸.
     pub most_primitives: Option<u64>,
 }
 
 impl LoadOptions {
-    /// The most primitives of a scene where the caller says nothing of it.
-    const MOST_PRIMITIVES: u64 = 1 << 28;
-
-    /// The most primitives, and the most vertices.
-    pub(crate) fn most_primitives(&self) -> u64 {
-        self.most_primitives.unwrap_or(Self::MOST_PRIMITIVES)
+    /// The most primitives, and the most vertices, of a scene whose files take `stored` bytes.
+    pub(crate) fn most_primitives(&self, stored: u64) -> u64 {
+        let allowed = limits::PRIMITIVES.of(stored).min(limits::MOST_PRIMITIVES);
+        self.most_primitives.unwrap_or(allowed)
     }
 }
 
