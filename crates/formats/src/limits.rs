@@ -35,9 +35,11 @@ pub(crate) const DIRECTIVES: Allowance = Allowance::new(1 << 18, 1);
 /// Parameters of directives.
 pub(crate) const PARAMETERS: Allowance = Allowance::new(1 << 20, 1);
 /// Bytes of meshes, images, spectra and buffers that are read again.
-pub(crate) const FILES_AGAIN: Allowance = Allowance::new(1 << 28, 64);
+pub(crate) const FILES_AGAIN: Allowance = Allowance::new(1 << 27, 128);
 /// Primitives of a scene, and vertices of its meshes; those of shared objects count once.
 pub(crate) const PRIMITIVES: Allowance = Allowance::new(1 << 22, 16);
+/// Shapes, counted as they are kept: those that emit once for each place.
+pub(crate) const SHAPES: Allowance = Allowance::new(1 << 18, 1);
 /// Mesh instances of a glTF file; in pbrt each has a directive.
 pub(crate) const INSTANCES: Allowance = Allowance::new(1 << 18, 1);
 /// Components that are read by accessors of a glTF file.
@@ -111,12 +113,10 @@ mod tests {
                 FILES_AGAIN,
             ),
             ("primitives, and vertices", PRIMITIVES),
+            ("shapes", SHAPES),
             ("mesh instances of glTF", INSTANCES),
             ("components read by accessors of glTF", COMPONENTS),
-            (
-                "numbers of an image: pixels × channels, at least 3",
-                IMAGE,
-            ),
+            ("numbers of an image: pixels × channels, at least 3", IMAGE),
             ("numbers of all images of a scene", IMAGES),
         ] {
             check(&format!("| {item} | {free} | {per_byte} |"));
@@ -153,18 +153,12 @@ mod tests {
             ("film of a scene", format!("{LARGEST_SIDE} pixels per side")),
             ("film file", format!("{} GiB, and", gib(LARGEST_FILM))),
             ("text of a scene", format!("{} GiB", gib(LONGEST_TEXT))),
-            (
-                "mesh file, unpacked",
-                format!("{} GiB", gib(LARGEST_MESH)),
-            ),
+            ("mesh file, unpacked", format!("{} GiB", gib(LARGEST_MESH))),
             (
                 "image file, file of glTF",
                 format!("{} GiB", gib(LARGEST_IMAGE.min(LARGEST_GLTF))),
             ),
-            (
-                "spectrum file",
-                format!("{} MiB", LARGEST_SPECTRUM >> 20),
-            ),
+            ("spectrum file", format!("{} MiB", LARGEST_SPECTRUM >> 20)),
             ("distinct warnings", format!("{MOST_WARNINGS}, then")),
         ] {
             check(&format!("| {item} | {limit}"));

@@ -43,7 +43,10 @@ impl Reading {
             return Ok(());
         }
         self.again += length;
-        self.check((self.again, "bytes that are read again"), limits::FILES_AGAIN)
+        self.check(
+            (self.again, "bytes that are read again"),
+            limits::FILES_AGAIN,
+        )
     }
 
     /// Counts an image. Errors: all images are too large for their files.
@@ -59,7 +62,41 @@ impl Reading {
         if count <= most {
             return Ok(());
         }
-        let message = format!("the scene's {stored} bytes of files stand for more than {most} {what}");
+        let message =
+            format!("the scene's {stored} bytes of files stand for more than {most} {what}");
         Err(Error::new(ErrorKind::Limit, message))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Files pay for what is made of them once, by whatever name they are read.
+    #[test]
+    fn files_that_are_read_again_have_a_limit() {
+        let mut reading = Reading::new(1000);
+        let most = limits::FILES_AGAIN.of(1000 + 50);
+        let mut read = |length| reading.file("a.ply".into(), 50, length);
+        read(u64::MAX).expect("the first time is free");
+        read(most).expect("a file may be read again");
+        let error = read(1).expect_err("but not for ever");
+        assert_eq!(error.kind(), ErrorKind::Limit);
+        assert_eq!(reading.stored(), 1050);
+    }
+
+    #[test]
+    fn images_of_a_scene_have_a_limit_together() {
+        let mut reading = Reading::new(0);
+        let image = || ImageData {
+            width: 1,
+            height: 1,
+            channels: 3,
+            data: vec![0.0; 3],
+        };
+        assert_eq!(reading.image(image()).unwrap(), image());
+        reading.numbers = limits::IMAGES.of(0);
+        let error = reading.image(image()).expect_err("one too many");
+        assert!(error.to_string().contains("numbers of images"), "{error}");
     }
 }

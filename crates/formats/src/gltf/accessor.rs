@@ -133,7 +133,6 @@ impl<'a> Layout<'a> {
     fn read(&self, document: &Document) -> Result<Vec<f64>, GltfFault> {
         let count = self.accessor.count;
         let components = count.saturating_mul(self.components);
-        document.count_components(components as u64, &self.place)?;
         let mut values = match self.accessor.buffer_view {
             Some(view) => self.read_dense(document, view)?,
             None if components > MOST_ZEROS => {
@@ -142,7 +141,10 @@ impl<'a> Layout<'a> {
                 );
                 return Err(self.place.fault(ErrorKind::Limit, message));
             }
-            None => vec![0.0; components],
+            None => {
+                document.count_components(components, &self.place)?;
+                vec![0.0; components]
+            }
         };
         self.read_sparse(document, &mut values)?;
         if self.accessor.normalized {
@@ -167,6 +169,7 @@ impl<'a> Layout<'a> {
         };
         let range = wanted.range(bytes.len(), &self.place)?;
         let bytes = &bytes[range];
+        document.count_components(self.accessor.count * self.components, &self.place)?;
         let at = |i: usize| &bytes[i * stride..i * stride + size];
         let of_value = |value: &[u8], i: usize| {
             let start = self.offset_of(i);

@@ -40,6 +40,7 @@ pub(super) struct Assembly<'a> {
 struct Most {
     /// Primitives, and vertices.
     primitives: u64,
+    shapes: u64,
     places: u64,
 }
 
@@ -78,6 +79,7 @@ impl<'a> Assembly<'a> {
             extent: Extent::NONE,
             most: Most {
                 primitives: context.options.most_primitives(context.reading.stored()),
+                shapes: limits::SHAPES.of(context.reading.stored()),
                 places: limits::INSTANCES.of(context.reading.stored()),
             },
             vertices: 0,
@@ -259,12 +261,20 @@ impl<'a> Assembly<'a> {
         self.summary.shapes += 1;
         self.summary.primitives += shape.triangles.len() as u64;
         self.vertices += shape.positions.len() as u64;
+        let limit = |message| Err(place.fault(ErrorKind::Limit, message));
         let most = self.most.primitives;
-        if self.summary.primitives.max(self.vertices) <= most {
-            return Ok(());
+        if self.summary.primitives.max(self.vertices) > most {
+            return limit(format!(
+                "the scene has more than {most} triangles or vertices"
+            ));
         }
-        let message = format!("the scene has more than {most} triangles or vertices");
-        Err(place.fault(ErrorKind::Limit, message))
+        let most = self.most.shapes;
+        if self.summary.shapes as u64 > most {
+            return limit(format!(
+                "the scene has more than {most} shapes, counted at each place"
+            ));
+        }
+        Ok(())
     }
 
     fn add_to_world(

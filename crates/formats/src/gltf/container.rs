@@ -125,8 +125,7 @@ pub(super) fn resource(
     }
     let path = folder.join(file_of(uri));
     let read = files.read(&path, LARGEST_GLTF);
-    let FileBytes { bytes, stored } =
-        read.map_err(|error| GltfFault::from_error(place, &error))?;
+    let FileBytes { bytes, stored } = read.map_err(|error| GltfFault::from_error(place, &error))?;
     let file = Some((path, stored));
     Ok(Resource { bytes, file })
 }

@@ -244,8 +244,8 @@ impl Document {
     }
 
     /// Counts components that an accessor at `place` reads: many may read the same.
-    pub(super) fn count_components(&self, count: u64, place: &Place) -> Result<(), GltfFault> {
-        let left = self.components_left.get().checked_sub(count);
+    pub(super) fn count_components(&self, count: usize, place: &Place) -> Result<(), GltfFault> {
+        let left = self.components_left.get().checked_sub(count as u64);
         self.components_left.set(left.ok_or_else(|| {
             let message = "accessors read the same bytes again and again";
             place.fault(ErrorKind::Limit, message)

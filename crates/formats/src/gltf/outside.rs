@@ -81,8 +81,9 @@ impl Extent {
     /// areas.
     pub(super) fn include(&mut self, other: &Self, map: &DAffine3) {
         for i in 0..8_usize {
-            let corner =
-                Vec3::from_array(std::array::from_fn(|axis| other.corners[i >> axis & 1][axis]));
+            let corner = Vec3::from_array(std::array::from_fn(|axis| {
+                other.corners[i >> axis & 1][axis]
+            }));
             let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
             if corner.is_finite() {
                 self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
@@ -112,13 +113,14 @@ impl Extent {
     pub(super) fn viewpoint(&self) -> &'static Viewpoint {
         let half = self.centre_and_half().map_or(DVec3::ONE, |(_, half)| half);
         let sides = DVec3::new(half.y * half.z, half.x * half.z, half.x * half.y);
-        let directions = VIEWPOINTS.each_ref().map(|point| point.to_viewer.normalize());
+        let directions = VIEWPOINTS
+            .each_ref()
+            .map(|point| point.to_viewer.normalize());
         let box_areas = directions.map(|d| d.abs().dot(sides));
         // A mean square, as the signs of normals do not matter.
         let surfaces = directions.map(|d| d.dot(self.areas * d).max(0.0).sqrt());
-        let is_enough = |areas: [f64; 4], i: usize| {
-            areas[i] >= ENOUGH * areas.into_iter().fold(0.0, f64::max)
-        };
+        let is_enough =
+            |areas: [f64; 4], i: usize| areas[i] >= ENOUGH * areas.into_iter().fold(0.0, f64::max);
         let is_seen = |&i: &usize| is_enough(box_areas, i) && is_enough(surfaces, i);
         let first = (0..VIEWPOINTS.len()).find(is_seen).unwrap_or(1);
         &VIEWPOINTS[first]
@@ -133,7 +135,9 @@ impl Viewpoint {
     /// A place in this direction from which the box of `extent` fills a view of half size `half` at
     /// distance 1.
     pub(super) fn camera(&self, extent: &Extent, half: DVec3) -> Affine3A {
-        let (centre, size) = extent.centre_and_half().unwrap_or((DVec3::ZERO, DVec3::ONE));
+        let (centre, size) = extent
+            .centre_and_half()
+            .unwrap_or((DVec3::ZERO, DVec3::ONE));
         let to_viewer = self.to_viewer.normalize();
         let right = self.up.cross(to_viewer).normalize();
         let up = to_viewer.cross(right);
@@ -159,7 +163,9 @@ const KEY: Vec3 = Vec3::new(-0.4, 0.7, -1.0);
 ///
 /// A white diffuse surface that faces the light has radiance 0.92.
 pub(super) fn surroundings(world_from_camera: &Affine3A) -> InfiniteLight {
-    let key = world_from_camera.transform_vector3(KEY).normalize_or(Vec3::Z);
+    let key = world_from_camera
+        .transform_vector3(KEY)
+        .normalize_or(Vec3::Z);
     let centre = |i: usize| (i as f32 + 0.5) / TEXELS as f32;
     let texel = |i: usize| {
         let at = Vec2::new(centre(i % TEXELS), centre(i / TEXELS));

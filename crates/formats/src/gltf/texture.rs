@@ -187,7 +187,9 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
     let source = texture.source.or(webp.and_then(|webp| webp.source));
     let source = source.ok_or_else(|| {
         let found = match &texture.extensions {
-            ImageExtensions { basisu: Some(_), .. } => "its only image is a KTX2 file",
+            ImageExtensions {
+                basisu: Some(_), ..
+            } => "its only image is a KTX2 file",
             ImageExtensions { avif: Some(_), .. } => "its only image is an AVIF file",
             ImageExtensions { dds: Some(_), .. } => "its only image is a DDS file",
             _ => "it has no image",
@@ -236,9 +238,24 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
         [0xff, 0xd8, 0xff, ..] => Ok(Format::Jpeg),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Ok(Format::WebP),
+        [
+            b'R',
+            b'I',
+            b'F',
+            b'F',
+            _,
+            _,
+            _,
+            _,
+            b'W',
+            b'E',
+            b'B',
+            b'P',
+            ..,
+        ] => Ok(Format::WebP),
         _ => {
-            let has = |at: usize, magic| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
+            let has =
+                |at: usize, magic| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
             let known = OTHER_FORMATS.iter().find(|(at, magic, _)| has(*at, magic));
             let found = match known {
                 Some((.., name)) => format!("it is {name}, which is not read"),

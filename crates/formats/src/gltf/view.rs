@@ -188,8 +188,7 @@ impl View {
         self.world_from_camera.unwrap_or_else(|| {
             let viewpoint = extent.viewpoint();
             let name = viewpoint.name;
-            let message =
-                format!("the scene has no camera; using one {name} that sees everything");
+            let message = format!("the scene has no camera; using one {name} that sees everything");
             context.warn(&Place::TOP, message);
             viewpoint.camera(extent, self.half(resolution))
         })

@@ -176,9 +176,8 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
     for header in &meta.headers {
         let channels = header.channels.list.len() as u64;
-        let check = |Vec2(width, height)| {
-            check_size([width as u64, height as u64], channels, bytes)
-        };
+        let check =
+            |Vec2(width, height)| check_size([width as u64, height as u64], channels, bytes);
         check(header.layer_size)?;
         // Tiles may be larger than the image, and memory is taken for one.
         if let BlockDescription::Tiles(tiles) = header.blocks {

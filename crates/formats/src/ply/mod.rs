@@ -11,8 +11,8 @@
 mod body;
 mod header;
 
-use crate::{bytes, limits};
 use crate::error::{Error, ErrorKind, Place, Result};
+use crate::{bytes, limits};
 use body::Body;
 use header::{Element, Header, PropertyKind};
 use std::path::Path;

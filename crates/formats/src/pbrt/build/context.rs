@@ -14,6 +14,8 @@ use crate::spectra::Spectrum;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+const INSTANCES_SHARE: &str = "instances share the memory of their object, unless it emits";
+
 /// Whether something simpler may replace what is not supported yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StandIns {
@@ -143,7 +145,18 @@ impl<'a> Context<'a> {
         }
         let message = format!("the scene has more than {most} primitives or vertices");
         let fault = Fault::new(ErrorKind::Limit, span, message);
-        Err(fault.with_hint("instances share the memory of their object"))
+        Err(fault.with_hint(INSTANCES_SHARE))
+    }
+
+    /// Refuses more shapes than the files have the bytes for: those that emit are kept at each place.
+    pub(super) fn check_shapes(&self, count: u64, span: Span) -> Result<(), Fault> {
+        let most = limits::SHAPES.of(self.reading.stored());
+        if count <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} shapes, counted at each place");
+        let fault = Fault::new(ErrorKind::Limit, span, message);
+        Err(fault.with_hint(INSTANCES_SHARE))
     }
 
     /// Builds something that nobody uses: it must not be wrong, but what is not supported is no

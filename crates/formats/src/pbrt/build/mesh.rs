@@ -120,8 +120,7 @@ pub(super) fn subdivided_mesh(
     let levels = reader.integer("levels", 3, 0)?;
     reader.ignore(context, ParameterType::String, "scheme");
     if levels > MOST_LEVELS {
-        let message =
-            format!("{levels} steps of subdivision are too many: at most {MOST_LEVELS}");
+        let message = format!("{levels} steps of subdivision are too many: at most {MOST_LEVELS}");
         return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
     }
     let count = (triangles.len() as u64) << (2 * levels);

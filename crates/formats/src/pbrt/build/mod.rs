@@ -9,6 +9,7 @@
 mod camera;
 mod color;
 mod context;
+mod count;
 mod emission;
 mod film;
 mod filter;
@@ -33,7 +34,7 @@ pub use film::Crop;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription, Warning};
+use super::scene::{Entity, SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
 use crate::limits;
@@ -49,6 +50,7 @@ use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use texture::Textures;
 
 /// What a caller may want otherwise than the file.
@@ -165,6 +167,8 @@ struct Assembly<'a> {
     object_corners: [Vec3; 2],
     /// Of all meshes as they are kept.
     vertices: u64,
+    /// What shapes emitted last.
+    last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
     summary: Summary,
 }
 
@@ -201,6 +205,7 @@ impl<'a> Assembly<'a> {
             instance_spans: Vec::new(),
             object_corners: NOWHERE,
             vertices: 0,
+            last_emission: None,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
@@ -260,22 +265,21 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         let emission = match &shape.area_light {
-            Some(entity) => Some(AreaEmission::read(context, entity)?),
+            Some(entity) => Some(self.emission(context, entity)?),
             None => None,
         };
         let copies = match destination {
             Destination::World(places) => places.len() as u64,
             Destination::Object(_) => 1,
         };
-        self.summary.primitives += geometry.primitives() * copies;
-        self.vertices += geometry.vertices() * copies;
-        context.check_size(self.summary.primitives.max(self.vertices), span)?;
+        let emission = emission.as_deref();
+        self.count(context, (&geometry, emission), copies, span)?;
         match destination {
             Destination::World(places) => {
                 for place in places {
                     let placed = place_shape(&geometry, shape, place)?;
                     let first = self.shape_spans.len();
-                    self.add_placed(placed, material, emission.as_ref(), span)?;
+                    self.add_placed(placed, material, emission, span)?;
                     self.cover(first, alpha.as_ref());
                 }
             }

@@ -215,7 +215,10 @@ impl HalfEdges {
                 }
             }
         }
-        let corners = mesh.triangles.iter().flat_map(|&[a, b, c]| [[b, a], [c, b], [a, c]]);
+        let corners = mesh
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[b, a], [c, b], [a, c]]);
         let twins = corners.map(|reversed| known.get(&reversed).copied().unwrap_or(NONE));
         let edges = Self::with_twins(mesh, twins.collect());
         edges.check_fans(mesh)?;

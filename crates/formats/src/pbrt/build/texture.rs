@@ -9,10 +9,10 @@ use super::imagemap::{Files, ImageSettings};
 use super::reader::Reader;
 use super::texture_class::Source;
 use crate::error::ErrorKind;
+use crate::limits::{DEEPEST_TEXTURE, MOST_TEXTURES};
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::scene::{SceneDescription, TextureDescription, TextureKind};
-use crate::limits::{DEEPEST_TEXTURE, MOST_TEXTURES};
 use crate::source::{Fault, Span};
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
@@ -269,9 +269,7 @@ impl<'a> Textures<'a> {
         let span = self.described[number].entity.span;
         let too = |message| Err(Fault::new(ErrorKind::Limit, span, message));
         if self.depth > DEEPEST_TEXTURE {
-            return too(format!(
-                "textures are nested deeper than {DEEPEST_TEXTURE}"
-            ));
+            return too(format!("textures are nested deeper than {DEEPEST_TEXTURE}"));
         }
         let source = Source::read(self, context, number, purpose)?;
         let built = source.build(self, context, purpose)?;
