@@ -64,6 +64,17 @@ fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) ->
     png
 }
 
+/// A WebP without loss whose pixels are all the same: each takes no bit.
+fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
+    let size = (width - 1) | (height - 1) << 14;
+    // No transformation, no cache, and for each channel a code of one symbol.
+    let codes = [0x28, 0x59, 0xc9, 0x4a, 0xd6, 0xff, 0];
+    let pixels = [&[0x2f], &*size.to_le_bytes(), &codes].concat();
+    let mut webp = b"RIFF\x18\0\0\0WEBPVP8L\x0c\0\0\0".to_vec();
+    webp.extend(pixels);
+    webp
+}
+
 /// An EXR whose windows are larger than its pixels.
 fn large_exr() -> Vec<u8> {
     let seed = concat!(
@@ -83,6 +94,9 @@ fn large_exr() -> Vec<u8> {
 fn images_do_not_claim_what_they_cannot_hold() {
     check_image(Format::Png, &black_png([12000, 12000], [8, 2], 1));
     check_image(Format::Exr, &large_exr());
+    check_image(Format::WebP, &grey_webp([16384; 2]));
+    let small = image::decode(Format::WebP, &grey_webp([640, 480]), None).unwrap();
+    assert_eq!([small.width, small.height], [640, 480]);
     let mut tga = [0; 18];
     (tga[2], tga[13], tga[15], tga[16]) = (10, 0x20, 0x20, 24);
     check_image(Format::Tga, &tga);

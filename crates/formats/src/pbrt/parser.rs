@@ -1,6 +1,7 @@
 //! From files to a [`SceneDescription`].
 
 use super::directives;
+use super::inclusion::Counts;
 use super::known::{self, Block, DIRECTIVES};
 use super::lexer::{Token, TokenKind, Tokens, shorten};
 use super::parameters::{Parameter, parse_list};
@@ -11,15 +12,11 @@ use crate::bytes::{self, FileBytes};
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::files::Files;
 use crate::foreign;
-use crate::limits::{self, Allowance, LONGEST_TEXT};
+use crate::limits::{self, LONGEST_TEXT};
 use crate::source::{Fault, FileId, Span, line_and_column};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// How to have the same things in many places.
-const REPEAT_BY_OBJECTS: &str =
-    "make an object of what is repeated (ObjectBegin), and instances of it (ObjectInstance)";
 
 /// Parses a scene file; `-` is standard input.
 pub fn parse_file(path: &Path) -> Result<SceneDescription> {
@@ -64,7 +61,7 @@ fn parse(
 }
 
 /// Bytes as text: UTF-8 and nothing else.
-fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
+pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         let error = Error::new(ErrorKind::Syntax, "the text is UTF-16").in_file(path);
         return Err(error.with_hint("save it as UTF-8"));
@@ -97,23 +94,13 @@ pub(super) struct Parser {
     /// Objects by name, in the same way.
     pub(super) objects: BTreeMap<String, (usize, Option<Span>)>,
     /// The files that are being read, outermost first.
-    open: Vec<PathBuf>,
-    texts: BTreeMap<PathBuf, FileId>,
+    pub(super) open: Vec<PathBuf>,
+    pub(super) texts: BTreeMap<PathBuf, FileId>,
     /// The files that were included, by the names that the scene has for them, beside it.
-    included: BTreeMap<PathBuf, (PathBuf, FileId)>,
+    pub(super) included: BTreeMap<PathBuf, (PathBuf, FileId)>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
-    counts: Counts,
-}
-
-/// How much was read, for limits.
-#[derive(Debug, Default)]
-struct Counts {
-    inclusions: u64,
-    /// Bytes of texts that were included again.
-    again: u64,
-    directives: u64,
-    parameters: u64,
+    pub(super) counts: Counts,
 }
 
 impl Parser {
@@ -157,7 +144,7 @@ impl Parser {
     }
 
     /// Parses one text to its end, which it returns.
-    fn file(&mut self, file: FileId) -> Result<Span, Fault> {
+    pub(super) fn file(&mut self, file: FileId) -> Result<Span, Fault> {
         let text = self.scene.sources.text(file);
         let mut tokens = Tokens::new(&text, file);
         while let Some(token) = tokens.next()? {
@@ -205,23 +192,6 @@ impl Parser {
         Ok(list)
     }
 
-    /// Refuses more of something than the texts have the bytes for: packed or included again, a few
-    /// bytes can stand for any number.
-    fn check_count(
-        &self,
-        (count, what): (u64, &str),
-        allowance: Allowance,
-        span: Span,
-    ) -> Result<(), Fault> {
-        let stored = self.scene.stored;
-        let most = allowance.of(stored);
-        if count <= most {
-            return Ok(());
-        }
-        let message = format!("texts of {stored} bytes stand for more than {most} {what}");
-        Err(Fault::new(ErrorKind::Limit, span, message).with_hint(REPEAT_BY_OBJECTS))
-    }
-
     /// Parses a type word and parameters.
     pub(super) fn entity(
         &mut self,
@@ -245,88 +215,6 @@ impl Parser {
 
     pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {
         warn(&mut self.scene.warnings, span, message);
-    }
-
-    /// Reads `Include`d files with the state as it is.
-    pub(super) fn include(&mut self, name: &str, span: Span) -> Result<(), Fault> {
-        self.check_inclusion(span)?;
-        let beside = self.scene.folder.join(name);
-        let known = self.included.get(&beside).cloned();
-        let path = known
-            .as_ref()
-            .map_or_else(|| self.scene.resolve(name), |(path, _)| path.clone());
-        if self.open.contains(&path) {
-            return Err(Fault::scene(
-                span,
-                format!("`{}` includes itself", path.display()),
-            ));
-        }
-        let file = match known {
-            Some((_, file)) => self.load_again(file, span)?,
-            None => self.load(&path, span)?,
-        };
-        self.included.insert(beside, (path.clone(), file));
-        self.open.push(path);
-        let result = self.file(file);
-        self.open.pop();
-        result.map(|_| ())
-    }
-
-    /// Reads an `Import`ed file with a copy of the state.
-    pub(super) fn import(&mut self, name: &str, span: Span) -> Result<(), Fault> {
-        let copy = Scope {
-            state: self.scope.state.clone(),
-            ..Scope::default()
-        };
-        let outer = std::mem::replace(&mut self.scope, copy);
-        self.include(name, span)?;
-        self.check_closed(0)?;
-        self.scope = outer;
-        Ok(())
-    }
-
-    fn check_inclusion(&mut self, span: Span) -> Result<(), Fault> {
-        let limit = |message| Err(Fault::new(ErrorKind::Limit, span, message));
-        let deepest = limits::DEEPEST_INCLUSION;
-        if self.open.len() >= deepest {
-            return limit(format!("files include files more than {deepest} deep"));
-        }
-        self.counts.inclusions += 1;
-        let most = limits::MOST_INCLUSIONS;
-        if self.counts.inclusions > most {
-            return limit(format!("files are included more than {most} times in all"));
-        }
-        Ok(())
-    }
-
-    /// Reads a file under a name that is new.
-    fn load(&mut self, path: &Path, span: Span) -> Result<FileId, Fault> {
-        // One file has many names.
-        let key = self.scene.files.identity(path);
-        if let Some(&file) = self.texts.get(&key) {
-            self.scene.texts.push(path.to_owned());
-            return self.load_again(file, span);
-        }
-        let file = self
-            .read_text(path)
-            .map_err(|error| Fault::from_error(span, &error))?;
-        self.scene.texts.push(path.to_owned());
-        self.texts.insert(key, file);
-        Ok(file)
-    }
-
-    fn read_text(&mut self, path: &Path) -> Result<FileId> {
-        let FileBytes { bytes, stored } = self.scene.files.read(path, LONGEST_TEXT)?;
-        self.scene.stored += stored;
-        self.scene.sources.add(path, decode(path, bytes)?)
-    }
-
-    /// Counts a text that is included again.
-    fn load_again(&mut self, file: FileId, span: Span) -> Result<FileId, Fault> {
-        self.counts.again += self.scene.sources.text(file).len() as u64;
-        let again = (self.counts.again, "bytes that are included again");
-        self.check_count(again, limits::TEXTS_AGAIN, span)?;
-        Ok(file)
     }
 
     pub(super) fn open_block(&mut self, opener: Opener, span: Span) -> Result<(), Fault> {
@@ -361,7 +249,7 @@ impl Parser {
         }
     }
 
-    fn check_closed(&self, depth: usize) -> Result<(), Fault> {
+    pub(super) fn check_closed(&self, depth: usize) -> Result<(), Fault> {
         let Some(block) = self.scope.blocks.get(depth) else {
             return Ok(());
         };

@@ -27,7 +27,7 @@ fn flat_scenes_are_not_seen_edge_on() {
     // Edge-on from the front and from above it.
     let across = [[0.0, 0.0, 0.0], [0.5, 0.7, 0.0], [0.0, 0.0, 1.0]];
     for corners in [floor, side, slope, across] {
-        assert!(covered(corners) > 0.05, "{corners:?} {}", covered(corners));
+        assert!(covered(corners) > 0.03, "{corners:?} {}", covered(corners));
     }
     // The front stays the front.
     let front = covered([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
