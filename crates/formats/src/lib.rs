@@ -7,6 +7,8 @@ mod bytes;
 mod error;
 mod files;
 mod foreign;
+mod limits;
+mod reading;
 mod source;
 mod spectra;
 

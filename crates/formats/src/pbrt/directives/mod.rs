@@ -11,13 +11,9 @@ use super::scene::{CameraDescription, ColorSpace, FilmDescription, OptionDescrip
 use super::state::Opener;
 use super::transform::{Active, Transforms};
 use crate::error::ErrorKind;
+use crate::limits::{MOST_DEFAULT_VALUES, MOST_DEFAULTS};
 use crate::source::{Fault, Span};
 use std::sync::Arc;
-
-/// The most parameters that `Attribute` directives give one kind of thing, and the most values of
-/// these: all are copied where another is added.
-const MOST_DEFAULTS: usize = 64;
-const MOST_DEFAULT_VALUES: usize = 4096;
 
 type Done = Result<(), Fault>;
 
