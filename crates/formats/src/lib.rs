@@ -9,6 +9,7 @@ mod files;
 mod foreign;
 mod source;
 mod spectra;
+mod text;
 
 pub mod file;
 pub mod film;
@@ -20,3 +21,4 @@ pub mod scene;
 
 pub use error::{Error, ErrorKind, Result, cannot};
 pub use source::{FileId, SourceMap, Span};
+pub use text::{is_obeyed, number, printable, printable_lines};
