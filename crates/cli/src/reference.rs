@@ -282,7 +282,11 @@ pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     match error {
         Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
-        Error::Io { .. } | Error::Damaged { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Io { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Damaged { .. } => {
+            let hint = "the `bidir reference` command that made it writes it again from its films";
+            Failure::new(Exit::InputOutput, text).with_hint(hint)
+        }
         Error::Missing(_) => {
             let hint = "make one with `bidir reference`, or name another folder";
             Failure::new(Exit::InputOutput, text).with_hint(hint)

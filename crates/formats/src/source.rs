@@ -258,14 +258,15 @@ impl Excerpt {
 /// A text as it is shown, with the place of the same `marked` characters in it. Line ends lose their
 /// carriage return.
 fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
-    let shown = |part: &str| printable_lines(&part.replace("\r\n", "\n")).into_owned();
-    let marked_end = match &text[marked.clone()] {
-        line if line.ends_with('\r') && text[marked.end..].starts_with('\n') => marked.end - 1,
-        _ => marked.end,
-    };
-    let (before, mark) = (shown(&text[..marked.start]), &text[marked.start..marked_end]);
-    let place = before.len()..before.len() + shown(mark).len();
-    (before + &shown(mark) + &shown(&text[marked_end..]), place)
+    let text = text.strip_suffix('\r').unwrap_or(text);
+    let end = marked.end.min(text.len());
+    let is_between = text[..end].ends_with('\r') && text[end..].starts_with('\n');
+    let end = end - usize::from(is_between);
+    let parts = [&text[..marked.start], &text[marked.start..end], &text[end..]];
+    let [before, mark, after] =
+        parts.map(|part| printable_lines(&part.replace("\r\n", "\n")).into_owned());
+    let place = before.len()..before.len() + mark.len();
+    (before + &mark + &after, place)
 }
 
 /// The last place at or before `offset` where a character begins.

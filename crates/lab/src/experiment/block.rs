@@ -171,6 +171,7 @@ pub fn render_block(
         words: String::new(),
         image: None,
         mse: None,
+        warning: None,
     };
     let mut all = Vec::new();
     for name in &block.methods {

@@ -136,16 +136,21 @@ impl Journal {
                 return Err(ExperimentError::Folder { path, error });
             }
         };
-        let text = std::str::from_utf8(&bytes).map_err(|error| {
+        journal.read(&bytes, folder, owner)?;
+        Ok(journal)
+    }
+
+    /// Takes what is in the file.
+    fn read(&mut self, bytes: &[u8], folder: &Path, owner: &Owner) -> Result<(), ExperimentError> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = bytes.iter().take(error.valid_up_to());
             let line = 1 + before.filter(|byte| **byte == b'\n').count();
-            journal.damaged(line, "it is no text")
+            self.damaged(line, "it is no text")
         })?;
-        let mut lines = (1..).zip(text.lines());
+        let mut lines = (1..).zip(text.split_terminator('\n'));
         let (_, head) = lines.next().unwrap_or((1, ""));
-        journal.read_head(folder, head, owner)?;
-        lines.try_for_each(|(number, line)| journal.read_line(line, number))?;
-        Ok(journal)
+        self.read_head(folder, head, owner)?;
+        lines.try_for_each(|(number, line)| self.read_line(line, number))
     }
 
     /// Takes the first line.
@@ -267,4 +272,84 @@ impl Journal {
 fn line(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value);
     seal::sealed(&text.expect("texts and numbers have a JSON")) + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    const PLACE: &str = "out";
+
+    fn owner() -> Owner {
+        Owner {
+            experiment: "a hash".to_owned(),
+            program: "bidir 0".to_owned(),
+            machine: Machine::default(),
+        }
+    }
+
+    fn record(seed: u64) -> Record {
+        let record = json!({
+            "scene": "room", "method": "all", "budget": "2 spp", "seed": seed, "spp": 2,
+            "seconds": 0.25, "connections_blocked": 3, "metrics": {"rmse": 0.5},
+            "rays": {"camera": 1, "light": 2, "connection": 3, "light_image": 4, "training": 0},
+            "efficiency_rays": 0.125, "efficiency_seconds": 16.0, "image": null,
+        });
+        serde_json::from_value(record).unwrap()
+    }
+
+    /// A journal of two records, as it is written.
+    fn written() -> String {
+        let journal = Journal::new(Path::new(PLACE), &owner());
+        journal.text + &line(&record(1)) + &line(&record(2))
+    }
+
+    fn read(bytes: &[u8]) -> Result<Journal, ExperimentError> {
+        let mut journal = Journal::new(Path::new(PLACE), &owner());
+        journal.read(bytes, Path::new(PLACE), &owner())?;
+        Ok(journal)
+    }
+
+    #[test]
+    fn every_flip_of_a_bit_is_an_error_with_its_line() {
+        let text = written();
+        let journal = read(text.as_bytes()).unwrap();
+        assert!(journal.records == [record(1), record(2)] && journal.text == text);
+        for bit in (0..8 * (text.len() - 1)).step_by(5) {
+            let mut bytes = text.clone().into_bytes();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            let before = &text[..bit / 8];
+            let expected = 1 + before.matches('\n').count();
+            match read(&bytes) {
+                Err(ExperimentError::Damaged { line, .. }) => assert_eq!(line, expected),
+                // Half a checksum of the first line leaves no sign whose it is.
+                Err(ExperimentError::Mismatch(_)) => assert_eq!(expected, 1),
+                other => panic!("bit {bit}: {other:?}"),
+            }
+        }
+        for end in 0..text.len() - 1 {
+            let whole = read(&text.as_bytes()[..end]).map(|journal| journal.records.len());
+            let is_line = text[..end].ends_with('\n') || text[end..].starts_with('\n');
+            assert_eq!(whole.is_ok(), is_line && end > 0, "{end}");
+        }
+    }
+
+    #[test]
+    fn records_of_before_are_read_and_get_checksums() {
+        let unsealed: String = written()
+            .lines()
+            .map(|line| {
+                let mut line: Value = serde_json::from_str(line).unwrap();
+                let object = line.as_object_mut().unwrap();
+                object.remove("checksum");
+                object.entry("format").and_modify(|format| *format = UNSEALED.into());
+                format!("{line}\n")
+            })
+            .collect();
+        let journal = read(unsealed.as_bytes()).unwrap();
+        assert!(!journal.is_sealed && journal.records == [record(1), record(2)]);
+        let sealed = read(journal.text.as_bytes()).unwrap();
+        assert!(sealed.is_sealed && sealed.records == journal.records);
+    }
 }
