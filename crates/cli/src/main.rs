@@ -51,8 +51,8 @@ fn main() -> ExitCode {
 }
 
 /// The exit code, after the last message.
-fn ended(ended: Result<Exit, Failure>, console: Console) -> ExitCode {
-    let exit = match ended {
+fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
+    let exit = match result {
         Ok(exit) => exit,
         Err(failure) => {
             console.failure(&failure);

@@ -41,8 +41,7 @@ use std::path::PathBuf;
 /// Renders pbrt-v4 and glTF scenes with path tracing and bidirectional path tracing.
 ///
 /// Images are written as OpenEXR (linear, 32-bit float) and as PNG (to look at). The same scene,
-/// settings and seed give the same bits on any number of threads. Control characters in names and texts
-/// of files are printed as escapes, such as \\u{1b}.
+/// settings and seed give the same bits on any number of threads.
 #[derive(Debug, Parser)]
 #[command(name = "bidir", version, propagate_version = true, max_term_width = 100, after_long_help = Exit::help())]
 pub(crate) struct Cli {

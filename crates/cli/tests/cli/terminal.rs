@@ -1,24 +1,17 @@
 use crate::common::{Ran, SCENE, Workplace};
 use formats::is_obeyed;
-use std::ffi::OsStr;
 use std::fs;
 
 /// A title, a cleared screen, another direction of writing, and a line that is not ours.
 const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\r\x7f\nerror: forged";
 
-/// Runs a command in the scene's folder; `@` in a word is the hostile name.
+/// Runs a command in the scene's folder, and fails where a terminal would obey what it prints; `@` in a
+/// word is the hostile name.
 #[track_caller]
 fn run(place: &Workplace, words: &str) -> Ran {
     let words = words.split_whitespace();
-    let words = words.map(|word| word.replace('@', HOSTILE).into());
-    checked(place, words.collect::<Vec<std::ffi::OsString>>())
-}
-
-/// Fails where a terminal would obey something: in lines, line feeds and tabs of data stay.
-#[track_caller]
-fn checked<W: AsRef<OsStr>>(place: &Workplace, words: Vec<W>) -> Ran {
-    let mut command = place.command("");
-    let ran = Ran::of(command.args(words).env("BIDIR_SIZE", "8x6"));
+    let words = words.map(|word| word.replace('@', HOSTILE));
+    let ran = Ran::of(place.command("").args(words));
     for text in [&ran.stdout, &ran.stderr] {
         let is_raw = |c: char| is_obeyed(c) && c != '\n';
         assert!(!text.contains(is_raw), "{text:?}");
