@@ -214,7 +214,13 @@ mod tests {
     fn json_has_the_same_strings_without_what_a_terminal_obeys() {
         let text = "a\x1b\x7f\u{9b}\u{202e}\u{2069}µ\n";
         let escaped = ascii_escaped(&json(&[text]).unwrap());
-        assert!(!escaped.contains(|c| is_obeyed(c) && c != '\n'), "{escaped}");
-        assert_eq!(serde_json::from_str::<[String; 1]>(&escaped).unwrap(), [text]);
+        assert!(
+            !escaped.contains(|c| is_obeyed(c) && c != '\n'),
+            "{escaped}"
+        );
+        assert_eq!(
+            serde_json::from_str::<[String; 1]>(&escaped).unwrap(),
+            [text]
+        );
     }
 }

@@ -102,7 +102,10 @@ fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
         let text = "stopped: run the same command without --restart to continue";
         (text, Exit::Checkpoint)
     } else {
-        ("stopped: run the same command to continue", Exit::Checkpoint)
+        (
+            "stopped: run the same command to continue",
+            Exit::Checkpoint,
+        )
     };
     if !args.quiet {
         say(text);

@@ -262,7 +262,11 @@ fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
     let end = marked.end.min(text.len());
     let is_between = text[..end].ends_with('\r') && text[end..].starts_with('\n');
     let end = end - usize::from(is_between);
-    let parts = [&text[..marked.start], &text[marked.start..end], &text[end..]];
+    let parts = [
+        &text[..marked.start],
+        &text[marked.start..end],
+        &text[end..],
+    ];
     let [before, mark, after] =
         parts.map(|part| printable_lines(&part.replace("\r\n", "\n")).into_owned());
     let place = before.len()..before.len() + mark.len();

@@ -76,7 +76,11 @@ mod tests {
         check("room µ 🏠.pbrt", "room µ 🏠.pbrt", "room µ 🏠.pbrt");
         check("a\x1b[31mb", r"a\u{1b}[31mb", r"a\u{1b}[31mb");
         check("a\x7f\u{9b}2J", r"a\u{7f}\u{9b}2J", r"a\u{7f}\u{9b}2J");
-        check("a\u{202e}b\u{2066}", r"a\u{202e}b\u{2066}", r"a\u{202e}b\u{2066}");
+        check(
+            "a\u{202e}b\u{2066}",
+            r"a\u{202e}b\u{2066}",
+            r"a\u{202e}b\u{2066}",
+        );
         check("a\r\n\tb", r"a\r\n\tb", "a\\r\n\tb");
         check("a\u{2028}\u{61c}", r"a\u{2028}\u{61c}", r"a\u{2028}\u{61c}");
         for c in (0..=0x9f).filter_map(char::from_u32) {

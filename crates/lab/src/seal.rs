@@ -54,7 +54,10 @@ mod tests {
 
     #[test]
     fn no_flip_of_a_bit_leaves_a_seal_whole() {
-        for object in [r#"{"a":1,"b":"\"checksum\""}"#, "{\n  \"a\": [\n    1\n  ]\n}\n"] {
+        for object in [
+            r#"{"a":1,"b":"\"checksum\""}"#,
+            "{\n  \"a\": [\n    1\n  ]\n}\n",
+        ] {
             assert_eq!(check(object), Seal::Missing);
             let text = sealed(object);
             assert_eq!(check(&text), Seal::Whole);

@@ -116,7 +116,9 @@ fn as_map<T: Serialize, S: Serializer>(
 /// Refuses images that were compared at different sizes.
 fn check_sizes(comparisons: &[Comparison], files: &[PathBuf]) -> Result<(), Failure> {
     let sized = comparisons.iter().zip(files);
-    let sized: Vec<_> = sized.filter_map(|(one, file)| Some((file, one.size?))).collect();
+    let sized: Vec<_> = sized
+        .filter_map(|(one, file)| Some((file, one.size?)))
+        .collect();
     let mut pairs = sized.windows(2).map(|pair| (pair[0], pair[1]));
     let Some(((a, [aw, ah]), (b, [bw, bh]))) = pairs.find(|(a, b)| a.1 != b.1) else {
         return Ok(());
@@ -288,6 +290,9 @@ mod tests {
         let files = ["a.exr", "b.exr"].map(PathBuf::from);
         let failure = Replicates::of(&comparisons, &files).unwrap_err();
         let (message, _) = failure.message().unwrap();
-        assert!(message.ends_with("`a.exr` is compared at 1x1, `b.exr` at 2x3"), "{message}");
+        assert!(
+            message.ends_with("`a.exr` is compared at 1x1, `b.exr` at 2x3"),
+            "{message}"
+        );
     }
 }

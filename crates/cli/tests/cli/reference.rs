@@ -181,13 +181,19 @@ fn stale_and_damaged_references_are_refused() {
     older.as_object_mut().unwrap().remove("checksum");
     older["format"] = 1.into();
     place.write("a.reference/provenance.json", &older.to_string());
-    place.run(image).expect(0).says("warning: a.reference: of a version without checksums");
+    place
+        .run(image)
+        .expect(0)
+        .says("warning: a.reference: of a version without checksums");
     older["estimator_version"] = 9.into();
     place.write("a.reference/provenance.json", &older.to_string());
     place.run(image).expect(6).says("stale: made by version");
     place.write("a.reference/provenance.json", &json);
     fs::remove_file(place.path("a.reference/against.exr")).unwrap();
-    place.run(image).expect(4).says("against.exr: damaged: it is missing");
+    place
+        .run(image)
+        .expect(4)
+        .says("against.exr: damaged: it is missing");
     fs::remove_file(place.path("a.reference/provenance.json")).unwrap();
     let hint = "hint: make one with `bidir reference`";
     place

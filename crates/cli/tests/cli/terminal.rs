@@ -22,7 +22,11 @@ fn run(place: &Workplace, words: &str) -> Ran {
 
 fn place() -> Workplace {
     let place = Workplace::new();
-    fs::rename(place.path("room.pbrt"), place.path(&format!("{HOSTILE}.pbrt"))).unwrap();
+    fs::rename(
+        place.path("room.pbrt"),
+        place.path(&format!("{HOSTILE}.pbrt")),
+    )
+    .unwrap();
     place
 }
 
@@ -30,23 +34,35 @@ fn place() -> Workplace {
 fn names_of_files_are_shown_and_not_obeyed() {
     let place = place();
     let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}\nerror: forged";
-    run(&place, "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film")
-        .expect(0)
-        .says(&format!("wrote {shown}.exr and {shown}.film"));
+    run(
+        &place,
+        "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film",
+    )
+    .expect(0)
+    .says(&format!("wrote {shown}.exr and {shown}.film"));
     run(&place, "film info @.film")
         .expect(0)
         .prints(&format!("scene     {shown}.pbrt"));
     let json = run(&place, "film info @.film --json").expect(0).json();
     assert_eq!(json["scene"], format!("{HOSTILE}.pbrt"));
     run(&place, "film verify @.film").expect(0).says(shown);
-    run(&place, "merge @.film @.film -o all.film").expect(5).says(shown);
-    run(&place, "render @.pbrt --checkpoint @.film").expect(2).says(shown);
-    run(&place, "render @.pbr").expect(4).says("hint: did you mean");
+    run(&place, "merge @.film @.film -o all.film")
+        .expect(5)
+        .says(shown);
+    run(&place, "render @.pbrt --checkpoint @.film")
+        .expect(2)
+        .says(shown);
+    run(&place, "render @.pbr")
+        .expect(4)
+        .says("hint: did you mean");
     run(&place, "render @.pbrt -o @.jpg --progress openjd")
         .expect(4)
         .prints("openjd_fail: cannot write");
     let info = run(&place, "info @.pbrt").expect(0);
-    assert!(info.stdout.contains(&format!("scene        {shown}.pbrt\nfilm ")));
+    assert!(
+        info.stdout
+            .contains(&format!("scene        {shown}.pbrt\nfilm "))
+    );
     let json = run(&place, "info @.pbrt --json").expect(0).json();
     assert_eq!(json["scene"], format!("{HOSTILE}.pbrt"));
     run(&place, "render @.pbrt -o b.exr --size 4x3").expect(0);
@@ -88,8 +104,13 @@ fn names_of_an_experiment_are_shown_and_not_obeyed() {
     let ran = run(&place, "experiment test.toml -o out").expect(0);
     let shown = r"a\u{1b}[2J\u{9b}\u{202e}\nerror: forged";
     assert!(ran.stdout.contains(shown) && ran.stderr.contains(shown));
-    place.write("wrong.toml", &description.replace("file = \"room", "file = \"\\u001b"));
-    run(&place, "experiment wrong.toml -o out").expect(3).says(r"\u{1b}.pbrt");
+    place.write(
+        "wrong.toml",
+        &description.replace("file = \"room", "file = \"\\u001b"),
+    );
+    run(&place, "experiment wrong.toml -o out")
+        .expect(3)
+        .says(r"\u{1b}.pbrt");
 }
 
 #[test]
@@ -109,7 +130,9 @@ fn arguments_and_variables_are_shown_and_not_obeyed() {
         let ran = run(&place, words).expect(2);
         assert!(ran.stderr.contains(r"\u{1b}]0;t"), "{}", ran.stderr);
         // With colours, which are our own.
-        let words = words.split_whitespace().map(|word| word.replace('@', HOSTILE));
+        let words = words
+            .split_whitespace()
+            .map(|word| word.replace('@', HOSTILE));
         let mut command = place.command("");
         let ran = Ran::of(command.args(words).env("CLICOLOR_FORCE", "1"));
         assert!(!ran.stderr.contains("\x1b]") && !ran.stderr.contains('\u{9b}'));
@@ -123,7 +146,14 @@ fn arguments_and_variables_are_shown_and_not_obeyed() {
 #[test]
 fn text_that_cannot_be_printed_is_an_error() {
     let place = Workplace::new();
-    for words in ["--help", "render -h", "--version", "man", "completions bash", "info room.pbrt"] {
+    for words in [
+        "--help",
+        "render -h",
+        "--version",
+        "man",
+        "completions bash",
+        "info room.pbrt",
+    ] {
         let full = fs::File::options().write(true).open("/dev/full").unwrap();
         let ran = Ran::of(place.command(words).stdout(full)).expect(4);
         ran.says("error: cannot write to stdout: ");

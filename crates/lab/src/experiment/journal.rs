@@ -154,7 +154,12 @@ impl Journal {
     }
 
     /// Takes the first line.
-    fn read_head(&mut self, folder: &Path, line: &str, owner: &Owner) -> Result<(), ExperimentError> {
+    fn read_head(
+        &mut self,
+        folder: &Path,
+        line: &str,
+        owner: &Owner,
+    ) -> Result<(), ExperimentError> {
         let others = || ExperimentError::Mismatch(folder.to_owned());
         if seal::check(line) == Seal::Broken {
             return self.check(line, 1);
@@ -343,7 +348,9 @@ mod tests {
                 let mut line: Value = serde_json::from_str(line).unwrap();
                 let object = line.as_object_mut().unwrap();
                 object.remove("checksum");
-                object.entry("format").and_modify(|format| *format = UNSEALED.into());
+                object
+                    .entry("format")
+                    .and_modify(|format| *format = UNSEALED.into());
                 format!("{line}\n")
             })
             .collect();

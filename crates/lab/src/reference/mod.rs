@@ -187,7 +187,11 @@ impl Reference {
         let folder = self.folder.display();
         (self.provenance.format == provenance::UNSEALED).then(|| {
             let lacks = !self.folder.join(AGAINST).is_file();
-            let lacks = if lacks { ", and it has no against.exr" } else { "" };
+            let lacks = if lacks {
+                ", and it has no against.exr"
+            } else {
+                ""
+            };
             format!("{folder}: of a version without checksums: damage in it may go unseen{lacks}")
         })
     }

@@ -112,7 +112,10 @@ impl Provenance {
         })?;
         let damaged = |error: serde_json::Error| Error::damaged(&path, error.to_string());
         if seal::check(&text) == Seal::Broken {
-            return Err(Error::damaged(&path, "its checksum is that of another text"));
+            return Err(Error::damaged(
+                &path,
+                "its checksum is that of another text",
+            ));
         }
         let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
         if ![FORMAT, UNSEALED].contains(&format) {

@@ -316,7 +316,12 @@ fn references_of_before_are_read_with_a_warning() {
     json["format"] = provenance::UNSEALED.into();
     json.as_object_mut().unwrap().remove("files");
     fs::write(&path, json.to_string()).unwrap();
-    let warning = || Reference::load(&place.path("a")).unwrap().warning().unwrap();
+    let warning = || {
+        Reference::load(&place.path("a"))
+            .unwrap()
+            .warning()
+            .unwrap()
+    };
     assert!(warning().ends_with("without checksums: damage in it may go unseen"));
     fs::remove_file(place.path("a/against.exr")).unwrap();
     assert!(warning().ends_with(", and it has no against.exr"));
@@ -349,9 +354,17 @@ fn damaged_and_stale_references_are_refused() {
     );
     fs::write(&path, &whole).unwrap();
     fs::copy(place.path("a/against.exr"), place.path("a/picture.exr")).unwrap();
-    assert!(place.refusal("a").contains("picture.exr: damaged: it is not the file that"));
+    assert!(
+        place
+            .refusal("a")
+            .contains("picture.exr: damaged: it is not the file that")
+    );
     fs::remove_file(place.path("a/picture.exr")).unwrap();
-    assert!(place.refusal("a").contains("picture.exr: damaged: it is missing"));
+    assert!(
+        place
+            .refusal("a")
+            .contains("picture.exr: damaged: it is missing")
+    );
     fs::remove_file(&path).unwrap();
     assert!(place.refusal("a").contains("provenance.json"));
     assert!(!is_reference(&place.path("a")));
