@@ -11,6 +11,7 @@ mod limits;
 mod reading;
 mod source;
 mod spectra;
+mod text;
 
 pub mod file;
 pub mod film;
@@ -22,3 +23,4 @@ pub mod scene;
 
 pub use error::{Error, ErrorKind, Result, cannot};
 pub use source::{FileId, SourceMap, Span};
+pub use text::{is_obeyed, number, printable, printable_lines};
