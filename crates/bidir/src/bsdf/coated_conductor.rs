@@ -14,7 +14,9 @@
 //!
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
 
-use super::coat::{Coat, Curve, Layer, MetalCoat, Reflections, METAL_SHAPES, all_orders, fifth_power, seen_through};
+use super::coat::{
+    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, all_orders, fifth_power, seen_through,
+};
 use super::microfacet::Ggx;
 use super::{BsdfSample, Filling, fresnel, same_hemisphere};
 use crate::math::{INV_PI, Vec2, Vec3, sqr, warp};
@@ -118,7 +120,8 @@ impl CoatedConductor {
         let Some(inner) = self.coat.refracted(w) else {
             return [coat, Spectrum::ZERO, Spectrum::ZERO];
         };
-        let once = self.once_fresnel(inner.z.abs(), fifth_power(1.0 - w.z.abs())) * sqr(self.coat.transmittance(w));
+        let once = self.once_fresnel(inner.z.abs(), fifth_power(1.0 - w.z.abs()))
+            * sqr(self.coat.transmittance(w));
         let trapped = self.multiple * self.trapped_part(w);
         [coat, once, trapped]
     }

@@ -55,7 +55,11 @@ impl CoatedDiffuse {
     /// tables of each lane.
     pub fn new(layer: &Layer, ggx: Ggx, filled: &[Filled; 4], reflectance: Spectrum) -> Self {
         let lanes = |value: fn(&Filled) -> f32| Spectrum(filled.each_ref().map(value));
-        let mean = Filled::mixed(filled.iter().map(|&lane| (0.25, lane)));
+        let mean = if filled.iter().all(|lane| lane == &filled[0]) {
+            filled[0]
+        } else {
+            Filled::mixed(filled.iter().map(|&lane| (0.25, lane)))
+        };
         let crossing = (lanes(|lane| lane.depth), mean.length);
         let coat = Coat::new(layer, ggx, layer.ratio, crossing);
         let trips = lanes(|lane| lane.internal);
@@ -172,7 +176,12 @@ impl CoatedDiffuse {
             let layer = Layer::new(eta, ggx.mean_alpha());
             let filled = Slab::new(&layer, thickness, 0.3).tables(&layer, &albedo);
             let reflectance = Spectrum([0.9, 0.5, 0.05, 1.0]);
-            Self::new(&layer, ggx, &std::array::from_fn(|i| filled[i]), reflectance)
+            Self::new(
+                &layer,
+                ggx,
+                &std::array::from_fn(|i| filled[i]),
+                reflectance,
+            )
         };
         let clear = [0.0; 4];
         [

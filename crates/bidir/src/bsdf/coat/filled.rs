@@ -10,14 +10,14 @@
 //! reflection. With it they are walks, by numbers that do not depend on the scene, which keep the
 //! number k of scattering events apart: each is a polynomial Σ_k ϖ^k S_k in the albedo ϖ.
 
-use super::layer::Interface;
 use super::layer::FACETS;
+use super::layer::Interface;
 use super::{Curve, Layer, mean};
 use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 
 /// Walks for each value of a curve.
-const WALKS: u64 = 1 << 12;
+const WALKS: u64 = 1 << 13;
 /// Walks from the base.
 const WALKS_FROM_BASE: u64 = 1 << 13;
 /// The most events of a walk: few have as many.
@@ -27,7 +27,7 @@ const ORDERS: usize = 32;
 /// Points of an integral over the cosine from within, and over facets.
 const POINTS: u32 = 1 << 15;
 /// The largest optical depth: beyond it nothing gets through.
-const DEEPEST: f32 = 30.0;
+const DEEPEST: f32 = 10.0;
 /// Knots of ℓ.
 pub(in crate::bsdf) const LENGTHS: usize = 8;
 /// Knots of e.
@@ -58,14 +58,23 @@ impl Filled {
     };
 
     /// The mean of tables by their weights, which sum to 1.
-    pub fn mixed(parts: impl Iterator<Item = (f32, Self)>) -> Self {
-        parts.fold(Self::NONE, |sum, (weight, part)| Self {
-            depth: sum.depth + weight * part.depth,
-            length: sum.length.plus(part.length, weight),
-            internal: sum.internal + weight * part.internal,
-            thrown: sum.thrown + weight * part.thrown,
-            shape: sum.shape.plus(part.shape, weight),
-        })
+    pub fn mixed(mut parts: impl Iterator<Item = (f32, Self)>) -> Self {
+        let Some((first_weight, first)) = parts.next() else {
+            return Self::NONE;
+        };
+        if first_weight >= 1.0 {
+            return first;
+        }
+        std::iter::once((first_weight, first)).chain(parts).fold(
+            Self::NONE,
+            |sum, (weight, part)| Self {
+                depth: sum.depth + weight * part.depth,
+                length: sum.length.plus(part.length, weight),
+                internal: sum.internal + weight * part.internal,
+                thrown: sum.thrown + weight * part.thrown,
+                shape: sum.shape.plus(part.shape, weight),
+            },
+        )
     }
 }
 
@@ -74,7 +83,10 @@ type Orders = [f32; ORDERS];
 
 /// Σ_k ϖ^k S_k.
 fn at_albedo(orders: &Orders, albedo: f32) -> f32 {
-    orders.iter().rev().fold(0.0, |sum, part| sum * albedo + part)
+    orders
+        .iter()
+        .rev()
+        .fold(0.0, |sum, part| sum * albedo + part)
 }
 
 /// A layer of optical depth τ whose scattering has the mean cosine g.
@@ -283,7 +295,8 @@ fn length(arriving: &[Arriving; LENGTHS], albedo: f32) -> (f32, Curve<LENGTHS>) 
 
 /// Ē and e of a curve through what arrives.
 fn shape(layer: &Layer, arriving: &[Arriving; SHAPES], albedo: f32) -> (f32, Curve<SHAPES>) {
-    let ratio = |arriving: &Arriving| at_albedo(&arriving.thrown, albedo) / arriving.entering.max(1e-6);
+    let ratio =
+        |arriving: &Arriving| at_albedo(&arriving.thrown, albedo) / arriving.entering.max(1e-6);
     let ratios = Curve::through(std::array::from_fn(|i| ratio(&arriving[i])));
     let thrown = mean(64, |cos| layer.transmittance(cos) * ratios.at(cos));
     if thrown > 1e-6 {
@@ -296,7 +309,11 @@ fn shape(layer: &Layer, arriving: &[Arriving; SHAPES], albedo: f32) -> (f32, Cur
 /// A point of a Kronecker sequence, which fills the unit cube evenly: multiples of the powers of 1/φ,
 /// φ⁴ = φ + 1.
 fn even_point(index: u32) -> [f32; 3] {
-    const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+    const STEPS: [f64; 3] = [
+        0.819_172_513_396_164_4,
+        0.671_043_606_703_789_2,
+        0.549_700_477_901_970_3,
+    ];
     STEPS.map(|step| ((f64::from(index) + 0.5) * step).fract() as f32)
 }
 

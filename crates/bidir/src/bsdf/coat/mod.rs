@@ -21,10 +21,10 @@ mod reflections;
 pub(super) use curve::Curve;
 pub use filled::{Filled, Slab};
 pub(super) use filled::{LENGTHS, SHAPES};
-pub use layer::Layer;
 pub(super) use layer::KNOTS as RATIOS;
+pub use layer::Layer;
 pub use reflections::Reflections;
-pub(super) use reflections::{MetalCoat, SHAPES as METAL_SHAPES, fifth_power};
+pub(super) use reflections::{KNOTS as METAL_SHAPES, MetalCoat, fifth_power};
 
 use super::fresnel;
 use super::microfacet::{Ggx, SMOOTH_ALPHA};

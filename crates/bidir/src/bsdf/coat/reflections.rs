@@ -17,7 +17,9 @@ use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerK
 use crate::spectrum::Spectrum;
 
 /// Walks for each value of a curve.
-const WALKS: u64 = 1 << 13;
+const WALKS: u64 = 1 << 12;
+/// The part of light that walks are not worth.
+const FAINT: f32 = 3e-4;
 /// The most reflections of a walk: few need as many.
 const MOST: usize = 100;
 /// Reflections that are told apart; the last stands for all that are more.
@@ -26,25 +28,23 @@ const ORDERS: usize = 32;
 const FACETS: usize = 32;
 /// Rounds towards the fixed point.
 const ROUNDS: usize = 6;
-/// Coefficients of q over metal.
-pub(in crate::bsdf) const RATIOS: usize = 10;
+/// Coefficients of q and e over metal.
+pub(in crate::bsdf) const KNOTS: usize = 8;
 /// Coefficients of ℓ over metal.
 pub(in crate::bsdf) const LENGTHS: usize = 4;
-/// Coefficients of e over metal.
-pub(in crate::bsdf) const SHAPES: usize = 6;
 
 /// The coat of a metal.
-pub(in crate::bsdf) type MetalCoat = Coat<RATIOS, LENGTHS>;
+pub(in crate::bsdf) type MetalCoat = Coat<KNOTS, LENGTHS>;
 
 /// The tabulated quantities of a layer over metal, with isotropic facets on both surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflections {
     /// q.
-    pub(in crate::bsdf) ratio: Curve<RATIOS>,
+    pub(in crate::bsdf) ratio: Curve<KNOTS>,
     /// ℓ: half of the way of light that is reflected once, in thicknesses.
     pub(in crate::bsdf) length: Curve<LENGTHS>,
     /// e, which E = Ē (1 - F(μ̂)) e defines.
-    pub(in crate::bsdf) shape: Curve<SHAPES>,
+    pub(in crate::bsdf) shape: Curve<KNOTS>,
     /// Ē = ∫ 2μ E dμ.
     pub(in crate::bsdf) mean: f32,
     /// The way between two reflections, in thicknesses.
@@ -122,11 +122,12 @@ impl Reflections {
             metal: Ggx::new(metal_alpha, metal_alpha),
             depth: depth.clamp(1e-3, 10.0),
         };
-        let leaving = Curve::<RATIOS>::cosines().map(|cos| surfaces.leaving(cos));
+        let leaving = Curve::<KNOTS>::cosines().map(|cos| surfaces.leaving(cos));
         let coat = surfaces.fitted_coat(layer, &leaving);
         let entering = |cos: f32| 1.0 - coat.reflectance(along(cos));
-        let part = |cos: f32| surfaces.leaving(cos).more_than_once() / entering(cos).max(1e-3);
-        let shape = Curve::through(Curve::<SHAPES>::cosines().map(part));
+        let cosines = Curve::<KNOTS>::cosines();
+        let part = |i: usize| leaving[i].more_than_once() / entering(cosines[i]).max(1e-3);
+        let shape = Curve::<KNOTS>::through(std::array::from_fn(part));
         let trapped = mean(64, |cos| entering(cos) * shape.at(cos).max(0.0)).max(1e-6);
         let of_order = |k: usize| Curve::through(leaving.map(|of| of.parts[k - 1])).mean();
         let shares: [f32; ORDERS - 1] = std::array::from_fn(|i| of_order(i + 2).max(0.0));
@@ -182,45 +183,53 @@ fn along(cos: f32) -> Vec3 {
 }
 
 impl Surfaces {
-    /// ℓ of one reflection, at the cosines of q.
-    fn crossings(&self, leaving: &[Leaving; RATIOS]) -> [f32; RATIOS] {
-        leaving.map(|of| {
-            let left = of.once[0] / of.parts[0].max(1e-6);
-            -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * self.depth)
-        })
+    /// The way of one reflection, in thicknesses and halved, at the cosines of q.
+    fn crossings(&self, leaving: &[Leaving; KNOTS]) -> [f32; KNOTS] {
+        leaving.map(|of| crossing(of.once[0] / of.parts[0].max(1e-6), self.depth))
     }
 
     /// The coat whose q scatters E₁ in the closed form of one reflection, and whose ℓ absorbs as much.
-    fn fitted_coat(&self, layer: &Layer, leaving: &[Leaving; RATIOS]) -> MetalCoat {
+    fn fitted_coat(&self, layer: &Layer, leaving: &[Leaving; KNOTS]) -> MetalCoat {
         let ggx = self.coat.ggx;
-        let lengths = Curve::through(self.crossings(leaving));
-        let length = Curve::through(Curve::<LENGTHS>::cosines().map(|cos| lengths.at(cos)));
-        let coat = |ratio| Coat::new(layer, ggx, ratio, (Spectrum::ZERO, length));
+        let cosines = Curve::<KNOTS>::cosines();
+        let inner = |cos: f32| safe_sqrt(1.0 - (1.0 - sqr(cos)) / sqr(layer.eta())).max(0.05);
+        let mut ratios = cosines.map(|cos| layer.ratio.at(cos));
+        let mut lengths = cosines.map(|cos| 1.0 / inner(cos));
+        let coat = |ratios, lengths| {
+            let lengths = Curve::<KNOTS>::through(lengths);
+            let length = Curve::through(Curve::<LENGTHS>::cosines().map(|cos| lengths.at(cos)));
+            let ratio = Curve::through(ratios);
+            Coat::new(layer, ggx, ratio, (Spectrum::splat(self.depth), length))
+        };
         if ggx.is_smooth() {
-            return coat(Curve::ONE);
+            return coat([1.0; KNOTS], lengths);
         }
         let metal = seen_through(self.metal, ggx, layer.eta());
-        let cosines = Curve::<RATIOS>::cosines();
-        let mut ratio = cosines.map(|cos| layer.ratio.at(cos));
+        let crossings = self.crossings(leaving);
         for _ in 0..ROUNDS {
-            let fitted = coat(Curve::through(ratio));
-            for i in 0..RATIOS {
-                let closed = once_in_closed_form(&fitted, metal, cosines[i])[0];
-                let scale = (leaving[i].parts[0] / closed.max(1e-4)).sqrt();
-                ratio[i] *= scale.clamp(0.5, 2.0);
+            let fitted = coat(ratios, lengths);
+            for i in 0..KNOTS {
+                let closed = once_in_closed_form(&fitted, metal, cosines[i]);
+                let scale = (leaving[i].parts[0] / closed.part.max(1e-4)).sqrt();
+                ratios[i] *= scale.clamp(0.5, 2.0);
+                let longer = crossings[i] - closed.crossing(self.depth);
+                lengths[i] = (lengths[i] + longer).clamp(1.0, 20.0);
             }
         }
-        coat(Curve::through(ratio))
+        coat(ratios, lengths)
     }
 
     /// s, by least squares.
-    fn steepness(&self, coat: &MetalCoat, leaving: &[Leaving; RATIOS]) -> f32 {
+    fn steepness(&self, coat: &MetalCoat, leaving: &[Leaving; KNOTS]) -> f32 {
+        if self.coat.ggx.is_smooth() {
+            return 0.0;
+        }
         let metal = seen_through(self.metal, self.coat.ggx, self.coat.eta);
-        let cosines = Curve::<RATIOS>::cosines();
+        let cosines = Curve::<KNOTS>::cosines();
         let (mut products, mut squares) = (0.0, 0.0);
         for (of, cos) in leaving.iter().zip(cosines) {
-            let [closed, steep] = once_in_closed_form(coat, metal, cos);
-            let more = of.once[1] / of.parts[0].max(1e-6) - steep / closed.max(1e-6);
+            let closed = once_in_closed_form(coat, metal, cos);
+            let more = of.once[1] / of.parts[0].max(1e-6) - closed.steep / closed.part.max(1e-6);
             let scale = fifth_power(1.0 - cos);
             products += more * scale;
             squares += sqr(scale);
@@ -281,7 +290,7 @@ impl Surfaces {
                 part: up.part * share,
                 ..up
             };
-            if light.part < 1e-5 {
+            if light.part < FAINT {
                 return;
             }
         }
@@ -303,7 +312,11 @@ impl Surfaces {
             w,
             part: light.part * unshadowed,
             way: light.way + 1.0 / v.z.max(1e-3) + 1.0 / w.z.max(1e-3),
-            cosines: [sum + cos, squares + sqr(cos), steep + fifth_power(1.0 - cos)],
+            cosines: [
+                sum + cos,
+                squares + sqr(cos),
+                steep + fifth_power(1.0 - cos),
+            ],
         })
     }
 }
@@ -314,36 +327,48 @@ pub(in crate::bsdf) fn fifth_power(x: f32) -> f32 {
     sqr(sqr(x)) * x
 }
 
-/// The part of light with cosine `cos` that white metal reflects once under `coat`, as
-/// `CoatedConductor` has it; and the same weighted with (1 - cosθ)⁵ at its facets.
-fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> [f32; 2] {
-    let wo = along(cos);
-    let Some(inner) = coat.refracted(wo) else {
-        return [0.0; 2];
-    };
-    let mut sums = [0.0; 2];
-    let n = if metal.is_smooth() { 1 } else { FACETS };
-    for i in 0..n * n {
-        let u = (Vec2::new((i % n) as f32, (i / n) as f32) + 0.5) / n as f32;
-        let mirrored = if metal.is_smooth() {
-            Some(Vec3::new(-inner.x, -inner.y, inner.z))
-        } else {
-            metal.sample_mirror(inner, u)
-        };
-        if let Some(reflected) = mirrored
-            && let Some(wi) = coat.emerging(reflected)
-        {
-            let unshadowed = if metal.is_smooth() {
-                1.0
-            } else {
-                metal.g2(inner, reflected) / metal.g1(inner)
-            };
-            let part = unshadowed * coat.transmittance(wo) * coat.transmittance(wi);
-            let cos = safe_sqrt((1.0 + inner.dot(reflected)) / 2.0);
-            sums[0] += part;
-            sums[1] += part * fifth_power(1.0 - cos);
-        }
-    }
-    sums.map(|sum| sum / (n * n) as f32)
+/// The way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
+fn crossing(left: f32, depth: f32) -> f32 {
+    -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * depth)
 }
 
+/// What white metal reflects once in closed form.
+#[derive(Default)]
+struct Once {
+    part: f32,
+    /// With the weight (1 - cosθ)⁵ at the metal's facets.
+    steep: f32,
+    /// Of `part`: what absorption leaves.
+    left: f32,
+}
+
+impl Once {
+    fn crossing(&self, depth: f32) -> f32 {
+        crossing(self.left / self.part.max(1e-6), depth)
+    }
+}
+
+/// What of light with cosine `cos` white metal reflects once under `coat`, as `CoatedConductor` has it,
+/// but for the number of points.
+fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
+    let wo = along(cos);
+    let mut once = Once::default();
+    let Some(inner) = coat.refracted(wo) else {
+        return once;
+    };
+    for i in 0..FACETS * FACETS {
+        let u = (Vec2::new((i % FACETS) as f32, (i / FACETS) as f32) + 0.5) / FACETS as f32;
+        if let Some(reflected) = metal.sample_mirror(inner, u)
+            && let Some(wi) = coat.emerging(reflected)
+        {
+            let unshadowed = metal.g2(inner, reflected) / metal.g1(inner);
+            let through = coat.transmittance(wo) * coat.transmittance(wi);
+            let part = unshadowed * through / (FACETS * FACETS) as f32;
+            let cos = safe_sqrt((1.0 + inner.dot(reflected)) / 2.0);
+            once.part += part;
+            once.steep += part * fifth_power(1.0 - cos);
+            once.left += part * coat.attenuation(wo, wi)[0];
+        }
+    }
+    once
+}

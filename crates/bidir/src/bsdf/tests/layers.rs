@@ -1,27 +1,103 @@
-//! Layered materials against a walk between their surfaces, which decides by chance at each: the
-//! albedo of both, over roughness, angle and base. `BIDIR_TEST_SHOW` prints the tables of
+//! Layered materials against a simulation between their surfaces ([`Stack`]): the reflectance of both,
+//! over index, roughness, angle, base and filling. `BIDIR_TEST_SHOW` prints the tables of
 //! docs/data/layer-albedos.csv.
 
-use super::simulation::{Base, Stack};
+use super::simulation::{Base, Leaving, Stack};
 use super::{direction, numbers};
-use crate::testing::samples;
 use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{
-    Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse, Filling,
-    TransportMode,
-};
-use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};
-use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
+use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling, TransportMode};
+use crate::math::Vec3;
+use crate::sampler::{Domain, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
+use crate::testing::{Battery, means};
+use glam::DVec3;
 use std::fmt::Write;
 
-/// Index of all layers here.
+/// The index of most layers here.
 const ETA: f32 = 1.5;
+/// The relative error of a reflectance that a closed form may have where it is exact.
+const TOLERANCE: f64 = 0.005;
+/// Sets of walks for each direction, and walks of a set.
+const WALKS: [u64; 2] = [64, 1 << 8];
+/// The same where facets lose much of the light by chance.
+const WALKS_OF_ROUGH: [u64; 2] = [64, 1 << 11];
+/// The same for a table.
+const WALKS_SHOWN: [u64; 2] = [64, 1 << 12];
+const COSINES: [f32; 3] = [0.2, 0.6, 1.0];
 
-/// The part of light from `wo` that draws of `bsdf` scatter.
+/// A clear layer of the default thickness.
+const VARNISH: Stack = Stack {
+    eta: 1.5,
+    alpha: 0.0,
+    thickness: 0.01,
+    albedo: 0.0,
+    g: 0.0,
+    base: Base::Diffuse(0.5),
+};
+
+impl Stack {
+    fn filling(&self) -> Filling {
+        Filling {
+            thickness: self.thickness as f32,
+            albedo: Spectrum::splat(self.albedo as f32),
+            g: self.g as f32,
+        }
+    }
+
+    /// The closed form of it.
+    fn bsdf(&self) -> Bsdf {
+        let filling = self.filling();
+        match self.base {
+            Base::Diffuse(rho) => varnish(
+                [self.eta, self.alpha].map(|x| x as f32),
+                rho as f32,
+                &filling,
+            ),
+            Base::Metal { eta, k, alpha } => {
+                let alphas = [self.alpha as f32, alpha as f32];
+                lacquer(self.eta as f32, alphas, [eta as f32, k as f32], &filling)
+            }
+        }
+    }
+
+    /// A name, and the first columns of the table.
+    fn name(&self) -> String {
+        let Self {
+            eta,
+            alpha,
+            thickness,
+            albedo,
+            g,
+            base,
+        } = *self;
+        match base {
+            Base::Diffuse(rho) => {
+                format!("coateddiffuse,{eta},{alpha},{rho},,,{thickness},{albedo},{g}")
+            }
+            Base::Metal {
+                eta: n,
+                k,
+                alpha: metal,
+            } => format!(
+                "coatedconductor,{eta},{alpha},,{metal},{:.3}+{:.3}i,{thickness},{albedo},{g}",
+                n * eta,
+                k * eta
+            ),
+        }
+    }
+
+    /// Means of what walks of light with cosine `cos` carry out: all, or early.
+    fn walked(&self, cos: f32, walks: [u64; 2], part: fn(Leaving) -> f64) -> Vec<f64> {
+        let wo = direction(cos, 0.3).as_dvec3();
+        let case = format!("{}, {cos}", self.name());
+        means(&case, walks, |stream| part(self.walk(wo, stream))).collect()
+    }
+}
+
+/// The part of the light from `wo` that draws of `bsdf` scatter.
 fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
-    let n = 1 << 16;
+    let n = 1 << 14;
     let sampler = Sampler::new(SamplerKind::Sobol, 3);
     let draw = |i| {
         let (u_lobe, u) = numbers(&sampler.stream(Domain::Camera, 1, i));
@@ -41,94 +117,159 @@ fn filling(thickness: f32, albedo: f32, g: f32) -> Filling {
     }
 }
 
-fn varnish(alpha: f32, rho: f32, filling: &Filling) -> Bsdf {
-    let (layer, ggx) = (Layer::new(ETA, alpha), Ggx::new(alpha, alpha));
+fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
+    let (layer, ggx) = (Layer::new(eta, alpha), Ggx::new(alpha, alpha));
     let slab = Slab::new(&layer, filling.thickness, filling.g);
     let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
     let rho = Spectrum::splat(rho);
     Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], rho))
 }
 
-fn lacquer(alpha: f32, metal_alpha: f32, index: [f32; 2], filling: &Filling) -> Bsdf {
-    let layer = Layer::new(ETA, alpha);
-    let reflections = Reflections::new(&layer, metal_alpha, filling.thickness);
+/// A metal of `index`, relative to the layer.
+fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Filling) -> Bsdf {
+    let layer = Layer::new(eta, alpha);
+    let reflections = Reflections::new(&layer, metal, filling.thickness);
     let metal = CoatedMetal {
-        eta: Spectrum::splat(index[0] / ETA),
-        k: Spectrum::splat(index[1] / ETA),
-        ggx: Ggx::new(metal_alpha, metal_alpha),
+        eta: Spectrum::splat(index[0]),
+        k: Spectrum::splat(index[1]),
+        ggx: Ggx::new(metal, metal),
     };
-    let ggx = Ggx::new(alpha, alpha);
-    Bsdf::CoatedConductor(CoatedConductor::new(
-        (&layer, &reflections),
-        ggx,
-        filling,
-        metal,
-    ))
+    let (tables, ggx) = ((&layer, &reflections), Ggx::new(alpha, alpha));
+    Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, filling, metal))
+}
+
+/// The reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the
+/// table: from each direction the closed form, walks, and walks that end as pbrt-v4's do.
+fn reflectances(stack: &Stack) -> [f64; 3] {
+    let bsdf = stack.bsdf();
+    let closed = COSINES.map(|cos| f64::from(albedo_of_draws(&bsdf, direction(cos, 0.3))));
+    if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
+        let mut line = stack.name();
+        for (cos, closed) in COSINES.into_iter().zip(closed) {
+            let mean = |part| {
+                let means = stack.walked(cos, WALKS_SHOWN, part);
+                means.iter().sum::<f64>() / means.len() as f64
+            };
+            let (all, early) = (mean(|leaving| leaving.all), mean(|leaving| leaving.early));
+            let _ = write!(line, ",{closed:.4},{all:.4},{early:.4}");
+        }
+        println!("{line}");
+    }
+    closed
+}
+
+/// Adds a comparison of `stack` with walks from the directions of `cosines`.
+fn compare(battery: &mut Battery, stack: &Stack, cosines: &[f32], walks: [u64; 2]) {
+    for (cos, closed) in COSINES.into_iter().zip(reflectances(stack)) {
+        if cosines.contains(&cos) {
+            let walked = stack.walked(cos, walks, |leaving| leaving.all);
+            let case = format!("{}, cosine {cos}", stack.name());
+            battery.mean_within(&case, walked.into_iter(), closed, TOLERANCE);
+        }
+    }
 }
 
 #[test]
-fn survey() {
-    let n = 1u64 << std::env::var("LOGN").map_or(15, |s| s.parse().unwrap());
-    let cosines = [0.1f32, 0.3, 0.6, 1.0];
-    let go = |name: String, bsdf: Bsdf, stack: Stack| {
-        let mut line = format!("{name:44}");
-        for cos in cosines {
-            let wo = direction(cos, 0.3);
-            let closed = f64::from(albedo_of_draws(&bsdf, wo));
-            let d = glam::DVec3::new(f64::from(wo.x), f64::from(wo.y), f64::from(wo.z));
-            let (mut s, mut s2, mut e) = (0.0, 0.0, 0.0);
-            for st in samples(&name, n) {
-                let l = stack.walk(d, &st);
-                s += l.all / n as f64;
-                s2 += l.all * l.all / n as f64;
-                e += l.early / n as f64;
-            }
-            let sd = ((s2 - s * s) / n as f64).sqrt();
-            let _ = write!(line, " | {:.4} {:.4} {:+.2}% ±{:.2}% p{:+.1}%", closed, s, (closed / s - 1.0) * 100.0, sd / s * 100.0, (e / s - 1.0) * 100.0);
-        }
-        println!("{line}");
+fn a_varnish_reflects_what_walks_between_its_surfaces_do() {
+    let mut battery = Battery::new("reflectance of varnish");
+    let stack = |eta, alpha, rho, thickness| Stack {
+        eta,
+        alpha,
+        thickness,
+        base: Base::Diffuse(rho),
+        ..VARNISH
     };
-    for (alpha, rho, eta, f) in [
-        (0.0, 0.2, 1.5, (0.01, 0.0, 0.0)),
-        (0.0, 0.9, 1.5, (0.01, 0.0, 0.0)),
-        (0.05, 0.5, 1.5, (0.01, 0.0, 0.0)),
-        (0.1, 0.2, 1.5, (0.01, 0.0, 0.0)),
-        (0.1, 0.9, 1.5, (0.01, 0.0, 0.0)),
-        (0.1, 0.9, 1.5, (0.0, 0.0, 0.0)),
-        (0.3, 0.2, 1.5, (0.01, 0.0, 0.0)),
-        (0.3, 0.9, 1.5, (0.01, 0.0, 0.0)),
-        (0.3, 0.9, 1.5, (0.0, 0.0, 0.0)),
-        (0.6, 0.5, 1.5, (0.01, 0.0, 0.0)),
-        (1.0, 0.2, 1.5, (0.01, 0.0, 0.0)),
-        (1.0, 0.9, 1.5, (0.01, 0.0, 0.0)),
-        (1.0, 0.9, 1.5, (0.0, 0.0, 0.0)),
-        (0.3, 0.9, 1.2, (0.01, 0.0, 0.0)),
-        (0.3, 0.9, 2.0, (0.01, 0.0, 0.0)),
-        (0.0, 0.9, 1.5, (0.5, 0.0, 0.0)),
-        (0.3, 0.9, 1.5, (0.5, 0.0, 0.0)),
-        (0.3, 0.9, 1.5, (2.0, 0.0, 0.0)),
-        (0.0, 0.5, 1.5, (0.01, 0.9, 0.0)),
-        (0.0, 0.5, 1.5, (0.3, 0.9, 0.0)),
-        (0.3, 0.1, 1.5, (0.3, 0.9, 0.5)),
-        (0.3, 0.1, 1.5, (2.0, 0.9, 0.5)),
-        (0.1, 0.0, 1.5, (2.0, 1.0, -0.3)),
+    for (eta, alpha, rho, thickness) in [
+        (1.5, 0.0, 0.2, 0.01),
+        (1.3, 0.0, 0.9, 0.01),
+        (1.5, 0.0, 0.9, 0.5),
+        (1.5, 0.05, 0.5, 0.01),
+        (1.5, 0.1, 0.9, 0.01),
     ] {
-        let (thickness, albedo, g) = f;
-        let layer = Layer::new(eta, alpha);
-        let ggx = Ggx::new(alpha, alpha);
-        let filled = Slab::new(&layer, thickness, g).tables(&layer, &[albedo])[0];
-        let bsdf = Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], Spectrum::splat(rho)));
-        let stack = Stack { eta: f64::from(eta), alpha: f64::from(alpha), thickness: f64::from(thickness), albedo: f64::from(albedo), g: f64::from(g), base: Base::Diffuse(f64::from(rho)) };
-        go(format!("varnish {alpha} {rho} {eta} {f:?}"), bsdf, stack);
+        let stack = stack(eta, alpha, rho, thickness);
+        compare(&mut battery, &stack, &COSINES, WALKS);
     }
-    for index in [[0.125, 3.34], [1.17, 2.39]] {
-        for (alphas, t) in [([0.0, 0.0], 0.01), ([0.0, 0.1], 0.01), ([0.0, 0.3], 0.01), ([0.0, 0.3], 0.5), ([0.0, 0.6], 0.01), ([0.0, 1.0], 0.01), ([0.1, 0.0], 0.01), ([0.1, 0.3], 0.01), ([0.3, 0.0], 0.01), ([0.3, 0.1], 0.01), ([0.3, 0.3], 0.01), ([0.3, 0.3], 0.5), ([0.6, 0.3], 0.01), ([1.0, 0.3], 0.01), ([0.3, 1.0], 0.01)] {
-            let bsdf = lacquer(alphas[0], alphas[1], index, &filling(t, 0.0, 0.0));
-            let eta = f64::from(ETA);
-            let stack = Stack { eta, alpha: f64::from(alphas[0]), thickness: f64::from(t), albedo: 0.0, g: 0.0,
-              base: Base::Metal { eta: f64::from(index[0]) / eta, k: f64::from(index[1]) / eta, alpha: f64::from(alphas[1]) } };
-            go(format!("lacquer {alphas:?} {index:?} {t}"), bsdf, stack);
-        }
+    for (eta, alpha, rho, thickness, cos) in [
+        (1.5, 0.3, 0.2, 0.01, 0.2),
+        (1.2, 0.3, 0.9, 0.01, 0.6),
+        (2.0, 0.3, 0.9, 0.01, 0.2),
+        (1.5, 0.3, 0.9, 0.5, 0.2),
+        (1.5, 0.6, 0.5, 0.1, 0.6),
+        (1.5, 1.0, 0.9, 0.01, 0.2),
+    ] {
+        let stack = stack(eta, alpha, rho, thickness);
+        compare(&mut battery, &stack, &[cos], WALKS_OF_ROUGH);
+    }
+    // Thin haze.
+    let haze = Stack {
+        albedo: 0.9,
+        ..VARNISH
+    };
+    compare(&mut battery, &haze, &COSINES, WALKS);
+    battery.check();
+}
+
+/// Checks that no reflectance of `stack` is further than `bound`, as a relative error, from the walks'.
+#[track_caller]
+fn check_within(stack: &Stack, bound: f64) {
+    for (cos, closed) in COSINES.into_iter().zip(reflectances(stack)) {
+        let walked = stack.walked(cos, WALKS, |leaving| leaving.all);
+        let walked = walked.iter().sum::<f64>() / walked.len() as f64;
+        let error = closed / walked - 1.0;
+        let name = stack.name();
+        assert!(error.abs() < bound, "{name}, cosine {cos}: {error:+.4}");
+    }
+}
+
+#[test]
+fn a_layer_that_scatters_reflects_about_what_walks_do() {
+    for (alpha, rho, thickness, albedo, g) in [
+        (0.0, 0.5, 0.3, 0.9, 0.0),
+        (0.3, 0.1, 0.3, 0.9, 0.5),
+        (0.3, 0.1, 2.0, 0.9, 0.5),
+        (0.1, 0.0, 2.0, 1.0, -0.3),
+    ] {
+        let stack = Stack {
+            alpha,
+            thickness,
+            albedo,
+            g,
+            base: Base::Diffuse(rho),
+            ..VARNISH
+        };
+        check_within(&stack, 0.04);
+    }
+}
+
+#[test]
+fn a_lacquer_reflects_about_what_walks_between_its_surfaces_do() {
+    // Silver, and copper in blue light.
+    for (n, k) in [(0.125, 3.34), (1.17, 2.39)] {
+        let mut check = |[alpha, metal]: [f64; 2], thickness, bound| {
+            let base = Base::Metal {
+                eta: n / VARNISH.eta,
+                k: k / VARNISH.eta,
+                alpha: metal,
+            };
+            let stack = Stack {
+                alpha,
+                thickness,
+                base,
+                ..VARNISH
+            };
+            check_within(&stack, bound);
+        };
+        check([0.0, 0.0], 0.01, 0.005);
+        check([0.0, 0.1], 0.01, 0.015);
+        check([0.0, 0.3], 0.01, 0.015);
+        check([0.0, 0.3], 0.5, 0.03);
+        check([0.1, 0.0], 0.01, 0.03);
+        check([0.1, 0.3], 0.01, 0.02);
+        check([0.3, 0.1], 0.01, 0.03);
+        check([0.3, 0.3], 0.01, 0.03);
+        check([0.3, 0.3], 0.5, 0.05);
+        check([0.6, 0.3], 0.01, 0.04);
+        check([1.0, 0.3], 0.01, 0.06);
     }
 }
 
@@ -163,12 +304,16 @@ fn white_bases_under_clear_layers_vanish_in_a_furnace_but_for_light_between_face
         (1.0, 0.2),
     ] {
         let case = format!("varnish {alpha}");
-        check_furnace(&varnish(alpha, 1.0, &clear), least, &case);
-        check_furnace(&varnish(alpha, 1.0, &diffuser), least, &case);
+        check_furnace(&varnish([ETA, alpha], 1.0, &clear), least, &case);
+        check_furnace(&varnish([ETA, alpha], 1.0, &diffuser), least, &case);
         let case = format!("lacquer {alpha} over 0.3");
         let white = [0.0, 1.0];
-        check_furnace(&lacquer(alpha, 0.3, white, &clear), least * 0.6, &case);
+        check_furnace(
+            &lacquer(ETA, [alpha, 0.3], white, &clear),
+            least * 0.6,
+            &case,
+        );
     }
     let white = [0.0, 1.0];
-    check_furnace(&lacquer(0.0, 0.0, white, &clear), 0.999, "all smooth");
+    check_furnace(&lacquer(ETA, [0.0; 2], white, &clear), 0.999, "all smooth");
 }

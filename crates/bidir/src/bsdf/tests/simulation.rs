@@ -213,9 +213,8 @@ fn metal_reflectance(cos: f64, eta: f64, k: f64) -> f64 {
         ((modulus + re) / 2.0).max(0.0).sqrt(),
         ((modulus - re) / 2.0).max(0.0).sqrt(),
     );
-    let ratio = |n: [f64; 2], d: [f64; 2]| {
-        (n[0] * n[0] + n[1] * n[1]) / (d[0] * d[0] + d[1] * d[1])
-    };
+    let ratio =
+        |n: [f64; 2], d: [f64; 2]| (n[0] * n[0] + n[1] * n[1]) / (d[0] * d[0] + d[1] * d[1]);
     let perpendicular = ratio([cos - a, b], [cos + a, b]);
     // η² cosθ against η cosθ_t.
     let (x, y) = ((eta * eta - k * k) * cos, 2.0 * eta * k * cos);
