@@ -25,7 +25,7 @@ const MOST: usize = 256;
 /// Scattering events that are told apart; the last stands for all that are more.
 const ORDERS: usize = 32;
 /// Points of an integral over the cosine from within, and over facets.
-const POINTS: u32 = 1 << 15;
+const POINTS: u32 = 1 << 17;
 /// The largest optical depth: beyond it nothing gets through.
 const DEEPEST: f32 = 10.0;
 /// Knots of ℓ.

@@ -12,7 +12,7 @@ use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 
 /// Points of an integral over facets, in each dimension.
-pub(super) const FACETS: usize = 48;
+pub(super) const FACETS: usize = 72;
 /// Knots of q.
 pub(in crate::bsdf) const KNOTS: usize = 10;
 
