@@ -1,5 +1,6 @@
 """Commands with the files they read and write, for parts that disturb them."""
 
+import json
 import os
 
 import exr
@@ -7,7 +8,7 @@ import part
 import runs
 from worlds import ROOM
 
-LIMITS = runs.Limits(cpu=30, wall=60)
+LIMITS = runs.Limits(cpu=30, wall=300)
 INFO = """Camera "perspective" WorldBegin LightSource "infinite"
 Texture "t" "spectrum" "imagemap" "string filename" "picture.png"
 Material "diffuse" "texture reflectance" "t"
@@ -69,6 +70,14 @@ def prepare(work, folder):
         ended = runs.run(command, folder, LIMITS)
         if ended.wrong(0):
             raise RuntimeError("%s: %s\n%s" % (" ".join(command), ended.wrong(0), ended.said))
+
+
+def figures(path):
+    """The results of an experiment without times, which differ from run to run."""
+    with open(path) as file:
+        found = json.load(file)
+    return [{key: value for key, value in record.items() if "seconds" not in key}
+            for record in found["records"]]
 
 
 def results(folder, outputs):

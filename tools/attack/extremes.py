@@ -10,7 +10,7 @@ import runs
 from worlds import INTEGRATORS, LAMP, ROOM, WALLS
 
 # Beyond what eight by eight pixels need, there is room for threads and for the program itself.
-LIMITS = runs.Limits(cpu=10, wall=60, memory=runs.GIB // 2)
+LIMITS = runs.Limits(cpu=10, wall=300, memory=runs.GIB // 2)
 HEAD = 'LookAt 0 0 -4 0 0 0 0 1 0\nCamera "perspective"\nWorldBegin\n'
 INSIDE = 'LookAt 0 0 -0.5 0 0 0 0 1 0\nCamera "perspective"\nWorldBegin\n'
 POINT = 'LightSource "point"\n'

@@ -4,7 +4,6 @@ Scenes, images, meshes and descriptions get any changes. Films, references and r
 changed byte of one is either found or changes no result.
 """
 
-import json
 import os
 import shutil
 
@@ -14,7 +13,9 @@ import runs
 
 NUMBERS = (b"0", b"-1", b"1", b"255", b"65536", b"2147483647", b"-2147483648", b"18446744073709551615", b"1e38",
            b"-1e38", b"1e-44", b"nan", b"inf", b"1e9999", b"4294967296")
-LIMITS = runs.Limits(cpu=20, wall=60, memory=runs.GIB)
+LIMITS = runs.Limits(cpu=20, wall=300, memory=runs.GIB)
+# Unit: seconds.
+PATIENCE = 10
 FORMATS = {"p": "png", "j": "jpg", "t": "tga", "h": "hdr", "f": "pfm", "e": "exr", "l": "exr"}
 TINY = ("--size", "6x4", "--spp", "1", "-q", "--threads", "1", "--max-depth", "3")
 
@@ -55,14 +56,6 @@ def number(random, data, at):
     return data[:begin] + random.choice(NUMBERS) + data[end:]
 
 
-def figures(path):
-    """The results of an experiment without times, which differ from run to run."""
-    with open(path) as file:
-        results = json.load(file)
-    return [{key: value for key, value in record.items() if "seconds" not in key}
-            for record in results["records"]]
-
-
 class Kinds:
     """A method for each kind of file. Each returns the title, the fault and the command."""
 
@@ -74,7 +67,7 @@ class Kinds:
             ended = runs.run(command, prepared, commands.LIMITS)
             if ended.wrong(0):
                 raise RuntimeError("%s: %s\n%s" % (command, ended.wrong(0), ended.said))
-        self.right = figures(os.path.join(prepared, "out-results", "results.json"))
+        self.right = commands.figures(os.path.join(prepared, "out-results", "results.json"))
 
     def seed(self, kind):
         folder = os.path.join(self.seeds, kind)
@@ -129,8 +122,10 @@ class Kinds:
         self.copy(folder, ("room.pbrt",))
         text = mutate(self.random, commands.EXPERIMENT.encode())
         part.write(folder, "small.toml", text)
-        return self.ends("small.toml", folder, "experiment", "small.toml", "-o", "out", "-q", "--quick",
-                         "--threads", "1")
+        command = self.work.bidir("experiment", "small.toml", "-o", "out", "-q", "--quick", "--threads", "1")
+        ended = runs.run(command, folder, LIMITS, kill_after=PATIENCE)
+        # A description may honestly ask for work without end.
+        return "small.toml", None if ended.code == -9 else ended.fault(), command
 
     def copy(self, folder, names):
         for name in names:
@@ -167,7 +162,7 @@ class Kinds:
         title = self.damage(folder, ("out-results/records.ndjson",))
         title, fault, command = self.ends(title, folder, *commands.COMMANDS["experiment"][0])
         results = os.path.join(folder, "out-results", "results.json")
-        if not fault and os.path.exists(results) and figures(results) != self.right:
+        if not fault and os.path.exists(results) and commands.figures(results) != self.right:
             fault = "the damage changes the results"
         return title, fault, command
 

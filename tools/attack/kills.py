@@ -6,19 +6,21 @@ by itself: its image must have all bits, and no file may be left over.
 
 import os
 
+import commands
+import exr
 import part
 import runs
 import tracer
 from worlds import INTEGRATORS, ROOM
 
-LIMITS = runs.Limits(cpu=60, wall=120)
+LIMITS = runs.Limits(cpu=60, wall=300)
 # A render is killed so often before it may end.
 KILLS = 4
 # Calls that touch files: between two of them the files do not change.
 FILES = ("openat", "write", "fsync", "fdatasync", "rename", "renameat", "renameat2", "linkat", "link", "unlink",
          "flock", "ftruncate")
 # Samples of a pixel. A render of them takes a few tenths of a second.
-SPP = 192
+SPP = 64
 
 
 class Whole:
@@ -31,7 +33,7 @@ class Whole:
         part.write(folder, "room.pbrt", ROOM)
         command = work.bidir(*self.flags, "--spp", SPP, "-o", "whole.exr", "--checkpoint", "whole.film")
         ended = runs.run(command, folder, LIMITS)
-        self.seconds = ended.seconds
+        self.seconds = None if ended.wrong(0) else ended.seconds
         work.case("%s whole" % integrator, ended.wrong(0), folder, command)
 
 
@@ -123,22 +125,61 @@ def merged(kills, films, folder):
     return None, command
 
 
+class Tree:
+    """What a command leaves that writes a folder of results, from a run that nothing interrupts."""
+
+    def __init__(self, work, name, folder):
+        self.name = name
+        for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
+            part.write(folder, file, text)
+        self.command = work.bidir(*commands.COMMANDS[name][0])
+        ended = runs.run(self.command, folder, LIMITS)
+        self.seconds = None if ended.wrong(0) else ended.seconds
+        work.case("%s whole" % name, ended.wrong(0), folder, self.command)
+        self.right = self.contents(folder)
+
+    def contents(self, folder):
+        """All files, with the pixels of images and the figures of results."""
+        found = {}
+        for place, _, names in os.walk(folder):
+            for path in (os.path.join(place, name) for name in names):
+                value = exr.read(path) if path.endswith(".exr") else None
+                value = commands.figures(path) if path.endswith("results.json") else value
+                found[os.path.relpath(path, folder)] = value
+        return found
+
+
+def continued(kills, tree, folder):
+    """A reference or an experiment: the same command goes on."""
+    for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
+        part.write(folder, file, text)
+    fault = kills.insist(tree.name, tree.command, folder, tree.seconds)
+    found = {} if fault else tree.contents(folder)
+    names = sorted(set(found) ^ set(tree.right))
+    if not fault and names:
+        fault = "the files differ: %s" % ", ".join(names)
+    if not fault and found != tree.right:
+        fault = "differs: %s" % ", ".join(name for name in found if found[name] != tree.right[name])
+    return fault, tree.command
+
+
 def run(work):
     kills, wholes = Kills(work), {}
     with work.folder() as place:
-        while kills.killed < work.count():
-            integrator = work.random.choice(INTEGRATORS)
-            if integrator not in wholes:
-                folder = os.path.join(place, integrator)
+        # A program that always fails is never killed.
+        while kills.killed < work.count() and work.failures < part.KEPT:
+            name = work.random.choice((*INTEGRATORS, *INTEGRATORS, "reference", "experiment"))
+            if name not in wholes:
+                folder = os.path.join(place, name)
                 os.mkdir(folder)
-                wholes[integrator] = Whole(work, integrator, folder)
-                if work.failures:
+                wholes[name] = (Whole if name in INTEGRATORS else Tree)(work, name, folder)
+                if wholes[name].seconds is None:
                     return
+            scenario = work.random.choice((resumed, shared)) if name in INTEGRATORS else continued
             with work.folder() as folder:
                 part.write(folder, "room.pbrt", ROOM)
-                scenario = work.random.choice((resumed, resumed, shared))
                 before = kills.killed
-                fault, command = scenario(kills, wholes[integrator], folder)
-                title = "%s %s after %d kills" % (integrator, scenario.__name__, kills.killed - before)
+                fault, command = scenario(kills, wholes[name], folder)
+                title = "%s %s after %d kills" % (name, scenario.__name__, kills.killed - before)
                 work.case(title, fault, folder, command)
     work.say("%d kills" % kills.killed)

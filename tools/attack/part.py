@@ -7,6 +7,8 @@ import shutil
 import tempfile
 import time
 
+# Folders of cases are in memory where that is possible: thousands of them sync their files.
+MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 # Failures of a part that are kept as files; the others are only counted.
 KEPT = 50
 
@@ -32,7 +34,7 @@ class Part:
         return [self.options.bidir, *map(str, arguments)]
 
     def folder(self):
-        return tempfile.TemporaryDirectory(prefix="bidir-attack-")
+        return tempfile.TemporaryDirectory(prefix="bidir-attack-", dir=MEMORY)
 
     def case(self, title, problem, folder=None, command=()):
         """Counts a case; `problem` is the reason why it failed, or None."""

@@ -16,7 +16,7 @@ ADDRESS_SPACE = 8 * GIB
 class Limits:
     """Means of a run. Unit: seconds of all processors and of the clock, bytes."""
 
-    def __init__(self, cpu=10, wall=60, memory=GIB):
+    def __init__(self, cpu=10, wall=300, memory=GIB):
         self.cpu, self.wall, self.memory = cpu, wall, memory
 
     def impose(self):

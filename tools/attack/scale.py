@@ -11,7 +11,7 @@ import part
 import runs
 from worlds import LAMP, WALLS
 
-LIMITS = runs.Limits(cpu=120, wall=240)
+LIMITS = runs.Limits(cpu=120, wall=600)
 ESTIMATORS = ("path", "light", "bdpt", "lvc", "auto")
 DECADES = [10.0 ** decade for decade in range(-9, 10)]
 OFFSETS = [10.0 ** decade for decade in range(0, 8)]
