@@ -16,7 +16,6 @@ NUMBERS = (b"0", b"-1", b"1", b"255", b"65536", b"2147483647", b"-2147483648", b
 LIMITS = runs.Limits(cpu=20, wall=300, memory=runs.GIB)
 # Unit: seconds.
 PATIENCE = 10
-FORMATS = {"p": "png", "j": "jpg", "t": "tga", "h": "hdr", "f": "pfm", "e": "exr", "l": "exr"}
 TINY = ("--size", "6x4", "--spp", "1", "-q", "--threads", "1", "--max-depth", "3")
 
 
@@ -104,8 +103,7 @@ class Kinds:
 
     def image(self, folder):
         name, data = self.seed("image")
-        ending = FORMATS[chr(data[0])]
-        name = "picture." + ending
+        # The first byte of a seed names the format.
         part.write(folder, name, mutate(self.random, data[1:]))
         kind = self.random.choice(("tonemap", "compare", "texture", "sky"))
         if kind == "tonemap":

@@ -17,8 +17,8 @@ DECADES = [10.0 ** decade for decade in range(-9, 10)]
 OFFSETS = [10.0 ** decade for decade in range(0, 8)]
 DIRECTIONS = ((1, 0, 0), (0, 1, 0), (-1, 2, 3))
 TOLERANCE = 0.01
-# Samples of a pixel: the means of 24 × 24 pixels then have standard errors of about a thousandth.
-SPP = {"path": 1024, "light": 4096, "bdpt": 512, "lvc": 512, "auto": 512}
+# Samples of a pixel: the means of 24 × 24 pixels then have standard errors of about two thousandths.
+SPP = {"path": 512, "light": 1024, "bdpt": 256, "lvc": 256, "auto": 256}
 SCENE = """%sCamera "perspective" "float fov" 45
 Film "rgb" "integer xresolution" 24 "integer yresolution" 24
 WorldBegin

@@ -29,6 +29,9 @@ CLIENTS = 48
 ANSWER = 20
 # The memory of the server after warming up may grow by so much. Unit: bytes.
 GROWTH = 64 << 20
+# Connections that say nothing, and what a client may wait for beside them. Unit: seconds.
+IDLE = 256
+CROWDED = 10
 GARBAGE = (b"\0" * 64, b"GET", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"\r\n" * 999,
            b"POST /status HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", b"GET /" + b"a" * 70000,
            b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000 + b"\r\n",
@@ -222,6 +225,20 @@ def besiege(work, server, seconds, folder):
     return first, most
 
 
+def crowded(server):
+    """The reason why a client does not get in beside many that say nothing, or None."""
+    idle = []
+    try:
+        idle += [server.connect() for _ in range(IDLE)]
+        seconds = server.status()
+        return "the status takes %.1f s" % seconds if seconds > CROWDED else None
+    except (OSError, ValueError) as error:
+        return "the status does not answer: %s" % error
+    finally:
+        for peer in idle:
+            peer.close()
+
+
 def finish(work, server, folder, memory):
     """The checks at the end."""
     def check(title, fault):
@@ -230,9 +247,11 @@ def finish(work, server, folder, memory):
     if server.process.poll() is not None:
         return check("the end", "the server has ended with %d" % server.process.returncode)
     try:
-        check("the end", "the status takes %.1f s" % server.status() if server.status() > 5 else None)
+        seconds = server.status()
+        check("the end", "the status takes %.1f s" % seconds if seconds > CROWDED else None)
     except (OSError, ValueError) as error:
         check("the end", "the status does not answer: %s" % error)
+    check("beside %d idle connections" % IDLE, crowded(server))
     first, most = memory
     if first:
         grown = most - first

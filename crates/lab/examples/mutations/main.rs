@@ -53,11 +53,15 @@ impl Target {
             _ => return Err(format!("there is no target {name}")),
         };
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
-        let seeds = mutation::files(&folder.join(name)).into_iter().map(fs::read);
+        let seeds = mutation::files(&folder.join(name))
+            .into_iter()
+            .map(fs::read);
         Ok(Self {
             name: name.into(),
             read,
-            seeds: seeds.collect::<io::Result<_>>().map_err(|error| error.to_string())?,
+            seeds: seeds
+                .collect::<io::Result<_>>()
+                .map_err(|error| error.to_string())?,
             seed: number(seed)?,
         })
     }
@@ -70,7 +74,12 @@ impl Target {
     }
 
     /// Reads these mutations. Returns how many panicked.
-    fn attack(&self, numbers: std::ops::Range<u64>, place: &str, failures: &str) -> io::Result<u64> {
+    fn attack(
+        &self,
+        numbers: std::ops::Range<u64>,
+        place: &str,
+        failures: &str,
+    ) -> io::Result<u64> {
         let mut place = File::create(place)?;
         let mut failed = 0;
         for number in numbers {
