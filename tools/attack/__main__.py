@@ -27,7 +27,7 @@ import part
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
-TARGET = os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target"))
+TARGET = os.path.abspath(os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target")))
 # Parts, with the cases of a night and of a minute. soak counts seconds.
 PARTS = {
     "kills": (1000, 20),
@@ -64,7 +64,7 @@ def arguments():
 def complete(options):
     """What is left out gets its value."""
     options.parts = options.parts or list(PARTS)
-    options.bidir = os.path.abspath(options.bidir)
+    options.bidir, options.mutations = map(os.path.abspath, (options.bidir, options.mutations))
     options.root = ROOT
     if options.seed is None:
         options.seed = int(time.time())

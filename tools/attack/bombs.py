@@ -1,5 +1,4 @@
-"""Small files that unpack to much: each is refused, or read within two seconds and a GiB beyond the memory
-that its own pixels or triangles need."""
+"""Small files that unpack to much: each is refused, or read within two seconds and a GiB."""
 
 import base64
 import json
@@ -10,8 +9,8 @@ import part
 import runs
 
 HEAD = 'Camera "perspective" WorldBegin LightSource "infinite"\n'
-# Of processors, with as much again for a machine that does other things. Unit: seconds.
-CPU = 4
+# With as much time again for a machine that does other things.
+LIMITS = runs.Limits(cpu=4, wall=300, memory=runs.GIB)
 MEBI = 1 << 20
 
 
@@ -81,49 +80,67 @@ def mesh(data):
 PLY = (b"ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
        b"element face 1\nproperty list uchar int vertex_indices\nend_header\n")
 TRIANGLE = '"integer indices" [0 1 2] "point3 P" [0 0 1 1 0 1 0 1 1]'
+FACE = struct.pack("<B3i", 3, 0, 1, 2)
 INFO = ("info", "scene.pbrt")
+GLTF = ("info", "scene.gltf")
 RENDER = ("render", "scene.pbrt", "-q", "--size", "4x4", "--spp", "1", "--threads", "1", "-o", "a.png")
 COMPARE = ("compare", "t.png", "t.png")
 
 
+def packed(size, head=b"", footer=b"", byte=b"\0"):
+    """A scene that includes a packed text."""
+    return {"more.pbrt.gz": gzip(size, head, footer, byte), "scene.pbrt": HEAD + 'Include "more.pbrt.gz"'}
+
+
+def subdivided(times):
+    return {"scene.pbrt": HEAD + ('Shape "loopsubdiv" "integer levels" 10 %s\n' % TRIANGLE) * times}
+
+
+def sparse():
+    """Three hundred million points of which one is there."""
+    indices, values = {"bufferView": 0, "componentType": 5125}, {"bufferView": 0}
+    return gltf({"count": 3 * 10 ** 8, "sparse": {"count": 1, "indices": indices, "values": values}})
+
+
+def repeated(word):
+    yield "%s of a shape a million times" % word, lambda: inclusions(word, 'Shape "sphere"\n'), INFO
+    yield "%s of nothing a million times" % word, lambda: inclusions(word, ""), INFO
+    yield "%s of itself" % word, lambda: {"scene.pbrt": HEAD + '%s "scene.pbrt"\n' % word * 2}, INFO
+
+
+def images(side, depth, colours):
+    title = "PNG of %d pixels a side, %d bits, type %d" % (side, depth, colours)
+    yield title + ", compared", lambda: {"t.png": png(side, depth, colours)}, COMPARE
+    yield title + ", as a texture", lambda: texture(png(side, depth, colours)), RENDER
+
+
 def bombs():
-    """Titles, files, the command, and the MiB that are honestly needed. Made one after the other."""
-    for word in ("Include", "Import"):
-        yield "%s of a shape a million times" % word, inclusions(word, 'Shape "sphere"\n'), INFO, 0
-        yield "%s of nothing a million times" % word, inclusions(word, ""), INFO, 0
-        yield "%s of itself" % word, {"scene.pbrt": HEAD + '%s "scene.pbrt"\n' % word * 2}, INFO, 0
-    yield "scene of blanks", {"more.pbrt.gz": gzip(2048 * MEBI, b"", b'Shape "sphere"', b" "),
-                              "scene.pbrt": HEAD + 'Include "more.pbrt.gz"'}, INFO, 0
-    yield "scene of one word", {"more.pbrt.gz": gzip(2048 * MEBI, b"", b"", b"x"),
-                                "scene.pbrt": HEAD + 'Include "more.pbrt.gz"'}, INFO, 0
-    yield "scene of one string", {"more.pbrt.gz": gzip(2048 * MEBI, b'Material "', b'"', b"x"),
-                                  "scene.pbrt": HEAD + 'Include "more.pbrt.gz"'}, INFO, 0
-    yield "mesh with bytes behind it", mesh(gzip(2048 * MEBI, PLY % 3 + bytes(36) + struct.pack("<B3i", 3, 0, 1, 2))), INFO, 0
-    yield "mesh of a point", mesh(gzip(1536 * MEBI, PLY % (128 * MEBI))), INFO, 0
-    yield "mesh without a header", mesh(gzip(2048 * MEBI, b"ply\n", b"", b"c")), INFO, 0
-    for side, depth, colours in ((12000, 8, 2), (30000, 1, 0), (16000, 16, 6)):
-        image = png(side, depth, colours)
-        title = "PNG of %d pixels a side, %d bits, type %d" % (side, depth, colours)
-        yield title + ", compared", {"t.png": image}, COMPARE, 0
-        yield title + ", as a texture", texture(image), RENDER, 0
-    yield "loopsubdiv of 10 levels", {"scene.pbrt": HEAD + 'Shape "loopsubdiv" "integer levels" 10 ' + TRIANGLE}, INFO, 0
-    yield "loopsubdiv of 10 levels, 50 times", {"scene.pbrt": HEAD + ('Shape "loopsubdiv" "integer levels" 10 %s\n' % TRIANGLE) * 50}, INFO, 0
-    yield "glTF points without bytes", gltf({"count": 3 * 10 ** 8}), ("info", "scene.gltf"), 0
-    yield "glTF sparse points", gltf({"count": 3 * 10 ** 8, "sparse": {
-        "count": 1, "indices": {"bufferView": 0, "componentType": 5125}, "values": {"bufferView": 0}}}), ("info", "scene.gltf"), 0
-    yield "glTF nodes below each other", gltf({"count": 3, "bufferView": 0}, 5000, 1), ("info", "scene.gltf"), 0
-    yield "glTF nodes with the same children", gltf({"count": 3, "bufferView": 0}, 9, 10), ("info", "scene.gltf"), 0
+    """Titles, functions that make the files, and commands."""
+    return [
+        *repeated("Include"), *repeated("Import"),
+        ("scene of blanks", lambda: packed(2048 * MEBI, b"", b'Shape "sphere"', b" "), INFO),
+        ("scene of one word", lambda: packed(2048 * MEBI, b"", b"", b"x"), INFO),
+        ("scene of one string", lambda: packed(2048 * MEBI, b'Material "', b'"', b"x"), INFO),
+        ("mesh with bytes behind it", lambda: mesh(gzip(2048 * MEBI, PLY % 3 + bytes(36) + FACE)), INFO),
+        ("mesh of a point", lambda: mesh(gzip(1536 * MEBI, PLY % (128 * MEBI))), INFO),
+        ("mesh without a header", lambda: mesh(gzip(2048 * MEBI, b"ply\n", b"", b"c")), INFO),
+        *images(12000, 8, 2), *images(30000, 1, 0), *images(16000, 16, 6),
+        ("loopsubdiv of 10 levels", lambda: subdivided(1), INFO),
+        ("loopsubdiv of 10 levels, 50 times", lambda: subdivided(50), INFO),
+        ("glTF points without bytes", lambda: gltf({"count": 3 * 10 ** 8}), GLTF),
+        ("glTF sparse points", sparse, GLTF),
+        ("glTF nodes below each other", lambda: gltf({"count": 3, "bufferView": 0}, 5000, 1), GLTF),
+        ("glTF nodes with the same children", lambda: gltf({"count": 3, "bufferView": 0}, 9, 10), GLTF),
+    ]
 
 
 def run(work):
-    cases = list(bombs())
+    cases = bombs()
     if work.count() < len(cases):
         cases = work.random.sample(cases, work.count())
-    for title, files, arguments, honest in cases:
-        limits = runs.Limits(cpu=CPU, wall=300, memory=runs.GIB + honest * MEBI)
+    for title, make, arguments in cases:
         with work.folder() as folder:
-            for name, data in files.items():
+            for name, data in make().items():
                 part.write(folder, name, data)
             command = work.bidir(*arguments)
-            ended = runs.run(command, folder, limits)
-            work.case(title, ended.fault(), folder, command)
+            work.case(title, runs.run(command, folder, LIMITS).fault(), folder, command)
