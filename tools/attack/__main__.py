@@ -1,6 +1,6 @@
 """Attacks the program: kills it, lets system calls fail, damages its inputs, and strains it.
 
-    python3 tools/attack                  the whole campaign: hours
+    python3 tools/attack                  the whole campaign: some two hours
     python3 tools/attack --minute         a little of every part
     python3 tools/attack PART...          some parts, such as kills
     python3 tools/attack --self-test      tests of this tool, which need no program

@@ -77,7 +77,8 @@ def mesh(data):
     return {"m.ply.gz": data, "scene.pbrt": HEAD + 'Shape "plymesh" "string filename" "m.ply.gz"'}
 
 
-PLY = (b"ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+PLY = (b"ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
+       b"property float x\nproperty float y\nproperty float z\n"
        b"element face 1\nproperty list uchar int vertex_indices\nend_header\n")
 TRIANGLE = '"integer indices" [0 1 2] "point3 P" [0 0 1 1 0 1 0 1 1]'
 FACE = struct.pack("<B3i", 3, 0, 1, 2)

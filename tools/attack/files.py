@@ -138,7 +138,7 @@ class Kinds:
         name = self.random.choice(names)
         data = part.read(folder, name)
         kind = self.random.choice(("flip", "flip", "flip", "cut"))
-        changed = flip(self.random, data) if kind == "flip" else data[:self.random.randrange(len(data))]
+        changed = flip(self.random, data) if kind == "flip" else data[:self.random.randrange(len(data) - 1)]
         part.write(folder, name, changed)
         return "%s of %s" % (kind, name)
 
@@ -167,9 +167,8 @@ class Kinds:
     def reference(self, folder):
         """A reference that is damaged is refused."""
         self.copy(folder, ("room.pbrt", "small.toml", "out-reference"))
-        names = [os.path.join("out-reference", name) for name in sorted(os.listdir(os.path.join(folder, "out-reference")))
-                 if name.endswith(".exr")]
-        title = self.damage(folder, names)
+        title = self.damage(folder, ("out-reference/picture.exr", "out-reference/against.exr",
+                                     "out-reference/provenance.json"))
         text = commands.EXPERIMENT.replace("reference-spp = 32", 'size = "8x6"\nreference = "out-reference"')
         part.write(folder, "small.toml", text)
         title, fault, command = self.ends(title, folder, "experiment", "small.toml", "-o", "out", "-q")

@@ -68,7 +68,7 @@ class Reader:
 
 
 def impose():
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    runs.limit_memory(MEMORY)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 

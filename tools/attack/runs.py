@@ -4,6 +4,7 @@ import os
 import resource
 import signal
 import subprocess
+import sys
 import time
 
 # The exit codes of docs/reference/cli.md that a program may choose itself.
@@ -11,6 +12,14 @@ DOCUMENTED = {0, 1, 2, 3, 4, 5, 6, 75, 130, 143}
 GIB = 1 << 30
 # The address space of a process: a backstop, since threads reserve much that they never use. Unit: bytes.
 ADDRESS_SPACE = 8 * GIB
+
+
+def limit_memory(size):
+    """In a new process. macOS has no such limit."""
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    except (OSError, ValueError):
+        pass
 
 
 class Limits:
@@ -23,7 +32,7 @@ class Limits:
         """Called in the new process, before the program. The verdict comes from what was used: the
         limits of the system only keep the machine from harm."""
         resource.setrlimit(resource.RLIMIT_CPU, (int(2 * self.cpu) + 2,) * 2)
-        resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_SPACE,) * 2)
+        limit_memory(ADDRESS_SPACE)
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
@@ -34,7 +43,8 @@ class Ended:
         self.command, self.seconds, self.limits, self.said = command, seconds, limits, said
         self.code = os.waitstatus_to_exitcode(status)
         self.cpu = usage.ru_utime + usage.ru_stime
-        self.memory = usage.ru_maxrss * 1024
+        # In bytes on macOS, elsewhere in KiB.
+        self.memory = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
     def fault(self):
         """The reason why this is a failure; None where it is none."""

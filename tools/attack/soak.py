@@ -32,11 +32,13 @@ GROWTH = 64 << 20
 # Connections that say nothing, and what a client may wait for beside them. Unit: seconds.
 IDLE = 256
 CROWDED = 10
-GARBAGE = (b"\0" * 64, b"GET", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"\r\n" * 999,
+GARBAGE = (b"\0" * 64, b"GET", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
+           b"\r\n" * 999,
            b"POST /status HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", b"GET /" + b"a" * 70000,
            b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000 + b"\r\n",
            b"GET /../../etc/passwd HTTP/1.1\r\nHost: a\r\n\r\n", b"GET /%ff%00 HTTP/1.1\r\nHost: a\r\n\r\n")
-PAGES = ("", "status", "log", "render.png", "render.exr", "strategies", "strategies.png", "pixel?x=3&y=2", "sample?x=3&y=2",
+PAGES = ("", "status", "log", "render.png", "render.exr", "strategies", "strategies.png", "pixel?x=3&y=2",
+         "sample?x=3&y=2",
          "pixel?x=-1&y=1e9", "sample?x=99999999999&y=", "assets/app.js", "assets/../x", "live", "none")
 COMMANDS = ({"command": "pause"}, {"command": "resume"}, {"command": "restart"}, {"command": "home"},
             {"command": "orbit", "yaw": 0.1, "pitch": 0.05}, {"command": "dolly", "factor": 1.1},
@@ -45,7 +47,8 @@ COMMANDS = ({"command": "pause"}, {"command": "resume"}, {"command": "restart"},
             {"command": "method", "lane": "a", "integrator": "bdpt", "shadowRays": "auto"},
             {"command": "method", "lane": "z", "integrator": "", "shadowRays": "\u0000"},
             {"command": "split", "on": True}, {"command": "split", "on": False},
-            {"command": "strategies", "lane": "a", "vertices": 4}, {"command": "strategies", "lane": "a", "vertices": 2 ** 53},
+            {"command": "strategies", "lane": "a", "vertices": 4},
+            {"command": "strategies", "lane": "a", "vertices": 2 ** 53},
             {"command": "save", "name": "../../x.exr"}, {"command": "none"}, [], "", 1e999)
 
 
