@@ -47,7 +47,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
-    loaded.tell_warnings(&args.scene, unused + lost, console)?;
+    let missing = settings::warn_missing(&loaded, &settings, console);
+    loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {

@@ -1,12 +1,13 @@
 //! From the structures of a file to a scene.
 
 use super::document::{Context, Document};
-use super::material::{Built, Materials};
+use super::material::{Built as BuiltMaterial, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
 use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
+use crate::lamp::{self, Placed};
 use crate::pbrt::Summary;
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::Vec3;
@@ -18,6 +19,13 @@ use std::collections::BTreeMap;
 /// The most places of shared meshes.
 const MOST_INSTANCES: usize = 1 << 24;
 
+/// A scene that was built, with where its lamps are in the file.
+pub(super) struct Built {
+    pub(super) scene: Scene,
+    pub(super) lamps: Vec<Placed<Place>>,
+    pub(super) summary: Summary,
+}
+
 /// A scene in the making.
 pub(super) struct Assembly<'a> {
     document: &'a Document,
@@ -27,6 +35,8 @@ pub(super) struct Assembly<'a> {
     /// The places of the shapes in the file, in the order of addition; of instances likewise.
     shape_places: Vec<Place>,
     instance_places: Vec<Place>,
+    /// The same of lamps, with the numbers of their lights.
+    lamps: Vec<Placed<Place>>,
     /// Of a box around all shapes.
     corners: [Vec3; 2],
     most_primitives: u64,
@@ -49,7 +59,7 @@ impl<'a> Assembly<'a> {
     pub(super) fn build(
         context: &mut Context<'_>,
         document: &'a Document,
-    ) -> Result<(Scene, Summary), GltfFault> {
+    ) -> Result<Built, GltfFault> {
         let nodes = Nodes::of(document)?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
@@ -65,6 +75,7 @@ impl<'a> Assembly<'a> {
             materials: Materials::default(),
             shape_places: Vec::new(),
             instance_places: Vec::new(),
+            lamps: Vec::new(),
             corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
             most_primitives: context.options.most_primitives(),
             summary: Summary::default(),
@@ -85,13 +96,23 @@ impl<'a> Assembly<'a> {
             mut builder,
             shape_places,
             instance_places,
+            lamps,
             summary,
             ..
         } = assembly;
         builder.camera(camera);
         let scene = builder.build();
         let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
-        Ok((scene, summary))
+        for (place, lights) in &lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(place, message);
+            }
+        }
+        Ok(Built {
+            scene,
+            lamps,
+            summary,
+        })
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.
@@ -195,7 +216,7 @@ impl<'a> Assembly<'a> {
         context: &mut Context<'_>,
         mesh: usize,
         weights: &[f32],
-    ) -> Result<Vec<(Surface, Built, Place)>, GltfFault> {
+    ) -> Result<Vec<(Surface, BuiltMaterial, Place)>, GltfFault> {
         let mut surfaces = Vec::new();
         let primitives = &self.document.root.meshes[mesh].primitives;
         for (i, primitive) in primitives.iter().enumerate() {
@@ -246,17 +267,22 @@ impl<'a> Assembly<'a> {
     fn add_to_world(
         &mut self,
         shape: Mesh,
-        material: &Built,
+        material: &BuiltMaterial,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
         self.include(&shape, &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
+        let first_light = self.builder.next_light();
         let number = self
             .builder
             .shape(shape, material.id, material.emission.clone());
         self.shape_places.push(place.clone());
+        if material.emission.is_some() {
+            let lights = first_light..self.builder.next_light();
+            self.lamps.push((place.clone(), lights));
+        }
         if let Some(coverage) = &material.coverage {
             self.builder.coverage(number, coverage.clone());
         }
@@ -267,7 +293,7 @@ impl<'a> Assembly<'a> {
         &mut self,
         object: ObjectId,
         shape: Mesh,
-        material: &Built,
+        material: &BuiltMaterial,
         places: &[DAffine3],
         place: &Place,
     ) -> Result<(), GltfFault> {
@@ -307,11 +333,13 @@ impl<'a> Assembly<'a> {
         if lights.is_empty() && self.summary.area_lights == 0 {
             let message = "the scene has no light; using a uniform environment of radiance 1";
             context.warn(&Place::TOP, message);
-            lights.push(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+            let sky = Light::Infinite(InfiniteLight::constant([1.0; 3]));
+            lights.push((Place::TOP, sky));
         }
         self.summary.other_lights = lights.len();
-        for light in lights {
-            self.builder.light(light);
+        for (place, light) in lights {
+            let number = self.builder.light(light);
+            self.lamps.push((place, number..number + 1));
         }
         Ok(())
     }

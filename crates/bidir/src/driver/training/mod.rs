@@ -5,6 +5,7 @@
 mod blocks;
 mod choice;
 mod emission;
+mod extent;
 mod pilot;
 mod plan;
 mod probe;
@@ -18,7 +19,9 @@ pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{
+    EmissionKind, IntegratorKind, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
+};
 use crate::light::LightChoice;
 use crate::path::{Cells, Connections, LightProposals, MisCount};
 use crate::scene::Scene;
@@ -26,10 +29,15 @@ use crate::select::ShadowRays;
 use crate::stats::RayCounts;
 use blocks::Blocks;
 use choice::Judge;
+use extent::Extent;
 use pilot::Found;
 use plan::Trials;
 use probe::Probe;
 use survey::Survey;
+
+/// The vertices of a light cache, of which each thread has one: some 30 MB. Subpaths of 128 vertices on
+/// average reach it, of two samples each.
+const MOST_CACHED: f64 = 131_072.0;
 
 /// What a short render before the first pass found: a pure function of scene and settings. Its
 /// samples have random numbers of their own and never enter the film.
@@ -49,6 +57,12 @@ pub struct Training {
     pub samples: u64,
     /// The rays it cost.
     pub rays: RayCounts,
+    /// How many samples connections are learnt from.
+    learning: Extent,
+    /// How many samples compare plans.
+    trials: Extent,
+    /// The mean number of rays of a light subpath.
+    subpath_rays: f64,
 }
 
 /// The settings with everything decided that they leave open, and what was learnt, where anything had
@@ -63,6 +77,10 @@ pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Tr
     let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
     let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
     let training = needs_training.then(|| Training::run(scene, &settings));
+    if let (IntegratorKind::Lvc, Some(training)) = (settings.integrator, &training) {
+        let wanted = settings.lvc.samples_per_subpath;
+        settings.lvc.samples_per_subpath = training.samples_per_subpath(scene, wanted);
+    }
     (settings, training)
 }
 
@@ -71,12 +89,16 @@ impl Training {
     fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
         let default = Plan::default().keeping(settings);
         let mut training = Self::run(scene, &default.apply(settings));
-        let plan = if scene.lights().is_empty() {
+        let mut plan = if scene.lights().is_empty() {
             plan::path(1).keeping(settings)
         } else {
             // What nothing found yet is found by what makes most paths.
             training.choose(scene, settings).unwrap_or(default)
         };
+        if plan.is_shared() {
+            plan.samples_per_subpath =
+                training.samples_per_subpath(scene, plan.samples_per_subpath);
+        }
         training.plan = Some(plan);
         (plan, training)
     }
@@ -102,18 +124,29 @@ impl Training {
     fn run(scene: &Scene, settings: &Settings) -> Self {
         let survey = Survey::run(scene, settings);
         let mut training = Self {
-            mean_luminance: (survey.luminance / survey::SAMPLES as f64) as f32,
-            light_vertices: survey.light.len() as f64 / survey::SAMPLES as f64,
+            mean_luminance: (survey.luminance / survey.samples()) as f32,
+            light_vertices: survey.light.len() as f64 / survey.samples(),
             proposals: None,
             emission: None,
             plan: None,
-            samples: survey::SAMPLES,
-            rays: survey.rays,
+            samples: survey.stats.samples,
+            rays: survey.stats.rays,
+            learning: survey.extent_of_learning(),
+            trials: survey.extent_of_trials(),
+            subpath_rays: survey.stats.rays.light as f64 / survey.samples(),
         };
         if settings.learns() && training.light_vertices > 0.0 {
             training.learn(scene, settings, &survey);
         }
         training
+    }
+
+    /// How many samples there are for a light subpath: as `wanted`, or so many that the cache of a group has
+    /// [`MOST_CACHED`] vertices on average.
+    fn samples_per_subpath(&self, scene: &Scene, wanted: SamplesPerSubpath) -> SamplesPerSubpath {
+        let pixels = scene.film().crop.area();
+        let group = group_size(pixels).min(pixels) as f64;
+        wanted.or_more(group * self.subpath_rays / MOST_CACHED)
     }
 
     /// How many connections a camera vertex makes, where each sample has a light subpath.
@@ -145,7 +178,8 @@ impl Training {
         let (lvc, cells) = (&settings.lvc, survey.cells());
         let found = self.explore(scene, settings, survey, &cells);
         if lvc.emission == EmissionKind::Learned {
-            self.emission = emission::learnt(scene.light_choice(), &found.connections);
+            let (power, subpaths) = (scene.light_choice(), self.learning.samples());
+            self.emission = emission::learnt(power, &found.connections, subpaths);
         }
         let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
@@ -188,7 +222,7 @@ impl Training {
         }
         let uniform = LightProposals::uniform(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
         let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));
-        self.count(pilot::SAMPLES, rays);
+        self.count(self.learning.samples(), rays);
         found
     }
 
@@ -205,7 +239,7 @@ impl Training {
         }
         let probe = self.probe(scene, settings, &proposals);
         let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
-        self.count(rays::SAMPLES, rays);
+        self.count(self.learning.samples(), rays);
         proposals.counting_rays(&inclusion)
     }
 
@@ -223,6 +257,7 @@ impl Training {
                 proposals: Some(proposals),
                 ..self.connections(settings.lvc)
             },
+            extent: self.learning,
             first: self.samples,
             pixels: u64::MAX,
         }

@@ -183,10 +183,10 @@ fn open_plans(settings: &Settings) -> Vec<Plan> {
     plans
 }
 
-/// The pixels that each plan is tried with, at first.
-const PIXELS: u64 = 4096;
-/// And the next time, where several may be the best.
-const MORE_PIXELS: u64 = 3 * PIXELS;
+/// As many samples of an [`Extent`](super::extent::Extent) are for a pixel that plans are tried with at first.
+const SAMPLES_PER_PIXEL: u64 = 4;
+/// So many times the pixels are tried the next time, where several plans may be the best.
+const MORE: u64 = 3;
 
 /// Where plans are tried.
 pub(super) struct Trials<'a> {
@@ -200,7 +200,7 @@ impl Trials<'_> {
     pub(super) fn run(&self) -> Vec<Tried> {
         let mut plans = open_plans(self.settings);
         plans.retain(|plan| plan.is_possible(self.scene, self.settings));
-        let attempt = |plan| (plan, self.attempt(&plan, 0, PIXELS));
+        let attempt = |plan| (plan, self.attempt(&plan, 0, self.pixels()));
         plans.into_iter().map(attempt).collect()
     }
 
@@ -208,9 +208,15 @@ impl Trials<'_> {
     pub(super) fn run_more(&self, plans: &[Plan], tried: &mut [Tried]) {
         for (plan, trial) in tried {
             if plans.contains(plan) {
-                trial.add(self.attempt(plan, trial::THIRDS * PIXELS, MORE_PIXELS));
+                let first = trial::THIRDS * self.pixels();
+                trial.add(self.attempt(plan, first, MORE * self.pixels()));
             }
         }
+    }
+
+    /// The pixels that each plan is tried with at first.
+    fn pixels(&self) -> u64 {
+        self.training.trials.samples() / SAMPLES_PER_PIXEL
     }
 
     /// Tries `plan` with so many pixels; there were `first` samples before.
@@ -220,6 +226,7 @@ impl Trials<'_> {
             scene: self.scene,
             settings: &settings,
             connections: plan.connections(&settings, self.training),
+            extent: self.training.trials,
             first: self.training.samples + first,
             pixels,
         };

@@ -1,5 +1,6 @@
 //! Groups of training samples, taken as the image takes its own.
 
+use super::extent::Extent;
 use super::{Settings, path_context};
 use crate::film::PixelRect;
 use crate::integrator::{Integrator, Sample, Workspace};
@@ -10,15 +11,14 @@ use crate::stats::Stats;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The samples of a group.
-pub(super) const GROUP: u64 = 256;
-
 /// What samples are taken of, and how.
 #[derive(Clone, Copy)]
 pub(super) struct Probe<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a Settings,
     pub(super) connections: Connections<'a>,
+    /// How many samples, and in which groups.
+    pub(super) extent: Extent,
     /// The first sample's number.
     pub(super) first: u64,
     /// After so many samples their pixels come again; the first time with the same camera rays.
@@ -112,8 +112,9 @@ impl Probe<'_> {
         workspace: &mut Workspace,
         witness: &mut impl Witness,
     ) {
-        let begin = self.first + group * GROUP;
-        let numbers = begin..begin + GROUP;
+        let size = self.extent.group();
+        let begin = self.first + group * size;
+        let numbers = begin..begin + size;
         self.walk_light(integrator, numbers.clone(), workspace, witness);
         for number in numbers {
             let sample = self.sample(number);
@@ -212,6 +213,7 @@ mod tests {
                     samples_per_subpath,
                     ..Connections::ONE_SUBPATH
                 },
+                extent: Extent::within(1.0, 1.0),
                 first: 768,
                 pixels: u64::MAX,
             };

@@ -27,7 +27,7 @@
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
-use super::probe::{GROUP, Probe, Witness, groups, landed};
+use super::probe::{Probe, Witness, groups, landed};
 use crate::integrator::{IntegratorKind, Sample, Workspace};
 use crate::path::PathContext;
 use crate::stats::{RayCounts, Stats};
@@ -170,7 +170,7 @@ impl Trial {
         } = probe.settings;
         let blocks = Blocks::new(probe.scene.film().crop);
         let samples = THIRDS * probe.pixels;
-        let groups = groups(samples / GROUP, |group, workspace| {
+        let groups = groups(samples / probe.extent.group(), |group, workspace| {
             let mut trying = Trying {
                 blocks: &blocks,
                 trial: Self::default(),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::driver::training::extent::Extent;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::light::EmissionSides;
@@ -153,6 +154,7 @@ fn two_of_three_samples_share_their_camera_ray() {
         ..Settings::default()
     };
     let probe = Probe {
+        extent: Extent::within(1.0, 1.0),
         scene: &lamp(PixelRect {
             min: [0; 2],
             max: [16; 2],
