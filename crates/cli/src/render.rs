@@ -1,7 +1,7 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::{RenderArgs, ThreadsArgs};
-use crate::begin::{self, Began};
+use crate::begin::{self, Began, Training};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
@@ -55,7 +55,8 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
             Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
             display => display,
         };
-        return match begin::session(args, &loaded, &settings, &signals, display)? {
+        let how = (Training::Whole, display);
+        return match begin::session(args, &loaded, &settings, &signals, how)? {
             Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
             Began::Stopped(exit) => Ok(exit),
         };
@@ -116,18 +117,21 @@ impl Job<'_> {
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check(&header(None), budget.range())?;
         }
+        let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
+        let training = Training::new(budget.time, earlier);
         let start = Instant::now();
         let began = begin::session(
             self.args,
             self.loaded,
             self.settings,
             self.signals,
-            self.display(),
+            (training, self.display()),
         );
         let mut session = match began? {
             Began::Session(session) => *session,
             Began::Stopped(exit) => return Ok(self.stopped(exit)),
         };
+        self.warn_short(training, &session);
         session.start_at(budget.first);
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
@@ -178,6 +182,17 @@ impl Job<'_> {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
         })
+    }
+
+    /// Warns that training did not end in time.
+    fn warn_short(&self, training: Training, session: &Session<'_>) {
+        let is_short = session.training().is_some_and(|training| training.is_short);
+        if is_short && matches!(training, Training::By(_)) {
+            self.console.warning(
+                "training did not end within --time, so the image has more noise than it could; allow more \
+                 time, or choose --integrator path or bdpt, which need none",
+            );
+        }
     }
 
     /// How the command ends where a signal came before there was anything to write.

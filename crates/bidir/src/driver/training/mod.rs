@@ -4,6 +4,7 @@
 
 mod blocks;
 mod choice;
+mod effort;
 mod emission;
 mod extent;
 mod pilot;
@@ -15,6 +16,7 @@ mod survey;
 mod tests;
 mod trial;
 
+pub use effort::Effort;
 pub use plan::Plan;
 
 use super::Settings;
@@ -29,6 +31,7 @@ use crate::select::ShadowRays;
 use crate::stats::RayCounts;
 use blocks::Blocks;
 use choice::Judge;
+use effort::{IsLate, Late};
 use extent::Extent;
 use pilot::Found;
 use plan::Trials;
@@ -57,6 +60,8 @@ pub struct Training {
     pub samples: u64,
     /// The rays it cost.
     pub rays: RayCounts,
+    /// True where there was no time for more than a few samples ([`Effort::Short`]).
+    pub is_short: bool,
     /// How many samples connections are learnt from.
     learning: Extent,
     /// How many samples compare plans.
@@ -67,63 +72,116 @@ pub struct Training {
 
 /// The settings with everything decided that they leave open, and what was learnt, where anything had
 /// to be.
-pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Training>) {
-    let mut settings = settings;
+pub(super) fn prepare(
+    scene: &Scene,
+    settings: Settings,
+    effort: Effort<'_>,
+) -> (Settings, Option<Training>) {
+    let is_late: IsLate<'_> = match effort {
+        Effort::Whole => &|| false,
+        Effort::Until(is_late) => is_late,
+        Effort::Short => return effort::short(scene, settings),
+    };
+    let task = Task {
+        scene,
+        settings: &settings,
+        is_late,
+    };
+    train(task).unwrap_or_else(|Late| effort::short(scene, settings))
+}
+
+/// What is trained for.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    is_late: IsLate<'a>,
+}
+
+fn train(task: Task<'_>) -> Result<(Settings, Option<Training>), Late> {
+    let mut settings = task.settings.clone();
     if settings.integrator == IntegratorKind::Auto {
-        let (plan, training) = Training::plan(scene, &settings);
-        return (plan.apply(&settings), Some(training));
+        let (plan, training) = Training::plan(task)?;
+        return Ok((plan.apply(&settings), Some(training)));
     }
     settings.decide();
-    let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
-    let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
-    let training = needs_training.then(|| Training::run(scene, &settings));
-    if let (IntegratorKind::Lvc, Some(training)) = (settings.integrator, &training) {
-        let wanted = settings.lvc.samples_per_subpath;
-        settings.lvc.samples_per_subpath = training.samples_per_subpath(scene, wanted);
+    if !settings.needs_training() {
+        return Ok((settings, None));
     }
-    (settings, training)
+    let training = Training::run(task.with(&settings))?;
+    training.bound_cache(task.scene, &mut settings);
+    Ok((settings, Some(training)))
+}
+
+impl<'a> Task<'a> {
+    /// The same with other settings.
+    fn with<'b>(self, settings: &'b Settings) -> Task<'b>
+    where
+        'a: 'b,
+    {
+        Task { settings, ..self }
+    }
+}
+
+impl Settings {
+    /// True where the estimator needs to know something of the scene.
+    fn needs_training(&self) -> bool {
+        let needs_mean = self.integrator.has_candidates() && self.shadow_rays.needs_mean();
+        needs_mean || self.integrator == IntegratorKind::Lvc
+    }
 }
 
 impl Training {
     /// Finds what to render with, and trains for it.
-    fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
+    fn plan(task: Task<'_>) -> Result<(Plan, Self), Late> {
+        let Task {
+            scene, settings, ..
+        } = task;
         let default = Plan::default().keeping(settings);
-        let mut training = Self::run(scene, &default.apply(settings));
+        let mut training = Self::run(task.with(&default.apply(settings)))?;
         let mut plan = if scene.lights().is_empty() {
             plan::path(1).keeping(settings)
         } else {
             // What nothing found yet is found by what makes most paths.
-            training.choose(scene, settings).unwrap_or(default)
+            training.choose(task)?.unwrap_or(default)
         };
         if plan.is_shared() {
             plan.samples_per_subpath =
                 training.samples_per_subpath(scene, plan.samples_per_subpath);
         }
         training.plan = Some(plan);
-        (plan, training)
+        Ok((plan, training))
     }
 
     /// The best plan. None: no trial found any light.
-    fn choose(&mut self, scene: &Scene, settings: &Settings) -> Option<Plan> {
+    fn choose(&mut self, task: Task<'_>) -> Result<Option<Plan>, Late> {
         let trials = Trials {
-            scene,
-            settings,
+            task,
             training: self,
         };
-        let (mut tried, blocks) = (trials.run(), Blocks::new(scene.film().crop));
-        let first = Judge::new(&blocks, settings, &tried);
+        let (mut tried, blocks) = (trials.run()?, Blocks::new(task.scene.film().crop));
+        let first = Judge::new(&blocks, task.settings, &tried);
         let (close, shared) = (first.close(), first.best_shared());
-        trials.run_more(&close, &mut tried);
+        trials.run_more(&close, &mut tried)?;
         for (_, trial) in &tried {
             self.count(trial.stats.samples, trial.stats.rays);
         }
-        Judge::new(&blocks, settings, &tried).best(shared)
+        Ok(Judge::new(&blocks, task.settings, &tried).best(shared))
     }
 
-    /// Renders a few samples spread over the film, tracing every connection.
-    fn run(scene: &Scene, settings: &Settings) -> Self {
-        let survey = Survey::run(scene, settings);
-        let mut training = Self {
+    /// Renders a few samples spread over the film, tracing every connection, and learns from them.
+    fn run(task: Task<'_>) -> Result<Self, Late> {
+        let survey = Survey::run(task)?;
+        let mut training = Self::of(&survey);
+        if task.settings.learns() && training.light_vertices > 0.0 {
+            training.learn(task, &survey)?;
+        }
+        Ok(training)
+    }
+
+    /// What is known before anything is learnt.
+    fn of(survey: &Survey) -> Self {
+        Self {
             mean_luminance: (survey.luminance / survey.samples()) as f32,
             light_vertices: survey.light.len() as f64 / survey.samples(),
             proposals: None,
@@ -131,14 +189,19 @@ impl Training {
             plan: None,
             samples: survey.stats.samples,
             rays: survey.stats.rays,
+            is_short: false,
             learning: survey.extent_of_learning(),
             trials: survey.extent_of_trials(),
             subpath_rays: survey.stats.rays.light as f64 / survey.samples(),
-        };
-        if settings.learns() && training.light_vertices > 0.0 {
-            training.learn(scene, settings, &survey);
         }
-        training
+    }
+
+    /// Lets so few light subpaths be in a cache that it stays small.
+    fn bound_cache(&self, scene: &Scene, settings: &mut Settings) {
+        if settings.integrator == IntegratorKind::Lvc {
+            let wanted = settings.lvc.samples_per_subpath;
+            settings.lvc.samples_per_subpath = self.samples_per_subpath(scene, wanted);
+        }
     }
 
     /// How many samples there are for a light subpath: as `wanted`, or so many that the cache of a group has
@@ -174,9 +237,9 @@ impl Training {
 
     /// Learns where light subpaths shall begin, which of their vertices to propose, which are visible, and
     /// which are chosen.
-    fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
-        let (lvc, cells) = (&settings.lvc, survey.cells());
-        let found = self.explore(scene, settings, survey, &cells);
+    fn learn(&mut self, task: Task<'_>, survey: &Survey) -> Result<(), Late> {
+        let (scene, lvc, cells) = (task.scene, &task.settings.lvc, survey.cells());
+        let found = self.explore(task, survey, &cells)?;
         if lvc.emission == EmissionKind::Learned {
             let (power, subpaths) = (scene.light_choice(), self.learning.samples());
             self.emission = emission::learnt(power, &found.connections, subpaths);
@@ -200,63 +263,59 @@ impl Training {
             ProposalKind::Learned => LightProposals::new(cells, &sums),
             ProposalKind::Uniform => LightProposals::uniform(cells, &sums),
         };
-        let proposals = self.counting_rays(scene, settings, proposals);
+        let proposals = self.counting_rays(task, proposals)?;
         let is_uniform =
             lvc.proposal == ProposalKind::Uniform && lvc.mis_count != MisCount::Resampled;
         self.proposals = (!is_uniform).then_some(proposals);
+        Ok(())
     }
 
     /// Connections with light vertices that are chosen by nothing, where somebody learns from them.
     fn explore(
         &mut self,
-        scene: &Scene,
-        settings: &Settings,
+        task: Task<'_>,
         survey: &Survey,
         cells: &Cells,
-    ) -> Found {
+    ) -> Result<Found, Late> {
         let LvcSettings {
             proposal, emission, ..
-        } = settings.lvc;
+        } = task.settings.lvc;
         if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
-            return Found::default();
+            return Ok(Found::default());
         }
         let uniform = LightProposals::uniform(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
-        let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));
+        let (found, rays) = pilot::run(&self.probe(task, &uniform))?;
         self.count(self.learning.samples(), rays);
-        found
+        Ok(found)
     }
 
     /// The proposals with counts of traced rays, where weights take these and not all are traced.
     fn counting_rays(
         &mut self,
-        scene: &Scene,
-        settings: &Settings,
+        task: Task<'_>,
         proposals: LightProposals,
-    ) -> LightProposals {
+    ) -> Result<LightProposals, Late> {
+        let settings = task.settings;
         let all_are_traced = settings.shadow_rays == ShadowRays::All;
         if settings.lvc.mis_count != MisCount::Resampled || all_are_traced {
-            return proposals;
+            return Ok(proposals);
         }
-        let probe = self.probe(scene, settings, &proposals);
-        let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
+        let probe = self.probe(task, &proposals);
+        let (inclusion, rays) = rays::run(&probe, self.mean_luminance)?;
         self.count(self.learning.samples(), rays);
-        proposals.counting_rays(&inclusion)
+        Ok(proposals.counting_rays(&inclusion))
     }
 
     /// More samples, where `proposals` are all that is known.
-    fn probe<'a>(
-        &'a self,
-        scene: &'a Scene,
-        settings: &'a Settings,
-        proposals: &'a LightProposals,
-    ) -> Probe<'a> {
+    fn probe<'a>(&'a self, task: Task<'a>, proposals: &'a LightProposals) -> Probe<'a> {
         Probe {
-            scene,
-            settings,
+            scene: task.scene,
+            settings: task.settings,
             connections: Connections {
                 proposals: Some(proposals),
-                ..self.connections(settings.lvc)
+                ..self.connections(task.settings.lvc)
             },
+            is_late: task.is_late,
             extent: self.learning,
             first: self.samples,
             pixels: u64::MAX,

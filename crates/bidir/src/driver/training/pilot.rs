@@ -1,6 +1,7 @@
 //! What is learnt about connections: uniform candidates, all of them traced, of groups of samples that
 //! share light subpaths as those of the image do.
 
+use super::effort::Late;
 use super::probe::{Probe, Witness, groups, keep};
 use crate::integrator::{
     CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
@@ -79,8 +80,8 @@ impl Witness for Found {
 }
 
 /// What all groups found, in their order, and the rays that it took.
-pub(super) fn run(probe: &Probe<'_>) -> (Found, RayCounts) {
-    let groups = groups(probe.extent.groups(), |group, workspace| {
+pub(super) fn run(probe: &Probe<'_>) -> Result<(Found, RayCounts), Late> {
+    let groups = groups(probe.extent.groups(), probe.is_late, |group, workspace| {
         let mut found = Found::default();
         let selector = ShadowRays::All.selector(0.0);
         let lvc = LvcSettings {
@@ -90,12 +91,12 @@ pub(super) fn run(probe: &Probe<'_>) -> (Found, RayCounts) {
         let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
         probe.group(&*integrator, group, workspace, &mut found);
         found
-    });
+    })?;
     let (mut all, mut rays) = (Found::default(), RayCounts::default());
     for (found, stats) in groups {
         all.connections.extend(found.connections);
         all.next_events.extend(found.next_events);
         rays += stats.rays;
     }
-    (all, rays)
+    Ok((all, rays))
 }

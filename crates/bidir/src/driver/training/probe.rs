@@ -1,5 +1,6 @@
 //! Groups of training samples, taken as the image takes its own.
 
+use super::effort::{IsLate, Late};
 use super::extent::Extent;
 use super::{Settings, path_context};
 use crate::film::PixelRect;
@@ -17,6 +18,8 @@ pub(super) struct Probe<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a Settings,
     pub(super) connections: Connections<'a>,
+    /// Whether training is given up, asked before each group.
+    pub(super) is_late: IsLate<'a>,
     /// How many samples, and in which groups.
     pub(super) extent: Extent,
     /// The first sample's number.
@@ -93,12 +96,16 @@ fn pixel(crop: &PixelRect, i: u64) -> [u32; 2] {
 /// had them.
 pub(super) fn groups<T: Send>(
     count: u64,
+    is_late: IsLate<'_>,
     of_group: impl Fn(u64, &mut Workspace) -> T + Sync,
-) -> Vec<(T, Stats)> {
+) -> Result<Vec<(T, Stats)>, Late> {
     let groups = (0..count).into_par_iter();
     let found = groups.map_init(Workspace::default, |workspace, group| {
+        if is_late() {
+            return Err(Late);
+        }
         let found = of_group(group, workspace);
-        (found, std::mem::take(&mut workspace.stats))
+        Ok((found, std::mem::take(&mut workspace.stats)))
     });
     found.collect()
 }
@@ -213,6 +220,7 @@ mod tests {
                     samples_per_subpath,
                     ..Connections::ONE_SUBPATH
                 },
+                is_late: &|| false,
                 extent: Extent::within(1.0, 1.0),
                 first: 768,
                 pixels: u64::MAX,

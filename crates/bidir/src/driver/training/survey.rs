@@ -1,10 +1,11 @@
 //! The first samples: of the full estimator, which traces every connection. They tell how bright the
 //! image is, and where vertices are.
 
-use super::Settings;
+use super::effort::Late;
 use super::extent::{Extent, work};
 use super::pilot;
 use super::probe::{Probe, groups, landed};
+use super::{Settings, Task};
 use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
 use crate::math::Vec3;
 use crate::path::{Cells, Connections, PairSums, PathContext};
@@ -47,11 +48,22 @@ struct Full<'a> {
 }
 
 impl Survey {
-    pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
-        let full = Full::new(scene, settings);
-        let first = full.take(FIRST, 1);
+    pub(super) fn run(task: Task<'_>) -> Result<Self, Late> {
+        let full = Full::new(task);
+        let first = full.take(FIRST, 1)?;
         let extent = Extent::within(WORK, work(&first.stats) / FIRST as f64);
         full.take(extent.groups(), extent.group())
+    }
+
+    /// A few samples, which take no time.
+    pub(super) fn short(scene: &Scene, settings: &Settings) -> Self {
+        let task = Task {
+            scene,
+            settings,
+            is_late: &|| false,
+        };
+        // It is never late.
+        Full::new(task).take(FIRST, 4).unwrap_or_default()
     }
 
     fn add(&mut self, group: Self, stats: &Stats) {
@@ -112,11 +124,12 @@ impl Survey {
 }
 
 impl<'a> Full<'a> {
-    fn new(scene: &'a Scene, settings: &'a Settings) -> Self {
+    fn new(task: Task<'a>) -> Self {
         let probe = Probe {
-            scene,
-            settings,
+            scene: task.scene,
+            settings: task.settings,
             connections: Connections::ONE_SUBPATH,
+            is_late: task.is_late,
             extent: Extent::within(WORK, 0.0),
             first: 0,
             pixels: u64::MAX,
@@ -129,19 +142,19 @@ impl<'a> Full<'a> {
     }
 
     /// Takes the first samples, in so many groups of `size`.
-    fn take(&self, count: u64, size: u64) -> Survey {
-        let groups = groups(count, |group, workspace| {
+    fn take(&self, count: u64, size: u64) -> Result<Survey, Late> {
+        let groups = groups(count, self.probe.is_late, |group, workspace| {
             let mut survey = Survey::default();
             for number in group * size..(group + 1) * size {
                 self.sample(number, workspace, &mut survey);
             }
             survey
-        });
+        })?;
         let mut all = Survey::default();
         for (group, stats) in groups {
             all.add(group, &stats);
         }
-        all
+        Ok(all)
     }
 
     fn sample(&self, number: u64, workspace: &mut Workspace, survey: &mut Survey) {
@@ -207,7 +220,12 @@ mod tests {
             ..Settings::default()
         };
         let count = 4;
-        let survey = Full::new(&scene, &settings).take(count, 1);
+        let task = Task {
+            scene: &scene,
+            settings: &settings,
+            is_late: &|| false,
+        };
+        let survey = Full::new(task).take(count, 1).expect("nothing is late");
         let longest = count * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.

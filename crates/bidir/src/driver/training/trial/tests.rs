@@ -154,6 +154,7 @@ fn two_of_three_samples_share_their_camera_ray() {
         ..Settings::default()
     };
     let probe = Probe {
+        is_late: &|| false,
         extent: Extent::within(1.0, 1.0),
         scene: &lamp(PixelRect {
             min: [0; 2],
@@ -164,7 +165,7 @@ fn two_of_three_samples_share_their_camera_ray() {
         first: 77,
         pixels: 4096,
     };
-    let trial = Trial::run(&probe, 0.0);
+    let trial = Trial::run(&probe, 0.0).expect("nothing is late");
     let sum = |of_block: &dyn Fn(usize) -> f64| (0..BLOCKS).map(of_block).sum::<f64>();
     // What is seen depends on the ray alone, and differs from ray to ray along the lamp's edge.
     assert!(sum(&|i| trial.mean(i, &square())) > 1.0);
