@@ -149,7 +149,10 @@ mod tests {
             assert!(matches!(Training::new(time, Some(&short)), Training::Short));
         }
         assert!(matches!(Training::new(None, None), Training::Whole));
-        assert!(matches!(Training::new(Some(Duration::MAX), None), Training::Whole));
+        assert!(matches!(
+            Training::new(Some(Duration::MAX), None),
+            Training::Whole
+        ));
         let by = Training::new(Some(Duration::from_secs(2)), None);
         assert!(matches!(by, Training::By(end) if end > Instant::now() + Duration::from_secs(2)));
     }

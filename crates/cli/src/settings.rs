@@ -140,10 +140,12 @@ pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: C
 }
 
 /// The lamps whose light is missing, as the end of a clause: the first with its place, the others by number.
+/// Nothing where light of all is, whichever they are.
 fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
     let lights = loaded.scene.lights();
     let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
-    let Some(first) = loaded.lamps.iter().find(is_concerned) else {
+    let first = loaded.lamps.iter().find(is_concerned);
+    let Some(first) = first.filter(|_| spot != BlindSpot::SeenBySpecular) else {
         return String::new();
     };
     let kind = lights[first.light as usize].kind();

@@ -90,7 +90,9 @@ mod tests {
             let all: usize = taken.iter().map(|(count, _)| count).sum();
             assert!(all < 12_000, "{all} of {}", k * k);
             let shares = taken.iter().map(|(_, share)| share);
-            sums.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share);
+            sums.iter_mut()
+                .zip(shares)
+                .for_each(|(sum, share)| *sum += share);
         }
         for (n, sum) in sums.iter().enumerate().skip(ALL_UP_TO) {
             let pairs = (n - 1).min(2 * k + 1 - n) as f64;

@@ -1,6 +1,10 @@
-//! How many samples a part of training takes: n = 2¹⁴ where a sample costs what it usually does, and
-//! fewer where subpaths are so long that n samples would cost more than a given work W. With w the mean
-//! work of a sample, n is the power of two just below W / w, and not below 2⁶.
+//! How many samples a part of training takes: 2¹⁴ where a sample costs no more than it usually does, and
+//! fewer where subpaths are long. With w the mean work of a sample and w₀ the usual one, it is the power of
+//! two just below
+//!
+//! 2¹⁴ (w₀ / w)²,
+//!
+//! and not below 2⁶: the longer subpaths are, the less time training takes, which is then the least of it.
 //!
 //! Training only estimates what estimators choose by, so fewer samples add no bias. Work is counted and
 //! not timed: a scene is trained alike on every machine.
@@ -21,10 +25,11 @@ const SMALLEST_GROUP: u64 = 4;
 pub(super) struct Extent(u64);
 
 impl Extent {
-    /// As many samples as make `work`, where one makes `of_sample`. Unit: as [`work`].
-    pub(super) fn within(work: f64, of_sample: f64) -> Self {
-        let samples = (work / of_sample.max(1.0)) as u64;
-        Self((1 << samples.max(LEAST).ilog2()).min(MOST))
+    /// As many samples where one makes `work`, and `usual` work is w₀. Unit: as [`work`].
+    pub(super) fn new(usual: f64, work: f64) -> Self {
+        let ratio = (usual / work.max(usual)).min(1.0);
+        let samples = MOST as f64 * ratio * ratio;
+        Self(1 << (samples as u64).max(LEAST).ilog2())
     }
 
     /// How many samples there are.
@@ -54,21 +59,20 @@ mod tests {
 
     #[test]
     fn costly_samples_are_fewer() {
-        let work = 1024.0 * MOST as f64;
-        for (of_sample, samples) in [
+        for (work, samples) in [
             (0.0, MOST),
-            (1024.0, MOST),
-            (1025.0, MOST / 2),
-            (2048.0, MOST / 2),
-            (1e5, 128),
+            (64.0, MOST),
+            (65.0, MOST / 2),
+            (128.0, MOST / 4),
+            (512.0, 256),
             (1e9, LEAST),
             (f64::INFINITY, LEAST),
         ] {
-            let extent = Extent::within(work, of_sample);
-            assert_eq!(extent.samples(), samples, "{of_sample}");
+            let extent = Extent::new(64.0, work);
+            assert_eq!(extent.samples(), samples, "{work}");
             assert_eq!(extent.group() * extent.groups(), samples);
             assert!(extent.group() >= SMALLEST_GROUP && extent.groups() <= GROUPS);
         }
-        assert_eq!(Extent::within(work, 1.0).group(), 256);
+        assert_eq!(Extent::new(64.0, 1.0).group(), 256);
     }
 }

@@ -146,8 +146,9 @@ impl Training {
             training.choose(task)?.unwrap_or(default)
         };
         if plan.is_shared() {
+            let pixels = scene.film().crop.area();
             plan.samples_per_subpath =
-                training.samples_per_subpath(scene, plan.samples_per_subpath);
+                training.samples_per_subpath(pixels, plan.samples_per_subpath);
         }
         training.plan = Some(plan);
         Ok((plan, training))
@@ -199,15 +200,14 @@ impl Training {
     /// Lets so few light subpaths be in a cache that it stays small.
     fn bound_cache(&self, scene: &Scene, settings: &mut Settings) {
         if settings.integrator == IntegratorKind::Lvc {
-            let wanted = settings.lvc.samples_per_subpath;
-            settings.lvc.samples_per_subpath = self.samples_per_subpath(scene, wanted);
+            let (pixels, wanted) = (scene.film().crop.area(), settings.lvc.samples_per_subpath);
+            settings.lvc.samples_per_subpath = self.samples_per_subpath(pixels, wanted);
         }
     }
 
-    /// How many samples there are for a light subpath: as `wanted`, or so many that the cache of a group has
-    /// [`MOST_CACHED`] vertices on average.
-    fn samples_per_subpath(&self, scene: &Scene, wanted: SamplesPerSubpath) -> SamplesPerSubpath {
-        let pixels = scene.film().crop.area();
+    /// How many samples of an image with so many pixels there are for a light subpath: as `wanted`, or so many
+    /// that the cache of a group has [`MOST_CACHED`] vertices on average.
+    fn samples_per_subpath(&self, pixels: u64, wanted: SamplesPerSubpath) -> SamplesPerSubpath {
         let group = group_size(pixels).min(pixels) as f64;
         wanted.or_more(group * self.subpath_rays / MOST_CACHED)
     }
@@ -271,12 +271,7 @@ impl Training {
     }
 
     /// Connections with light vertices that are chosen by nothing, where somebody learns from them.
-    fn explore(
-        &mut self,
-        task: Task<'_>,
-        survey: &Survey,
-        cells: &Cells,
-    ) -> Result<Found, Late> {
+    fn explore(&mut self, task: Task<'_>, survey: &Survey, cells: &Cells) -> Result<Found, Late> {
         let LvcSettings {
             proposal, emission, ..
         } = task.settings.lvc;

@@ -1,7 +1,7 @@
 //! What `auto` may render with, and how each is tried.
 
-use super::probe::Probe;
 use super::effort::Late;
+use super::probe::Probe;
 use super::trial::{self, Trial};
 use super::{Settings, Task, Training};
 use crate::integrator::{

@@ -221,7 +221,7 @@ mod tests {
                     ..Connections::ONE_SUBPATH
                 },
                 is_late: &|| false,
-                extent: Extent::within(1.0, 1.0),
+                extent: Extent::new(1.0, 1e9),
                 first: 768,
                 pixels: u64::MAX,
             };

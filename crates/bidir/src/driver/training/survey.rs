@@ -13,10 +13,11 @@ use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::Stats;
 
-/// What a sample of limited length seldom costs, times the most samples. Unit: as [`work`].
-const WORK: f64 = 128.0 * 16384.0;
-/// What the parts of training behind the survey cost at most, likewise, but that each has a few samples.
-const WORK_OF_LEARNING: f64 = 2.0 * WORK;
+/// What a sample seldom costs where the length of paths is limited, or surfaces absorb something. Unit: as
+/// [`work`].
+const USUAL: f64 = 256.0;
+/// The same of samples that learn about connections.
+const USUAL_OF_LEARNING: f64 = 384.0;
 /// The first samples, by which the others are counted.
 const FIRST: u64 = 16;
 
@@ -51,7 +52,7 @@ impl Survey {
     pub(super) fn run(task: Task<'_>) -> Result<Self, Late> {
         let full = Full::new(task);
         let first = full.take(FIRST, 1)?;
-        let extent = Extent::within(WORK, work(&first.stats) / FIRST as f64);
+        let extent = Extent::new(USUAL, work(&first.stats) / FIRST as f64);
         full.take(extent.groups(), extent.group())
     }
 
@@ -82,12 +83,12 @@ impl Survey {
     pub(super) fn extent_of_learning(&self) -> Extent {
         let connected = 2 * u64::from(pilot::CANDIDATES) * self.stats.rays.camera;
         let work = work(&self.stats) + connected as f64;
-        Extent::within(WORK_OF_LEARNING, work / self.samples())
+        Extent::new(USUAL_OF_LEARNING, work / self.samples())
     }
 
     /// How many samples compare plans.
     pub(super) fn extent_of_trials(&self) -> Extent {
-        Extent::within(WORK, work(&self.stats) / self.samples())
+        Extent::new(USUAL, work(&self.stats) / self.samples())
     }
 
     fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
@@ -130,7 +131,7 @@ impl<'a> Full<'a> {
             settings: task.settings,
             connections: Connections::ONE_SUBPATH,
             is_late: task.is_late,
-            extent: Extent::within(WORK, 0.0),
+            extent: Extent::new(USUAL, 0.0),
             first: 0,
             pixels: u64::MAX,
         };

@@ -30,13 +30,12 @@ fn without_lights_and_where_none_is_found_there_is_a_plan() {
 /// A thread keeps the subpaths of 2048 samples: of the longest ones there are fewer.
 #[test]
 fn long_light_subpaths_are_few() {
-    let max = [512; 2];
-    let scene = sphere(PixelRect { min: [0; 2], max }, 3.0, Some([2.0; 3]));
-    let settings = Settings::default();
-    let mut training = Training::of(&Survey::short(&scene, &settings));
+    let max = [16; 2];
+    let scene = sphere(PixelRect { min: [0; 2], max }, 3.0, None);
+    let mut training = Training::of(&Survey::short(&scene, &Settings::default()));
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
-        let samples = training.samples_per_subpath(&scene, SamplesPerSubpath::default());
+        let samples = training.samples_per_subpath(1 << 20, SamplesPerSubpath::default());
         assert_eq!(samples.get(), expected, "{rays}");
         assert!(2048.0 / f64::from(expected) * rays <= MOST_CACHED);
     }

@@ -1,6 +1,6 @@
 use super::*;
-use crate::driver::training::extent::Extent;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
+use crate::driver::training::extent::Extent;
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::light::EmissionSides;
 use crate::material::Material;
@@ -155,7 +155,7 @@ fn two_of_three_samples_share_their_camera_ray() {
     };
     let probe = Probe {
         is_late: &|| false,
-        extent: Extent::within(1.0, 1.0),
+        extent: Extent::new(1.0, 1e9),
         scene: &lamp(PixelRect {
             min: [0; 2],
             max: [16; 2],
