@@ -65,6 +65,11 @@ impl Checkpoint {
         self.film.is_some()
     }
 
+    /// The header of the film that is gone on from. None: there is none.
+    pub(crate) fn earlier(&self) -> Option<&FilmHeader> {
+        self.film.as_ref().map(|file| &file.header)
+    }
+
     /// Checks before training whether the film that is gone on from, if any, can be that of the
     /// render that `header` describes, and has none but the passes `asked`.
     pub(crate) fn check(&self, header: &FilmHeader, asked: Range<u64>) -> Result<(), Failure> {

@@ -42,6 +42,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
             settings,
             console,
         )?;
+        settings::warn_missing(&loaded, settings, console);
     }
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;

@@ -1,7 +1,7 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::{RenderArgs, ThreadsArgs};
-use crate::begin::{self, Began};
+use crate::begin::{self, Began, Training};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
@@ -47,14 +47,16 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
-    loaded.tell_warnings(&args.scene, unused + lost, console)?;
+    let missing = settings::warn_missing(&loaded, &settings, console);
+    loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {
             Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
             display => display,
         };
-        return match begin::session(args, &loaded, &settings, &signals, display)? {
+        let how = (Training::Whole, display);
+        return match begin::session(args, &loaded, &settings, &signals, how)? {
             Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
             Began::Stopped(exit) => Ok(exit),
         };
@@ -116,19 +118,22 @@ impl Job<'_> {
             checkpoint.check(&header(None), budget.range())?;
         }
         let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
+        let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
+        let training = Training::new(budget.time, earlier);
         let start = Instant::now();
         let began = begin::session(
             self.args,
             self.loaded,
             self.settings,
             self.signals,
-            self.display(),
+            (training, self.display()),
         );
         let mut session = match began? {
             Began::Session(session) => *session,
             Began::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
             Began::Stopped(exit) => return Ok(self.stopped(exit)),
         };
+        self.warn_short(training, &session);
         session.start_at(budget.first);
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
@@ -179,6 +184,17 @@ impl Job<'_> {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
         })
+    }
+
+    /// Warns that training did not end in time.
+    fn warn_short(&self, training: Training, session: &Session<'_>) {
+        let is_short = session.training().is_some_and(|training| training.is_short);
+        if is_short && matches!(training, Training::By(_)) {
+            self.console.warning(
+                "training did not end within --time, so the image has more noise than it could; allow more \
+                 time, or choose --integrator path or bdpt, which need none",
+            );
+        }
     }
 
     /// Ends with `exit` where a signal came before there was anything to write.

@@ -7,6 +7,7 @@ mod bytes;
 mod error;
 mod files;
 mod foreign;
+mod lamp;
 mod limits;
 mod reading;
 mod source;

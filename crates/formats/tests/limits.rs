@@ -69,7 +69,7 @@ fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
     let size = (width - 1) | (height - 1) << 14;
     // No transformation, no cache, and for each channel a code of one symbol.
     let codes = [0x28, 0x59, 0xc9, 0x4a, 0xd6, 0xff, 0];
-    let pixels = [&[0x2f], &*size.to_le_bytes(), &codes].concat();
+    let pixels = [&[0x2f][..], &size.to_le_bytes(), &codes].concat();
     let mut webp = b"RIFF\x18\0\0\0WEBPVP8L\x0c\0\0\0".to_vec();
     webp.extend(pixels);
     webp

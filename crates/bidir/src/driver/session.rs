@@ -13,7 +13,7 @@ use order::Order;
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::training::prepare;
-use super::{Progress, Replay, Resources, SessionError, Settings, Training};
+use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, MergeError, PassBuffer};
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
 use crate::path::{Connections, PathContext};
@@ -91,6 +91,18 @@ impl<'a> Session<'a> {
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
+        Self::with_effort(scene, settings, resources, Effort::Whole)
+    }
+
+    /// The same with training of some effort, on which the bits of the image depend.
+    ///
+    /// Errors: as [`Self::new`].
+    pub fn with_effort(
+        scene: impl Into<SceneHandle<'a>>,
+        settings: Settings,
+        resources: &Resources,
+        effort: Effort<'_>,
+    ) -> Result<Self, SessionError> {
         let scene = scene.into();
         if let Some(lost) = no_path(settings.integrator, &settings.path) {
             let strategies = settings.path.strategies.to_string();
@@ -101,7 +113,7 @@ impl<'a> Session<'a> {
         let buffer = PassBuffer::new(scene.film(), film.layers());
         let pool = thread_pool(resources.threads)?;
         let threads = pool.current_num_threads();
-        let (settings, training) = pool.install(|| prepare(&scene, settings));
+        let (settings, training) = pool.install(|| prepare(&scene, settings, effort));
         let rule = selector(&settings, training.as_ref());
         let integrator = settings.integrator.integrator(rule, &settings.lvc);
         let order = pool.install(|| Order::new(scene.film().crop, &*integrator));

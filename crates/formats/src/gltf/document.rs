@@ -177,20 +177,22 @@ impl<'a> Context<'a> {
         self.told(|message| self.refused.contains(message))
     }
 
+    /// A place as `file:line:column`.
+    pub(super) fn text_of(&self, place: &Place) -> String {
+        let span = place.span(self.file, &self.sources.text(self.file));
+        let (line, column) = self.sources.line_and_column(span);
+        let file = self.sources.name(self.file).display();
+        format!("{file}:{line}:{column}")
+    }
+
     fn told(&self, is_meant: impl Fn(&str) -> bool) -> Vec<String> {
-        let text = self.sources.text(self.file);
         let tell = |(place, message, count): &(Place, String, usize)| {
-            let span = place.span(self.file, &text);
-            let (line, column) = self.sources.line_and_column(span);
-            let file = self.sources.name(self.file).display();
             let times = match count {
                 1 => String::new(),
                 count => format!(" ({count} times)"),
             };
-            format!(
-                "{file}:{line}:{column}: {}{times}",
-                describe(place, message)
-            )
+            let at = self.text_of(place);
+            format!("{at}: {}{times}", describe(place, message))
         };
         let meant = self
             .warnings

@@ -1,6 +1,8 @@
 //! Groups of training samples, taken as the image takes its own.
 
 use super::super::spread;
+use super::effort::{IsLate, Late};
+use super::extent::Extent;
 use super::{Settings, path_context};
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::{Connections, PathContext};
@@ -10,15 +12,16 @@ use crate::stats::Stats;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The samples of a group.
-pub(super) const GROUP: u64 = 256;
-
 /// What samples are taken of, and how.
 #[derive(Clone, Copy)]
 pub(super) struct Probe<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a Settings,
     pub(super) connections: Connections<'a>,
+    /// Whether training is given up, asked before each group.
+    pub(super) is_late: IsLate<'a>,
+    /// How many samples, and in which groups.
+    pub(super) extent: Extent,
     /// The first sample's number.
     pub(super) first: u64,
     /// After so many samples their pixels come again; the first time with the same camera rays.
@@ -75,12 +78,16 @@ pub(super) fn landed<'a>(
 /// had them.
 pub(super) fn groups<T: Send>(
     count: u64,
+    is_late: IsLate<'_>,
     of_group: impl Fn(u64, &mut Workspace) -> T + Sync,
-) -> Vec<(T, Stats)> {
+) -> Result<Vec<(T, Stats)>, Late> {
     let groups = (0..count).into_par_iter();
     let found = groups.map_init(Workspace::default, |workspace, group| {
+        if is_late() {
+            return Err(Late);
+        }
         let found = of_group(group, workspace);
-        (found, std::mem::take(&mut workspace.stats))
+        Ok((found, std::mem::take(&mut workspace.stats)))
     });
     found.collect()
 }
@@ -94,8 +101,9 @@ impl Probe<'_> {
         workspace: &mut Workspace,
         witness: &mut impl Witness,
     ) {
-        let begin = self.first + group * GROUP;
-        let numbers = begin..begin + GROUP;
+        let size = self.extent.group();
+        let begin = self.first + group * size;
+        let numbers = begin..begin + size;
         self.walk_light(integrator, numbers.clone(), workspace, witness);
         for number in numbers {
             let sample = self.sample(number);
@@ -195,6 +203,8 @@ mod tests {
                     samples_per_subpath,
                     ..Connections::ONE_SUBPATH
                 },
+                is_late: &|| false,
+                extent: Extent::new(1.0, 1e9),
                 first: 768,
                 pixels: u64::MAX,
             };
