@@ -13,6 +13,7 @@ mod build;
 mod definitions;
 mod digest;
 mod directives;
+mod inputs;
 mod known;
 mod lexer;
 mod parameters;
