@@ -7,6 +7,7 @@ mod report;
 use crate::args::{CompareArgs, MetricArgs};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
+use crate::output;
 use crate::scene_io::{self, IMAGES, MetadataValue};
 use independence::Independence;
 use lab::image::{Pair, Pixels, resample};
@@ -20,6 +21,10 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
     let (images, reference) = files(args)?;
     if let Some(path) = &args.metrics.error_map {
         scene_io::image_format(path, IMAGES)?;
+        let reference = reference_files(reference);
+        let inputs = images.iter().chain(&reference);
+        scene_io::check_apart(inputs, &[("--error-map", path)])?;
+        output::check_file("--error-map", path)?;
     }
     let comparisons = compare_all(args, images, reference, console)?;
     match &comparisons[..] {
@@ -57,6 +62,14 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
         return Err(Failure::usage("--error-map takes one image"));
     }
     Ok((images, reference))
+}
+
+/// The files of a reference, which may be a folder.
+fn reference_files(reference: &Path) -> Vec<PathBuf> {
+    if reference.is_dir() {
+        return lab::reference::files(reference);
+    }
+    vec![reference.to_owned()]
 }
 
 /// Compares every image, and warns of those that share their noise.

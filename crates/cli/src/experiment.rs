@@ -119,6 +119,7 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let text = std::fs::read_to_string(file);
     let text = text.map_err(|error| unreadable(file, &error))?;
     let mut experiment = Experiment::read(&text, file).map_err(failure)?;
+    experiment::check_description(file, &args.output).map_err(failure)?;
     if args.quick {
         experiment = experiment.quick();
     }

@@ -38,6 +38,7 @@ use exit::{Exit, Failure};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
         // Help and version are such errors too.

@@ -44,6 +44,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
         )?;
         settings::warn_missing(&loaded, settings, console);
     }
+    check_apart(&folder, &loaded)?;
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
@@ -79,6 +80,13 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
     }
     let message = format!("{} exists already and is not a reference", folder.display());
     Err(Failure::usage(message).with_hint("name another folder with --output"))
+}
+
+/// Refuses a folder with files that the scene reads and the reference would replace.
+fn check_apart(folder: &Path, loaded: &LoadedScene) -> Result<(), Failure> {
+    let written = reference::files(folder);
+    let written = written.iter().map(|file| ("--output", file.as_path()));
+    scene_io::check_apart(&loaded.inputs, &written.collect::<Vec<_>>())
 }
 
 /// The film that a reference has.

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
-        Outputs::named(args)?.check(args)?;
+        Outputs::named(args)?.check(args, std::slice::from_ref(&args.scene.scene))?;
         Checkpoint::open(&args.long)?
     } else {
         replay::check(args)?;
@@ -50,6 +50,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let missing = settings::warn_missing(&loaded, &settings, console);
     loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
+        replay::check_apart(args, &loaded.inputs)?;
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {
             Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
@@ -62,7 +63,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         };
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
-    outputs.check(args)?;
+    outputs.check(args, &loaded.inputs)?;
     let first = || {
         let name = args.scene.scene.display().to_string();
         Status::preparing(&name, loaded.scene.film())

@@ -161,7 +161,7 @@ impl std::error::Error for Error {}
 
 /// The one wording for a file that the system refuses: "cannot open `room.pbrt`: no such file".
 pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
-    use std::io::ErrorKind::{IsADirectory, NotFound, PermissionDenied, StorageFull};
+    use std::io::ErrorKind::{FileTooLarge, IsADirectory, NotFound, PermissionDenied, StorageFull};
     let reason = match error.kind() {
         // Writing makes the file, but not its folder.
         NotFound if action == "write" => "no such folder".to_owned(),
@@ -169,6 +169,7 @@ pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
         IsADirectory => "it is a folder".to_owned(),
         PermissionDenied => "permission denied".to_owned(),
         StorageFull => "the disk is full".to_owned(),
+        FileTooLarge => "it would be larger than the system allows".to_owned(),
         _ => {
             let text = error.to_string();
             let text = text.split(" (os error").next().unwrap_or_default();

@@ -18,6 +18,7 @@ pub mod file;
 pub mod film;
 pub mod gltf;
 pub mod image;
+pub mod outputs;
 pub mod pbrt;
 pub mod ply;
 pub mod scene;

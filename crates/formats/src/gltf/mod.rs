@@ -83,6 +83,7 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
         warnings: context.told_warnings(),
         refused: context.told_refusals(),
         summary,
+        inputs: context.inputs(files),
         digest: context.digest.finish(),
         files: context.files,
     })

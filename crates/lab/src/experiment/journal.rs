@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The name of the file.
-const FILE: &str = "records.ndjson";
+pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
 const FORMAT: u32 = 3;
 /// The version before, whose lines have no checksums.

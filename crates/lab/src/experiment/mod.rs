@@ -47,6 +47,7 @@ mod journal;
 #[cfg(test)]
 mod keys;
 mod names;
+mod outputs;
 pub use names::nearest;
 mod page;
 mod pyramid;
@@ -59,6 +60,7 @@ mod stage;
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use error::{ExperimentError, Fault, Place};
 pub(crate) use journal::claim;
+pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
 pub use settings::{Changes, texts};

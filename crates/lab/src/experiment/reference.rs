@@ -14,7 +14,7 @@ use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -81,12 +81,32 @@ fn obtain(
 /// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
 /// report shows.
 fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
-    let name = format!("references/{}.exr", file_name(&stage.spec.name));
+    let name = copy(stage);
     write_image(&setup.folder.join(&name), &reference.pixels)?;
     Ok(Reference {
         image: Some(name),
         ..reference
     })
+}
+
+/// The name of the picture of a reference that lies elsewhere, in the folder of the results.
+fn copy(stage: &Stage<'_>) -> String {
+    format!("references/{}.exr", file_name(&stage.spec.name))
+}
+
+/// The files that are written for the reference of a scene.
+pub(super) fn written(stage: &Stage<'_>, setup: &Setup) -> Vec<PathBuf> {
+    match &stage.spec.reference {
+        ReferenceSpec::There(_) => vec![setup.folder.join(copy(stage))],
+        ReferenceSpec::Make {
+            spp,
+            changes,
+            witness,
+        } => {
+            let plan = plan(stage, *spp, changes, *witness);
+            references::files(&setup.folder.join(folder(stage, &plan)))
+        }
+    }
 }
 
 /// A reference that is there; `name` is its folder in that of the results, if it lies there.

@@ -5,6 +5,7 @@ use super::cell::Cell;
 use super::error::ExperimentError;
 use super::identity::identity;
 use super::journal::{Journal, Owner};
+use super::outputs;
 use super::pyramid;
 use super::reference;
 use super::settings::{no_effect, texts};
@@ -180,6 +181,7 @@ pub(super) fn begin<'a>(
     pyramid::check(experiment, &stages)?;
     let given = stages.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
+    outputs::check(experiment, &stages, setup)?;
     let found = given.iter().flatten();
     found.for_each(|reference| reference.warn(observer));
     let owner = Owner {
@@ -265,7 +267,7 @@ fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
 
 /// Writes `results.json` into the folder of the results.
 pub fn write_results(folder: &Path, results: &Results) -> Result<()> {
-    formats::file::replace(&folder.join("results.json"), json(results).as_bytes())?;
+    formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
     Ok(())
 }
 

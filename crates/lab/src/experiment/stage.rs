@@ -21,6 +21,8 @@ pub(super) struct Stage<'a> {
     pub(super) warnings: Vec<String>,
     /// All files that were read.
     pub(super) files: Vec<PathBuf>,
+    /// Those that no output may replace.
+    pub(super) inputs: Vec<PathBuf>,
 }
 
 /// What the images of a scene are compared with.
@@ -71,6 +73,7 @@ impl<'a> Stage<'a> {
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
             files: loaded.files,
+            inputs: loaded.inputs,
         })
     }
 

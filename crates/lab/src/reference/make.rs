@@ -17,7 +17,7 @@ use formats::film::{FilmHeader, SceneIdentity, SettingsText, settings_from_flags
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The first of all seeds: far from those that people choose.
 const SEEDS: u64 = 1 << 40;
@@ -162,13 +162,23 @@ pub fn make(
     Ok(Made::Whole(Box::new(reference)))
 }
 
+/// All files of a reference in `folder`, whether or not they are there.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let named = [PICTURE, AGAINST, PROVENANCE].map(|name| folder.join(name));
+    named.into_iter().chain(films(folder)).collect()
+}
+
+/// The films of both estimators.
+fn films(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let films = NAMES
+        .iter()
+        .flat_map(|name| (0..REPLICATES).map(move |r| (name, r)));
+    films.map(|(name, replicate)| film(folder, name, replicate))
+}
+
 /// Removes what says that `folder` has a reference, and its films: the next one begins anew.
 pub fn clear(folder: &Path) -> Result<(), Error> {
-    let films = NAMES.iter().flat_map(|name| {
-        let films = 0..REPLICATES;
-        films.map(|replicate| film(folder, name, replicate))
-    });
-    for path in std::iter::once(folder.join(PROVENANCE)).chain(films) {
+    for path in std::iter::once(folder.join(PROVENANCE)).chain(films(folder)) {
         match std::fs::remove_file(&path) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 return Err(Error::io(&path, error));

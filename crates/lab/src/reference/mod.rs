@@ -38,7 +38,7 @@ mod tests;
 mod witness;
 
 pub use agreement::{Agreement, Comparison};
-pub use make::{Host, Made, Plan, Subject, clear, make};
+pub use make::{Host, Made, Plan, Subject, clear, files, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::{Pixels, digest};

@@ -98,6 +98,9 @@ pub struct Loaded {
     pub digest: SceneDigest,
     /// Every file that was read, by each name that it was asked for; the scene file is the first.
     pub files: Vec<PathBuf>,
+    /// Every file on the disk that the scene reads or names: no output may replace it
+    /// ([`outputs`](crate::outputs)).
+    pub inputs: Vec<PathBuf>,
 }
 
 /// What a scene is made of.
@@ -161,6 +164,7 @@ pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Lo
         refused: refused.map(text).collect(),
         summary,
         digest: context.digest.finish(),
+        inputs: description.inputs(&context.files),
         files: context.files,
     })
 }
