@@ -41,17 +41,17 @@ fn check_image(format: Format, bytes: &[u8]) {
 
 /// A chunk of a PNG.
 fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
-    let named = [name, data].concat();
+    let named = [&name[..], data].concat();
     let mut crc = flate2::Crc::new();
     crc.update(&named);
     let length = (data.len() as u32).to_be_bytes();
-    [&length, &*named, &crc.sum().to_be_bytes()].concat()
+    [&length[..], &named, &crc.sum().to_be_bytes()].concat()
 }
 
 /// A PNG whose rows are all black, as far as its header goes and a part of its rows.
 fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) -> Vec<u8> {
     let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
-    let header = [&*size, &[depth, color, 0, 0, 0]].concat();
+    let header = [&size[..], &[depth, color, 0, 0, 0]].concat();
     let channels = if color == 2 { 3 } else { 1 };
     let row = 1 + (width as usize * channels * usize::from(depth)).div_ceil(8);
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
@@ -69,7 +69,7 @@ fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
     let size = (width - 1) | (height - 1) << 14;
     // No transformation, no cache, and for each channel a code of one symbol.
     let codes = [0x28, 0x59, 0xc9, 0x4a, 0xd6, 0xff, 0];
-    let pixels = [&[0x2f], &*size.to_le_bytes(), &codes].concat();
+    let pixels = [&[0x2f][..], &size.to_le_bytes(), &codes].concat();
     let mut webp = b"RIFF\x18\0\0\0WEBPVP8L\x0c\0\0\0".to_vec();
     webp.extend(pixels);
     webp
