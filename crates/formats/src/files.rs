@@ -90,6 +90,12 @@ impl Files {
         self.memory.contains_key(path) || is_on_disk()
     }
 
+    /// True where a name is that of a file on the disk, or would be one if it were there.
+    pub(crate) fn is_from_disk(&self, path: &Path) -> bool {
+        let is_stdin = path.as_os_str() == bytes::STDIN;
+        self.others == Others::OnDisk && !is_stdin && !self.memory.contains_key(path)
+    }
+
     /// The name that stands for all names of one file.
     pub(crate) fn identity(&self, path: &Path) -> PathBuf {
         let Some(stored) = self.memory.get(path) else {
@@ -157,6 +163,10 @@ mod tests {
         drop(folder);
         let here = load_from(&scene, &options, &Files::only(memory.clone())).unwrap();
         assert_eq!((here.digest, &here.files), (there.digest, &there.files));
+        let mut inputs = there.files.clone();
+        inputs.sort();
+        // Outputs on the disk replace none that is in memory.
+        assert_eq!((there.inputs, here.inputs), (inputs, Vec::new()));
         let mut others = memory.clone();
         others.retain(|path, _| !path.ends_with("m.ply"));
         let error = load_from(&scene, &options, &Files::only(others)).unwrap_err();

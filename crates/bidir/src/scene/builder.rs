@@ -279,6 +279,11 @@ impl SceneBuilder {
         self.lights.len() as u32 - 1
     }
 
+    /// The number of the next light.
+    pub fn next_light(&self) -> u32 {
+        self.lights.len() as u32
+    }
+
     /// Checks everything and builds the acceleration structure.
     pub fn build(self) -> Result<Scene, SceneError> {
         let camera = self.camera.ok_or(SceneError::NoCamera)?;

@@ -1,13 +1,14 @@
 //! From the structures of a file to a scene.
 
 use super::document::{Context, Document};
-use super::material::{Built, Materials};
+use super::material::{Built as BuiltMaterial, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
 use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
+use crate::lamp::{self, Placed};
 use crate::limits;
 use crate::pbrt::Summary;
 use bidir::light::Light;
@@ -16,6 +17,13 @@ use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
+
+/// A scene that was built, with where its lamps are in the file.
+pub(super) struct Built {
+    pub(super) scene: Scene,
+    pub(super) lamps: Vec<Placed<Place>>,
+    pub(super) summary: Summary,
+}
 
 /// A scene in the making.
 pub(super) struct Assembly<'a> {
@@ -26,6 +34,8 @@ pub(super) struct Assembly<'a> {
     /// The places of the shapes in the file, in the order of addition; of instances likewise.
     shape_places: Vec<Place>,
     instance_places: Vec<Place>,
+    /// The same of lamps, with the numbers of their lights.
+    lamps: Vec<Placed<Place>>,
     /// Of all shapes.
     extent: Extent,
     most: Most,
@@ -60,7 +70,7 @@ impl<'a> Assembly<'a> {
     pub(super) fn build(
         context: &mut Context<'_>,
         document: &'a Document,
-    ) -> Result<(Scene, Summary), GltfFault> {
+    ) -> Result<Built, GltfFault> {
         let nodes = Nodes::of(document)?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
@@ -76,6 +86,7 @@ impl<'a> Assembly<'a> {
             materials: Materials::default(),
             shape_places: Vec::new(),
             instance_places: Vec::new(),
+            lamps: Vec::new(),
             extent: Extent::NONE,
             most: Most {
                 primitives: context.options.most_primitives(context.reading.stored()),
@@ -103,13 +114,23 @@ impl<'a> Assembly<'a> {
             mut builder,
             shape_places,
             instance_places,
+            lamps,
             summary,
             ..
         } = assembly;
         builder.camera(camera);
         let scene = builder.build();
         let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
-        Ok((scene, summary))
+        for (place, lights) in &lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(place, message);
+            }
+        }
+        Ok(Built {
+            scene,
+            lamps,
+            summary,
+        })
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.
@@ -210,7 +231,7 @@ impl<'a> Assembly<'a> {
         context: &mut Context<'_>,
         mesh: usize,
         weights: &[f32],
-    ) -> Result<Vec<(Surface, Built, Place)>, GltfFault> {
+    ) -> Result<Vec<(Surface, BuiltMaterial, Place)>, GltfFault> {
         let mut surfaces = Vec::new();
         let primitives = &self.document.root.meshes[mesh].primitives;
         for (i, primitive) in primitives.iter().enumerate() {
@@ -280,17 +301,22 @@ impl<'a> Assembly<'a> {
     fn add_to_world(
         &mut self,
         shape: Mesh,
-        material: &Built,
+        material: &BuiltMaterial,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
         self.extent.include(&extent_of(&shape), &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
+        let first_light = self.builder.next_light();
         let number = self
             .builder
             .shape(shape, material.id, material.emission.clone());
         self.shape_places.push(place.clone());
+        if material.emission.is_some() {
+            let lights = first_light..self.builder.next_light();
+            self.lamps.push((place.clone(), lights));
+        }
         if let Some(coverage) = &material.coverage {
             self.builder.coverage(number, coverage.clone());
         }
@@ -301,7 +327,7 @@ impl<'a> Assembly<'a> {
         &mut self,
         object: ObjectId,
         shape: Mesh,
-        material: &Built,
+        material: &BuiltMaterial,
         places: &[DAffine3],
         place: &Place,
     ) -> Result<(), GltfFault> {
@@ -330,11 +356,13 @@ impl<'a> Assembly<'a> {
         if lights.is_empty() && self.summary.area_lights == 0 {
             let message = "the scene has no light; using a soft one from behind the viewer";
             context.warn(&Place::TOP, message);
-            lights.push(Light::Infinite(outside::surroundings(world_from_camera)));
+            let sky = Light::Infinite(outside::surroundings(world_from_camera));
+            lights.push((Place::TOP, sky));
         }
         self.summary.other_lights = lights.len();
-        for light in lights {
-            self.builder.light(light);
+        for (place, light) in lights {
+            let number = self.builder.light(light);
+            self.lamps.push((place, number..number + 1));
         }
         Ok(())
     }

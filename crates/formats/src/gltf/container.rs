@@ -116,18 +116,23 @@ pub(super) fn resource(
         let bytes = data_uri(data, place)?;
         return Ok(Resource { bytes, file: None });
     }
-    if uri.split_once("://").is_some() {
+    let Some(path) = file(folder, uri) else {
         let fault = place.fault(
             ErrorKind::Unsupported,
             "a resource on the network is not read",
         );
         return Err(fault.with_hint("save it beside the file"));
-    }
-    let path = folder.join(file_of(uri));
+    };
     let read = files.read(&path, LARGEST_GLTF);
     let FileBytes { bytes, stored } = read.map_err(|error| GltfFault::from_error(place, &error))?;
     let file = Some((path, stored));
     Ok(Resource { bytes, file })
+}
+
+/// The file that `uri` names. None: it names none.
+pub(super) fn file(folder: &Path, uri: &str) -> Option<PathBuf> {
+    let is_other = uri.starts_with("data:") || uri.contains("://");
+    (!is_other).then(|| folder.join(file_of(uri)))
 }
 
 fn data_uri(data: &str, place: &Place) -> Result<Vec<u8>, GltfFault> {

@@ -67,6 +67,8 @@ pub(super) struct Context<'a> {
     /// The names of the files that were read.
     pub(super) files: Vec<PathBuf>,
     pub(super) reading: Reading,
+    /// Those of the files that buffers and images name.
+    named: Vec<PathBuf>,
 }
 
 impl<'a> Context<'a> {
@@ -101,8 +103,16 @@ impl<'a> Context<'a> {
             digest,
             files: vec![path.to_owned()],
             reading,
+            named: Vec::new(),
         };
         Ok((context, binary))
+    }
+
+    /// Every file on the disk that was read or is named.
+    pub(super) fn inputs(&self, files: &Files) -> Vec<PathBuf> {
+        let all: BTreeSet<_> = self.files.iter().chain(&self.named).collect();
+        let here = all.into_iter().filter(|path| files.is_from_disk(path));
+        here.cloned().collect()
     }
 
     /// The JSON as a tree. Errors: where it is none, with line and column.
@@ -177,20 +187,22 @@ impl<'a> Context<'a> {
         self.told(|message| self.refused.contains(message))
     }
 
+    /// A place as `file:line:column`.
+    pub(super) fn text_of(&self, place: &Place) -> String {
+        let span = place.span(self.file, &self.sources.text(self.file));
+        let (line, column) = self.sources.line_and_column(span);
+        let file = self.sources.name(self.file).display();
+        format!("{file}:{line}:{column}")
+    }
+
     fn told(&self, is_meant: impl Fn(&str) -> bool) -> Vec<String> {
-        let text = self.sources.text(self.file);
         let tell = |(place, message, count): &(Place, String, usize)| {
-            let span = place.span(self.file, &text);
-            let (line, column) = self.sources.line_and_column(span);
-            let file = self.sources.name(self.file).display();
             let times = match count {
                 1 => String::new(),
                 count => format!(" ({count} times)"),
             };
-            format!(
-                "{file}:{line}:{column}: {}{times}",
-                describe(place, message)
-            )
+            let at = self.text_of(place);
+            format!("{at}: {}{times}", describe(place, message))
         };
         let meant = self
             .warnings
@@ -210,6 +222,12 @@ impl Document {
     ) -> Result<Self, GltfFault> {
         check_version(&root)?;
         check_extensions(context, &root)?;
+        let uris = root.buffers.iter().map(|buffer| &buffer.uri);
+        let uris = uris.chain(root.images.iter().map(|image| &image.uri));
+        let named = uris
+            .flatten()
+            .filter_map(|uri| container::file(folder, uri));
+        context.named = named.collect();
         let mut document = Self {
             root,
             folder: folder.to_owned(),

@@ -9,12 +9,12 @@ use bidir::light::{DistantLight, Light, PointLight, SpotLight};
 use bidir::math::Vec3;
 use glam::{DAffine3, DVec3};
 
-/// The lights of the scene, in the order of its nodes.
+/// The lights of the scene with their places, in the order of its nodes.
 pub(super) fn all(
     context: &mut Context<'_>,
     document: &Document,
     nodes: &Nodes,
-) -> Result<Vec<Light>, GltfFault> {
+) -> Result<Vec<(Place, Light)>, GltfFault> {
     let mut lights = Vec::new();
     for &index in &nodes.order {
         let node = &document.root.nodes[index];
@@ -25,7 +25,8 @@ pub(super) fn all(
             .key("extensions")
             .key("KHR_lights_punctual");
         let world_from_node = nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
-        lights.push(build(context, document, (light, &place), &world_from_node)?);
+        let light = build(context, document, (light, &place), &world_from_node)?;
+        lights.push((place, light));
     }
     Ok(lights)
 }

@@ -31,8 +31,9 @@ mod tests;
 use crate::error::Result;
 use crate::file::folder_of;
 use crate::files::Files;
+use crate::lamp;
 use crate::pbrt::{LoadOptions, Loaded, SceneSettings};
-use assembly::Assembly;
+use assembly::{Assembly, Built};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use document::{Context, Document};
@@ -70,13 +71,19 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
     let root = context.parse()?;
     let built = Document::new(&mut context, root, (folder_of(path), files), binary)
         .and_then(|document| Assembly::build(&mut context, &document));
-    let (scene, summary) = built.map_err(|fault| context.error(fault))?;
+    let Built {
+        scene,
+        lamps,
+        summary,
+    } = built.map_err(|fault| context.error(fault))?;
     Ok(Loaded {
+        lamps: lamp::unhittable(&scene, &lamps, |place| context.text_of(place)),
         scene,
         settings: SETTINGS,
         warnings: context.told_warnings(),
         refused: context.told_refusals(),
         summary,
+        inputs: context.inputs(files),
         digest: context.digest.finish(),
         files: context.files,
     })

@@ -8,6 +8,7 @@ use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::limits::LARGEST_SIDE;
 use crate::pbrt::Crop;
+use crate::text::number;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
 use bidir::math::{Affine3A, Vec2};
@@ -107,9 +108,11 @@ fn perspective(
 ) -> Result<(Screen, Option<f64>), GltfFault> {
     let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
     if !(yfov > 1e-4 && yfov < 3.1) {
+        let yfov = number(yfov);
         return Err(place.scene(format!("`yfov` is {yfov}, which is not an angle of view")));
     }
     if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
+        let aspect = number(aspect);
         return Err(place.scene(format!("`aspectRatio` is {aspect}, which is not a ratio")));
     }
     let screen = Screen::Perspective(libm::tan(yfov / 2.0));
@@ -124,6 +127,7 @@ fn orthographic(
     let (width, height) = (camera.xmag, camera.ymag);
     let is_size = |side: f64| side > 0.0 && side <= 1e12;
     if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
+        let [width, height] = [width, height].map(number);
         return Err(place.scene(format!(
             "`xmag` {width} and `ymag` {height} are not the size of a view"
         )));

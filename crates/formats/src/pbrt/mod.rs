@@ -14,6 +14,7 @@ mod definitions;
 mod digest;
 mod directives;
 mod inclusion;
+mod inputs;
 mod known;
 mod lexer;
 mod parameters;

@@ -279,6 +279,33 @@ fn emissive_textures_are_pictures_that_shine() {
 }
 
 #[test]
+fn lamps_that_give_no_light_are_warned_of() {
+    let mut draft = Draft::triangle();
+    draft.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let mut loaded = |intensity: f32| {
+        let light = json!({ "type": "point", "intensity": intensity });
+        draft.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+        draft.load().unwrap()
+    };
+    let warning = "the point light has no power: it adds nothing to the image";
+    let of_dark = |loaded: &Loaded| {
+        let warnings = loaded.warnings.iter();
+        warnings.filter(|told| told.contains(warning)).count()
+    };
+    let (dark, bright) = (loaded(0.0), loaded(1.0));
+    assert_eq!([&dark, &bright].map(of_dark), [1, 0], "{:?}", dark.warnings);
+    let place = bright
+        .lamps
+        .first()
+        .map(|lamp| lamp.place.clone())
+        .unwrap_or_default();
+    assert!(
+        dark.warnings.iter().any(|told| told.starts_with(&place)),
+        "{place}"
+    );
+}
+
+#[test]
 fn punctual_lights_shine_along_minus_z_of_their_node() {
     let mut draft = Draft::triangle();
     draft.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });

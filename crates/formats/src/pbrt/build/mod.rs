@@ -37,6 +37,7 @@ use super::digest::SceneDigest;
 use super::scene::{Entity, SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
+use crate::lamp::{self, Lamp, Placed};
 use crate::limits;
 use crate::source::{Fault, SourceMap, Span};
 use bidir::math::Vec3;
@@ -91,10 +92,15 @@ pub struct Loaded {
     pub refused: Vec<String>,
     /// What the scene is made of.
     pub summary: Summary,
+    /// The first lamps that no ray can hit.
+    pub lamps: Vec<Lamp>,
     /// Which scene it is.
     pub digest: SceneDigest,
     /// Every file that was read, by each name that it was asked for; the scene file is the first.
     pub files: Vec<PathBuf>,
+    /// Every file on the disk that the scene reads or names: no output may replace it
+    /// ([`outputs`](crate::outputs)).
+    pub inputs: Vec<PathBuf>,
 }
 
 /// What a scene is made of.
@@ -130,27 +136,45 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
 pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Loaded> {
     let mut context = Context::new(description, options);
     let built = Assembly::build(&mut context);
-    let (scene, settings, summary) = built.map_err(|fault| description.sources.error(fault))?;
+    let Built {
+        scene,
+        settings,
+        lamps,
+        summary,
+    } = built.map_err(|fault| description.sources.error(fault))?;
+    let place = |span: Span| {
+        let (line, column) = description.sources.line_and_column(span);
+        let file = description.sources.name(span.file).display();
+        format!("{file}:{line}:{column}")
+    };
     let text = |warning: &Warning| {
-        let (line, column) = description.sources.line_and_column(warning.span);
-        let file = description.sources.name(warning.span.file).display();
         let times = match warning.count {
             1 => String::new(),
             count => format!(" ({count} times)"),
         };
-        format!("{file}:{line}:{column}: {}{times}", warning.message)
+        format!("{}: {}{times}", place(warning.span), warning.message)
     };
     let is_refusal = |warning: &&Warning| context.refused.contains(&warning.message);
     let refused = context.warnings.iter().filter(is_refusal);
     Ok(Loaded {
+        lamps: lamp::unhittable(&scene, &lamps, |span| place(*span)),
         scene,
         settings,
         warnings: context.warnings.iter().map(text).collect(),
         refused: refused.map(text).collect(),
         summary,
         digest: context.digest.finish(),
+        inputs: description.inputs(&context.files),
         files: context.files,
     })
+}
+
+/// A scene that was built, with where its lamps are in the text.
+struct Built {
+    scene: Scene,
+    settings: SceneSettings,
+    lamps: Vec<Placed<Span>>,
+    summary: Summary,
 }
 
 /// A scene in the making.
@@ -163,6 +187,8 @@ struct Assembly<'a> {
     shape_spans: Vec<Span>,
     /// The same of instances.
     instance_spans: Vec<Span>,
+    /// The same of lamps, with the numbers of their lights.
+    lamps: Vec<Placed<Span>>,
     /// Of a box around the object that is being read.
     object_corners: [Vec3; 2],
     /// Of all meshes as they are kept.
@@ -185,7 +211,7 @@ enum Destination<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    fn build(context: &mut Context<'a>) -> Result<(Scene, SceneSettings, Summary), Fault> {
+    fn build(context: &mut Context<'a>) -> Result<Built, Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
@@ -203,6 +229,7 @@ impl<'a> Assembly<'a> {
             materials: Vec::new(),
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
+            lamps: Vec::new(),
             object_corners: NOWHERE,
             vertices: 0,
             last_emission: None,
@@ -220,13 +247,24 @@ impl<'a> Assembly<'a> {
             builder,
             shape_spans,
             instance_spans,
+            lamps,
             summary,
             ..
         } = assembly;
         let scene = builder
             .build()
             .map_err(|error| scene_fault(&error, &shape_spans, &instance_spans))?;
-        Ok((scene, settings, summary))
+        for (span, lights) in &lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(*span, message);
+            }
+        }
+        Ok(Built {
+            scene,
+            settings,
+            lamps,
+            summary,
+        })
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
@@ -332,6 +370,7 @@ impl<'a> Assembly<'a> {
         };
         let group = emission.and_then(|emission| emission.group.as_deref());
         self.builder.light_group(group);
+        let first_light = self.builder.next_light();
         for part in parts {
             let emitted = emission.map(|emission| emission.of(&part)).transpose()?;
             self.summary.shapes += 1;
@@ -339,14 +378,20 @@ impl<'a> Assembly<'a> {
             self.builder.shape(part, material, emitted);
             self.shape_spans.push(span);
         }
+        if emission.is_some() {
+            let lights = first_light..self.builder.next_light();
+            self.lamps.push((span, lights));
+        }
         Ok(())
     }
 
     fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         for light in &context.description.lights {
+            let span = light.entity.span;
             if let Some((light, group)) = light::build(context, light)? {
                 self.summary.other_lights += 1;
-                self.builder.light_group(group.as_deref()).light(light);
+                let number = self.builder.light_group(group.as_deref()).light(light);
+                self.lamps.push((span, number..number + 1));
             }
         }
         Ok(())

@@ -185,16 +185,18 @@ fn attribute(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
             return Err(Fault::scene(span, message).with_nearest(&target, targets));
         }
     };
-    let numbers = |list: &[Parameter]| list.iter().map(|p| p.values.len()).sum::<usize>();
-    if list.len() + parameters.len() > MOST_DEFAULTS
-        || numbers(list) + numbers(&parameters) > MOST_DEFAULT_VALUES
-    {
+    let all = Arc::make_mut(list);
+    // Of two with the same type and name the last counts.
+    let same = |a: &Parameter, b: &Parameter| a.kind == b.kind && a.name == b.name;
+    all.retain(|old| !parameters.iter().any(|new| same(old, new)));
+    all.extend(parameters);
+    let values = all.iter().map(|parameter| parameter.values.len());
+    if all.len() > MOST_DEFAULTS || values.sum::<usize>() > MOST_DEFAULT_VALUES {
         let message = format!(
             "the attributes of `{target}` are more than {MOST_DEFAULTS} parameters or \
              {MOST_DEFAULT_VALUES} values"
         );
         return Err(Fault::new(ErrorKind::Limit, span, message));
     }
-    Arc::make_mut(list).extend(parameters);
     Ok(())
 }
