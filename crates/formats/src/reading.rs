@@ -1,7 +1,7 @@
 //! How much was read for a scene, against the limits.
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::image::ImageData;
+use crate::image::{self, ImageData};
 use crate::limits::{self, Allowance};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -51,7 +51,10 @@ impl Reading {
 
     /// Counts an image. Errors: all images are too large for their files.
     pub(crate) fn image(&mut self, image: ImageData) -> Result<ImageData> {
-        self.numbers += image.data.len() as u64;
+        self.numbers += image::numbers(
+            [image.width, image.height].map(|n| n as u64),
+            image.channels as u64,
+        );
         self.check((self.numbers, "numbers of images"), limits::IMAGES)?;
         Ok(image)
     }

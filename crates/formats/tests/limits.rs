@@ -41,17 +41,17 @@ fn check_image(format: Format, bytes: &[u8]) {
 
 /// A chunk of a PNG.
 fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
-    let named = [name, data].concat();
+    let named = [&name[..], data].concat();
     let mut crc = flate2::Crc::new();
     crc.update(&named);
     let length = (data.len() as u32).to_be_bytes();
-    [&length, &*named, &crc.sum().to_be_bytes()].concat()
+    [&length[..], &named, &crc.sum().to_be_bytes()].concat()
 }
 
 /// A PNG whose rows are all black, as far as its header goes and a part of its rows.
 fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) -> Vec<u8> {
     let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
-    let header = [&*size, &[depth, color, 0, 0, 0]].concat();
+    let header = [&size[..], &[depth, color, 0, 0, 0]].concat();
     let channels = if color == 2 { 3 } else { 1 };
     let row = 1 + (width as usize * channels * usize::from(depth)).div_ceil(8);
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
@@ -94,7 +94,7 @@ fn large_exr() -> Vec<u8> {
 fn images_do_not_claim_what_they_cannot_hold() {
     check_image(Format::Png, &black_png([12000, 12000], [8, 2], 1));
     check_image(Format::Exr, &large_exr());
-    check_image(Format::WebP, &grey_webp([16384; 2]));
+    check_image(Format::WebP, &grey_webp([8000; 2]));
     let small = image::decode(Format::WebP, &grey_webp([640, 480]), None).unwrap();
     assert_eq!([small.width, small.height], [640, 480]);
     let mut tga = [0; 18];
@@ -227,15 +227,13 @@ fn few_bytes_do_not_stand_for_many_primitives() {
         ),
         "primitives or vertices",
     );
-    let lamps = "Shape \"disk\" ".repeat(2);
-    let places = "ObjectInstance \"o\" ".repeat(3_000);
-    let lit = format!("ObjectBegin \"o\" AreaLightSource \"diffuse\" {lamps}");
-    let mesh = format!(
+    let places = "ObjectInstance \"o\" ".repeat(4);
+    let lamp = format!(
         "AreaLightSource \"diffuse\" \"float power\" 1 \
          Shape \"loopsubdiv\" \"integer levels\" 7 {fan}"
     );
     check_built(
-        &format!("{lit} {mesh} ObjectEnd {places}"),
+        &format!("ObjectBegin \"o\" {lamp} ObjectEnd {places}"),
         "shapes, counted at each place",
     );
 }

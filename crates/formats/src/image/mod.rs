@@ -134,14 +134,16 @@ fn broken(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("broken image: {message}"))
 }
 
+/// The numbers of an image, for limits: grey becomes three channels where colours are asked for.
+pub(crate) fn numbers([width, height]: [u64; 2], channels: u64) -> u64 {
+    width.saturating_mul(height).saturating_mul(channels.max(3))
+}
+
 /// Refuses sizes that are zero, or too large for the bytes of the file, before memory is taken for
 /// them.
-///
-/// Grey becomes three channels where an image is looked at.
 fn check_size([width, height]: [u64; 2], channels: u64, bytes: &[u8]) -> Result<()> {
-    let pixels = width.saturating_mul(height);
-    let numbers = pixels.saturating_mul(channels.max(3));
-    if pixels == 0 {
+    let numbers = numbers([width, height], channels);
+    if numbers == 0 {
         return Err(broken("it has no pixels"));
     }
     let refused = |message: String| Error::new(ErrorKind::Limit, message);
