@@ -1,4 +1,4 @@
-use super::{STRICT, refusal, world};
+use super::{STRICT, load_text, refusal, world};
 use crate::error::ErrorKind;
 use crate::pbrt::load;
 use bidir::light::{Light, LightPoint};
