@@ -32,7 +32,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
-        Outputs::named(args)?.check(args)?;
+        Outputs::named(args)?.check(args, std::slice::from_ref(&args.scene.scene))?;
         Checkpoint::open(&args.long)?
     } else {
         replay::check(args)?;
@@ -50,6 +50,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let missing = settings::warn_missing(&loaded, &settings, console);
     loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
+        replay::check_apart(args, &loaded.inputs)?;
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {
             Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
@@ -62,7 +63,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         };
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
-    outputs.check(args)?;
+    outputs.check(args, &loaded.inputs)?;
     let first = || {
         let name = args.scene.scene.display().to_string();
         Status::preparing(&name, loaded.scene.film())
@@ -117,6 +118,7 @@ impl Job<'_> {
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check(&header(None), budget.range())?;
         }
+        let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
         let training = Training::new(budget.time, earlier);
         let start = Instant::now();
@@ -129,6 +131,7 @@ impl Job<'_> {
         );
         let mut session = match began? {
             Began::Session(session) => *session,
+            Began::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
             Began::Stopped(exit) => return Ok(self.stopped(exit)),
         };
         self.warn_short(training, &session);
@@ -195,14 +198,14 @@ impl Job<'_> {
         }
     }
 
-    /// How the command ends where a signal came before there was anything to write.
+    /// Ends with `exit` where a signal came before there was anything to write.
     fn stopped(&self, exit: Exit) -> Exit {
         self.console
             .warning("stopped before the first pass: nothing was written");
-        self.exit(exit)
+        exit
     }
 
-    /// How the command ends because of a signal: with a film file the same command goes on.
+    /// How the command ends because of a signal after a pass: with a film file the same command goes on.
     fn exit(&self, exit: Exit) -> Exit {
         match self.args.long.checkpoint {
             Some(_) => Exit::Checkpoint,
@@ -312,7 +315,7 @@ impl Job<'_> {
             say(format_args!("wrote {}", listed(&names)));
             summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
-                say(report.strategy_table().trim_end());
+                report.strategy_table().lines().for_each(say);
             }
             if matches!(end, End::Signal(_)) && keeper.path().is_some() {
                 say("stopped early; the same command with --resume continues");

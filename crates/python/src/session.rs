@@ -1,7 +1,7 @@
 //! Renders that go pass by pass.
 
 use crate::error::raise;
-use crate::film::Film;
+use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Wanted, resolve};
 use crate::wait::{Stop, wait_silently};
@@ -26,6 +26,8 @@ struct State {
     header: FilmHeader,
     /// That of the films that were gone on from.
     earlier: Option<FilmHeader>,
+    /// The files that were read for the scene and for films that were gone on from.
+    inputs: Inputs,
     /// What rendering took since the film was taken.
     time: Duration,
     /// Whether the rays of training are in a film that was taken.
@@ -111,6 +113,7 @@ impl Session {
                 header,
                 session,
                 earlier: None,
+                inputs: scene.inputs.clone(),
                 time: begin.elapsed(),
                 is_training_told: false,
             }),
@@ -136,6 +139,7 @@ impl Session {
     /// Goes on from a film of the same render.
     fn add_film(&self, py: Python<'_>, film: &Film) -> PyResult<()> {
         let added = self.with(py, |state| {
+            let inputs = film.inputs();
             let FilmFile { header, film } = film.file();
             if let Some(difference) = state.header.difference(header) {
                 return Err(format!("the film of another render: {difference}"));
@@ -144,6 +148,7 @@ impl Session {
             added.map_err(|error| error.to_string())?;
             let earlier = state.earlier.take();
             state.earlier = Some(earlier.map_or(header.clone(), |other| other.joined(header)));
+            state.inputs.extend(inputs.iter().cloned());
             Ok(())
         });
         added.map_err(|message| raise(py, "FilmError", &message))
@@ -157,7 +162,7 @@ impl Session {
                 stopping,
                 ..state.header()
             };
-            Film::new(header, state.session.film().clone())
+            Film::new(header, state.session.film().clone(), state.inputs.clone())
         }))
     }
 
@@ -168,7 +173,7 @@ impl Session {
             let (film, _) = state.session.take_film();
             (state.earlier, state.time) = (None, Duration::ZERO);
             state.is_training_told = true;
-            Film::new(header, film)
+            Film::new(header, film, state.inputs.clone())
         })
     }
 

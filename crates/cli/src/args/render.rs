@@ -119,7 +119,9 @@ pub(crate) struct OutputArgs {
     /// Output image: .exr with a .png beside it, or .png [default: the scene's name].
     ///
     /// The default is the file name that the scene gives its film, or else the name of the scene file,
-    /// with the ending .exr, in the current folder. pbrt's spelling --outfile is accepted.
+    /// with the ending .exr, in the current folder. No output of any command replaces a file that the
+    /// command reads or its scene names, by whatever path or link: exit code 4. pbrt's spelling
+    /// --outfile is accepted.
     #[arg(short, long, alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Write settings, ray counts and timings as JSON.

@@ -13,6 +13,7 @@ mod film;
 mod help;
 mod info;
 mod layers;
+mod outputs;
 mod progress;
 #[cfg(unix)]
 mod readme;
@@ -21,6 +22,8 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod terminal;
 mod tev;
 mod tonemap;
 #[cfg(unix)]

@@ -4,20 +4,19 @@ use super::document::{Context, Document};
 use super::material::{Built as BuiltMaterial, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
+use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
 use crate::lamp::{self, Placed};
+use crate::limits;
 use crate::pbrt::Summary;
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::Vec3;
+use bidir::light::Light;
+use bidir::math::Affine3A;
 use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
-
-/// The most places of shared meshes.
-const MOST_INSTANCES: usize = 1 << 24;
 
 /// A scene that was built, with where its lamps are in the file.
 pub(super) struct Built {
@@ -37,10 +36,22 @@ pub(super) struct Assembly<'a> {
     instance_places: Vec<Place>,
     /// The same of lamps, with the numbers of their lights.
     lamps: Vec<Placed<Place>>,
-    /// Of a box around all shapes.
-    corners: [Vec3; 2],
-    most_primitives: u64,
+    /// Of all shapes.
+    extent: Extent,
+    most: Most,
+    /// Of all meshes as they are kept.
+    vertices: u64,
+    /// Of all meshes.
+    places: u64,
     summary: Summary,
+}
+
+/// What a scene may have.
+struct Most {
+    /// Primitives, and vertices.
+    primitives: u64,
+    shapes: u64,
+    places: u64,
 }
 
 /// A mesh of the file where a scene has it.
@@ -76,8 +87,14 @@ impl<'a> Assembly<'a> {
             shape_places: Vec::new(),
             instance_places: Vec::new(),
             lamps: Vec::new(),
-            corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
-            most_primitives: context.options.most_primitives(),
+            extent: Extent::NONE,
+            most: Most {
+                primitives: context.options.most_primitives(context.reading.stored()),
+                shapes: limits::SHAPES.of(context.reading.stored()),
+                places: limits::INSTANCES.of(context.reading.stored()),
+            },
+            vertices: 0,
+            places: 0,
             summary: Summary::default(),
         };
         if !document.root.animations.is_empty() {
@@ -88,10 +105,11 @@ impl<'a> Assembly<'a> {
             );
         }
         assembly.add_meshes(context)?;
-        assembly.add_lights(context)?;
+        let world_from_camera = view.placed(context, resolution, &assembly.extent);
+        assembly.add_lights(context, &world_from_camera)?;
         assembly.summary.materials = assembly.materials.count();
         assembly.summary.textures = document.root.textures.len();
-        let camera = view.camera(resolution, assembly.corners)?;
+        let camera = view.camera(resolution, world_from_camera)?;
         let Self {
             mut builder,
             shape_places,
@@ -140,6 +158,7 @@ impl<'a> Assembly<'a> {
                 weights.iter().map(|weight| weight.to_bits()).collect(),
             );
             let places = self.world_places(context, index, &place)?;
+            self.count_places(places.len(), &place)?;
             let of_mesh = uses.entry(key.clone()).or_insert_with(|| {
                 order.push(key);
                 MeshUse {
@@ -199,10 +218,6 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         self.summary.instances += of_mesh.places.len();
-        if self.summary.instances > MOST_INSTANCES {
-            let message = format!("the scene has more than {MOST_INSTANCES} mesh instances");
-            return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
-        }
         for map in &of_mesh.places {
             self.builder.instance(object, *map);
             self.instance_places.push(of_mesh.node.1.clone());
@@ -253,15 +268,34 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    fn count_places(&mut self, count: usize, place: &Place) -> Result<(), GltfFault> {
+        self.places += count as u64;
+        let most = self.most.places;
+        if self.places <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} mesh instances");
+        Err(place.fault(ErrorKind::Limit, message))
+    }
+
     fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
         self.summary.shapes += 1;
         self.summary.primitives += shape.triangles.len() as u64;
-        let most = self.most_primitives;
-        if self.summary.primitives <= most {
-            return Ok(());
+        self.vertices += shape.positions.len() as u64;
+        let limit = |message| Err(place.fault(ErrorKind::Limit, message));
+        let most = self.most.primitives;
+        if self.summary.primitives.max(self.vertices) > most {
+            return limit(format!(
+                "the scene has more than {most} triangles or vertices"
+            ));
         }
-        let message = format!("the scene has more than {most} triangles");
-        Err(place.fault(ErrorKind::Limit, message))
+        let most = self.most.shapes;
+        if self.summary.shapes as u64 > most {
+            return limit(format!(
+                "the scene has more than {most} shapes, counted at each place"
+            ));
+        }
+        Ok(())
     }
 
     fn add_to_world(
@@ -271,7 +305,7 @@ impl<'a> Assembly<'a> {
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
-        self.include(&shape, &DAffine3::IDENTITY);
+        self.extent.include(&extent_of(&shape), &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
         let first_light = self.builder.next_light();
@@ -298,8 +332,9 @@ impl<'a> Assembly<'a> {
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
+        let own = extent_of(&shape);
         for map in places {
-            self.include(&shape, map);
+            self.extent.include(&own, map);
         }
         let number = self
             .builder
@@ -311,29 +346,17 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Widens the box around everything.
-    fn include(&mut self, shape: &Mesh, map: &DAffine3) {
-        let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let own = shape
-            .positions
-            .iter()
-            .fold(nowhere, |[low, high], &p| [low.min(p), high.max(p)]);
-        for i in 0..8_usize {
-            let corner = Vec3::from_array(std::array::from_fn(|axis| own[i >> axis & 1][axis]));
-            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
-            if corner.is_finite() {
-                self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
-            }
-        }
-    }
-
-    /// Adds the lights that are no shapes; an even surrounding where there is no light at all.
-    fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
+    /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.
+    fn add_lights(
+        &mut self,
+        context: &mut Context<'_>,
+        world_from_camera: &Affine3A,
+    ) -> Result<(), GltfFault> {
         let mut lights = light::all(context, self.document, &self.nodes)?;
         if lights.is_empty() && self.summary.area_lights == 0 {
-            let message = "the scene has no light; using a uniform environment of radiance 1";
+            let message = "the scene has no light; using a soft one from behind the viewer";
             context.warn(&Place::TOP, message);
-            let sky = Light::Infinite(InfiniteLight::constant([1.0; 3]));
+            let sky = Light::Infinite(outside::surroundings(world_from_camera));
             lights.push((Place::TOP, sky));
         }
         self.summary.other_lights = lights.len();
@@ -343,6 +366,11 @@ impl<'a> Assembly<'a> {
         }
         Ok(())
     }
+}
+
+fn extent_of(shape: &Mesh) -> Extent {
+    let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
+    Extent::of(&shape.positions, triangles)
 }
 
 /// Says where in the file the builder's error is.
