@@ -14,7 +14,7 @@ pub enum Effort<'a> {
     /// As long as it takes, unless this becomes true before: then what it found is forgotten, as if it had been
     /// [`Effort::Short`]. Asked by all threads.
     Until(IsLate<'a>),
-    /// 64 samples, which is no time at all. Nothing is learnt from them, and `auto` takes `bdpt`.
+    /// 16 samples, which is no time at all. Nothing is learnt from them, and `auto` takes `bdpt`.
     Short,
 }
 
