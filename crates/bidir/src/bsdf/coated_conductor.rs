@@ -3,8 +3,8 @@
 //! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) (f_m(wo', wi') / η² + M) [1/sr], with
 //! f_m the metal's own reflection for an index relative to the layer's, between directions that a
 //! smooth interface refracts. A rough interface, which scatters what it refracts, broadens the facets
-//! of f_m as variances of slopes add [Belcour18, §4], and T is scaled so that as much leaves as walks
-//! between both surfaces say.
+//! of f_m as variances of slopes add [Belcour18, §4]; T and A are such that as much leaves as walks between
+//! both surfaces say, and f_m is a little brighter, as facets meet light more steeply than it has them.
 //!
 //! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
 //! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
@@ -15,7 +15,7 @@
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
 
 use super::coat::{
-    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, all_orders, fifth_power, seen_through,
+    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, all_orders, seen_through,
 };
 use super::microfacet::Ggx;
 use super::{BsdfSample, Filling, fresnel, same_hemisphere};
@@ -120,7 +120,7 @@ impl CoatedConductor {
         let Some(inner) = self.coat.refracted(w) else {
             return [coat, Spectrum::ZERO, Spectrum::ZERO];
         };
-        let once = self.once_fresnel(inner.z.abs(), fifth_power(1.0 - w.z.abs()))
+        let once = self.once_fresnel(inner.z.abs(), fresnel::schlick(w.z.abs()))
             * sqr(self.coat.transmittance(w));
         let trapped = self.multiple * self.trapped_part(w);
         [coat, once, trapped]
@@ -170,7 +170,7 @@ impl CoatedConductor {
         };
         let (facets, cos) = self.metal.ggx.mirror(inner_o, inner_i);
         let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
-        let grazing = (fifth_power(1.0 - wo.z.abs()) + fifth_power(1.0 - wi.z.abs())) * 0.5;
+        let grazing = (fresnel::schlick(wo.z.abs()) + fresnel::schlick(wi.z.abs())) * 0.5;
         let once = self.once_fresnel(cos, grazing) * (facets * through / sqr(self.coat.eta()));
         let trapped = self.multiple * (self.trapped_part(wo) * self.trapped_part(wi) * INV_PI);
         coat + (once + trapped) * self.coat.attenuation(wo, wi)

@@ -42,7 +42,10 @@ impl CoatSettings {
     }
 
     fn is_clear(&self) -> bool {
-        matches!(self.albedo, ColorTexture::Constant(albedo) if albedo == [0.0; 3])
+        match self.albedo {
+            ColorTexture::Constant(albedo) => albedo.iter().all(|&part| part <= 0.0),
+            _ => false,
+        }
     }
 }
 
@@ -165,7 +168,7 @@ impl Fillings {
         let at = |albedo| self.mixed([slope, depth, cosine, self.albedos.locate(albedo)]);
         let first = at(filling.albedo[0]);
         filling.albedo.0.map(|albedo| {
-            if albedo == filling.albedo[0] {
+            if albedo.to_bits() == filling.albedo[0].to_bits() {
                 first
             } else {
                 at(albedo)

@@ -10,16 +10,13 @@
 //! reflection. With it they are walks, by numbers that do not depend on the scene, which keep the
 //! number k of scattering events apart: each is a polynomial Σ_k ϖ^k S_k in the albedo ϖ.
 
-use super::layer::FACETS;
-use super::layer::Interface;
+use super::layer::{FACETS, Interface};
 use super::{Curve, Layer, mean};
 use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr, warp};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 
-/// Walks for each value of a curve.
+/// Walks for each value of a curve, and from the base.
 const WALKS: u64 = 1 << 13;
-/// Walks from the base.
-const WALKS_FROM_BASE: u64 = 1 << 13;
 /// The most events of a walk: few have as many.
 const MOST: usize = 256;
 /// Scattering events that are told apart; the last stands for all that are more.
@@ -36,7 +33,7 @@ pub(in crate::bsdf) const SHAPES: usize = 6;
 /// The tabulated quantities of a filled layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Filled {
-    /// D: the mean depth, such that B̄ = T̄ exp(-D).
+    /// D: the mean of -ln(B/T).
     pub(in crate::bsdf) depth: f32,
     /// ℓ, which B = T exp(-D ℓ) defines.
     pub(in crate::bsdf) length: Curve<LENGTHS>,
@@ -219,7 +216,7 @@ impl Slab {
         if !scatters {
             return sums;
         }
-        for stream in streams(WALKS_FROM_BASE) {
+        for stream in streams(WALKS) {
             let u = stream.get_2d(Dimension::at(0, Purpose::LightDirection));
             let light = Light {
                 w: warp::cosine_hemisphere(u),
@@ -229,7 +226,7 @@ impl Slab {
             };
             self.walk(light, &stream, |end, order, part| {
                 if end == End::Base && order > 0 {
-                    sums[order] += part / WALKS_FROM_BASE as f32;
+                    sums[order] += part / WALKS as f32;
                 }
             });
         }

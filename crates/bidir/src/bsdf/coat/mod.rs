@@ -5,13 +5,14 @@
 //!
 //! f = T(wo) T(wi) A(wo) A(wi) f_b / η²,
 //!
-//! T the interface's directional transmittance, A = exp(-τ/cosθ') what the layer leaves of light
-//! that crosses it along the refracted direction, and 1/η² the compression of radiance
-//! (docs/derivations/layered-materials.md). Each factor belongs to one direction, so f is symmetric.
+//! T the interface's directional transmittance, A = exp(-D ℓ) what the layer leaves of light that
+//! crosses it, and 1/η² the compression of radiance (docs/derivations/layered-materials.md). Each factor
+//! belongs to one direction, so f is symmetric.
 //!
 //! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps
-//! Fresnel's equations off the rim as facets do, and q is a cubic through four values that were
-//! integrated when the material was built ([`Layer`]). For a smooth interface g = 0 and q = 1.
+//! Fresnel's equations off the rim as facets do. q and ℓ are polynomials ([`Curve`]) through values that
+//! were integrated when the material was built: over a diffuse base by [`Layer`] and [`Slab`], over metal
+//! by [`Reflections`]. For a smooth interface g = 0 and q = 1.
 
 mod curve;
 mod filled;
@@ -24,14 +25,14 @@ pub(super) use filled::{LENGTHS, SHAPES};
 pub(super) use layer::KNOTS as RATIOS;
 pub use layer::Layer;
 pub use reflections::Reflections;
-pub(super) use reflections::{KNOTS as METAL_SHAPES, MetalCoat, fifth_power};
+pub(super) use reflections::{KNOTS as METAL_SHAPES, MetalCoat};
 
 use super::fresnel;
 use super::microfacet::{Ggx, SMOOTH_ALPHA};
 use crate::math::{Vec2, Vec3, sqr};
 use crate::spectrum::Spectrum;
 
-/// The interface of a layer, and what the layer absorbs. Both sides of the surface have it.
+/// The interface of a layer, and how much the layer leaves of light. Both sides of the surface have it.
 ///
 /// `R` and `L` are the numbers of coefficients of q and ℓ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +121,7 @@ impl<const R: usize, const L: usize> Coat<R, L> {
         let first = left(self.depth[0]);
         // Most layers are grey.
         self.depth.map(|depth| {
-            if depth == self.depth[0] {
+            if depth.to_bits() == self.depth[0].to_bits() {
                 first
             } else {
                 left(depth)

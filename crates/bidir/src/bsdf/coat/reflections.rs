@@ -11,6 +11,7 @@
 
 use super::layer::Interface;
 use super::{Coat, Curve, Layer, mean, seen_through};
+use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
@@ -230,7 +231,7 @@ impl Surfaces {
         for (of, cos) in leaving.iter().zip(cosines) {
             let closed = once_in_closed_form(coat, metal, cos);
             let more = of.once[1] / of.parts[0].max(1e-6) - closed.steep / closed.part.max(1e-6);
-            let scale = fifth_power(1.0 - cos);
+            let scale = fresnel::schlick(cos);
             products += more * scale;
             squares += sqr(scale);
         }
@@ -312,19 +313,9 @@ impl Surfaces {
             w,
             part: light.part * unshadowed,
             way: light.way + 1.0 / v.z.max(1e-3) + 1.0 / w.z.max(1e-3),
-            cosines: [
-                sum + cos,
-                squares + sqr(cos),
-                steep + fifth_power(1.0 - cos),
-            ],
+            cosines: [sum + cos, squares + sqr(cos), steep + fresnel::schlick(cos)],
         })
     }
-}
-
-/// x⁵.
-#[inline]
-pub(in crate::bsdf) fn fifth_power(x: f32) -> f32 {
-    sqr(sqr(x)) * x
 }
 
 /// The way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
@@ -366,7 +357,7 @@ fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
             let part = unshadowed * through / (FACETS * FACETS) as f32;
             let cos = safe_sqrt((1.0 + inner.dot(reflected)) / 2.0);
             once.part += part;
-            once.steep += part * fifth_power(1.0 - cos);
+            once.steep += part * fresnel::schlick(cos);
             once.left += part * coat.attenuation(wo, wi)[0];
         }
     }

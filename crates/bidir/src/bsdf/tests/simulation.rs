@@ -178,7 +178,7 @@ impl Light {
         if self.part > 0.02 {
             return Some(self);
         }
-        (u < 0.5).then(|| Self {
+        (u < 0.5).then_some(Self {
             part: 2.0 * self.part,
             ..self
         })
@@ -208,7 +208,7 @@ fn fresnel(cos: f64, eta: f64) -> (f64, f64) {
 fn metal_reflectance(cos: f64, eta: f64, k: f64) -> f64 {
     // η cosθ_t = √(η² - sin²θ), in the quadrant of a wave that fades.
     let (re, im) = (eta * eta - k * k - (1.0 - cos * cos), 2.0 * eta * k);
-    let modulus = re.hypot(im);
+    let modulus = (re * re + im * im).sqrt();
     let (a, b) = (
         ((modulus + re) / 2.0).max(0.0).sqrt(),
         ((modulus - re) / 2.0).max(0.0).sqrt(),
