@@ -7,7 +7,9 @@ mod bytes;
 mod error;
 mod files;
 mod foreign;
+mod precision;
 mod source;
+mod space;
 mod spectra;
 
 pub mod file;

@@ -8,11 +8,12 @@ use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
 use crate::pbrt::Summary;
+use crate::precision::{self, VertexError, VertexErrors};
+use crate::space::{Layout, Survey};
 use bidir::light::{InfiniteLight, Light};
-use bidir::math::Vec3;
 use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
 /// The most places of shared meshes.
@@ -27,8 +28,10 @@ pub(super) struct Assembly<'a> {
     /// The places of the shapes in the file, in the order of addition; of instances likewise.
     shape_places: Vec<Place>,
     instance_places: Vec<Place>,
-    /// Of a box around all shapes.
-    corners: [Vec3; 2],
+    /// Of everything in its place, and of each shared object in its own space.
+    survey: Survey,
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<Place>,
     most_primitives: u64,
     summary: Summary,
 }
@@ -46,15 +49,46 @@ struct MeshUse<'a> {
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Assembly<'a> {
+    /// Builds the scene that a document shows, in the world or where its layout puts it.
     pub(super) fn build(
         context: &mut Context<'_>,
         document: &'a Document,
     ) -> Result<(Scene, Summary), GltfFault> {
-        let nodes = Nodes::of(document)?;
+        let mut again = context.clone();
+        let mut assembly = Self::gather(context, document)?;
+        assembly.check_vertices()?;
+        let layout = Layout::of(&assembly.survey, &assembly.objects);
+        if layout != Layout::default() {
+            drop(assembly);
+            again.layout = layout;
+            *context = again;
+            assembly = Self::gather(context, document)?;
+        }
+        if let Some((place, message)) = assembly.vertex_errors.warning() {
+            context.warn(&place, message);
+        }
+        assembly.finish()
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    fn check_vertices(&self) -> Result<(), GltfFault> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((place, message)) => {
+                let fault = place.fault(ErrorKind::Limit, message);
+                Err(fault.with_hint(precision::HINT))
+            }
+        }
+    }
+
+    /// Reads everything and puts it in its place.
+    fn gather(context: &mut Context<'_>, document: &'a Document) -> Result<Self, GltfFault> {
+        let nodes = Nodes::of(document, context.layout.from_world())?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
         let resolution = film.resolution;
         let mut builder = SceneBuilder::new(film);
+        builder.space(context.layout.space);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
@@ -65,7 +99,9 @@ impl<'a> Assembly<'a> {
             materials: Materials::default(),
             shape_places: Vec::new(),
             instance_places: Vec::new(),
-            corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
+            survey: Survey::new(view.eye()),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
             most_primitives: context.options.most_primitives(),
             summary: Summary::default(),
         };
@@ -80,18 +116,19 @@ impl<'a> Assembly<'a> {
         assembly.add_lights(context)?;
         assembly.summary.materials = assembly.materials.count();
         assembly.summary.textures = document.root.textures.len();
-        let camera = view.camera(resolution, assembly.corners)?;
-        let Self {
-            mut builder,
-            shape_places,
-            instance_places,
-            summary,
-            ..
-        } = assembly;
-        builder.camera(camera);
-        let scene = builder.build();
-        let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
-        Ok((scene, summary))
+        let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let corners = assembly.survey.corners().unwrap_or(nowhere);
+        let camera = view.camera(resolution, corners.map(|corner| corner.as_vec3()))?;
+        assembly.builder.camera(camera);
+        Ok(assembly)
+    }
+
+    /// Builds the scene.
+    fn finish(self) -> Result<(Scene, Summary), GltfFault> {
+        let scene = self.builder.build();
+        let scene =
+            scene.map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
+        Ok((scene, self.summary))
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.
@@ -142,9 +179,10 @@ impl<'a> Assembly<'a> {
         index: usize,
         place: &Place,
     ) -> Result<Vec<DAffine3>, GltfFault> {
-        let world_from_node = self.nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        let whole = context.layout.from_world();
+        let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let mut places: Vec<_> = local.into_iter().map(|map| world_from_node * map).collect();
+        let mut places: Vec<_> = local.into_iter().map(|map| render_from_node * map).collect();
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
@@ -160,17 +198,23 @@ impl<'a> Assembly<'a> {
         mesh: usize,
         of_mesh: &MeshUse<'_>,
     ) -> Result<(), GltfFault> {
-        let mut object = None;
         let is_shared = of_mesh.places.len() > 1;
+        let mut object = None;
+        let mut survey = Survey::new(None);
+        let origin = context.layout.object_origin(self.objects.len());
+        let at_origin = DAffine3::from_translation(-origin);
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
+            if let Some(first) = of_mesh.places.first() {
+                self.measure(context, &surface, first, &place);
+            }
             if is_shared && material.emission.is_none() {
                 let object = *object.get_or_insert_with(|| self.builder.object());
-                let shape = surface.place(&DAffine3::IDENTITY, &material.uv, &place)?;
-                self.add_to_object(object, shape, &material, &of_mesh.places, &place)?;
+                let shape = surface.place(&at_origin, (&material.uv, &mut survey), &place)?;
+                self.add_to_object(object, shape, &material, &place)?;
                 continue;
             }
             for map in &of_mesh.places {
-                let shape = surface.place(map, &material.uv, &place)?;
+                let shape = surface.place(map, (&material.uv, &mut self.survey), &place)?;
                 self.add_to_world(shape, &material, &place)?;
             }
         }
@@ -183,9 +227,14 @@ impl<'a> Assembly<'a> {
             return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
         }
         for map in &of_mesh.places {
-            self.builder.instance(object, *map);
+            let map = *map * DAffine3::from_translation(origin);
+            if let Some(corners) = survey.corners() {
+                self.survey.include_box(corners, &map);
+            }
+            self.builder.instance(object, map);
             self.instance_places.push(of_mesh.node.1.clone());
         }
+        self.objects.push(survey);
         Ok(())
     }
 
@@ -219,13 +268,15 @@ impl<'a> Assembly<'a> {
         weights: &[f32],
     ) -> Result<(), GltfFault> {
         let place = place.key("skin");
-        let world_from_node = &self.nodes.world_from_node;
-        let joints = mesh::joints(self.document, world_from_node, skin, &place)?;
+        let render_from_node = &self.nodes.render_from_node;
+        let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
+        let whole = context.layout.from_world();
         for (surface, material, place) in self.surfaces(context, mesh, weights)? {
+            let user = (&material.uv, &mut self.survey);
             let shape = if surface.joints.is_empty() {
-                surface.place(&DAffine3::IDENTITY, &material.uv, &place)?
+                surface.place(&whole, user, &place)?
             } else {
-                surface.skinned(&joints, &material.uv, &place)?
+                surface.skinned(&joints, user, &place)?
             };
             self.add_to_world(shape, &material, &place)?;
         }
@@ -250,7 +301,6 @@ impl<'a> Assembly<'a> {
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
-        self.include(&shape, &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
         let number = self
@@ -268,13 +318,9 @@ impl<'a> Assembly<'a> {
         object: ObjectId,
         shape: Mesh,
         material: &Built,
-        places: &[DAffine3],
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
-        for map in places {
-            self.include(&shape, map);
-        }
         let number = self
             .builder
             .object_shape(object, Shape::Mesh(shape), material.id);
@@ -285,20 +331,17 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Widens the box around everything.
-    fn include(&mut self, shape: &Mesh, map: &DAffine3) {
-        let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let own = shape
-            .positions
-            .iter()
-            .fold(nowhere, |[low, high], &p| [low.min(p), high.max(p)]);
-        for i in 0..8_usize {
-            let corner = Vec3::from_array(std::array::from_fn(|axis| own[i >> axis & 1][axis]));
-            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
-            if corner.is_finite() {
-                self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
-            }
-        }
+    /// Takes note of what the vertices of a primitive lose, which `render_from_mesh` puts in place.
+    fn measure(
+        &mut self,
+        context: &Context<'_>,
+        surface: &Surface,
+        render_from_mesh: &DAffine3,
+        place: &Place,
+    ) {
+        let linear = render_from_mesh.matrix3 * context.layout.space.unit;
+        let error = VertexError::of(&surface.positions, &linear);
+        self.vertex_errors.add(place, error);
     }
 
     /// Adds the lights that are no shapes; an even surrounding where there is no light at all.

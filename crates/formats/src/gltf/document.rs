@@ -7,6 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
 use crate::pbrt::{Content, DigestBuilder, LoadOptions};
 use crate::source::{Fault, FileId, SourceMap, Span};
+use crate::space::Layout;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -48,8 +49,11 @@ enum StandIns {
 }
 
 /// What building knows beside the document: warnings, what was read, what the caller wants.
+#[derive(Clone)]
 pub(super) struct Context<'a> {
     pub(super) options: &'a LoadOptions,
+    /// Where everything goes.
+    pub(super) layout: Layout,
     stand_ins: StandIns,
     sources: SourceMap,
     file: FileId,
@@ -83,6 +87,7 @@ impl<'a> Context<'a> {
         };
         let context = Self {
             options,
+            layout: Layout::default(),
             stand_ins,
             sources,
             file,

@@ -6,7 +6,7 @@ use bidir::camera::{Camera, Pose, Turn};
 use bidir::film::{FilmSettings, PixelRect};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::scene::{Chances, RenderSpace, Scene};
 use std::time::{Duration, Instant};
 
 /// A camera that has not moved for so long stands still.
@@ -19,6 +19,7 @@ const REACH: [f32; 2] = [1e-4, 1e3];
 /// The view of a scene.
 #[derive(Debug)]
 pub(super) struct View {
+    space: RenderSpace,
     home: Camera,
     film: FilmSettings,
     camera: Camera,
@@ -43,6 +44,7 @@ impl View {
         let (camera, film) = (*scene.camera(), scene.film().clone());
         let target = target(scene);
         Self {
+            space: *scene.space(),
             home: camera,
             film,
             camera,
@@ -91,11 +93,16 @@ impl View {
         let pose = self.camera.pose();
         CameraStatus {
             kind: self.camera.kind(),
-            origin: pose.origin.to_array(),
-            target: self.world_target(pose).to_array(),
+            origin: self.in_world(pose.origin),
+            target: self.in_world(self.world_target(pose)),
             up: pose.up.to_array(),
             moved: self.is_elsewhere(),
         }
+    }
+
+    /// A point in the coordinates of the scene's file.
+    fn in_world(&self, point: Vec3) -> [f32; 3] {
+        self.space.world_point(point).as_vec3().to_array()
     }
 
     fn is_elsewhere(&self) -> bool {
