@@ -27,7 +27,8 @@ impl VertexError {
     /// the mesh is a point.
     pub(crate) fn of(positions: &[[f32; 3]], linear: &DMat3) -> Option<Self> {
         let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let around = |[low, high]: [Vec3; 2], &p: &[f32; 3]| [low.min(p.into()), high.max(p.into())];
+        let around =
+            |[low, high]: [Vec3; 2], &p: &[f32; 3]| [low.min(p.into()), high.max(p.into())];
         let [low, high] = positions.iter().fold(nowhere, around);
         let size = (high.as_dvec3() - low.as_dvec3()).max_element() / 2.0;
         let coordinate = low.abs().max(high.abs()).max_element();
@@ -73,7 +74,10 @@ impl<P: Clone> VertexErrors<P> {
         let Some(error) = error else { return };
         self.count += 1;
         let keep = |known: &mut Option<(P, VertexError)>, size: fn(&VertexError) -> f64| {
-            if known.as_ref().is_none_or(|(_, known)| size(known) < size(&error)) {
+            if known
+                .as_ref()
+                .is_none_or(|(_, known)| size(known) < size(&error))
+            {
                 *known = Some((place.clone(), error));
             }
         };

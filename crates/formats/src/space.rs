@@ -103,9 +103,13 @@ impl Survey {
 
     /// Half the longest side of the box around every point and the eye; 0 where there is neither.
     pub(crate) fn reach(&self) -> f64 {
-        let mut all = Self { eye: None, ..self.clone() };
+        let mut all = Self {
+            eye: None,
+            ..self.clone()
+        };
         self.eye.into_iter().for_each(|eye| all.include(eye));
-        all.corners().map_or(0.0, |[low, high]| (high - low).max_element() / 2.0)
+        all.corners()
+            .map_or(0.0, |[low, high]| (high - low).max_element() / 2.0)
     }
 
     fn space(&self) -> RenderSpace {
@@ -132,7 +136,9 @@ impl Survey {
 
     fn unit(&self, origin: DVec3) -> f64 {
         let corners = self.corners().into_iter().flatten();
-        let distances = corners.chain(self.eye).map(|p| (p - origin).abs().max_element());
+        let distances = corners
+            .chain(self.eye)
+            .map(|p| (p - origin).abs().max_element());
         let farthest = distances.fold(0.0, f64::max);
         if farthest == 0.0 || !farthest.is_finite() {
             return 1.0;
@@ -147,7 +153,11 @@ impl Survey {
 
 /// The corners of a box; none where it is empty.
 pub(crate) fn box_corners(corners: [DVec3; 2]) -> impl Iterator<Item = DVec3> {
-    let count = if corners[0].cmple(corners[1]).all() { 8 } else { 0 };
+    let count = if corners[0].cmple(corners[1]).all() {
+        8
+    } else {
+        0
+    };
     (0..count).map(move |i: usize| {
         DVec3::from_array(std::array::from_fn(|axis| corners[i >> axis & 1][axis]))
     })
@@ -193,7 +203,10 @@ mod tests {
 
     #[test]
     fn a_distant_room_is_rendered_around_its_middle() {
-        let room = [DVec3::new(1e7 - 1.0, 0.0, 0.0), DVec3::new(1e7 + 1.0, 2.0, 2.0)];
+        let room = [
+            DVec3::new(1e7 - 1.0, 0.0, 0.0),
+            DVec3::new(1e7 + 1.0, 2.0, 2.0),
+        ];
         check(&survey(DVec3::ZERO, &room), [1e7, 1.0, 1.0], 16.0);
         check(&survey(DVec3::X * 1e7, &room), [1e7, 1.0, 1.0], 1.0);
     }
@@ -202,7 +215,11 @@ mod tests {
     fn a_room_on_a_wide_plane_is_rendered_around_the_camera() {
         let mut points = vec![DVec3::splat(-1e6), DVec3::splat(1e6)];
         points.push(DVec3::new(5e5, 1.0, 0.0));
-        check(&survey(DVec3::new(5e5, 3.0, 0.25), &points), [5e5, 3.0, 0.0], 1.0);
+        check(
+            &survey(DVec3::new(5e5, 3.0, 0.25), &points),
+            [5e5, 3.0, 0.0],
+            1.0,
+        );
     }
 
     #[test]
@@ -222,7 +239,10 @@ mod tests {
     fn objects_far_from_their_origin_have_another() {
         let [near, far] = [0.0, 1e5].map(|x| {
             let mut survey = Survey::new(None);
-            survey.include_box([DVec3::X * x, DVec3::X * x + DVec3::ONE], &DAffine3::IDENTITY);
+            survey.include_box(
+                [DVec3::X * x, DVec3::X * x + DVec3::ONE],
+                &DAffine3::IDENTITY,
+            );
             survey
         });
         let layout = Layout::of(&Survey::new(None), &[far, near]);

@@ -6,8 +6,7 @@
 //! translation, so that directions stay as they are, and a scale. Pixels do not depend on it.
 //! Points and lengths for users go through here.
 
-use crate::math::{DAffine3, Vec3};
-use glam::DVec3;
+use crate::math::{DAffine3, DVec3, Vec3};
 
 /// A space with the axes of the world, another origin, and another unit of length.
 #[derive(Clone, Copy, Debug, PartialEq)]

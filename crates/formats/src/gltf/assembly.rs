@@ -126,8 +126,8 @@ impl<'a> Assembly<'a> {
     /// Builds the scene.
     fn finish(self) -> Result<(Scene, Summary), GltfFault> {
         let scene = self.builder.build();
-        let scene =
-            scene.map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
+        let scene = scene
+            .map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
         Ok((scene, self.summary))
     }
 
@@ -182,7 +182,10 @@ impl<'a> Assembly<'a> {
         let whole = context.layout.from_world();
         let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let mut places: Vec<_> = local.into_iter().map(|map| render_from_node * map).collect();
+        let mut places: Vec<_> = local
+            .into_iter()
+            .map(|map| render_from_node * map)
+            .collect();
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {

@@ -25,7 +25,12 @@ pub(super) fn all(
             .key("extensions")
             .key("KHR_lights_punctual");
         let render_from_node = nodes.render_from_node[index].unwrap_or(DAffine3::IDENTITY);
-        lights.push(build(context, document, (light, &place), &render_from_node)?);
+        lights.push(build(
+            context,
+            document,
+            (light, &place),
+            &render_from_node,
+        )?);
     }
     Ok(lights)
 }

@@ -53,7 +53,10 @@ impl Nodes {
 
 /// The roots of the scene that the file shows: its default scene, else the first, else all nodes that
 /// are nobody's children.
-fn roots(root: &Root, render_from_world: DAffine3) -> Result<Vec<(usize, DAffine3, Place)>, GltfFault> {
+fn roots(
+    root: &Root,
+    render_from_world: DAffine3,
+) -> Result<Vec<(usize, DAffine3, Place)>, GltfFault> {
     let index = root.scene.unwrap_or(0);
     let place = Place::of("scenes", index).key("nodes");
     let from_top = |nodes: &[usize]| {

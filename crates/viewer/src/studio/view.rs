@@ -251,7 +251,7 @@ mod tests {
     use bidir::camera::{Orthographic, OrthographicSettings, Spherical, SphericalMapping};
     use bidir::film::Filter;
     use bidir::light::{InfiniteLight, Light};
-    use bidir::math::Affine3A;
+    use bidir::math::{Affine3A, DVec3};
     use bidir::scene::SceneBuilder;
 
     const SIDE: f32 = 30.0;
@@ -298,6 +298,25 @@ mod tests {
         assert!(view.status().moved);
         view.go_home();
         assert!(!view.status().moved && view.text().is_none());
+    }
+
+    #[test]
+    fn the_camera_is_reported_where_it_is_in_the_world() {
+        let camera = |pose: Affine3A| {
+            let size = Vec2::splat(SIDE);
+            Spherical::new(&pose, size, SphericalMapping::EqualArea).unwrap()
+        };
+        let mut builder = SceneBuilder::new(film());
+        builder.space(RenderSpace {
+            origin: DVec3::new(1e6, 0.0, 0.0),
+            unit: 4.0,
+        });
+        let pose = Affine3A::from_translation(Vec3::new(1.0, 2.0, 3.0));
+        builder.camera(Camera::Spherical(camera(pose)));
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        let status = View::new(&builder.build().unwrap()).status();
+        assert_eq!(status.origin, [1e6 + 4.0, 8.0, 12.0]);
+        assert!(status.target[2] > 12.0, "{:?}", status.target);
     }
 
     #[test]

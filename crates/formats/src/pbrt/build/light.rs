@@ -104,7 +104,11 @@ fn intensity(
 /// A point of the world in the space that is rendered in.
 fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, Fault> {
     shape::check_point(span, world)?;
-    Ok(context.layout.from_world().transform_point3(world).as_vec3())
+    Ok(context
+        .layout
+        .from_world()
+        .transform_point3(world)
+        .as_vec3())
 }
 
 /// Where the light stands and the world direction from there to where it points.
