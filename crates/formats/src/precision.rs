@@ -106,7 +106,7 @@ impl<P: Clone> VertexErrors<P> {
         let (place, error) = self.worst.as_ref()?;
         let others = match self.count {
             1 => String::new(),
-            count => format!("; {} more meshes are imprecise", count - 1),
+            count => format!("; {count} meshes in all"),
         };
         let message = format!(
             "coordinates of {:.2e} as 32-bit floats are off by up to {:.2e}, {:.0} % of the mesh's \
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(
             message,
             "coordinates of 4.00e6 as 32-bit floats are off by up to 1.25e-1, 6 % of the mesh's \
-             size: use small coordinates and a transformation; 1 more meshes are imprecise"
+             size: use small coordinates and a transformation; 2 meshes in all"
         );
     }
 

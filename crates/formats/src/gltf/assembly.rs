@@ -118,7 +118,7 @@ impl<'a> Assembly<'a> {
         assembly.summary.textures = document.root.textures.len();
         let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         let corners = assembly.survey.corners().unwrap_or(nowhere);
-        let camera = view.camera(resolution, corners.map(|corner| corner.as_vec3()))?;
+        let camera = view.camera(resolution, corners.map(DVec3::as_vec3))?;
         assembly.builder.camera(camera);
         Ok(assembly)
     }

@@ -81,7 +81,7 @@ fn far_away_tiny_and_huge() {
     let sites = [
         Site::shifted(1e7),
         Site {
-            offset: 1e3,
+            offset: 1e-3,
             unit: 1e-12,
         },
         Site::scaled(1e10),

@@ -287,7 +287,7 @@ fn what_is_seen_of_a_tiny_or_huge_file_is_the_same() {
     let [unit, tiny, huge] = [1.0, 1e-9, 1e9].map(|scale| placed([0.0; 3], scale).scene);
     assert_eq!(unit.space().unit, 1.0);
     for (scene, scale) in [(&tiny, 1e-9), (&huge, 1e9)] {
-        assert!(scene.space().unit != 1.0);
+        assert_ne!(scene.space().unit, 1.0);
         let raster = |scene: &Scene| scene.camera().raster(scene.bvh().bounds().max, Vec3::NEG_Z);
         let [found, expected] = [scene, &unit].map(|scene| raster(scene).unwrap());
         assert!(found.distance(expected) < 1e-2, "{found} {expected}");

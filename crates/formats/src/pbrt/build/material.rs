@@ -172,7 +172,7 @@ fn relief(
 
 /// Heights of the world in the unit of a space.
 fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
-    if space.unit == 1.0 {
+    if *space == RenderSpace::WORLD {
         return height;
     }
     FloatTexture::Scale(Arc::new(Scale {
