@@ -115,6 +115,7 @@ impl Job<'_> {
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check(&header(None), budget.range())?;
         }
+        let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
         let start = Instant::now();
         let began = begin::session(
             self.args,
@@ -125,6 +126,7 @@ impl Job<'_> {
         );
         let mut session = match began? {
             Began::Session(session) => *session,
+            Began::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
             Began::Stopped(exit) => return Ok(self.stopped(exit)),
         };
         session.start_at(budget.first);
@@ -179,14 +181,14 @@ impl Job<'_> {
         })
     }
 
-    /// How the command ends where a signal came before there was anything to write.
+    /// Ends with `exit` where a signal came before there was anything to write.
     fn stopped(&self, exit: Exit) -> Exit {
         self.console
             .warning("stopped before the first pass: nothing was written");
-        self.exit(exit)
+        exit
     }
 
-    /// How the command ends because of a signal: with a film file the same command goes on.
+    /// How the command ends because of a signal after a pass: with a film file the same command goes on.
     fn exit(&self, exit: Exit) -> Exit {
         match self.args.long.checkpoint {
             Some(_) => Exit::Checkpoint,
@@ -296,7 +298,7 @@ impl Job<'_> {
             say(format_args!("wrote {}", listed(&names)));
             summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
-                say(report.strategy_table().trim_end());
+                report.strategy_table().lines().for_each(say);
             }
             if matches!(end, End::Signal(_)) && keeper.path().is_some() {
                 say("stopped early; the same command with --resume continues");

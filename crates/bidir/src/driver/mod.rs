@@ -11,6 +11,7 @@ mod deposit;
 mod features;
 mod replay;
 mod session;
+mod spread;
 mod training;
 mod variance;
 

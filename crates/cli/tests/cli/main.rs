@@ -21,6 +21,8 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod terminal;
 mod tev;
 mod tonemap;
 #[cfg(unix)]

@@ -4,20 +4,20 @@ use super::document::{Context, Document};
 use super::material::{Built, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
+use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
+use crate::limits;
 use crate::pbrt::Summary;
 use crate::precision::{self, VertexError, VertexErrors};
 use crate::space::{Layout, Survey};
-use bidir::light::{InfiniteLight, Light};
+use bidir::light::Light;
+use bidir::math::Affine3A;
 use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use std::collections::BTreeMap;
-
-/// The most places of shared meshes.
-const MOST_INSTANCES: usize = 1 << 24;
 
 /// A scene in the making.
 pub(super) struct Assembly<'a> {
@@ -32,8 +32,22 @@ pub(super) struct Assembly<'a> {
     survey: Survey,
     objects: Vec<Survey>,
     vertex_errors: VertexErrors<Place>,
-    most_primitives: u64,
+    /// Of all shapes.
+    extent: Extent,
+    most: Most,
+    /// Of all meshes as they are kept.
+    vertices: u64,
+    /// Of all meshes.
+    places: u64,
     summary: Summary,
+}
+
+/// What a scene may have.
+struct Most {
+    /// Primitives, and vertices.
+    primitives: u64,
+    shapes: u64,
+    places: u64,
 }
 
 /// A mesh of the file where a scene has it.
@@ -61,6 +75,7 @@ impl<'a> Assembly<'a> {
         if layout != Layout::default() {
             drop(assembly);
             again.layout = layout;
+            document.start_counting(&again);
             *context = again;
             assembly = Self::gather(context, document)?;
         }
@@ -102,7 +117,14 @@ impl<'a> Assembly<'a> {
             survey: Survey::new(view.eye()),
             objects: Vec::new(),
             vertex_errors: VertexErrors::default(),
-            most_primitives: context.options.most_primitives(),
+            extent: Extent::NONE,
+            most: Most {
+                primitives: context.options.most_primitives(context.reading.stored()),
+                shapes: limits::SHAPES.of(context.reading.stored()),
+                places: limits::INSTANCES.of(context.reading.stored()),
+            },
+            vertices: 0,
+            places: 0,
             summary: Summary::default(),
         };
         if !document.root.animations.is_empty() {
@@ -113,12 +135,11 @@ impl<'a> Assembly<'a> {
             );
         }
         assembly.add_meshes(context)?;
-        assembly.add_lights(context)?;
+        let world_from_camera = view.placed(context, resolution, &assembly.extent);
+        assembly.add_lights(context, &world_from_camera)?;
         assembly.summary.materials = assembly.materials.count();
         assembly.summary.textures = document.root.textures.len();
-        let nowhere = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let corners = assembly.survey.corners().unwrap_or(nowhere);
-        let camera = view.camera(resolution, corners.map(DVec3::as_vec3))?;
+        let camera = view.camera(resolution, world_from_camera)?;
         assembly.builder.camera(camera);
         Ok(assembly)
     }
@@ -156,6 +177,7 @@ impl<'a> Assembly<'a> {
                 weights.iter().map(|weight| weight.to_bits()).collect(),
             );
             let places = self.world_places(context, index, &place)?;
+            self.count_places(places.len(), &place)?;
             let of_mesh = uses.entry(key.clone()).or_insert_with(|| {
                 order.push(key);
                 MeshUse {
@@ -206,6 +228,8 @@ impl<'a> Assembly<'a> {
         let mut survey = Survey::new(None);
         let origin = context.layout.object_origin(self.objects.len());
         let at_origin = DAffine3::from_translation(-origin);
+        let places = of_mesh.places.iter();
+        let places: Vec<_> = places.map(|map| *map * at_origin.inverse()).collect();
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
             if let Some(first) = of_mesh.places.first() {
                 self.measure(context, &surface, first, &place);
@@ -213,7 +237,7 @@ impl<'a> Assembly<'a> {
             if is_shared && material.emission.is_none() {
                 let object = *object.get_or_insert_with(|| self.builder.object());
                 let shape = surface.place(&at_origin, (&material.uv, &mut survey), &place)?;
-                self.add_to_object(object, shape, &material, &place)?;
+                self.add_to_object((object, &places), shape, &material, &place)?;
                 continue;
             }
             for map in &of_mesh.places {
@@ -225,12 +249,7 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         self.summary.instances += of_mesh.places.len();
-        if self.summary.instances > MOST_INSTANCES {
-            let message = format!("the scene has more than {MOST_INSTANCES} mesh instances");
-            return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
-        }
-        for map in &of_mesh.places {
-            let map = *map * DAffine3::from_translation(origin);
+        for map in places {
             if let Some(corners) = survey.corners() {
                 self.survey.include_box(corners, &map);
             }
@@ -286,15 +305,34 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
+    fn count_places(&mut self, count: usize, place: &Place) -> Result<(), GltfFault> {
+        self.places += count as u64;
+        let most = self.most.places;
+        if self.places <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} mesh instances");
+        Err(place.fault(ErrorKind::Limit, message))
+    }
+
     fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
         self.summary.shapes += 1;
         self.summary.primitives += shape.triangles.len() as u64;
-        let most = self.most_primitives;
-        if self.summary.primitives <= most {
-            return Ok(());
+        self.vertices += shape.positions.len() as u64;
+        let limit = |message| Err(place.fault(ErrorKind::Limit, message));
+        let most = self.most.primitives;
+        if self.summary.primitives.max(self.vertices) > most {
+            return limit(format!(
+                "the scene has more than {most} triangles or vertices"
+            ));
         }
-        let message = format!("the scene has more than {most} triangles");
-        Err(place.fault(ErrorKind::Limit, message))
+        let most = self.most.shapes;
+        if self.summary.shapes as u64 > most {
+            return limit(format!(
+                "the scene has more than {most} shapes, counted at each place"
+            ));
+        }
+        Ok(())
     }
 
     fn add_to_world(
@@ -304,6 +342,7 @@ impl<'a> Assembly<'a> {
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
+        self.extent.include(&extent_of(&shape), &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
         let number = self
@@ -318,12 +357,16 @@ impl<'a> Assembly<'a> {
 
     fn add_to_object(
         &mut self,
-        object: ObjectId,
+        (object, places): (ObjectId, &[DAffine3]),
         shape: Mesh,
         material: &Built,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
+        let own = extent_of(&shape);
+        for map in places {
+            self.extent.include(&own, map);
+        }
         let number = self
             .builder
             .object_shape(object, Shape::Mesh(shape), material.id);
@@ -347,13 +390,17 @@ impl<'a> Assembly<'a> {
         self.vertex_errors.add(place, error);
     }
 
-    /// Adds the lights that are no shapes; an even surrounding where there is no light at all.
-    fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
+    /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.
+    fn add_lights(
+        &mut self,
+        context: &mut Context<'_>,
+        world_from_camera: &Affine3A,
+    ) -> Result<(), GltfFault> {
         let mut lights = light::all(context, self.document, &self.nodes)?;
         if lights.is_empty() && self.summary.area_lights == 0 {
-            let message = "the scene has no light; using a uniform environment of radiance 1";
+            let message = "the scene has no light; using a soft one from behind the viewer";
             context.warn(&Place::TOP, message);
-            lights.push(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+            lights.push(Light::Infinite(outside::surroundings(world_from_camera)));
         }
         self.summary.other_lights = lights.len();
         for light in lights {
@@ -361,6 +408,11 @@ impl<'a> Assembly<'a> {
         }
         Ok(())
     }
+}
+
+fn extent_of(shape: &Mesh) -> Extent {
+    let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
+    Extent::of(&shape.positions, triangles)
 }
 
 /// Says where in the file the builder's error is.

@@ -8,8 +8,8 @@
 //! replaced by something simpler, is a warning; what the format itself demands and the renderer has
 //! not is refused, and [`LoadOptions::lenient`] lets something stand in. docs/reference/gltf.md has it all.
 //!
-//! A file without a camera is seen from its front, +z, as a whole; one without light stands in an
-//! even white surrounding. Units are taken as they are: nothing is divided by 683 lm/W.
+//! A file without a camera is seen as a whole, and one without light is lit from behind the viewer
+//! (`outside`). Units are taken as they are: nothing is divided by 683 lm/W.
 
 mod accessor;
 mod assembly;
@@ -20,6 +20,7 @@ mod light;
 mod material;
 mod mesh;
 mod node;
+mod outside;
 mod place;
 mod texture;
 mod view;

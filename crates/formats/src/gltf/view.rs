@@ -3,12 +3,15 @@
 use super::document::{Context, Document};
 use super::json;
 use super::node::Nodes;
+use super::outside::Extent;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
-use crate::pbrt::{Crop, LARGEST_SIDE};
+use crate::limits::LARGEST_SIDE;
+use crate::pbrt::Crop;
+use crate::text::number;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
-use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::math::{Affine3A, Vec2};
 use glam::{DAffine3, DVec3};
 use std::ops::RangeInclusive;
 
@@ -34,7 +37,7 @@ enum Screen {
 /// What is looked from.
 pub(super) struct View {
     /// x right, y up, z forward. None: so that all is in view.
-    render_from_camera: Option<Affine3A>,
+    world_from_camera: Option<Affine3A>,
     screen: Screen,
     /// Width over height of what has to be in view. None: as the film is.
     aspect: Option<f64>,
@@ -53,12 +56,8 @@ pub(super) fn find(
         .filter_map(|&node| Some((node, document.root.nodes[node].camera?)))
         .collect();
     let Some(&(node, camera)) = cameras.first() else {
-        context.warn(
-            &Place::TOP,
-            "the scene has no camera; using one in front of it that sees everything",
-        );
         return Ok(View {
-            render_from_camera: None,
+            world_from_camera: None,
             screen: Screen::Perspective(libm::tan(ANGLE / 2.0)),
             aspect: None,
             place: Place::TOP,
@@ -100,7 +99,7 @@ fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Resul
         }
     };
     Ok(View {
-        render_from_camera: Some(rigid(render_from_node)),
+        world_from_camera: Some(rigid(render_from_node)),
         screen,
         aspect,
         place,
@@ -114,9 +113,11 @@ fn perspective(
 ) -> Result<(Screen, Option<f64>), GltfFault> {
     let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
     if !(yfov > 1e-4 && yfov < 3.1) {
+        let yfov = number(yfov);
         return Err(place.scene(format!("`yfov` is {yfov}, which is not an angle of view")));
     }
     if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
+        let aspect = number(aspect);
         return Err(place.scene(format!("`aspectRatio` is {aspect}, which is not a ratio")));
     }
     let screen = Screen::Perspective(libm::tan(yfov / 2.0));
@@ -131,6 +132,7 @@ fn orthographic(
     let (width, height) = (camera.xmag, camera.ymag);
     let is_size = |side: f64| side > 0.0 && side <= 1e12;
     if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
+        let [width, height] = [width, height].map(number);
         return Err(place.scene(format!(
             "`xmag` {width} and `ymag` {height} are not the size of a view"
         )));
@@ -149,7 +151,7 @@ fn rigid(render_from_node: &DAffine3) -> Affine3A {
     looking(render_from_node.translation, forward, up)
 }
 
-fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
+pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
     let right = forward.cross(up);
     let columns = [right, up, forward, eye].map(DVec3::as_vec3a);
     Affine3A::from_cols(columns[0], columns[1], columns[2], columns[3])
@@ -158,7 +160,7 @@ fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
 impl View {
     /// Where the camera of the file stands, in the space that is rendered in.
     pub(super) fn eye(&self) -> Option<DVec3> {
-        let place = self.render_from_camera?;
+        let place = self.world_from_camera?;
         Some(place.translation.as_dvec3())
     }
 
@@ -191,19 +193,33 @@ impl View {
         Err(Place::TOP.fault(ErrorKind::Options, message))
     }
 
+    /// Where the camera is: where the file has it, else where it sees all of `extent`.
+    pub(super) fn placed(
+        &self,
+        context: &mut Context<'_>,
+        resolution: [u32; 2],
+        extent: &Extent,
+    ) -> Affine3A {
+        self.world_from_camera.unwrap_or_else(|| {
+            let viewpoint = extent.viewpoint();
+            let name = viewpoint.name;
+            let message = format!("the scene has no camera; using one {name} that sees everything");
+            context.warn(&Place::TOP, message);
+            viewpoint.camera(extent, self.half(resolution))
+        })
+    }
+
     /// The camera in front of a film of `resolution`. What the file's camera sees is in view
     /// whatever the film's shape; nothing is stretched.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
-        corners: [Vec3; 2],
+        world_from_camera: Affine3A,
     ) -> Result<Camera, GltfFault> {
         let half = self.half(resolution);
         let [x, y] = [half.x as f32, half.y as f32];
         let screen = [Vec2::new(-x, y), Vec2::new(x, -y)];
         let resolution = Vec2::from(resolution.map(|side| side as f32));
-        let placed = self.render_from_camera;
-        let world_from_camera = placed.unwrap_or_else(|| in_front(corners, half));
         let camera = match self.screen {
             Screen::Perspective(_) => Perspective::new(&PerspectiveSettings {
                 world_from_camera,
@@ -232,18 +248,4 @@ impl View {
         }
         DVec3::new(half * width / height, half, 0.0)
     }
-}
-
-/// A place on the side of +z from which a box between two corners fills a view of half size `half`
-/// at distance 1.
-fn in_front(corners: [Vec3; 2], half: DVec3) -> Affine3A {
-    let [low, high] = corners.map(Vec3::as_dvec3);
-    let (centre, size) = if low.cmple(high).all() {
-        ((low + high) / 2.0, (high - low) / 2.0)
-    } else {
-        (DVec3::ZERO, DVec3::ONE)
-    };
-    let distance = (size.x / half.x).max(size.y / half.y) * 1.05 + size.z;
-    let eye = centre + DVec3::Z * distance.max(1e-6);
-    looking(eye, DVec3::NEG_Z, DVec3::Y)
 }

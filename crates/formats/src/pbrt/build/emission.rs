@@ -5,6 +5,7 @@ use super::context::Context;
 use super::group;
 use super::light;
 use super::reader::Reader;
+use super::shape::Geometry;
 use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use bidir::light::EmissionSides;
@@ -88,6 +89,14 @@ impl AreaEmission {
             pattern: self.pattern.as_ref().map(|(pattern, _)| pattern.clone()),
             sides: self.sides,
         })
+    }
+
+    /// How many [`parts`](Self::parts) a shape has.
+    pub(super) fn part_count(&self, geometry: &Geometry) -> u64 {
+        match (self.power, geometry) {
+            (Some(_), Geometry::Mesh(_)) => geometry.primitives(),
+            _ => 1,
+        }
     }
 
     /// The parts of a shape that emit each for itself.

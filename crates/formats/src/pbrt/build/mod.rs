@@ -9,6 +9,7 @@
 mod camera;
 mod color;
 mod context;
+mod count;
 mod emission;
 mod film;
 mod filter;
@@ -30,13 +31,13 @@ mod texture;
 mod texture_class;
 
 pub use film::Crop;
-pub(crate) use film::LARGEST_SIDE;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription, Warning};
+use super::scene::{Entity, SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
+use crate::limits;
 use crate::precision::{self, VertexErrors};
 use crate::source::{Fault, SourceMap, Span};
 use crate::space::{Layout, Survey};
@@ -50,6 +51,7 @@ use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use texture::Textures;
 
 /// What a caller may want otherwise than the file.
@@ -65,17 +67,15 @@ pub struct LoadOptions {
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
     /// The most primitives of the scene, and the most vertices of its meshes, those of shared objects
-    /// counted once. None: 2²⁸.
+    /// counted once. None: 2²², and 16 more for every byte of the scene's files; at most 2²⁸.
     pub most_primitives: Option<u64>,
 }
 
 impl LoadOptions {
-    /// The most primitives of a scene where the caller says nothing of it.
-    const MOST_PRIMITIVES: u64 = 1 << 28;
-
-    /// The most primitives, and the most vertices.
-    pub(crate) fn most_primitives(&self) -> u64 {
-        self.most_primitives.unwrap_or(Self::MOST_PRIMITIVES)
+    /// The most primitives, and the most vertices, of a scene whose files take `stored` bytes.
+    pub(crate) fn most_primitives(&self, stored: u64) -> u64 {
+        let allowed = limits::PRIMITIVES.of(stored).min(limits::MOST_PRIMITIVES);
+        self.most_primitives.unwrap_or(allowed)
     }
 }
 
@@ -193,6 +193,8 @@ struct Assembly<'a> {
     instance_spans: Vec<Span>,
     /// Of all meshes as they are kept.
     vertices: u64,
+    /// What shapes emitted last.
+    last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
     summary: Summary,
 }
 
@@ -231,6 +233,7 @@ impl<'a> Assembly<'a> {
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
             vertices: 0,
+            last_emission: None,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
@@ -298,16 +301,15 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         let emission = match &shape.area_light {
-            Some(entity) => Some(AreaEmission::read(context, entity)?),
+            Some(entity) => Some(self.emission(context, entity)?),
             None => None,
         };
         let copies = match destination {
             Destination::World(places) => places.len() as u64,
             Destination::Object(..) => 1,
         };
-        self.summary.primitives += geometry.primitives() * copies;
-        self.vertices += geometry.vertices() * copies;
-        context.check_size(self.summary.primitives.max(self.vertices), span)?;
+        let emission = emission.as_deref();
+        self.count(context, (&geometry, emission), copies, span)?;
         let error = geometry.vertex_error(&shape.transforms.start.matrix3);
         self.vertex_errors.add(&span, error);
         match destination {
@@ -315,7 +317,7 @@ impl<'a> Assembly<'a> {
                 for place in places {
                     let placed = place_shape(&geometry, shape, place, &mut self.survey)?;
                     let first = self.shape_spans.len();
-                    self.add_placed(placed, material, emission.as_ref(), span)?;
+                    self.add_placed(placed, material, emission, span)?;
                     self.cover(first, alpha.as_ref());
                 }
             }

@@ -111,6 +111,22 @@ fn lights_are_grouped_by_name() {
 }
 
 #[test]
+fn any_number_of_lights_names_its_group_in_one_block() {
+    let light = |i: usize| {
+        format!("Attribute \"light\" \"string lightgroup\" \"g{i}\" LightSource \"point\"\n")
+    };
+    let lights: String = (0..100).map(light).collect();
+    let scene = world(&lights);
+    assert_eq!(scene.group_names().len(), 100);
+    assert_eq!((scene.light_group(0), scene.light_group(99)), (0, 99));
+    // Parameters with names of their own are limited.
+    let odd: String = (0..65).map(|i| format!("\"float p{i}\" 1 ")).collect();
+    let text = format!("WorldBegin\nAttribute \"light\" {odd}");
+    let error = crate::pbrt::parse_text("s.pbrt", &text).unwrap_err();
+    assert_eq!((error.line(), error.kind()), (Some(2), ErrorKind::Limit));
+}
+
+#[test]
 fn lights_without_a_group_are_grouped_by_kind() {
     let scene = world("LightSource \"distant\" LightSource \"point\" LightSource \"infinite\"");
     assert_eq!(scene.group_names(), ["environment", "default"]);
