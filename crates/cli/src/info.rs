@@ -94,7 +94,8 @@ impl Info {
     fn new(name: String, loaded: &LoadedScene) -> Self {
         let scene = &loaded.scene;
         let bounds = scene.bvh().bounds();
-        let corners = [bounds.min.to_array(), bounds.max.to_array()];
+        let corners = [bounds.min, bounds.max];
+        let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
         let triangles = scene.shapes().iter().map(|shape| match shape {
             Shape::Mesh(mesh) => mesh.triangle_count(),
             _ => 0,

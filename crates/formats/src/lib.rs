@@ -9,8 +9,10 @@ mod files;
 mod foreign;
 mod lamp;
 mod limits;
+mod precision;
 mod reading;
 mod source;
+mod space;
 mod spectra;
 mod text;
 

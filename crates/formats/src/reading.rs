@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// What the files of a scene hold, and what was made of them so far.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Reading {
     /// Bytes that all files take on the disk, each once.
     stored: u64,

@@ -11,6 +11,8 @@ use crate::error::ErrorKind;
 use crate::lamp::{self, Placed};
 use crate::limits;
 use crate::pbrt::Summary;
+use crate::precision::{self, VertexError, VertexErrors};
+use crate::space::{Layout, Survey};
 use bidir::light::Light;
 use bidir::math::Affine3A;
 use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
@@ -36,6 +38,10 @@ pub(super) struct Assembly<'a> {
     instance_places: Vec<Place>,
     /// The same of lamps, with the numbers of their lights.
     lamps: Vec<Placed<Place>>,
+    /// Of everything in its place, and of each shared object in its own space.
+    survey: Survey,
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<Place>,
     /// Of all shapes.
     extent: Extent,
     most: Most,
@@ -67,15 +73,47 @@ struct MeshUse<'a> {
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Assembly<'a> {
+    /// Builds the scene that a document shows, in the world or where its layout puts it.
     pub(super) fn build(
         context: &mut Context<'_>,
         document: &'a Document,
     ) -> Result<Built, GltfFault> {
-        let nodes = Nodes::of(document)?;
+        let mut again = context.clone();
+        let mut assembly = Self::gather(context, document)?;
+        assembly.check_vertices()?;
+        let layout = Layout::of(&assembly.survey, &assembly.objects);
+        if layout != Layout::default() {
+            drop(assembly);
+            again.layout = layout;
+            document.start_counting(&again);
+            *context = again;
+            assembly = Self::gather(context, document)?;
+        }
+        if let Some((place, message)) = assembly.vertex_errors.warning() {
+            context.warn(&place, message);
+        }
+        assembly.finish(context)
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    fn check_vertices(&self) -> Result<(), GltfFault> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((place, message)) => {
+                let fault = place.fault(ErrorKind::Limit, message);
+                Err(fault.with_hint(precision::HINT))
+            }
+        }
+    }
+
+    /// Reads everything and puts it in its place.
+    fn gather(context: &mut Context<'_>, document: &'a Document) -> Result<Self, GltfFault> {
+        let nodes = Nodes::of(document, context.layout.from_world())?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
         let resolution = film.resolution;
         let mut builder = SceneBuilder::new(film);
+        builder.space(context.layout.space);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
@@ -87,6 +125,9 @@ impl<'a> Assembly<'a> {
             shape_places: Vec::new(),
             instance_places: Vec::new(),
             lamps: Vec::new(),
+            survey: Survey::new(view.eye()),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
             extent: Extent::NONE,
             most: Most {
                 primitives: context.options.most_primitives(context.reading.stored()),
@@ -110,26 +151,24 @@ impl<'a> Assembly<'a> {
         assembly.summary.materials = assembly.materials.count();
         assembly.summary.textures = document.root.textures.len();
         let camera = view.camera(resolution, world_from_camera)?;
-        let Self {
-            mut builder,
-            shape_places,
-            instance_places,
-            lamps,
-            summary,
-            ..
-        } = assembly;
-        builder.camera(camera);
-        let scene = builder.build();
-        let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
-        for (place, lights) in &lamps {
+        assembly.builder.camera(camera);
+        Ok(assembly)
+    }
+
+    /// Builds the scene.
+    fn finish(self, context: &mut Context<'_>) -> Result<Built, GltfFault> {
+        let scene = self.builder.build();
+        let scene = scene
+            .map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
+        for (place, lights) in &self.lamps {
             if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
                 context.warn(place, message);
             }
         }
         Ok(Built {
             scene,
-            lamps,
-            summary,
+            lamps: self.lamps,
+            summary: self.summary,
         })
     }
 
@@ -182,9 +221,13 @@ impl<'a> Assembly<'a> {
         index: usize,
         place: &Place,
     ) -> Result<Vec<DAffine3>, GltfFault> {
-        let world_from_node = self.nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        let whole = context.layout.from_world();
+        let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let mut places: Vec<_> = local.into_iter().map(|map| world_from_node * map).collect();
+        let mut places: Vec<_> = local
+            .into_iter()
+            .map(|map| render_from_node * map)
+            .collect();
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
@@ -200,17 +243,25 @@ impl<'a> Assembly<'a> {
         mesh: usize,
         of_mesh: &MeshUse<'_>,
     ) -> Result<(), GltfFault> {
-        let mut object = None;
         let is_shared = of_mesh.places.len() > 1;
+        let mut object = None;
+        let mut survey = Survey::new(None);
+        let origin = context.layout.object_origin(self.objects.len());
+        let at_origin = DAffine3::from_translation(-origin);
+        let places = of_mesh.places.iter();
+        let places: Vec<_> = places.map(|map| *map * at_origin.inverse()).collect();
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
+            if let Some(first) = of_mesh.places.first() {
+                self.measure(context, &surface, first, &place);
+            }
             if is_shared && material.emission.is_none() {
                 let object = *object.get_or_insert_with(|| self.builder.object());
-                let shape = surface.place(&DAffine3::IDENTITY, &material.uv, &place)?;
-                self.add_to_object(object, shape, &material, &of_mesh.places, &place)?;
+                let shape = surface.place(&at_origin, (&material.uv, &mut survey), &place)?;
+                self.add_to_object((object, &places), shape, &material, &place)?;
                 continue;
             }
             for map in &of_mesh.places {
-                let shape = surface.place(map, &material.uv, &place)?;
+                let shape = surface.place(map, (&material.uv, &mut self.survey), &place)?;
                 self.add_to_world(shape, &material, &place)?;
             }
         }
@@ -218,10 +269,14 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         self.summary.instances += of_mesh.places.len();
-        for map in &of_mesh.places {
-            self.builder.instance(object, *map);
+        for map in places {
+            if let Some(corners) = survey.corners() {
+                self.survey.include_box(corners, &map);
+            }
+            self.builder.instance(object, map);
             self.instance_places.push(of_mesh.node.1.clone());
         }
+        self.objects.push(survey);
         Ok(())
     }
 
@@ -255,13 +310,15 @@ impl<'a> Assembly<'a> {
         weights: &[f32],
     ) -> Result<(), GltfFault> {
         let place = place.key("skin");
-        let world_from_node = &self.nodes.world_from_node;
-        let joints = mesh::joints(self.document, world_from_node, skin, &place)?;
+        let render_from_node = &self.nodes.render_from_node;
+        let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
+        let whole = context.layout.from_world();
         for (surface, material, place) in self.surfaces(context, mesh, weights)? {
+            let user = (&material.uv, &mut self.survey);
             let shape = if surface.joints.is_empty() {
-                surface.place(&DAffine3::IDENTITY, &material.uv, &place)?
+                surface.place(&whole, user, &place)?
             } else {
-                surface.skinned(&joints, &material.uv, &place)?
+                surface.skinned(&joints, user, &place)?
             };
             self.add_to_world(shape, &material, &place)?;
         }
@@ -325,10 +382,9 @@ impl<'a> Assembly<'a> {
 
     fn add_to_object(
         &mut self,
-        object: ObjectId,
+        (object, places): (ObjectId, &[DAffine3]),
         shape: Mesh,
         material: &BuiltMaterial,
-        places: &[DAffine3],
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
@@ -344,6 +400,19 @@ impl<'a> Assembly<'a> {
             self.builder.coverage(number, coverage.clone());
         }
         Ok(())
+    }
+
+    /// Takes note of what the vertices of a primitive lose, which `render_from_mesh` puts in place.
+    fn measure(
+        &mut self,
+        context: &Context<'_>,
+        surface: &Surface,
+        render_from_mesh: &DAffine3,
+        place: &Place,
+    ) {
+        let linear = render_from_mesh.matrix3 * context.layout.space.unit;
+        let error = VertexError::of(&surface.positions, &linear);
+        self.vertex_errors.add(place, error);
     }
 
     /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.

@@ -10,6 +10,7 @@ use crate::limits::{self, FURTHER_WARNINGS, MOST_WARNINGS};
 use crate::pbrt::{Content, DigestBuilder, LoadOptions};
 use crate::reading::Reading;
 use crate::source::{Fault, FileId, SourceMap, Span};
+use crate::space::Layout;
 use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -55,8 +56,11 @@ enum StandIns {
 }
 
 /// What building knows beside the document: warnings, what was read, what the caller wants.
+#[derive(Clone)]
 pub(super) struct Context<'a> {
     pub(super) options: &'a LoadOptions,
+    /// Where everything goes.
+    pub(super) layout: Layout,
     stand_ins: StandIns,
     sources: SourceMap,
     file: FileId,
@@ -95,6 +99,7 @@ impl<'a> Context<'a> {
         };
         let context = Self {
             options,
+            layout: Layout::default(),
             stand_ins,
             sources,
             file,
@@ -240,9 +245,14 @@ impl Document {
             let buffer = document.read_buffer(context, index, &mut binary)?;
             document.buffers.push(buffer);
         }
-        let components = limits::COMPONENTS.of(context.reading.stored());
-        document.components_left = Cell::new(components);
+        document.start_counting(context);
         Ok(document)
+    }
+
+    /// Lets accessors read as much as they may, once more.
+    pub(super) fn start_counting(&self, context: &Context<'_>) {
+        let components = limits::COMPONENTS.of(context.reading.stored());
+        self.components_left.set(components);
     }
 
     /// Reads what `uri`, found at `place`, stands for.

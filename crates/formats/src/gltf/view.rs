@@ -67,11 +67,16 @@ pub(super) fn find(
         let message = format!("the scene has {} cameras; using the first", cameras.len());
         context.warn(&Place::of("nodes", node), message);
     }
-    let world_from_node = nodes.world_from_node[node].unwrap_or(DAffine3::IDENTITY);
-    read(document, camera, &world_from_node)
+    let render_from_node = nodes.render_from_node[node].unwrap_or(DAffine3::IDENTITY);
+    let mut view = read(document, camera, &render_from_node)?;
+    // Only what parallel rays see has a size in the unit of the scene.
+    if let Screen::Orthographic(half) = &mut view.screen {
+        *half /= context.layout.space.unit;
+    }
+    Ok(view)
 }
 
-fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result<View, GltfFault> {
+fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Result<View, GltfFault> {
     let place = Place::of("cameras", index);
     let count = document.root.cameras.len();
     let missing = || place.scene(format!("there is no camera {index}: the file has {count}"));
@@ -94,7 +99,7 @@ fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result
         }
     };
     Ok(View {
-        world_from_camera: Some(rigid(world_from_node)),
+        world_from_camera: Some(rigid(render_from_node)),
         screen,
         aspect,
         place,
@@ -136,14 +141,14 @@ fn orthographic(
 }
 
 /// The place of a camera that looks along -z of its node, whose scale does not matter.
-fn rigid(world_from_node: &DAffine3) -> Affine3A {
-    let m = world_from_node.matrix3;
+fn rigid(render_from_node: &DAffine3) -> Affine3A {
+    let m = render_from_node.matrix3;
     let forward = (-m.z_axis).normalize_or(DVec3::NEG_Z);
     let up = m.y_axis.reject_from_normalized(forward);
     let up = up
         .try_normalize()
         .unwrap_or_else(|| forward.any_orthonormal_vector());
-    looking(world_from_node.translation, forward, up)
+    looking(render_from_node.translation, forward, up)
 }
 
 pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
@@ -153,6 +158,12 @@ pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
 }
 
 impl View {
+    /// Where the camera of the file stands, in the space that is rendered in.
+    pub(super) fn eye(&self) -> Option<DVec3> {
+        let place = self.world_from_camera?;
+        Some(place.translation.as_dvec3())
+    }
+
     /// The film: as large as the caller says, else of the camera's proportions.
     pub(super) fn film(&self, context: &Context<'_>) -> Result<FilmSettings, GltfFault> {
         let own = match self.aspect {

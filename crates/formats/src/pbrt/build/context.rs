@@ -7,10 +7,13 @@ use crate::image::{self, Encoding, ImageData};
 use crate::limits;
 use crate::pbrt::digest::{Content, DigestBuilder};
 use crate::pbrt::scene::{SceneDescription, Warning, warn};
+use crate::pbrt::transform::Transforms;
 use crate::ply::{self, PlyMesh};
 use crate::reading::Reading;
 use crate::source::{Fault, Span};
+use crate::space::Layout;
 use crate::spectra::Spectrum;
+use glam::DAffine3;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +29,8 @@ enum StandIns {
 pub(super) struct Context<'a> {
     pub(super) description: &'a SceneDescription,
     pub(super) options: &'a LoadOptions,
+    /// Where everything goes.
+    pub(super) layout: Layout,
     stand_ins: StandIns,
     pub(super) warnings: Vec<Warning>,
     /// The messages of those warnings that tell of stand-ins.
@@ -38,7 +43,11 @@ pub(super) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    pub(super) fn new(description: &'a SceneDescription, options: &'a LoadOptions) -> Self {
+    pub(super) fn new(
+        description: &'a SceneDescription,
+        options: &'a LoadOptions,
+        layout: Layout,
+    ) -> Self {
         let stand_ins = if options.lenient {
             StandIns::Accepted
         } else {
@@ -51,6 +60,7 @@ impl<'a> Context<'a> {
         Self {
             description,
             options,
+            layout,
             stand_ins,
             warnings: description.warnings.clone(),
             refused: BTreeSet::new(),
@@ -58,6 +68,11 @@ impl<'a> Context<'a> {
             files: description.texts.clone(),
             reading: Reading::new(description.stored),
         }
+    }
+
+    /// The map from the space of something in the world, at the first time, to where it goes.
+    pub(super) fn place(&self, world_from_local: &Transforms) -> DAffine3 {
+        self.layout.from_world() * world_from_local.start
     }
 
     /// Reads a mesh, which `span` names.

@@ -23,7 +23,8 @@ pub(super) struct AreaEmission {
     /// What it is multiplied by over the surface's parameters, with the mean luminance.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// What each primitive emits in all. None: the radiance is as given.
+    /// What each primitive emits in all, in the space that is rendered in. None: the radiance is as
+    /// given.
     power: Option<f32>,
     /// The name of its group of lights.
     pub(super) group: Option<String>,
@@ -49,6 +50,8 @@ impl AreaEmission {
         let group = group::read(&mut reader)?;
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
+        // Power per area is the same in every unit, as is power per square of a distance.
+        let power = power.map(|power| context.layout.space.intensity(power));
         Ok(Self {
             radiance,
             pattern,

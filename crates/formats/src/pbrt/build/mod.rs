@@ -39,14 +39,15 @@ use crate::error::{ErrorKind, Result};
 use crate::files::Files;
 use crate::lamp::{self, Lamp, Placed};
 use crate::limits;
+use crate::precision::{self, VertexErrors};
 use crate::source::{Fault, SourceMap, Span};
-use bidir::math::Vec3;
+use crate::space::{Layout, Survey};
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
@@ -134,8 +135,9 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
 
 /// Builds a described scene: reads its meshes and images, and checks everything.
 pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Loaded> {
-    let mut context = Context::new(description, options);
-    let built = Assembly::build(&mut context);
+    let (mut context, assembly) =
+        gather(description, options).map_err(|fault| description.sources.error(fault))?;
+    let built = assembly.finish(&mut context);
     let Built {
         scene,
         settings,
@@ -177,9 +179,35 @@ struct Built {
     summary: Summary,
 }
 
+/// Places everything: in the world, or where its layout puts it.
+fn gather<'a>(
+    description: &'a SceneDescription,
+    options: &'a LoadOptions,
+) -> Result<(Context<'a>, Assembly<'a>), Fault> {
+    let mut context = Context::new(description, options, Layout::default());
+    let mut assembly = Assembly::gather(&mut context)?;
+    assembly.check_vertices()?;
+    let layout = Layout::of(&assembly.survey, &assembly.objects);
+    if layout != Layout::default() {
+        drop(assembly);
+        context = Context::new(description, options, layout);
+        assembly = Assembly::gather(&mut context)?;
+    }
+    if let Some((span, message)) = assembly.vertex_errors.warning() {
+        context.warn(span, message);
+    }
+    Ok((context, assembly))
+}
+
 /// A scene in the making.
 struct Assembly<'a> {
     builder: SceneBuilder,
+    settings: SceneSettings,
+    world_from_render: DAffine3,
+    /// Of everything but shared objects, and of each of these.
+    survey: Survey,
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<Span>,
     textures: Textures<'a>,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
@@ -189,8 +217,6 @@ struct Assembly<'a> {
     instance_spans: Vec<Span>,
     /// The same of lamps, with the numbers of their lights.
     lamps: Vec<Placed<Span>>,
-    /// Of a box around the object that is being read.
-    object_corners: [Vec3; 2],
     /// Of all meshes as they are kept.
     vertices: u64,
     /// What shapes emitted last.
@@ -198,73 +224,82 @@ struct Assembly<'a> {
     summary: Summary,
 }
 
-/// The corners of no box.
-const NOWHERE: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-
 /// Where a shape goes.
 #[derive(Clone, Copy)]
 enum Destination<'a> {
-    /// Into the world, once for each of these places of its space.
+    /// Into the space that is rendered in, once for each of these places of its space.
     World(&'a [DAffine3]),
-    /// Into an object that is shared.
-    Object(ObjectId),
+    /// Into an object that is shared, with this origin.
+    Object(ObjectId, DVec3),
 }
 
 impl<'a> Assembly<'a> {
-    fn build(context: &mut Context<'a>) -> Result<Built, Fault> {
+    /// Reads everything and puts it in its place.
+    fn gather(context: &mut Context<'a>) -> Result<Self, Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
         let settings = settings::build(context, &film)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
-        builder.camera(camera);
+        builder.space(context.layout.space).camera(camera);
         builder.texture_filtering(settings::texture_filtering(description)?);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
         let mut assembly = Self {
             builder,
+            settings,
+            world_from_render: context.layout.from_world().inverse(),
+            survey: Survey::new(Some(lens.eye)),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
             textures: Textures::new(description),
             materials: Vec::new(),
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
             lamps: Vec::new(),
-            object_corners: NOWHERE,
             vertices: 0,
             last_emission: None,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
+        let from_world = [context.layout.from_world()];
         for shape in &description.shapes {
-            let world = Destination::World(&[DAffine3::IDENTITY]);
-            assembly.add_shape(context, shape, world)?;
+            assembly.add_shape(context, shape, Destination::World(&from_world))?;
         }
         assembly.add_objects(context)?;
         assembly.textures.check_unused(context)?;
         assembly.add_lights(context)?;
-        let Self {
-            builder,
-            shape_spans,
-            instance_spans,
-            lamps,
-            summary,
-            ..
-        } = assembly;
-        let scene = builder
-            .build()
-            .map_err(|error| scene_fault(&error, &shape_spans, &instance_spans))?;
-        for (span, lights) in &lamps {
+        Ok(assembly)
+    }
+
+    /// Builds the scene.
+    fn finish(self, context: &mut Context<'a>) -> Result<Built, Fault> {
+        let scene = self.builder.build();
+        let scene =
+            scene.map_err(|error| scene_fault(&error, &self.shape_spans, &self.instance_spans))?;
+        for (span, lights) in &self.lamps {
             if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
                 context.warn(*span, message);
             }
         }
         Ok(Built {
             scene,
-            settings,
-            lamps,
-            summary,
+            settings: self.settings,
+            lamps: self.lamps,
+            summary: self.summary,
         })
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    fn check_vertices(&self) -> Result<(), Fault> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((span, message)) => {
+                Err(Fault::new(ErrorKind::Limit, span, message).with_hint(precision::HINT))
+            }
+        }
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
@@ -308,21 +343,27 @@ impl<'a> Assembly<'a> {
         };
         let copies = match destination {
             Destination::World(places) => places.len() as u64,
-            Destination::Object(_) => 1,
+            Destination::Object(..) => 1,
         };
         let emission = emission.as_deref();
         self.count(context, (&geometry, emission), copies, span)?;
+        let error = geometry.vertex_error(&shape.transforms.start.matrix3);
+        self.vertex_errors.add(&span, error);
         match destination {
             Destination::World(places) => {
                 for place in places {
-                    let placed = place_shape(&geometry, shape, place)?;
+                    let placed = place_shape(&geometry, shape, place, &mut self.survey)?;
                     let first = self.shape_spans.len();
                     self.add_placed(placed, material, emission, span)?;
                     self.cover(first, alpha.as_ref());
                 }
             }
-            Destination::Object(object) => {
-                let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
+            Destination::Object(object, origin) => {
+                let Some(survey) = self.objects.last_mut() else {
+                    return Ok(());
+                };
+                let place = DAffine3::from_translation(-origin);
+                let shape = place_shape(&geometry, shape, &place, survey)?;
                 self.add_to_object(object, shape, material, alpha.as_ref(), span);
             }
         }
@@ -337,11 +378,6 @@ impl<'a> Assembly<'a> {
         alpha: Option<&FloatTexture>,
         span: Span,
     ) {
-        let [low, high] = shape::bounds(&shape);
-        self.object_corners = [
-            self.object_corners[0].min(low),
-            self.object_corners[1].max(high),
-        ];
         self.summary.shapes += 1;
         let number = self.builder.object_shape(object, shape, material);
         self.shape_spans.push(span);
@@ -434,9 +470,10 @@ fn place_shape(
     geometry: &Geometry,
     shape: &ShapeDescription,
     place: &DAffine3,
+    survey: &mut Survey,
 ) -> Result<Shape, Fault> {
-    let world_from_local = *place * shape.transforms.start;
-    let placed = geometry.place(&world_from_local, shape::orientation(shape));
+    let placed_from_local = *place * shape.transforms.start;
+    let placed = geometry.place(&placed_from_local, shape::orientation(shape), survey);
     shape::check_extent(shape.entity.span, &placed)?;
     Ok(placed)
 }
