@@ -8,6 +8,7 @@ __all__ = [
     "ISA",
     "LAYERS",
     "METRICS",
+    "MOST_STRATEGY_VERTICES",
     "VERSION",
     "Experiment",
     "Film",
@@ -19,6 +20,7 @@ __all__ = [
     "error_map",
     "machine",
     "metric",
+    "printable",
     "read_image",
     "read_layers",
     "render_block",
@@ -30,6 +32,7 @@ ESTIMATOR_VERSION: int
 ISA: str
 METRICS: list[str]
 LAYERS: list[str]
+MOST_STRATEGY_VERTICES: int
 
 @final
 class Scene:
@@ -147,6 +150,7 @@ def render_block(
 def check_settings(settings: Mapping[str, str]) -> dict[str, str]: ...
 def encode_png(size: Sequence[int], data: bytes) -> bytes: ...
 def write_image(path: str, size: Sequence[int], data: bytes) -> None: ...
+def printable(text: str) -> str: ...
 def read_image(path: str) -> tuple[list[int], bytes]: ...
 def read_layers(path: str) -> tuple[list[int], list[tuple[str, bytes]]]: ...
 def metric(name: str, size: Sequence[int], a: bytes, b: bytes) -> float: ...

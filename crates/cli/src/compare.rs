@@ -31,7 +31,7 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
         [one] if args.json => print_json(one)?,
         [one] => print(&one.text())?,
         several => {
-            let replicates = Replicates::of(several)?;
+            let replicates = Replicates::of(several, images)?;
             if args.json {
                 print_json(&replicates)?
             } else {
@@ -79,7 +79,7 @@ fn compare_all(
     name: &Path,
     console: Console,
 ) -> Result<Vec<Comparison>, Failure> {
-    let reference = Noisy::reference(name)?;
+    let reference = Noisy::reference(name, console)?;
     let mut independence = Independence::default();
     let comparisons = images
         .iter()

@@ -8,6 +8,7 @@ use crate::lock::FilmLock;
 use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
+use formats::printable;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -31,21 +32,25 @@ pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failu
 fn tell(header: &FilmHeader) -> Result<Exit, Failure> {
     let [left, top, right, bottom] = header.crop;
     let [width, height] = header.resolution;
+    let passes = format!("{} ({})", header.passes, header.passes.len());
+    let film = format!("{width} x {height} pixels, {left},{top} to {right},{bottom}");
+    let lines = [
+        ("passes", passes),
+        ("film", film),
+        ("scene", header.scene.clone()),
+        ("program", header.program.clone()),
+        ("identity", header.identity.clone()),
+        ("stopped", header.stopping.name().to_owned()),
+        ("time", format!("{:.1} s", header.seconds)),
+    ];
+    let lines = lines.map(|(name, value)| format!("{name:10}{}\n", printable(&value)));
     let settings = header.settings.clone().into_iter();
     let texts = settings.chain(film_header::counts_by_name(header));
-    let texts = texts.map(|(name, value)| format!("  {name:21}{value}\n"));
-    print(&format!(
-        "passes    {} ({})\nfilm      {width} x {height} pixels, {left},{top} to {right},{bottom}\n\
-         scene     {}\nprogram   {}\nidentity  {}\nstopped   {}\ntime      {:.1} s\n{}",
-        header.passes,
-        header.passes.len(),
-        header.scene,
-        header.program,
-        header.identity,
-        header.stopping.name(),
-        header.seconds,
-        texts.collect::<String>(),
-    ))
+    let texts = texts.map(|(name, value)| {
+        let [name, value] = [&name, &value].map(|text| printable(text));
+        format!("  {name:21}{value}\n")
+    });
+    print(&lines.into_iter().chain(texts).collect::<String>())
 }
 
 fn develop(file: &PathBuf, output: &Path) -> Result<Exit, Failure> {

@@ -1,6 +1,7 @@
 //! `bidir reference`: a picture that others can be measured against.
 
 use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
+use crate::checkpoint::has_passes;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
@@ -41,6 +42,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
             settings,
             console,
         )?;
+        settings::warn_missing(&loaded, settings, console);
     }
     check_apart(&folder, &loaded)?;
     let films = folder.join(FILMS);
@@ -181,14 +183,21 @@ impl Job<'_> {
         watcher.reporter.finish();
         match made.map_err(failure)? {
             Made::Whole(reference) => Ok(self.tell(&reference)),
-            Made::Stopped => {
-                let folder = self.folder.display();
-                self.say(format_args!(
-                    "stopped; run the same command to continue in {folder}"
-                ));
-                Ok(Exit::Checkpoint)
-            }
+            Made::Stopped => Ok(self.stopped()),
         }
+    }
+
+    /// How the command ends because of a signal.
+    fn stopped(&self) -> Exit {
+        if !has_passes(self.folder) {
+            self.say(format_args!("stopped before the first pass"));
+            return self.signals.exit().unwrap_or(Exit::Interrupted);
+        }
+        let folder = self.folder.display();
+        self.say(format_args!(
+            "stopped; run the same command to continue in {folder}"
+        ));
+        Exit::Checkpoint
     }
 
     /// Both estimators are one budget of passes.
@@ -282,7 +291,11 @@ pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     match error {
         Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
-        Error::Io { .. } | Error::Damaged { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Io { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Damaged { .. } => {
+            let hint = "the `bidir reference` command that made it writes it again from its films";
+            Failure::new(Exit::InputOutput, text).with_hint(hint)
+        }
         Error::Missing(_) => {
             let hint = "make one with `bidir reference`, or name another folder";
             Failure::new(Exit::InputOutput, text).with_hint(hint)

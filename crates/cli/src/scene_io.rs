@@ -9,7 +9,7 @@ use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
 use formats::outputs::Output;
-use formats::scene::{Crop, LoadOptions, Summary};
+use formats::scene::{Crop, Lamp, LoadOptions, Summary};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,8 @@ pub(crate) struct LoadedScene {
     pub(crate) warnings: Vec<String>,
     /// Those of them that tell what stands in for what is not supported.
     pub(crate) refused: Vec<String>,
+    /// The first lamps that no ray can hit.
+    pub(crate) lamps: Vec<Lamp>,
     /// What the scene is made of.
     pub(crate) summary: Summary,
     /// A hash of all that was read.
@@ -71,6 +73,7 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         output: loaded.settings.output.map(PathBuf::from),
         warnings,
         refused: loaded.refused,
+        lamps: loaded.lamps,
         summary: loaded.summary,
         digest: loaded.digest.to_string(),
         inputs: loaded.inputs,

@@ -1,4 +1,5 @@
 use crate::source::Excerpt;
+use crate::text::printable;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 /// Why a file could not be read, understood or written: what, where, and what to do about it.
 ///
 /// Its text is `file:line:column: message; hint`. As a [`miette::Diagnostic`] it also shows the
-/// lines of the file with a mark under the exact place.
+/// lines of the file with a mark under the exact place. Both are [`printable`].
 #[derive(Debug)]
 pub struct Error(Box<Details>);
 
@@ -142,15 +143,15 @@ impl fmt::Display for Error {
             ..
         } = &*self.0;
         if let Some(file) = file.as_ref().filter(|_| !names_file) {
-            write!(f, "{}:", file.display())?;
+            write!(f, "{}:", printable(&file.to_string_lossy()))?;
             if let Some(place) = place {
                 write!(f, "{}:{}:", place.line, place.column)?;
             }
             f.write_str(" ")?;
         }
-        f.write_str(message)?;
+        f.write_str(&printable(message))?;
         match hint {
-            Some(hint) => write!(f, "; {hint}"),
+            Some(hint) => write!(f, "; {}", printable(hint)),
             None => Ok(()),
         }
     }

@@ -11,12 +11,13 @@ mod deposit;
 mod features;
 mod replay;
 mod session;
+mod spread;
 mod training;
 mod variance;
 
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
-pub use training::{Plan, Training};
+pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};

@@ -22,6 +22,8 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod terminal;
 mod tev;
 mod tonemap;
 #[cfg(unix)]

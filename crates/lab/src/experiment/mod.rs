@@ -58,7 +58,7 @@ mod settings;
 mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
-pub use error::{ExperimentError, Fault};
+pub use error::{ExperimentError, Fault, Place};
 pub(crate) use journal::claim;
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
@@ -126,6 +126,8 @@ pub struct SceneSpec {
     pub size: Option<[u32; 2]>,
     /// What its images are compared with.
     pub reference: ReferenceSpec,
+    /// Where a description names the file, and the reference that is there. None: it does not.
+    pub places: [Option<Place>; 2],
 }
 
 /// What images are compared with.

@@ -121,7 +121,7 @@ pub struct Outcome {
 /// Runs what no record has yet, and writes `results.json`.
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner)?;
+    let mut journal = Journal::start(setup, &owner, observer)?;
     let threads = experiment.threads;
     let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
         return Ok(Outcome {
@@ -182,6 +182,8 @@ pub(super) fn begin<'a>(
     let given = stages.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
     outputs::check(experiment, &stages, setup)?;
+    let found = given.iter().flatten();
+    found.for_each(|reference| reference.warn(observer));
     let owner = Owner {
         experiment: identity(experiment, &stages, &given),
         program: setup.program.clone(),

@@ -6,6 +6,7 @@ use super::replicate::{Estimator, Replicates, film};
 use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
 use crate::image::digest;
 use crate::results::Rays;
+use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Settings};
 use bidir::film::{Aov, Layers};
@@ -14,6 +15,7 @@ use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use formats::film::{FilmHeader, SceneIdentity, SettingsText, settings_from_flags};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -196,8 +198,12 @@ fn finish(
 ) -> Result<Reference, Error> {
     let agreement = agreement(&made[0].pictures, &made[1].pictures)
         .ok_or_else(|| Error::damaged(folder, "the films have no pixels, or not one size"))?;
+    let mut files = BTreeMap::new();
     for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {
-        picture::write(&folder.join(name), &replicates.header, &replicates.film)?;
+        let path = folder.join(name);
+        picture::write(&path, &replicates.header, &replicates.film)?;
+        let bytes = std::fs::read(&path).map_err(|error| Error::io(&path, error))?;
+        files.insert(name.to_owned(), sha256(&bytes));
     }
     let [picture, variance] = picture::of(made[0].film.develop());
     let header = &made[0].header;
@@ -212,6 +218,7 @@ fn finish(
         estimators: [0, 1].map(|i| record(&plan.estimators[i], i as u64, &made[i].header)),
         agreement,
         picture: digest(&[&picture, &variance]),
+        files,
     };
     provenance.write(folder)?;
     Ok(Reference {

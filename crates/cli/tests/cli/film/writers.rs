@@ -92,26 +92,21 @@ fn two_writers_of_one_film_are_kept_apart() {
         .expect(0);
 }
 
-/// How often a render is killed: the variable BIDIR_TEST_KILLS, else 3 times.
-fn kills() -> u64 {
-    let text = std::env::var("BIDIR_TEST_KILLS").ok();
-    text.map_or(3, |text| {
-        text.parse().expect("BIDIR_TEST_KILLS is a whole number")
-    })
-}
+/// How often a render is killed; `tools/attack` kills many more.
+const KILLS: u64 = 3;
 
 #[test]
 fn a_killed_render_goes_on_to_the_same_bits() {
     let place = Workplace::new();
-    let passes = 50 * kills();
+    let passes = 50 * KILLS;
     let render = format!("render room.pbrt -q --size 96x64 --spp {passes}");
     let start = Instant::now();
     place.run(&format!("{render} -o whole.exr")).expect(0);
     // All runs that are killed take about half as long, whatever else the machine does.
-    let share = start.elapsed().div_f64(kills() as f64);
+    let share = start.elapsed().div_f64(KILLS as f64);
     let resumed = format!("{render} --checkpoint a.film --resume -o a.exr");
     let often = format!("{resumed} --checkpoint-every 0.001s");
-    for kill in 0..kills() {
+    for kill in 0..KILLS {
         let mut child = place.command(&often).spawn().unwrap();
         let moment = 0.2 + 0.6 * (kill * 7919 % 140) as f64 / 140.0;
         std::thread::sleep(share.mul_f64(moment));

@@ -2,6 +2,7 @@
 
 mod geometry;
 mod look;
+mod outside;
 mod refusals;
 
 use super::load;

@@ -4,6 +4,7 @@ mod digest;
 mod film;
 mod lights;
 mod materials;
+mod places;
 mod refusals;
 mod relief;
 mod robust;
