@@ -189,7 +189,10 @@ impl<'a> Plan<'a> {
         let Some(("render", given)) = parsed.as_ref().ok().and_then(|all| all.subcommand()) else {
             return Ok(());
         };
-        let is_given = |flag: &str| given.value_source(flag) == Some(ValueSource::CommandLine);
+        let is_given = |flag: &str| {
+            let id = flag.replace('-', "_");
+            given.value_source(&id) == Some(ValueSource::CommandLine)
+        };
         match REFUSED.iter().find(|(flag, _)| is_given(flag)) {
             None => Ok(()),
             Some((flag, reason)) => {

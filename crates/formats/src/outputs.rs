@@ -26,9 +26,9 @@ pub struct Output<'a> {
 ///
 /// Errors: of kind [`ErrorKind::Io`], with both names.
 pub fn check<'a>(inputs: impl IntoIterator<Item = &'a Path>, outputs: &[Output<'_>]) -> Result<()> {
-    let there = inputs.into_iter().filter(|path| path.exists());
-    let read: BTreeMap<_, _> = there
-        .filter_map(|path| Some((Identity::of(path)?, path)))
+    let read: BTreeMap<_, _> = inputs
+        .into_iter()
+        .filter_map(|path| Some((Identity::of_existing(path)?, path)))
         .collect();
     let mut written: BTreeMap<Identity, &Path> = BTreeMap::new();
     for output in outputs {
@@ -74,13 +74,17 @@ enum Identity {
 impl Identity {
     /// None: a device, a pipe or a socket.
     fn of(path: &Path) -> Option<Self> {
-        match path.metadata() {
-            Ok(metadata) if metadata.is_file() || metadata.is_dir() => {
-                Some(Self::of_node(path, &metadata))
-            }
-            Ok(_) => None,
-            Err(_) => Some(Self::of_new(path)),
+        if path.exists() {
+            return Self::of_existing(path);
         }
+        Some(Self::of_new(path))
+    }
+
+    /// None: nothing is there, or a device, a pipe or a socket.
+    fn of_existing(path: &Path) -> Option<Self> {
+        let metadata = path.metadata().ok()?;
+        let is_plain = metadata.is_file() || metadata.is_dir();
+        is_plain.then(|| Self::of_node(path, &metadata))
     }
 
     fn of_new(path: &Path) -> Self {

@@ -81,7 +81,7 @@ fn a_job_file_for_a_shell_says_what_is_started() {
 }
 
 /// Arguments, and what is said of them.
-const FAULTS: [(&str, &str); 18] = [
+const FAULTS: [(&str, &str); 19] = [
     ("", "slurm"),
     ("slurm room.pbrt", "--parts"),
     (
@@ -94,6 +94,10 @@ const FAULTS: [(&str, &str); 18] = [
     (
         "shell room.pbrt --parts 8 -o room.png",
         "output images are .exr",
+    ),
+    (
+        "shell room.pbrt --parts 8 -- --display-server host",
+        "--display-server cannot be given after `--`",
     ),
     (
         "shell room.pbrt --parts 8 -- --integrator photon",
