@@ -65,7 +65,7 @@ impl Console {
     pub(crate) fn new(args: ColorArgs) -> Self {
         let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        let is_terminal = std::io::stderr().is_terminal() && !is_dumb;
+        let is_terminal = io::stderr().is_terminal() && !is_dumb;
         let color = if args.no_color || is_set("NO_COLOR") || is_dumb {
             Color::Off
         } else if is_set("FORCE_COLOR") || is_terminal {
@@ -152,12 +152,12 @@ pub(crate) fn say(line: impl fmt::Display) {
 
 /// Writes a printable line to stderr. Where nobody listens there is nobody to tell.
 fn write_line(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
+    let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
 /// Writes data to stdout; a reader that went away has read enough.
 pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
-    let mut stdout = std::io::stdout().lock();
+    let mut stdout = io::stdout().lock();
     printed(stdout.write_all(printable_lines(text).as_bytes()))
 }
 
