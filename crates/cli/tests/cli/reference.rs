@@ -176,7 +176,7 @@ fn stale_and_damaged_references_are_refused() {
     place.write("a.reference/provenance.json", &json[..json.len() / 2]);
     let image = "compare a.reference/picture.exr --reference a.reference";
     place.run(image).expect(4).says("provenance.json: damaged");
-    let mut older: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let mut older: Value = serde_json::from_str(&json).unwrap();
     // As before there were checksums.
     older.as_object_mut().unwrap().remove("checksum");
     older["format"] = 1.into();
