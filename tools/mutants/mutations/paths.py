@@ -350,7 +350,7 @@ PATHS = [
     ),
     (
         "training samples along a diagonal",
-        "crates/bidir/src/driver/training/probe.rs",
+        "crates/bidir/src/driver/spread.rs",
         "0x91e1_0da5_c79e_7b1d",
         "0xc13f_a9a9_02a6_328f",
         unit("samples_are_spread_over_films"),
@@ -365,8 +365,8 @@ PATHS = [
     (
         "path tracing for what nothing found yet",
         "crates/bidir/src/driver/training/mod.rs",
-        "training.choose(scene, settings).unwrap_or(default)",
-        "training.choose(scene, settings).unwrap_or(plan::path(1))",
+        "training.choose(task)?.unwrap_or(default)",
+        "training.choose(task)?.unwrap_or(plan::path(1))",
         unit("without_lights_and_where_none"),
     ),
     (

@@ -62,8 +62,8 @@ PICTURES = [
     (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
-        "depth: context.scene.camera().depth(surface.point),",
-        "depth: surface.point.length(),",
+        "space.world_length(context.scene.camera().depth(surface.point))",
+        "space.world_length(surface.point.length())",
         layers("features"),
     ),
     (

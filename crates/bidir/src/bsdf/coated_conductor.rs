@@ -26,7 +26,10 @@ use crate::spectrum::Spectrum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedConductor {
     coat: MetalCoat,
-    metal: CoatedMetal,
+    /// Index and facets of the metal: no field of its own, whose padding would enlarge all vertices.
+    eta: Spectrum,
+    k: Spectrum,
+    facets: Ggx,
     /// e.
     trapped: Curve<METAL_SHAPES>,
     /// Ē Σ_k m_k F̄^k.
@@ -89,7 +92,9 @@ impl CoatedConductor {
         });
         Self {
             coat,
-            metal,
+            eta: metal.eta,
+            k: metal.k,
+            facets: metal.ggx,
             trapped: reflections.shape,
             multiple,
             steepness: reflections.steepness,
@@ -98,7 +103,7 @@ impl CoatedConductor {
 
     #[inline]
     pub(super) fn is_delta(&self) -> bool {
-        self.metal.ggx.is_smooth()
+        self.facets.is_smooth()
     }
 
     /// What leaves along the mirrored direction where all is smooth: F + T² a F_m / (1 - F a F_m), a
@@ -109,7 +114,7 @@ impl CoatedConductor {
         let Some(inner) = self.coat.refracted(wo) else {
             return Spectrum::ONE;
         };
-        let trip = self.metal.fresnel(inner.z.abs()) * self.coat.attenuation(wo, wo);
+        let trip = self.fresnel(inner.z.abs()) * self.coat.attenuation(wo, wo);
         trip.map(|trip| reflected + sqr(1.0 - reflected) * trip * all_orders(reflected * trip))
     }
 
@@ -126,6 +131,12 @@ impl CoatedConductor {
         [coat, once, trapped]
     }
 
+    /// The reflectance of the metal's facets.
+    #[inline]
+    fn fresnel(&self, cos: f32) -> Spectrum {
+        fresnel::conductor(cos, self.eta, self.k)
+    }
+
     /// E(w) / Ē.
     #[inline]
     fn trapped_part(&self, w: Vec3) -> f32 {
@@ -137,7 +148,7 @@ impl CoatedConductor {
     #[inline]
     fn once_fresnel(&self, cos: f32, grazing: f32) -> Spectrum {
         let more = self.steepness * grazing;
-        let fresnel = self.metal.fresnel(cos);
+        let fresnel = self.fresnel(cos);
         fresnel.map(|part| part + (1.0 - part) * more)
     }
 
@@ -168,7 +179,7 @@ impl CoatedConductor {
         let (Some(inner_o), Some(inner_i)) = inner else {
             return coat;
         };
-        let (facets, cos) = self.metal.ggx.mirror(inner_o, inner_i);
+        let (facets, cos) = self.facets.mirror(inner_o, inner_i);
         let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
         let grazing = (fresnel::schlick(wo.z.abs()) + fresnel::schlick(wi.z.abs())) * 0.5;
         let once = self.once_fresnel(cos, grazing) * (facets * through / sqr(self.coat.eta()));
@@ -184,7 +195,7 @@ impl CoatedConductor {
         else {
             return 0.0;
         };
-        let within = self.metal.ggx.mirror_pdf(inner_o, inner_i);
+        let within = self.facets.mirror_pdf(inner_o, inner_i);
         within * wi.z.abs() / (sqr(self.coat.eta()) * inner_i.z.abs())
     }
 
@@ -231,7 +242,7 @@ impl CoatedConductor {
             Lobe::Coat => self.coat.sample(wo, u),
             Lobe::Once => {
                 let inner = self.coat.refracted(wo)?;
-                self.coat.emerging(self.metal.ggx.sample_mirror(inner, u)?)
+                self.coat.emerging(self.facets.sample_mirror(inner, u)?)
             }
             Lobe::Trapped => {
                 let wi = warp::cosine_hemisphere(u);

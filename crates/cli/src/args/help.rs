@@ -108,12 +108,14 @@ fn short(arg: Arg, common: Option<&[&str]>) -> Arg {
     let (Some(common), Some(flag)) = (common, arg.get_long()) else {
         return arg.hide_short_help(is_global);
     };
-    let has_values = arg.get_action().takes_values();
     match common.iter().position(|known| *known == flag) {
-        Some(place) => arg
-            .help_heading(Resettable::Reset)
-            .hide_possible_values(has_values)
-            .display_order(place),
+        Some(place) => {
+            // Clap asserts in development that only flags with values hide them.
+            let has_value = arg.get_action().takes_values();
+            arg.help_heading(Resettable::Reset)
+                .hide_possible_values(has_value)
+                .display_order(place)
+        }
         None => arg.hide_short_help(true),
     }
 }

@@ -90,6 +90,9 @@ impl<const R: usize, const L: usize> Coat<R, L> {
     #[inline]
     pub(super) fn transmittance(&self, w: Vec3) -> f32 {
         let through = 1.0 - self.reflectance(w);
+        if self.is_smooth() {
+            return through;
+        }
         (through * self.ratio.at(w.z.abs())).clamp(0.0, 1.0)
     }
 
