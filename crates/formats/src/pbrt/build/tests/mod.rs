@@ -64,6 +64,7 @@ fn inputs_are_all_files_that_are_named_but_the_film_s() {
         Attribute \"medium\" \"string filename\" \"default.nvdb\" \
         MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"";
     let loaded = load_text(text, &LENIENT);
-    let inputs = ["default.nvdb", "smoke.nvdb"].map(std::path::PathBuf::from);
-    assert_eq!((loaded.inputs, loaded.files), (inputs.into(), Vec::new()));
+    let inputs = ["default.nvdb", "s.pbrt", "smoke.nvdb"].map(std::path::PathBuf::from);
+    let files = vec![inputs[1].clone()];
+    assert_eq!((loaded.inputs, loaded.files), (inputs.into(), files));
 }
