@@ -25,6 +25,7 @@ docs:
     cargo build --release
     ${CARGO_TARGET_DIR:-target}/release/bidir man --markdown > docs/reference/cli.md
     BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys
+    BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-formats --lib limits
     python3 tools/tables
     python3 tools/python_reference
 

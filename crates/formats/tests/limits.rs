@@ -40,7 +40,7 @@ fn check_image(format: Format, bytes: &[u8]) {
 }
 
 /// A chunk of a PNG.
-fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+fn chunk(name: [u8; 4], data: &[u8]) -> Vec<u8> {
     let named = [&name[..], data].concat();
     let mut crc = flate2::Crc::new();
     crc.update(&named);
@@ -55,12 +55,14 @@ fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) ->
     let channels = if color == 2 { 3 } else { 1 };
     let row = 1 + (width as usize * channels * usize::from(depth)).div_ceil(8);
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(&vec![0; rows * row]).unwrap();
+    encoder
+        .write_all(&vec![0; rows * row])
+        .expect("memory takes it");
     let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
-    png.extend(chunk(b"IHDR", &header));
-    png.extend(chunk(b"PLTE", &[0, 0, 0, 255, 255, 255]));
-    png.extend(chunk(b"IDAT", &encoder.finish().unwrap()));
-    png.extend(chunk(b"IEND", &[]));
+    png.extend(chunk(*b"IHDR", &header));
+    png.extend(chunk(*b"PLTE", &[0, 0, 0, 255, 255, 255]));
+    png.extend(chunk(*b"IDAT", &encoder.finish().expect("memory takes it")));
+    png.extend(chunk(*b"IEND", &[]));
     png
 }
 
@@ -167,7 +169,7 @@ fn warnings_of_many_kinds_are_one() {
 /// third.
 #[track_caller]
 fn check_inclusions(times: [usize; 2], leaf: &str, words: &str) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     let including = |name: &str, times: usize| {
         let names = (0..times).map(|i| format!("Include \"{}{name}\"\n", "./".repeat(i % 100)));
         names.collect::<String>()
@@ -175,9 +177,10 @@ fn check_inclusions(times: [usize; 2], leaf: &str, words: &str) {
     let top = format!("WorldBegin\n{}", including("b.pbrt", times[0]));
     let middle = including("c.pbrt", times[1]);
     for (name, text) in [("a.pbrt", &*top), ("b.pbrt", &middle), ("c.pbrt", leaf)] {
-        fs::write(folder.path().join(name), text).unwrap();
+        fs::write(folder.path().join(name), text).expect("the folder is there");
     }
-    let error = load(&folder.path().join("a.pbrt"), &LoadOptions::default()).unwrap_err();
+    let loaded = load(&folder.path().join("a.pbrt"), &LoadOptions::default());
+    let error = loaded.expect_err("too much");
     check(&error, ErrorKind::Limit, words);
     assert!(error.line().is_some());
 }

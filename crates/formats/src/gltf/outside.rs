@@ -92,8 +92,9 @@ impl Extent {
         let m = map.matrix3;
         let determinant = m.determinant();
         let cofactors = m.inverse().transpose() * determinant;
-        let scale = determinant.abs().powf(-2.0 / 3.0);
-        self.add_areas(cofactors * other.areas * cofactors.transpose() * scale);
+        let length = libm::cbrt(determinant.abs());
+        let areas = cofactors * other.areas * cofactors.transpose();
+        self.add_areas(areas * (length * length).recip());
     }
 
     fn add_areas(&mut self, areas: DMat3) {

@@ -3,7 +3,7 @@
 use super::look::seen;
 use super::{Draft, F32, floats};
 use bidir::light::LightPoint;
-use bidir::math::Vec3;
+use bidir::math::{Vec3, sin_cos};
 use serde_json::json;
 
 /// The part of the film that the triangle covers, seen from where there is no camera.
@@ -52,7 +52,10 @@ fn surfaces_differ_from_the_background_whatever_their_colour() {
     let rings = [0.1, 0.3, 0.5, 0.7, 0.9_f32].map(|squared: f32| {
         let (cos, sin) = (squared.sqrt(), (1.0 - squared).sqrt());
         let around = (0..12).map(|i| std::f32::consts::TAU * i as f32 / 12.0);
-        let values = around.map(|phi| radiance(Vec3::new(sin * phi.cos(), sin * phi.sin(), cos)));
+        let values = around.map(|phi| {
+            let (y, x) = sin_cos(phi);
+            radiance(Vec3::new(sin * x, sin * y, cos))
+        });
         values.sum::<f32>() / 12.0
     });
     let white = rings.iter().sum::<f32>() / 5.0;
