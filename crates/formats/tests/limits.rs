@@ -141,7 +141,9 @@ fn meshes_have_indices_of_32_bits() {
 #[test]
 fn attributes_are_few() {
     check_text(
-        &"Attribute \"shape\" \"float radius\" 1 ".repeat(65),
+        &(0..65).fold(String::new(), |text, i| {
+            text + &format!("Attribute \"shape\" \"float r{i}\" 1 ")
+        }),
         "more than 64 parameters",
     );
     let points = "0 ".repeat(4098);

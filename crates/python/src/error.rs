@@ -81,7 +81,7 @@ pub(crate) fn of_experiment(py: Python<'_>, error: &lab::experiment::ExperimentE
         return of_file(py, error);
     }
     let fault = match error {
-        ExperimentError::Description(fault) => Some(fault),
+        ExperimentError::Description(fault) | ExperimentError::Absent(fault) => Some(fault),
         _ => None,
     };
     let message = error.to_string();

@@ -41,7 +41,7 @@ fn names_of_files_are_shown_and_not_obeyed() {
         "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film",
     )
     .expect(0)
-    .says(&format!("wrote {shown}.exr and {shown}.film"));
+    .says(&format!("wrote {shown}.exr, {shown}.png and {shown}.film"));
     run(&place, "film info @.film")
         .expect(0)
         .prints(&format!("scene     {shown}.pbrt"));

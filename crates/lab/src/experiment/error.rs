@@ -12,6 +12,9 @@ pub enum ExperimentError {
     /// The description is wrong.
     #[error("{0}")]
     Description(Fault),
+    /// A file that the description names cannot be read.
+    #[error("{0}")]
+    Absent(Fault),
     /// A scene cannot be read, or a file not be read or written.
     #[error(transparent)]
     File(#[from] formats::Error),
@@ -129,7 +132,7 @@ impl ExperimentError {
     /// What to do about it. None: where the message says all there is to say.
     pub fn hint(&self) -> Option<&str> {
         match self {
-            Self::Description(fault) => fault.hint.as_deref(),
+            Self::Description(fault) | Self::Absent(fault) => fault.hint.as_deref(),
             Self::File(error) => error.hint(),
             Self::Damaged { line: 1, .. } => Some("start over with --restart"),
             Self::Damaged { .. } => {
@@ -177,7 +180,7 @@ impl Place {
         use formats::ErrorKind::{Io, MissingFile};
         let is_absent = matches!(error.kind(), MissingFile | Io) && error.line().is_none();
         match place.filter(|_| is_absent) {
-            Some(place) => ExperimentError::Description(Fault {
+            Some(place) => ExperimentError::Absent(Fault {
                 place: place.clone(),
                 message: error.message().to_owned(),
                 hint: error.hint().map(str::to_owned),
