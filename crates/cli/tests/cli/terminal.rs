@@ -2,9 +2,9 @@ use crate::common::{Ran, SCENE, Workplace};
 use formats::is_obeyed;
 use std::fs;
 
-/// A title, a cleared screen, and a line that is not ours. Images keep names in Latin-1.
-const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\r\x7f\nerror: forged";
-/// The same in a string of a scene, with another direction of writing.
+/// A title, a cleared screen, another direction of writing, and a line that is not ours.
+const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\r\x7f\nerror: forged";
+/// The same in a string of a scene, which ends on its line.
 const HOSTILE_STRING: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\x7f";
 
 /// Runs a command in the scene's folder, and fails where a terminal would obey what it prints; `@` in a
@@ -35,13 +35,13 @@ fn place() -> Workplace {
 #[test]
 fn names_of_files_are_shown_and_not_obeyed() {
     let place = place();
-    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\r\u{7f}\nerror: forged";
+    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}\nerror: forged";
     run(
         &place,
         "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film",
     )
     .expect(0)
-    .says(&format!("wrote {shown}.exr and {shown}.film"));
+    .says(&format!("wrote {shown}.exr, {shown}.png and {shown}.film"));
     run(&place, "film info @.film")
         .expect(0)
         .prints(&format!("scene     {shown}.pbrt"));

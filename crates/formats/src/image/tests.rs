@@ -342,3 +342,9 @@ fn no_memory_is_taken_for_tiles_that_the_file_has_no_bytes_for() {
         "broken image: it is too short for 4 × 67108864 pixels"
     );
 }
+
+#[test]
+fn texts_beyond_latin_1_are_written_as_utf_8() {
+    assert_eq!(exr::text("µ").as_slice(), [0xb5]);
+    assert_eq!(exr::text("部屋.pbrt").as_slice(), "部屋.pbrt".as_bytes());
+}

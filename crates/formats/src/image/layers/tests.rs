@@ -74,7 +74,7 @@ fn what_is_not_changed_is_written_as_it_was() {
     layers
         .set_triples(["Noisy.R", "Noisy.G", "Noisy.B"], &ramp(0.5))
         .unwrap();
-    layers.set_text("bidir/denoiser", "none").unwrap();
+    layers.set_text("bidir/denoiser", "none");
     write_layers(&to, &layers).unwrap();
     let written = read_layers(&to).unwrap();
     assert_eq!(written, layers);
