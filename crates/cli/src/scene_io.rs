@@ -280,7 +280,7 @@ pub(crate) fn write_layers(
         for (names, data) in triples {
             layers.set_triples(*names, data)?;
         }
-        layers.set_text(attribute, value)?;
+        layers.set_text(attribute, value);
         formats::image::write_layers(path, layers)
     };
     write().map_err(|error| Failure::diagnostic(Exit::InputOutput, error))

@@ -2,9 +2,9 @@ use crate::common::{Ran, SCENE, Workplace};
 use formats::is_obeyed;
 use std::fs;
 
-/// A title, a cleared screen, and a line that is not ours. Images keep names in Latin-1.
-const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\r\x7f\nerror: forged";
-/// The same in a string of a scene, with another direction of writing.
+/// A title, a cleared screen, another direction of writing, and a line that is not ours.
+const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\r\x7f\nerror: forged";
+/// The same in a string of a scene, which ends on its line.
 const HOSTILE_STRING: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\x7f";
 
 /// Runs a command in the scene's folder, and fails where a terminal would obey what it prints; `@` in a
@@ -35,7 +35,7 @@ fn place() -> Workplace {
 #[test]
 fn names_of_files_are_shown_and_not_obeyed() {
     let place = place();
-    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\r\u{7f}\nerror: forged";
+    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}\nerror: forged";
     run(
         &place,
         "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film",
@@ -54,11 +54,11 @@ fn names_of_files_are_shown_and_not_obeyed() {
     run(&place, "render @.pbrt --checkpoint @.film")
         .expect(2)
         .says(shown);
-    run(&place, "render @.pbr")
+    run(&place, "render @x.pbrt")
         .expect(4)
         .says("hint: did you mean");
     run(&place, "render @.pbrt -o @.jpg --progress openjd")
-        .expect(4)
+        .expect(2)
         .prints("openjd_fail: cannot write");
     let info = run(&place, "info @.pbrt").expect(0);
     assert!(

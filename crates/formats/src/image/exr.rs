@@ -74,11 +74,11 @@ pub fn encode_exr(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     };
     for (name, value) in image.metadata {
         let value = match value {
-            MetadataValue::Text(value) => AttributeValue::Text(text(value)?),
+            MetadataValue::Text(value) => AttributeValue::Text(text(value)),
             MetadataValue::Float(value) => AttributeValue::F32(*value),
             MetadataValue::Integer(value) => AttributeValue::I32(*value),
         };
-        attributes.other.insert(text(name)?, value);
+        attributes.other.insert(text(name), value);
     }
     let layer = Layer::new(size, attributes, ENCODING, channels);
     let [width, height] = image.resolution;
@@ -102,9 +102,10 @@ pub(super) fn not_written(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("cannot write: {message}"))
 }
 
-pub(super) fn text(text: &str) -> Result<Text> {
-    Text::new_or_none(text)
-        .ok_or_else(|| not_written(format!("`{text}` cannot be written as text")))
+/// A text of the format, which are bytes: Latin-1 where that has all characters, as the crate reads it,
+/// and else UTF-8, as most programs do. No image is lost because of a name.
+pub(super) fn text(text: &str) -> Text {
+    Text::new_or_none(text).unwrap_or_else(|| Text::from_slice_unchecked(text.as_bytes()))
 }
 
 /// The channels of all layers, each of `pixels` numbers.
@@ -131,7 +132,7 @@ fn channels(layers: &[ExrLayer<'_>], pixels: usize) -> Result<AnyChannels<FlatSa
                 .step_by(stride)
                 .copied()
                 .collect();
-            channels.push(AnyChannel::new(text(&name)?, FlatSamples::F32(samples)));
+            channels.push(AnyChannel::new(text(&name), FlatSamples::F32(samples)));
         }
     }
     Ok(AnyChannels::sort(channels.into_iter().collect()))

@@ -66,7 +66,7 @@ impl Layers {
             let message = format!("the channel `{name}` does not have the size of the image");
             return Err(not_written(message));
         }
-        let channel = AnyChannel::new(text(name)?, FlatSamples::F32(data));
+        let channel = AnyChannel::new(text(name), FlatSamples::F32(data));
         let channels = &mut self.image.layer_data.channel_data;
         let mut list = std::mem::take(&mut channels.list);
         list.retain(|other| other.name != channel.name);
@@ -78,19 +78,16 @@ impl Layers {
     /// The text of an attribute that is none of the standard's own. None: it has none, or no text.
     pub fn text(&self, name: &str) -> Option<String> {
         let others = &self.image.layer_data.attributes.other;
-        match others.get(&text(name).ok()?)? {
+        match others.get(&text(name))? {
             AttributeValue::Text(text) => Some(text.to_string()),
             _ => None,
         }
     }
 
     /// Puts an attribute with a text in, in place of one that has its name.
-    ///
-    /// Errors: a name or a text that cannot be written.
-    pub fn set_text(&mut self, name: &str, value: &str) -> Result<()> {
+    pub fn set_text(&mut self, name: &str, value: &str) {
         let others = &mut self.image.layer_data.attributes.other;
-        others.insert(text(name)?, AttributeValue::Text(text(value)?));
-        Ok(())
+        others.insert(text(name), AttributeValue::Text(text(value)));
     }
 }
 

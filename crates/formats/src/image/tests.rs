@@ -340,3 +340,9 @@ fn no_memory_is_taken_for_tiles_that_the_file_has_no_bytes_for() {
     let error = decode(1 << 26).unwrap_err().to_string();
     assert_eq!(error, "an image of 4 × 67108864 pixels is too large");
 }
+
+#[test]
+fn texts_beyond_latin_1_are_written_as_utf_8() {
+    assert_eq!(exr::text("µ").as_slice(), [0xb5]);
+    assert_eq!(exr::text("部屋.pbrt").as_slice(), "部屋.pbrt".as_bytes());
+}

@@ -74,7 +74,7 @@ fn what_is_not_changed_is_written_as_it_was() {
     layers
         .set_triples(["Noisy.R", "Noisy.G", "Noisy.B"], &ramp(0.5))
         .unwrap();
-    layers.set_text("bidir/denoiser", "none").unwrap();
+    layers.set_text("bidir/denoiser", "none");
     write_layers(&to, &layers).unwrap();
     let written = read_layers(&to).unwrap();
     assert_eq!(written, layers);
@@ -106,15 +106,14 @@ fn numbers_of_16_bits_and_standard_attributes_are_kept() {
 }
 
 #[test]
-fn other_sizes_and_names_are_refused() {
+fn other_sizes_are_refused() {
     let mut layers = decode(&BYTES).unwrap();
     let error = layers
         .set_triples(["X", "Y", "Z"], &ramp(1.0)[1..])
         .unwrap_err();
     let expected = "cannot write: the channel `X` does not have the size of the image";
     assert_eq!(error.to_string(), expected);
-    assert!(layers.set_triples(["☃", "Y", "Z"], &ramp(1.0)).is_err());
-    assert!(layers.set_text("bidir/denoiser", "☃").is_err());
+    layers.set_text("bidir/denoiser", "☃");
     assert_eq!(layers.names().count(), 6);
 }
 
