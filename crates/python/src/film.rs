@@ -1,6 +1,7 @@
 //! Films: exact sums, and pictures made of them.
 
 use crate::error::{of_file, raise};
+use crate::wait::beside;
 use bidir::film::{LayerImage, PassSet, Picture};
 use formats::film::{FilmFile, FilmHeader, counts_by_name, decode, encode, metadata, read, write};
 use formats::image::{ExrImage, ExrLayer, Format, write_exr, write_png};
@@ -56,32 +57,33 @@ impl Film {
     /// Reads a film file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let file = py.detach(|| read(&path));
+        let file = beside(py, || read(&path));
         file.map(Self).map_err(|error| of_file(py, &error))
     }
 
     /// Reads the bytes of a film file.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
-        let file = py.detach(|| decode(data));
+        let file = beside(py, || decode(data));
         file.map(Self).map_err(|error| of_file(py, &error))
     }
 
     /// The bytes of a film file.
-    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let encoded = py.detach(|| encode(&self.0.header, &self.0.film));
-        PyBytes::new(py, &encoded)
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let encoded = beside(py, || encode(&self.0.header, &self.0.film));
+        let encoded = encoded.map_err(|error| of_file(py, &error))?;
+        Ok(PyBytes::new(py, &encoded))
     }
 
     /// Writes a film file.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let written = py.detach(|| write(&path, &self.0.header, &self.0.film));
+        let written = beside(py, || write(&path, &self.0.header, &self.0.film));
         written.map_err(|error| of_file(py, &error))
     }
 
     /// The film of both.
     fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let merged = py.detach(|| {
+        let merged = beside(py, || {
             let (a, b) = (&self.0, &other.0);
             if let Some(difference) = a.header.difference(&b.header) {
                 return Err(format!("films of different renders: {difference}"));
@@ -96,13 +98,13 @@ impl Film {
     /// Whether both have the same passes of the same render, bit for bit.
     fn equals(&self, py: Python<'_>, other: &Self) -> bool {
         let (a, b) = (&self.0, &other.0);
-        a.header.identity == b.header.identity && py.detach(|| a.film == b.film)
+        a.header.identity == b.header.identity && beside(py, || a.film == b.film)
     }
 
     /// The picture and the images beside it.
     fn develop<'py>(&self, py: Python<'py>) -> PyResult<Developed<'py>> {
         let film = &self.0.film;
-        let (picture, layers) = py.detach(|| (film.develop(), film.develop_layers()));
+        let (picture, layers) = beside(py, || (film.develop(), film.develop_layers()));
         let layers = layers.into_iter().map(|layer| {
             let data = bytes(py, &layer.data)?;
             Ok((layer.name, layer.channels.to_vec(), data))
@@ -119,11 +121,11 @@ impl Film {
     fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let film = &self.0.film;
         let written = match Format::of(&path) {
-            Some(Format::Exr) => py.detach(|| {
+            Some(Format::Exr) => beside(py, || {
                 let (picture, layers) = (film.develop(), film.develop_layers());
                 self.write_exr(&path, &picture, &layers)
             }),
-            Some(Format::Png) => py.detach(|| {
+            Some(Format::Png) => beside(py, || {
                 let picture = film.develop();
                 let size = [picture.width as u32, picture.height as u32];
                 write_png(&path, size, &picture.pixels)
@@ -186,7 +188,7 @@ impl Film {
     /// The relative error of the picture.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
-        py.detach(|| self.0.film.develop().relative_error())
+        beside(py, || self.0.film.develop().relative_error())
     }
 }
 

@@ -13,6 +13,7 @@ mod film;
 mod help;
 mod info;
 mod layers;
+mod means;
 mod progress;
 #[cfg(unix)]
 mod readme;
