@@ -9,7 +9,7 @@ use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::future::Future;
-use std::io;
+use std::io::{self, Write};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
@@ -53,8 +53,7 @@ pub(super) async fn serve(
             accepted = listener.accept() => match accepted {
                 Ok((stream, peer)) => match places.take(peer.ip()) {
                     Some(place) => drop(tokio::spawn(converse(stream, router.clone(), place))),
-                    // A socket that is new takes so little at once; else it is closed without a word.
-                    None => drop(stream.try_write(FULL)),
+                    None => turn_away(stream),
                 },
                 Err(_) => {
                     places.free_one();
@@ -66,11 +65,18 @@ pub(super) async fn serve(
     }
 }
 
+/// Says that there is no place. A new socket takes so little at once; else it is closed without a word.
+fn turn_away(stream: TcpStream) {
+    let _ = stream
+        .into_std()
+        .and_then(|mut stream| stream.write(FULL));
+}
+
 /// Answers the requests of a connection, until it has to leave.
 async fn converse(stream: TcpStream, router: axum::Router, place: Place) {
     // Without it a small answer may wait; it is no reason to give none.
     let _ = stream.set_nodelay(true);
-    let (place, leave) = (Arc::new(place), place.leave());
+    let (leave, place) = (place.leave(), Arc::new(place));
     let router = TowerToHyperService::new(router);
     let of_requests = Arc::clone(&place);
     let service = service_fn(move |request| {
