@@ -73,7 +73,8 @@ impl Error {
 
     /// The system refused this many bytes of memory for `what`.
     pub(crate) fn memory(what: &str, bytes: u64) -> Self {
-        let message = format!("{what} needs {bytes} bytes of memory, which the system does not have");
+        let message =
+            format!("{what} needs {bytes} bytes of memory, which the system does not have");
         Self::new(ErrorKind::Memory, message)
     }
 

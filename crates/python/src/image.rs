@@ -1,8 +1,8 @@
 //! Images as arrays: files, the screen, and metrics.
 
 use crate::error::{of_file, raise};
-use crate::wait::beside;
 use crate::film::bytes;
+use crate::wait::beside;
 use formats::image::{self, ExrImage, ExrLayer, Format, write_exr, write_png};
 use lab::image::{Pair, Pixels};
 use lab::metric::Metric;
@@ -33,7 +33,9 @@ pub(crate) fn encode_png<'py>(
     data: &[u8],
 ) -> PyResult<Bound<'py, PyBytes>> {
     let pixels = pixels(py, size, data)?;
-    let encoded = beside(py, || image::encode_png(size.map(|side| side as u32), &pixels.data));
+    let encoded = beside(py, || {
+        image::encode_png(size.map(|side| side as u32), &pixels.data)
+    });
     let encoded = encoded.map_err(|error| of_file(py, &error))?;
     Ok(PyBytes::new(py, &encoded))
 }
@@ -62,9 +64,9 @@ pub(crate) fn write_image(
             };
             write_exr(&path, &image)
         }),
-        Some(Format::Png) => {
-            beside(py, || write_png(&path, size.map(|side| side as u32), &pixels.data))
-        }
+        Some(Format::Png) => beside(py, || {
+            write_png(&path, size.map(|side| side as u32), &pixels.data)
+        }),
         _ => {
             let message = format!(
                 "cannot write `{}`: output images are .exr or .png",
@@ -82,7 +84,9 @@ pub(crate) fn read_image(
     py: Python<'_>,
     path: PathBuf,
 ) -> PyResult<([usize; 2], Bound<'_, PyBytes>)> {
-    let read = beside(py, || image::read(&path, None).map(|image| Pixels::from(&image)));
+    let read = beside(py, || {
+        image::read(&path, None).map(|image| Pixels::from(&image))
+    });
     let read = read.map_err(|error| of_file(py, &error))?;
     Ok((read.size, bytes(py, read.data.as_flattened())?))
 }
@@ -122,7 +126,9 @@ pub(crate) fn metric(
 ) -> PyResult<f64> {
     let metric = named(py, name)?;
     let (a, b) = (pixels(py, size, a)?, pixels(py, size, b)?);
-    Ok(beside(py, || Pair::new(&a, &b).map_or(f64::NAN, |pair| metric.value(&pair))))
+    Ok(beside(py, || {
+        Pair::new(&a, &b).map_or(f64::NAN, |pair| metric.value(&pair))
+    }))
 }
 
 /// The error of every pixel.

@@ -4,9 +4,9 @@
 //! started before the pool is made of those that were; without any, the calling thread does all work.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
-use std::{fmt, io};
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
+use std::{fmt, io};
 
 /// How many threads compute: as many as were asked for, within what a processor has a use for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +127,9 @@ impl Recruits {
         }
         let mut waiting = waiting.into_iter();
         let mut hand_over = |work| match waiting.next() {
-            Some(sender) => sender.send(work).map_err(|_| io::ErrorKind::BrokenPipe.into()),
+            Some(sender) => sender
+                .send(work)
+                .map_err(|_| io::ErrorKind::BrokenPipe.into()),
             None => Err(io::ErrorKind::WouldBlock.into()),
         };
         (build(&mut hand_over, count).ok(), shortage)

@@ -28,8 +28,8 @@ mod settings;
 
 pub use develop::{LayerImage, Picture};
 pub use filter::{Filter, FilterKind};
-pub use memory::filled;
 pub use layers::{Aov, AovKind, Channels, Layers, StrategyImages};
+pub use memory::filled;
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
 pub use sensor::Sensor;

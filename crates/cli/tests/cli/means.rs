@@ -112,7 +112,7 @@ fn memory_that_is_refused_is_told_in_bytes() {
     let large = place
         .within(400_000, "render room.pbrt --size 4000x4000 -o a.exr")
         .expect(3);
-    let bytes = 4000 * 4000 * 9 * 16;
+    let bytes = 4000_u64 * 4000 * 9 * 16;
     large.says(&format!(
         "a film of 4000 x 4000 pixels is too large: the system does not have the {bytes} bytes of memory \
          that it needs"

@@ -67,9 +67,7 @@ pub(super) async fn serve(
 
 /// Says that there is no place. A new socket takes so little at once; else it is closed without a word.
 fn turn_away(stream: TcpStream) {
-    let _ = stream
-        .into_std()
-        .and_then(|mut stream| stream.write(FULL));
+    let _ = stream.into_std().and_then(|mut stream| stream.write(FULL));
 }
 
 /// Answers the requests of a connection, until it has to leave.

@@ -2,7 +2,7 @@
 //!
 //! A connection is idle while its peer has sent no whole request, or none since the last answer. Where
 //! a new one finds no place, the one that was idle for longest makes room, of the peers that have the
-//! most. So connections that only wait keep nobody out, and one address does not take the places of
+//! most. So connections that only wait do not keep others out, and one address does not take the places of
 //! others.
 
 use std::cmp::Reverse;
@@ -188,17 +188,20 @@ mod tests {
     }
 
     #[test]
-    fn who_has_most_makes_room_for_others() {
+    fn the_address_with_most_makes_room() {
         let places = Arc::new(Places::default());
         let few = fill(&places, B, 2);
-        let many = [fill(&places, A, SHARE), fill(&places, C, PLACES - SHARE - 2)];
+        let many = [
+            fill(&places, A, SHARE),
+            fill(&places, C, PLACES - SHARE - 2),
+        ];
         assert!(places.take(B).is_some_and(|place| has(&place)));
         assert!(few.iter().all(has) && many[1].iter().all(has));
         assert!(!has(&many[0][0]) && many[0][1..].iter().all(has));
     }
 
     #[test]
-    fn nobody_who_is_busy_has_to_leave() {
+    fn busy_connections_stay() {
         let places = Arc::new(Places::default());
         let held = fill(&places, A, SHARE);
         held.iter().for_each(|place| place.set_answering(true));
@@ -211,7 +214,7 @@ mod tests {
     }
 
     #[tokio::test(flavor = "current_thread")]
-    async fn who_has_to_leave_is_notified() {
+    async fn a_connection_that_has_to_leave_is_notified() {
         let places = Arc::new(Places::default());
         let place = places.take(A).unwrap();
         places.free_one();
