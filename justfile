@@ -110,6 +110,12 @@ mutants *FLAGS:
 fuzz SECONDS *TARGETS:
     tools/fuzz {{SECONDS}} {{TARGETS}}
 
-# Fresh random numbers, long property tests and mutants, with a summary; or some stages of it.
+# Kills the program, lets system calls fail, damages its inputs and strains it; or some parts of that.
+attack *FLAGS:
+    cargo build --release
+    cargo build --release --workspace --example mutations
+    python3 tools/attack {{FLAGS}}
+
+# Fresh random numbers, long property tests, attacks and mutants, with a summary; or some stages of it.
 nightly SEED="" *STAGES:
     tools/nightly "{{SEED}}" {{STAGES}}

@@ -73,6 +73,7 @@ pub fn image(bytes: &[u8]) {
     match format {
         b'p' => tell(image::decode(Format::Png, file, None)),
         b'j' => tell(image::decode(Format::Jpeg, file, None)),
+        b'w' => tell(image::decode(Format::WebP, file, None)),
         b't' => tell(image::decode(Format::Tga, file, None)),
         b'h' => tell(image::decode(Format::Hdr, file, None)),
         b'f' => tell(image::decode(Format::Pfm, file, None)),

@@ -164,7 +164,7 @@ class Experiment:
 
         def hear(kind: str, text: str, done: int, of: int) -> None:
             if kind == "warning":
-                warnings.warn(text, stacklevel=3)
+                warnings.warn(_bidir.printable(text), stacklevel=3)
             elif progress is not None:
                 progress(f"{kind} {text}".strip(), done, of)
 

@@ -58,7 +58,7 @@ class Film:
     def save(self, path: StrPath) -> None:
         """Write a film file; after an error, an older file is unchanged.
 
-        Errors: :class:`bidir.FileError`.
+        Errors: :class:`bidir.FileError`, also if it would replace a file of the scene.
         """
         self._native.save(os.fspath(path))
 

@@ -104,7 +104,8 @@ class Image:
     def save(self, path: StrPath) -> None:
         """Write NAME.exr, linear with layers and attributes, or NAME.png for the screen.
 
-        Errors: :class:`bidir.FileError`; :class:`bidir.SettingsError` for other names.
+        Errors: :class:`bidir.FileError`, also if it would replace a file of the scene;
+        :class:`bidir.SettingsError` for other names.
         """
         self._film._native.write_image(os.fspath(path))
 

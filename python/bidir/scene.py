@@ -127,7 +127,7 @@ def _unpack(name: str, source: Mapping[str, Any], digest: str) -> Scene:
 def _told(scene: Scene) -> Scene:
     """Tell the warnings of a scene to who asked for it."""
     for text in scene.warnings:
-        warnings.warn(text, SceneWarning, stacklevel=3)
+        warnings.warn(_bidir.printable(text), SceneWarning, stacklevel=3)
     return scene
 
 

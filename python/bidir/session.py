@@ -104,8 +104,10 @@ class Wanted:
         """
         if self.seed is not None and not 0 <= self.seed < 1 << 64:
             raise SettingsError(f"seed: {self.seed} is not from 0 to 2**64 - 1")
-        if not 0 <= self.strategy_layers <= 32:
-            raise SettingsError(f"strategy_layers: {self.strategy_layers} is not from 0 to 32")
+        most = _bidir.MOST_STRATEGY_VERTICES
+        if self.strategy_layers != 0 and not 2 <= self.strategy_layers <= most:
+            message = f"{self.strategy_layers} is neither 0 nor from 2 to {most}"
+            raise SettingsError(f"strategy_layers: {message}")
         layers = LAYERS if "all" in self.layers else self.layers
         return {
             "settings": self.integrator.flags() if self.integrator else {},
@@ -155,7 +157,7 @@ class Session:
             seed: Random seed; None is the scene's, or 0.
             layers: Extra layers: names of :data:`bidir.LAYERS`, or ``all``.
             light_groups: Keep one layer per light group.
-            strategy_layers: Keep one layer per strategy, for paths of up to this many vertices.
+            strategy_layers: Keep one layer per strategy, for paths of up to this many vertices, 2 to 16.
             threads: Number of threads, 0 is one per processor; does not change the image. More than 4 per
                 processor are not used, with a `RuntimeWarning`; more than 1024 are an error. Where the system
                 starts fewer, the session warns and goes on with those, or with the calling thread alone.

@@ -53,6 +53,32 @@ def test_films_of_other_renders_are_refused(cornell: bidir.Scene, films: list[bi
         bidir.Film.merge(films[0], session.film())
 
 
+def test_outputs_replace_no_file_of_the_scene(tmp_path: Path) -> None:
+    texture, scene_file, film_file = (tmp_path / name for name in ("wood.png", "a.pbrt", "a.film"))
+    bidir.write_image(texture, np.full((2, 2, 3), 0.5, np.float32))
+    scene_file.write_text(
+        'Film "rgb" "integer xresolution" 4 "integer yresolution" 4 WorldBegin LightSource "infinite" '
+        'Texture "t" "spectrum" "imagemap" "string filename" "wood.png" '
+        'Material "diffuse" "texture reflectance" "t" Shape "sphere"'
+    )
+    before = texture.read_bytes()
+    image = bidir.render(scene_file, bidir.Path(), spp=1)
+    with pytest.raises(bidir.FileError, match=r"wood\.png`: it would replace the input `.*wood\.png`"):
+        image.save(texture)
+    image.film.save(film_file)
+    loaded = bidir.Film.load(film_file)
+    session = bidir.Session(bidir.load(scene_file), bidir.Path())
+    session.start_at(1)
+    session.step()
+    merged = bidir.Film.merge(loaded, session.film())
+    with pytest.raises(bidir.FileError, match="would replace the input"):
+        merged.save(scene_file)
+    merged.save(film_file)
+    assert bidir.Film.load(film_file) == merged
+    assert texture.read_bytes() == before
+    image.save(tmp_path / "wood.exr")
+
+
 def test_films_are_kept_in_files(films: list[bidir.Film], tmp_path: Path) -> None:
     path = tmp_path / "a.film"
     films[0].save(path)

@@ -65,6 +65,13 @@ def test_strategies_add_up_to_the_picture(cornell: bidir.Scene) -> None:
     np.testing.assert_allclose(total, image.pixels, atol=1e-4)
 
 
+@pytest.mark.parametrize("vertices", [-1, 1, 17, 32])
+def test_strategy_layers_have_a_range(cornell: bidir.Scene, vertices: int) -> None:
+    expected = f"strategy_layers: {vertices} is neither 0 nor from 2 to 16"
+    with pytest.raises(bidir.SettingsError, match=expected):
+        bidir.render(cornell, bidir.Bdpt(), spp=1, strategy_layers=vertices)
+
+
 @pytest.mark.parametrize(
     "integrator",
     [bidir.Path(), bidir.Light(), bidir.Bdpt(), bidir.Lvc(), bidir.Auto()],

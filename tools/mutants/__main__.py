@@ -6,8 +6,9 @@
     python3 tools/mutants --list          names, files and tests
     python3 tools/mutants --check         only that every fault still applies to the sources
 
-Works on a copy of the tree in target/mutants, whose build is kept between runs. Standard library
-only.
+Nearly all faults share one build (schemata.py). A fault that cannot be part of it, or that survives
+there, gets a build of its own. Works on copies of the tree in target/mutants, whose builds are kept
+between runs. Standard library only.
 """
 
 import argparse
@@ -20,10 +21,13 @@ import time
 
 sys.dont_write_bytecode = True
 
+import schemata
 from mutations import MUTATIONS
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 WORK = os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target")), "mutants")
+# The tree with all faults, and the tree that has one at a time.
+ALL = os.path.join(WORK, "all")
 TREE = os.path.join(WORK, "tree")
 TIMEOUT = 900
 
@@ -59,40 +63,44 @@ def lock_tree():
     return lock
 
 
-def copy_tree():
-    """Brings the copy up to date; files that are the same keep their time, and so their build."""
-    wanted = set(sources())
+def copy_tree(tree, changed=None):
+    """Brings a copy up to date, `changed` (file -> bytes) in place of the sources where given.
+
+    Files that are the same keep their time, and so their build.
+    """
+    wanted, changed = set(sources()), changed or {}
     for file in wanted:
-        data, target = read(os.path.join(ROOT, file)), os.path.join(TREE, file)
+        data, target = changed.get(file) or read(os.path.join(ROOT, file)), os.path.join(tree, file)
         if not os.path.isfile(target) or read(target) != data:
             write(target, data)
-    for folder, _, names in os.walk(TREE):
+    for folder, _, names in os.walk(tree):
         for name in names:
             path = os.path.join(folder, name)
-            if os.path.relpath(path, TREE) not in wanted:
+            if os.path.relpath(path, tree) not in wanted:
                 os.remove(path)
 
 
-def cargo(test, *arguments):
-    """Runs `cargo test` on the copy: (exit code or None for a timeout, output)."""
+def cargo(tree, test, *arguments, number=0, timeout=TIMEOUT):
+    """Runs `cargo test` on a copy: (exit code or None for a timeout, output)."""
     package, target, filter_ = test
     command = ["cargo", "test", "--release", "--quiet", "-p", package]
     command += target.split() + list(arguments)
     if "--no-run" not in arguments:
         command += ["--", filter_] if filter_ else []
     environment = dict(os.environ, CARGO_TARGET_DIR=os.path.join(WORK, "build"))
+    environment[schemata.VARIABLE] = str(number)
     # A shrunk counterexample of a mutant is no regression of the project.
     environment["PROPTEST_DISABLE_FAILURE_PERSISTENCE"] = "1"
-    # One file differs from mutant to mutant.
-    environment["CARGO_INCREMENTAL"] = "1"
+    # From one mutant of its own to the next one file differs.
+    environment["CARGO_INCREMENTAL"] = "1" if tree == TREE else "0"
     try:
         run = subprocess.run(
             command,
-            cwd=TREE,
+            cwd=tree,
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            timeout=TIMEOUT,
+            timeout=timeout,
             check=False,
         )
     except subprocess.TimeoutExpired:
@@ -117,25 +125,83 @@ def stale(mutation):
     return "changes nothing" if old == new else None
 
 
-def check_baseline(test):
-    """Why a test says nothing about mutants; None where it passes on the tree as it is."""
-    code, output = cargo(test)
-    if code != 0:
-        return "fails without any mutant:\n" + output[-3000:]
-    return None if passed(output) > 0 else "has no tests"
+def baselines(tree, tests):
+    """The seconds of each test on a tree whose faults are off; ends the program where one fails."""
+    seconds = {}
+    for test in sorted(tests):
+        begin = time.monotonic()
+        code, output = cargo(tree, test)
+        if code != 0:
+            sys.exit("%s: fails without any mutant:\n%s" % (describe(test), output[-3000:]))
+        if passed(output) == 0:
+            sys.exit("%s: has no tests" % describe(test))
+        seconds[test] = time.monotonic() - begin
+        print("baseline %-70s %6.0f s" % (describe(test), seconds[test]), flush=True)
+    return seconds
 
 
-def run_mutant(mutation):
+def number_of(mutation):
+    """The number of a fault in the shared build; 0 is none."""
+    return MUTATIONS.index(mutation) + 1
+
+
+def all_faults(mutations):
+    """The sources that hold faults, changed (file -> bytes), and the faults that they hold."""
+    changed, held = {}, []
+    for file in sorted({mutation[1] for mutation in mutations}):
+        faults = [(number_of(m), m[2], m[3]) for m in mutations if m[1] == file]
+        text, taken = schemata.with_faults(read(os.path.join(ROOT, file)).decode(), faults)
+        if taken:
+            changed[file] = text.encode()
+            held += [m for m in mutations if number_of(m) in taken]
+    for crate in {os.path.join(*file.split("/")[:2]) for file in changed}:
+        root = os.path.join(crate, "src", "lib.rs")
+        whole = changed.get(root) or read(os.path.join(ROOT, root))
+        changed[root] = whole + schemata.CHOICE.encode()
+    return changed, held
+
+
+def build_all(mutations):
+    """Builds the tree that has the faults to choose from; returns those that it has.
+
+    A file whose changes do not compile is left as it is.
+    """
+    while mutations:
+        changed, mutations = all_faults(mutations)
+        copy_tree(ALL, changed)
+        wrong, output = set(), ""
+        for package, target, _ in sorted({(m[4][0], m[4][1], "") for m in mutations}):
+            build = (package, target, "")
+            code, output = cargo(ALL, build, "--no-run", "--message-format=short", timeout=None)
+            if code != 0:
+                wrong |= set(re.findall(r"^(crates/\S+\.rs):\d+:\d+: error", output, re.MULTILINE))
+                break
+        else:
+            return mutations
+        rest = [m for m in mutations if m[1] not in wrong]
+        if len(rest) == len(mutations):
+            sys.exit("the faults do not compile:\n" + output[-3000:])
+        mutations = rest
+    return []
+
+
+def run_in_all(mutation, seconds):
+    """Whether a fault of the shared build makes its test fail, or run ten times as long."""
+    timeout = 60 + 10 * seconds[mutation[4]]
+    return cargo(ALL, mutation[4], number=number_of(mutation), timeout=timeout)[0] != 0
+
+
+def run_alone(mutation):
     """killed, SURVIVED or BROKEN, with the reason of the latter."""
     _, file, old, new, test = mutation
     path = os.path.join(TREE, file)
     original = read(path)
     write(path, original.decode().replace(old, new).encode())
     try:
-        code, output = cargo(test, "--no-run")
+        code, output = cargo(TREE, test, "--no-run")
         if code != 0:
             return "BROKEN", "does not compile:\n" + output[-3000:]
-        code, output = cargo(test)
+        code, output = cargo(TREE, test)
     finally:
         write(path, original)
     return ("SURVIVED", "") if code == 0 else ("killed", "")
@@ -179,26 +245,43 @@ def main():
         print("%d mutants apply" % len(mutations))
         return
     lock = lock_tree()
-    copy_tree()
-    for test in sorted({m[4] for m in mutations}):
-        begin = time.monotonic()
-        problem = check_baseline(test)
-        if problem:
-            sys.exit("%s: %s" % (describe(test), problem))
-        print("baseline %-70s %6.0f s" % (describe(test), time.monotonic() - begin), flush=True)
-    alive = 0
-    for mutation in mutations:
-        begin = time.monotonic()
-        verdict, reason = run_mutant(mutation)
-        alive += verdict != "killed"
-        seconds = time.monotonic() - begin
-        print("%-8s %-60s %-44s %5.0f s" % (verdict, mutation[0], describe(mutation[4]), seconds))
-        if reason:
-            print(reason)
-        sys.stdout.flush()
+    alive = run(mutations)
     lock.close()
     print("%d of %d mutants killed" % (len(mutations) - alive, len(mutations)))
     sys.exit(1 if alive else 0)
+
+
+def report(verdict, mutation, begin):
+    seconds = time.monotonic() - begin
+    line = (verdict, mutation[0], describe(mutation[4]), seconds)
+    print("%-8s %-60s %-44s %5.0f s" % line, flush=True)
+
+
+def run(mutations):
+    """Applies faults, prints a line for each, and returns how many survived."""
+    begin = time.monotonic()
+    together = build_all(mutations)
+    print("%d faults in one build, %.0f s" % (len(together), time.monotonic() - begin), flush=True)
+    seconds = baselines(ALL, {m[4] for m in together})
+    alone = [m for m in mutations if m not in together]
+    for mutation in together:
+        begin = time.monotonic()
+        if run_in_all(mutation, seconds):
+            report("killed", mutation, begin)
+        else:
+            alone.append(mutation)
+    if alone:
+        copy_tree(TREE)
+        baselines(TREE, {m[4] for m in alone})
+    alive = 0
+    for mutation in alone:
+        begin = time.monotonic()
+        verdict, reason = run_alone(mutation)
+        alive += verdict != "killed"
+        report(verdict, mutation, begin)
+        if reason:
+            print(reason, flush=True)
+    return alive
 
 
 if __name__ == "__main__":

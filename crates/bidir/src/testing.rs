@@ -34,11 +34,30 @@ fn seed() -> u64 {
 
 /// `n` independent samples; those of different cases have nothing in common.
 pub(crate) fn samples(case: &str, n: u64) -> impl Iterator<Item = SampleStream> {
-    // FNV-1a, so that a case keeps its numbers when others come and go.
-    let hash = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    let stream = case.bytes().fold(0xcbf2_9ce4_8422_2325, hash);
+    let stream = stream_of(case);
     let sampler = Sampler::new(SamplerKind::Independent, seed());
     (0..n).map(move |index| sampler.stream(StreamDomain::Camera, stream, index))
+}
+
+/// `n` independent means of `value`, each over `points` samples that a sequence spreads evenly.
+pub(crate) fn means(
+    case: &str,
+    [n, points]: [u64; 2],
+    value: impl Fn(&SampleStream) -> f64,
+) -> impl Iterator<Item = f64> {
+    let stream = stream_of(case);
+    let sampler = Sampler::new(SamplerKind::Sobol, seed());
+    (0..n).map(move |set| {
+        let sample = |index| sampler.stream(StreamDomain::Camera, stream.wrapping_add(set), index);
+        let values = (0..points).map(|index| value(&sample(index)));
+        values.sum::<f64>() / points as f64
+    })
+}
+
+/// A number of `case`, by FNV-1a, so that a case keeps its numbers when others come and go.
+fn stream_of(case: &str) -> u64 {
+    let hash = |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    case.bytes().fold(0xcbf2_9ce4_8422_2325, hash)
 }
 
 /// Checks `property` for many values of `strategy`, the same ones for the same seed.
@@ -135,6 +154,17 @@ impl Battery {
 
     /// Adds a test of the mean of `values` against `expected`.
     pub(crate) fn mean(&mut self, case: &str, values: impl Iterator<Item = f64>, expected: f64) {
+        self.mean_within(case, values, expected, 0.0);
+    }
+
+    /// Adds a test that the mean of `values` is within the relative error `tolerance` of `expected`.
+    pub(crate) fn mean_within(
+        &mut self,
+        case: &str,
+        values: impl Iterator<Item = f64>,
+        expected: f64,
+        tolerance: f64,
+    ) {
         let (mut n, mut sum, mut sum_of_squares) = (0.0, 0.0, 0.0);
         for value in values {
             n += 1.0;
@@ -145,7 +175,10 @@ impl Battery {
         let variance: f64 = (sum_of_squares / n - offset * offset) / n;
         // Single precision is no statistical error: allow for it.
         let deviation = (variance.max(0.0) + (1e-5 * expected) * (1e-5 * expected)).sqrt();
-        let p = |offset: f64| libm::erfc(offset.abs() / deviation / std::f64::consts::SQRT_2);
+        let p = |offset: f64| {
+            let beyond = (offset.abs() - tolerance * expected.abs()).max(0.0);
+            libm::erfc(beyond / deviation / std::f64::consts::SQRT_2)
+        };
         let p_biased = p(offset - BIAS * expected).max(p(offset + BIAS * expected));
         self.cases.push(Case {
             name: case.to_owned(),

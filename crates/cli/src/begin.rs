@@ -3,10 +3,11 @@
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
 use crate::exit::{Exit, Failure};
+use crate::film_header;
 use crate::progress::tell_openjd;
-use crate::scene_io::LoadedScene;
+use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
-use bidir::driver::{Resources, Session, SessionError, Settings};
+use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
@@ -16,6 +17,32 @@ use std::time::{Duration, Instant};
 const GAP: Duration = Duration::from_millis(100);
 /// After so many gaps without a session it is told why.
 const LONG: u32 = 20;
+/// So long after the end of the time budget training may still end.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// How a render is trained.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Training {
+    /// As long as it takes.
+    Whole,
+    /// The same, but cut short where it does not end by then.
+    By(Instant),
+    /// Cut short from the first, as it was when the render began that is gone on with.
+    Short,
+}
+
+impl Training {
+    /// That of a render that begins now with so much time, and goes on with the film of `earlier`: training
+    /// is then what it was.
+    pub(crate) fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
+        let end = time.and_then(|time| Instant::now().checked_add(time.saturating_add(GRACE)));
+        match (earlier, end) {
+            (Some(earlier), _) if film_header::is_short(earlier) => Self::Short,
+            (None, Some(end)) => Self::By(end),
+            (Some(_), _) | (None, None) => Self::Whole,
+        }
+    }
+}
 
 /// What a render begins with.
 pub(crate) enum Began {
@@ -32,12 +59,20 @@ pub(crate) fn session(
     loaded: &LoadedScene,
     settings: &Settings,
     signals: &Signals,
-    display: Display,
+    (training, display): (Training, Display),
     console: Console,
 ) -> Result<Began, Failure> {
     let (scene, settings) = (Arc::clone(&loaded.scene), settings.clone());
     let resources = resources(args);
-    let train = move || Session::new(scene, settings, &resources).map(Box::new);
+    let train = move || {
+        let is_late = || matches!(training, Training::By(end) if Instant::now() >= end);
+        let effort = match training {
+            Training::Whole => Effort::Whole,
+            Training::By(_) => Effort::Until(&is_late),
+            Training::Short => Effort::Short,
+        };
+        Session::with_effort(scene, settings, &resources, effort).map(Box::new)
+    };
     let (sender, receiver) = mpsc::channel();
     let in_thread = train.clone();
     // What nobody waits for any more ends with the process.
@@ -115,4 +150,33 @@ fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Fai
     let hint =
         "make it smaller with --size, render a part of it with --crop, or ask for fewer layers";
     Failure::new(Exit::Scene, message).with_hint(hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_goes_on_trains_as_before() {
+        let header = |settings: &[(&str, &str)]| {
+            let settings = settings.iter();
+            let settings = settings.map(|&(name, value)| (name.to_owned(), value.to_owned()));
+            FilmHeader::new("bidir", "room.pbrt".to_owned(), settings.collect())
+        };
+        let (whole, short) = (
+            header(&[("trained-mean", "1e0")]),
+            header(&[("trained-mean", "1e0"), ("training", "short")]),
+        );
+        for time in [None, Some(Duration::from_secs(2)), Some(Duration::MAX)] {
+            assert!(matches!(Training::new(time, Some(&whole)), Training::Whole));
+            assert!(matches!(Training::new(time, Some(&short)), Training::Short));
+        }
+        assert!(matches!(Training::new(None, None), Training::Whole));
+        assert!(matches!(
+            Training::new(Some(Duration::MAX), None),
+            Training::Whole
+        ));
+        let by = Training::new(Some(Duration::from_secs(2)), None);
+        assert!(matches!(by, Training::By(end) if end > Instant::now() + Duration::from_secs(2)));
+    }
 }

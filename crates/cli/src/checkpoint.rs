@@ -8,6 +8,7 @@ use crate::lock::{self, FilmLock};
 use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
 use bidir::driver::Session;
 use bidir::film::{Film, PassSet};
+use std::ffi::OsStr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -59,6 +60,16 @@ impl Checkpoint {
         }))
     }
 
+    /// True where there are passes from before.
+    pub(crate) fn is_resumed(&self) -> bool {
+        self.film.is_some()
+    }
+
+    /// The header of the film that is gone on from. None: there is none.
+    pub(crate) fn earlier(&self) -> Option<&FilmHeader> {
+        self.film.as_ref().map(|file| &file.header)
+    }
+
     /// Checks before training whether the film that is gone on from, if any, can be that of the
     /// render that `header` describes, and has none but the passes `asked`.
     pub(crate) fn check(&self, header: &FilmHeader, asked: Range<u64>) -> Result<(), Failure> {
@@ -100,6 +111,25 @@ impl Checkpoint {
         self.is_whole = true;
         Ok(())
     }
+}
+
+/// True where `folder`, or one below it, has finished passes: in a film file, or as a record of an
+/// experiment, whose first line says only whose the others are.
+pub(crate) fn has_passes(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.map(|entry| entry.path()).any(|path| {
+        if path.is_dir() && !path.is_symlink() {
+            return has_passes(&path);
+        }
+        match path.extension().and_then(OsStr::to_str) {
+            Some("film") => true,
+            Some("ndjson") => std::fs::read(&path).is_ok_and(|text| {
+                let ends = text.iter().filter(|byte| **byte == b'\n');
+                ends.count() > 1
+            }),
+            _ => false,
+        }
+    })
 }
 
 /// Refuses to replace what is there unasked, and what is no film file at all.

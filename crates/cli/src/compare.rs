@@ -7,6 +7,7 @@ mod report;
 use crate::args::{CompareArgs, MetricArgs};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
+use crate::output;
 use crate::scene_io::{self, IMAGES, MetadataValue};
 use independence::Independence;
 use lab::image::{Pair, Pixels, resample};
@@ -20,13 +21,17 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
     let (images, reference) = files(args)?;
     if let Some(path) = &args.metrics.error_map {
         scene_io::image_format(path, IMAGES)?;
+        let reference = reference_files(reference);
+        let inputs = images.iter().chain(&reference);
+        scene_io::check_apart(inputs, &[("--error-map", path)])?;
+        output::check_file("--error-map", path)?;
     }
     let comparisons = compare_all(args, images, reference, console)?;
     match &comparisons[..] {
         [one] if args.json => print_json(one)?,
         [one] => print(&one.text())?,
         several => {
-            let replicates = Replicates::of(several)?;
+            let replicates = Replicates::of(several, images)?;
             if args.json {
                 print_json(&replicates)?
             } else {
@@ -59,6 +64,14 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
     Ok((images, reference))
 }
 
+/// The files of a reference, which may be a folder.
+fn reference_files(reference: &Path) -> Vec<PathBuf> {
+    if reference.is_dir() {
+        return lab::reference::files(reference);
+    }
+    vec![reference.to_owned()]
+}
+
 /// Compares every image, and warns of those that share their noise.
 fn compare_all(
     args: &CompareArgs,
@@ -66,7 +79,7 @@ fn compare_all(
     name: &Path,
     console: Console,
 ) -> Result<Vec<Comparison>, Failure> {
-    let reference = Noisy::reference(name)?;
+    let reference = Noisy::reference(name, console)?;
     let mut independence = Independence::default();
     let comparisons = images
         .iter()

@@ -1,10 +1,15 @@
-//! Talk on stderr and data on stdout.
+//! Talk on stderr and data on stdout: the only place that writes to either.
+//!
+//! Names and texts come from files of others. What is written here has no character that a terminal
+//! obeys, but for line feeds and tabs of data and the colours of this module: where foreign text is a
+//! part of several lines, it is made [`printable`] before it becomes that.
 
 use crate::args::{ColorArgs, TalkArgs};
 use crate::exit::{Exit, Failure};
+use formats::{is_obeyed, printable, printable_lines};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt;
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Whether text may be coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +65,7 @@ impl Console {
     pub(crate) fn new(args: ColorArgs) -> Self {
         let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-        let is_terminal = std::io::stderr().is_terminal() && !is_dumb;
+        let is_terminal = io::stderr().is_terminal() && !is_dumb;
         let color = if args.no_color || is_set("NO_COLOR") || is_dumb {
             Color::Off
         } else if is_set("FORCE_COLOR") || is_terminal {
@@ -91,24 +96,27 @@ impl Console {
 
     /// Tells something odd that does not stop the command.
     pub(crate) fn warning(self, text: impl fmt::Display) {
-        say(format_args!("{}: {text}", self.paint("warning", "1;33")));
+        self.label("warning", "1;33", text);
     }
 
     /// Tells why the command stops.
     pub(crate) fn failure(self, failure: &Failure) {
         if let Some(diagnostic) = failure.as_diagnostic() {
-            say(format_args!(
-                "{}: {}",
-                self.paint("error", "1;31"),
-                self.report(diagnostic)
-            ));
+            let label = self.paint("error", "1;31");
+            write_line(&format!("{label}: {}", self.report(diagnostic)));
         }
         if let Some((message, hint)) = failure.message() {
-            say(format_args!("{}: {message}", self.paint("error", "1;31")));
+            self.label("error", "1;31", message);
             if let Some(hint) = hint {
-                say(format_args!("{}: {hint}", self.paint("hint", "1;36")));
+                self.label("hint", "1;36", hint);
             }
         }
+    }
+
+    /// Writes a line with a coloured word before it.
+    fn label(self, word: &str, style: &str, text: impl fmt::Display) {
+        let (label, text) = (self.paint(word, style), text.to_string());
+        write_line(&format!("{label}: {}", printable(&text)));
     }
 
     fn paint(self, word: &str, style: &str) -> String {
@@ -118,7 +126,7 @@ impl Console {
         }
     }
 
-    /// The message of a diagnostic with the lines it is about.
+    /// The message of a diagnostic with the lines it is about, which are printable.
     fn report(self, diagnostic: &dyn miette::Diagnostic) -> String {
         let theme = match self.color {
             Color::On => GraphicalTheme::unicode(),
@@ -137,18 +145,35 @@ impl Console {
     }
 }
 
-/// Writes a line to stderr. Where nobody listens there is nobody to tell.
+/// Writes a line to stderr.
 pub(crate) fn say(line: impl fmt::Display) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
+    write_line(&printable(&line.to_string()));
+}
+
+/// Writes a printable line to stderr. Where nobody listens there is nobody to tell.
+fn write_line(line: &str) {
+    let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
 /// Writes data to stdout; a reader that went away has read enough.
 pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
-    let mut stdout = std::io::stdout().lock();
-    match stdout
-        .write_all(text.as_bytes())
-        .and_then(|()| stdout.flush())
-    {
+    let mut stdout = io::stdout().lock();
+    printed(stdout.write_all(printable_lines(text).as_bytes()))
+}
+
+/// Writes a help text to stdout, or what is wrong with the command line to stderr.
+pub(crate) fn print_usage(error: &clap::Error) -> Result<Exit, Failure> {
+    let written = error.print();
+    match error.exit_code() {
+        0 => printed(written),
+        // As for any other line of stderr.
+        _ => Ok(Exit::Usage),
+    }
+}
+
+/// What it means that stdout was `written`.
+fn printed(written: io::Result<()>) -> Result<Exit, Failure> {
+    match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
             Exit::InputOutput,
             format!("cannot write to stdout: {error}"),
@@ -159,11 +184,43 @@ pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
 
 /// Writes a value to stdout as JSON.
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<Exit, Failure> {
-    print(&(json(value)? + "\n"))
+    print(&(ascii_escaped(&json(value)?) + "\n"))
+}
+
+/// The same JSON with the escapes of strings for what a terminal obeys: serde has them for C0 alone.
+fn ascii_escaped(json: &str) -> String {
+    let mut escaped = String::with_capacity(json.len());
+    for c in json.chars() {
+        if is_obeyed(c) && c != '\n' {
+            escaped += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            escaped.push(c);
+        }
+    }
+    escaped
 }
 
 /// A value as indented JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value)
         .map_err(|error| Failure::new(Exit::RenderFailed, format!("not JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_has_the_same_strings_without_what_a_terminal_obeys() {
+        let text = "a\x1b\x7f\u{9b}\u{202e}\u{2069}µ\n";
+        let escaped = ascii_escaped(&json(&[text]).unwrap());
+        assert!(
+            !escaped.contains(|c| is_obeyed(c) && c != '\n'),
+            "{escaped}"
+        );
+        assert_eq!(
+            serde_json::from_str::<[String; 1]>(&escaped).unwrap(),
+            [text]
+        );
+    }
 }

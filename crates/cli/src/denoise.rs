@@ -131,6 +131,7 @@ impl Guides {
 /// Writes an image without its noise.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let format = scene_io::image_format(&args.output, IMAGES)?;
+    scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
     output::check_file("--output", &args.output)?;
     let mut layers = scene_io::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;

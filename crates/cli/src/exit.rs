@@ -43,8 +43,8 @@ impl Exit {
         ),
         (
             Self::InputOutput,
-            "a file cannot be read or written, a port is taken, images differ in size, or a library is \
-             missing",
+            "a file cannot be read or written, an output would replace an input or another output, a port \
+             is taken, images differ in size, or a library is missing",
         ),
         (
             Self::FilmMismatch,

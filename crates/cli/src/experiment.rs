@@ -6,6 +6,7 @@ mod cluster;
 mod watch;
 
 use crate::args::ExperimentArgs;
+use crate::checkpoint::has_passes;
 use crate::console::{Console, Display, print, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
         Task::Described(experiment) => experiment::run(experiment, setup, watch),
     })?;
     let Some(results) = &outcome.results else {
-        return Ok(stopped(args));
+        return Ok(stopped(args, &signals));
     };
     let sections = match task {
         // The claims of the paper have all its tables.
@@ -64,7 +65,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     found.extend(claims::summary(&results.claims));
     print(&found.join("\n"))?;
     if outcome.end == End::Stopped {
-        return Ok(stopped(args));
+        return Ok(stopped(args, &signals));
     }
     if !args.quiet {
         say(format_args!("wrote {}", args.output.join(PAGE).display()));
@@ -96,16 +97,24 @@ fn task(args: &ExperimentArgs, console: Console) -> Result<Task, Failure> {
     Ok(Task::Described(experiment))
 }
 
-/// Says how to go on.
-fn stopped(args: &ExperimentArgs) -> Exit {
+/// Says how to go on, where anything was finished.
+fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
+    let (text, exit) = if !has_passes(&args.output) {
+        let exit = signals.exit().unwrap_or(Exit::Interrupted);
+        ("stopped before the first pass", exit)
+    } else if args.restart {
+        let text = "stopped: run the same command without --restart to continue";
+        (text, Exit::Checkpoint)
+    } else {
+        (
+            "stopped: run the same command to continue",
+            Exit::Checkpoint,
+        )
+    };
     if !args.quiet {
-        say(if args.restart {
-            "stopped: run the same command without --restart to continue"
-        } else {
-            "stopped: run the same command to continue"
-        });
+        say(text);
     }
-    Exit::Checkpoint
+    exit
 }
 
 /// Reads a description.
@@ -114,6 +123,7 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let text = std::fs::read_to_string(file);
     let text = text.map_err(|error| unreadable(file, &error))?;
     let mut experiment = Experiment::read(&text, file).map_err(failure)?;
+    experiment::check_description(file, &args.output).map_err(failure)?;
     if args.quick {
         experiment = experiment.quick();
     }

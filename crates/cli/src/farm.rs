@@ -19,6 +19,7 @@ use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, ImageFormat};
 use clap::parser::ValueSource;
 use clap::{CommandFactory, Parser};
+use formats::is_obeyed;
 use quote::quote;
 use std::ffi::OsStr;
 use std::path::Path;
@@ -63,6 +64,7 @@ impl<'a> Plan<'a> {
                 Failure::usage(message).with_hint("name a file that every machine can read")
             );
         }
+        check_words(args)?;
         let image = match &args.output {
             Some(image) => image.clone(),
             None => format!("{}.exr", stem(&args.scene)),
@@ -144,8 +146,8 @@ impl<'a> Plan<'a> {
 
     /// What the job file is, in a comment's first line.
     fn title(&self) -> String {
-        let scene = self.scene.replace(char::is_control, "?");
-        format!("{scene} in {} parts of its passes", self.parts)
+        let Self { scene, parts, .. } = self;
+        format!("{scene} in {parts} parts of its passes")
     }
 
     /// Fails here, rather than on every machine, where `bidir render` would not take the flags.
@@ -160,7 +162,9 @@ impl<'a> Plan<'a> {
             let text = error.render().to_string();
             let ends = ["\n\nUsage:", "\n\nFor more"].map(|end| text.find(end));
             let end = ends.into_iter().flatten().min().unwrap_or(text.len());
-            Failure::usage(text[..end].trim_start_matches("error: "))
+            let lines = text[..end].lines().map(str::trim);
+            let lines: Vec<_> = lines.filter(|line| !line.is_empty()).collect();
+            Failure::usage(lines.join("; ").trim_start_matches("error: "))
                 .with_hint("see `bidir render --help` for the flags that can follow `--`")
         })?;
         match cli.command {
@@ -194,6 +198,17 @@ impl<'a> Plan<'a> {
             }
         }
     }
+}
+
+/// Refuses words that a job file could not show: it is made to be read.
+fn check_words(args: &FarmArgs) -> Result<(), Failure> {
+    let words = [Some(&args.scene), args.output.as_ref()];
+    let words = words.into_iter().flatten().chain(&args.flags);
+    let mut hidden = words.filter(|word| word.contains(is_obeyed));
+    hidden.next().map_or(Ok(()), |word| {
+        let message = format!("`{word}` has control characters, which a job file cannot show");
+        Err(Failure::usage(message).with_hint("rename the file"))
+    })
 }
 
 /// Why flags that name one file are refused.

@@ -8,6 +8,7 @@ use crate::lock::FilmLock;
 use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
 use bidir::film::PassSet;
+use formats::printable;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -31,25 +32,30 @@ pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failu
 fn tell(header: &FilmHeader) -> Result<Exit, Failure> {
     let [left, top, right, bottom] = header.crop;
     let [width, height] = header.resolution;
+    let passes = format!("{} ({})", header.passes, header.passes.len());
+    let film = format!("{width} x {height} pixels, {left},{top} to {right},{bottom}");
+    let lines = [
+        ("passes", passes),
+        ("film", film),
+        ("scene", header.scene.clone()),
+        ("program", header.program.clone()),
+        ("identity", header.identity.clone()),
+        ("stopped", header.stopping.name().to_owned()),
+        ("time", format!("{:.1} s", header.seconds)),
+    ];
+    let lines = lines.map(|(name, value)| format!("{name:10}{}\n", printable(&value)));
     let settings = header.settings.clone().into_iter();
     let texts = settings.chain(film_header::counts_by_name(header));
-    let texts = texts.map(|(name, value)| format!("  {name:21}{value}\n"));
-    print(&format!(
-        "passes    {} ({})\nfilm      {width} x {height} pixels, {left},{top} to {right},{bottom}\n\
-         scene     {}\nprogram   {}\nidentity  {}\nstopped   {}\ntime      {:.1} s\n{}",
-        header.passes,
-        header.passes.len(),
-        header.scene,
-        header.program,
-        header.identity,
-        header.stopping.name(),
-        header.seconds,
-        texts.collect::<String>(),
-    ))
+    let texts = texts.map(|(name, value)| {
+        let [name, value] = [&name, &value].map(|text| printable(text));
+        format!("  {name:21}{value}\n")
+    });
+    print(&lines.into_iter().chain(texts).collect::<String>())
 }
 
-fn develop(file: &Path, output: &Path) -> Result<Exit, Failure> {
+fn develop(file: &PathBuf, output: &Path) -> Result<Exit, Failure> {
     scene_io::image_format(output, IMAGES)?;
+    scene_io::check_apart([file], &[("--output", output)])?;
     output::check_file("--output", output)?;
     let FilmFile { header, film } = scene_io::read_film(file)?;
     if film.passes().is_empty() {
@@ -104,21 +110,7 @@ pub(crate) fn not_a_film(path: &Path, flag: &str) -> Failure {
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     check_outputs(args)?;
     let _lock = FilmLock::take(&args.output)?;
-    let mut films = args.files.iter();
-    let first = films.next().expect("clap asks for a file");
-    let mut all = scene_io::read_film(first)?;
-    for file in films {
-        let film = scene_io::read_film(file)?;
-        add(&mut all, &film).map_err(|reason| {
-            let message = format!(
-                "{}: cannot be merged with {}: {reason}",
-                file.display(),
-                first.display()
-            );
-            Failure::new(Exit::FilmMismatch, message)
-                .with_hint("film files of one render with different passes can be merged")
-        })?;
-    }
+    let Merged { all, known } = merged(args)?;
     check_kept(&args.output, &all.header)?;
     scene_io::write_film(&args.output, &all.header, &all.film)?;
     if let Some(image) = &args.image {
@@ -127,8 +119,12 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     let written = [Some(&args.output), args.image.as_ref()];
     let written = written.into_iter().flatten();
     let written: Vec<_> = written.map(|path| path.display().to_string()).collect();
+    let known = match known {
+        0 => String::new(),
+        known => format!(", {known} of them merged before"),
+    };
     say(format_args!(
-        "passes {} of {} files; wrote {}",
+        "passes {} of {} files{known}; wrote {}",
         all.film.passes(),
         args.files.len(),
         written.join(", ")
@@ -136,9 +132,59 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
+/// The sum of films.
+struct Merged {
+    all: FilmFile,
+    /// How many of them the output, which is one of them, had before.
+    known: usize,
+}
+
+/// Adds the films. Where the output is among them, it comes first, and a film whose passes it has was
+/// merged into it before: passes of one render have the same bits wherever they are rendered.
+fn merged(args: &MergeArgs) -> Result<Merged, Failure> {
+    let is_output = |file: &&PathBuf| scene_io::is_same(file, &args.output);
+    let (own, others): (Vec<_>, Vec<_>) = args.files.iter().partition(is_output);
+    let mut files = own.iter().chain(&others);
+    let first = files.next().expect("clap asks for a file");
+    let mut all = scene_io::read_film(first)?;
+    let held = own.first().map(|_| all.header.passes.clone());
+    let mut known = 0;
+    for file in files {
+        let film = scene_io::read_film(file)?;
+        if film.header.difference(&all.header).is_none() && is_held(held.as_ref(), &film) {
+            known += 1;
+            continue;
+        }
+        add(&mut all, &film).map_err(|reason| {
+            let [file, first] = [file, first].map(|file| file.display());
+            let message = format!("{file}: cannot be merged with {first}: {reason}");
+            Failure::new(Exit::FilmMismatch, message)
+                .with_hint("film files of one render with different passes can be merged")
+        })?;
+    }
+    Ok(Merged { all, known })
+}
+
+/// True where `film` has passes, and none but those that are held.
+fn is_held(held: Option<&PassSet>, film: &FilmFile) -> bool {
+    let passes = &film.header.passes;
+    held.is_some_and(|held| !passes.is_empty() && passes.difference(held).is_empty())
+}
+
 /// Fails before films are read where a file could not be written, or is no film file to be replaced.
+/// The output may be one of the films.
 fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
-    let MergeArgs { output, image, .. } = args;
+    let MergeArgs {
+        output,
+        image,
+        files,
+    } = args;
+    if let Some(image) = image {
+        scene_io::image_format(image, IMAGES)?;
+        let written = [("--output", output), ("--image", image)];
+        let others = files.iter().filter(|file| !scene_io::is_same(file, output));
+        scene_io::check_apart(others, &written.map(|(flag, file)| (flag, file.as_path())))?;
+    }
     output::check_file("--output", output)?;
     if output.is_file() && !scene_io::is_film(output) {
         return Err(not_a_film(output, "--output"));
@@ -146,10 +192,9 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     let Some(image) = image else {
         return Ok(());
     };
-    scene_io::image_format(image, IMAGES)?;
     output::check_file("--image", image)?;
     // An image is no film file, and would replace one.
-    if scene_io::is_film(image) || scene_io::target_of(image) == scene_io::target_of(output) {
+    if scene_io::is_film(image) {
         let message = format!(
             "{} is a film file, and is not replaced by an image",
             image.display()

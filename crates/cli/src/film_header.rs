@@ -4,7 +4,7 @@ use crate::scene_io::{FilmHeader, LoadedScene};
 use bidir::driver::{Settings, Training};
 use formats::film::SceneIdentity;
 
-pub(crate) use formats::film::{counts_by_name, metadata, of_run, untrained};
+pub(crate) use formats::film::{counts_by_name, is_short, metadata, of_run, untrained};
 
 /// The header of an empty film of the scene that is called `name`.
 pub(crate) fn header(

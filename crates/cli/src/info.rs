@@ -11,6 +11,7 @@ use bidir::light::Light;
 use bidir::material::Material;
 use bidir::scene::Scene;
 use bidir::shape::Shape;
+use formats::{number, printable};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
@@ -93,7 +94,8 @@ impl Info {
     fn new(name: String, loaded: &LoadedScene) -> Self {
         let scene = &loaded.scene;
         let bounds = scene.bvh().bounds();
-        let corners = [bounds.min.to_array(), bounds.max.to_array()];
+        let corners = [bounds.min, bounds.max];
+        let corners = corners.map(|p| scene.space().world_point(p).as_vec3().to_array());
         let triangles = scene.shapes().iter().map(|shape| match shape {
             Shape::Mesh(mesh) => mesh.triangle_count(),
             _ => 0,
@@ -130,15 +132,15 @@ impl Info {
         let mut text = String::new();
         for (name, value) in self.lines() {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{name:<12} {value}");
+            let _ = writeln!(text, "{name:<12} {}", printable(&value));
         }
         self.tell_blind_spots(&mut text);
         for refused in &self.refused {
-            let _ = writeln!(text, "refused      {refused}");
+            let _ = writeln!(text, "refused      {}", printable(refused));
         }
         let is_ignored = |warning: &&String| !self.refused.contains(warning);
         for ignored in self.warnings.iter().filter(is_ignored) {
-            let _ = writeln!(text, "note         {ignored}");
+            let _ = writeln!(text, "note         {}", printable(ignored));
         }
         text
     }
@@ -220,7 +222,11 @@ impl Info {
     fn bounds_text(&self) -> String {
         self.bounds.map_or_else(
             || "no surfaces".into(),
-            |[[a, b, c], [x, y, z]]| format!("({a}, {b}, {c}) to ({x}, {y}, {z})"),
+            |corners| {
+                let corner = |corner: [f32; 3]| corner.map(number).join(", ");
+                let [low, high] = corners.map(corner);
+                format!("({low}) to ({high})")
+            },
         )
     }
 }

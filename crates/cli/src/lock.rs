@@ -39,6 +39,9 @@ impl FilmLock {
         let unwritable = |error| Failure::io(&name, "write", &error);
         for _ in 0..ATTEMPTS {
             let file = open(&name).map_err(unwritable)?;
+            if file.metadata().is_ok_and(|metadata| metadata.len() > 0) {
+                return Err(no_lock(&name));
+            }
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(taken(&film)),
@@ -70,6 +73,18 @@ pub(crate) fn previous(film: &Path) -> PathBuf {
     beside(film, ".previous")
 }
 
+/// The files that whoever writes a film file writes: itself, its lock, and the one before it.
+pub(crate) fn files(film: &Path) -> Vec<PathBuf> {
+    let target = scene_io::target_of(film);
+    let mut files = vec![film.to_owned(), beside(&target, ".lock")];
+    let previous = previous(&target);
+    // Both may be names of one file, where a writer was killed between two steps.
+    if !scene_io::is_same(&previous, &target) {
+        files.push(previous);
+    }
+    files
+}
+
 /// A name beside `path`.
 fn beside(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
@@ -81,6 +96,13 @@ fn beside(path: &Path, ending: &str) -> PathBuf {
 fn taken(film: &Path) -> Failure {
     let message = format!("{}: another process is writing this file", film.display());
     let hint = "give each process a file of its own; parts of a render can be merged";
+    Failure::new(Exit::InputOutput, message).with_hint(hint)
+}
+
+/// The name of a lock is that of a file with something in it, which would be removed with the lock.
+fn no_lock(name: &Path) -> Failure {
+    let message = format!("{} is not an empty lock file", name.display());
+    let hint = "rename it, or give the film file another name";
     Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 

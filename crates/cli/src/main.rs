@@ -33,26 +33,29 @@ mod threads;
 mod tonemap;
 mod view;
 
-use args::{Cli, Command};
-use console::Console;
+use args::{Cli, ColorArgs, Command};
+use console::{Console, print_usage};
 use exit::{Exit, Failure};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     signals::end_without_memory();
+    signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
-        Err(error) => {
-            // Help and version are such errors too. Where they cannot be printed, nothing can.
-            let _ = error.print();
-            return ExitCode::from(error.exit_code() as u8);
-        }
+        // Help and version are such errors too.
+        Err(error) => return ended(print_usage(&error), Console::new(ColorArgs::default())),
     };
     let console = Console::new(cli.color);
     for warning in &cli.renamed {
         console.warning(warning);
     }
-    let exit = match run(&cli.command, console) {
+    ended(run(&cli.command, console), console)
+}
+
+/// The exit code, after the last message.
+fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
+    let exit = match result {
         Ok(exit) => exit,
         Err(failure) => {
             console.failure(&failure);

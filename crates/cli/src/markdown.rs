@@ -12,7 +12,7 @@ const HEAD: &str = "\
 # Command line
 
 `bidir COMMAND -h` prints the common flags of a command, `bidir COMMAND --help` all of them.
-Results go to stdout, messages and progress to stderr.
+Results go to stdout, messages and progress to stderr; control characters in names and texts of files are printed as escapes, such as `\\u{1b}`.
 A setting comes from the first of these that has it: the flag, the environment variable, the scene file, the default.
 ";
 

@@ -2,6 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
+use crate::lock;
 use crate::pyramid;
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, MetadataValue};
 use bidir::film::FilmSettings;
@@ -56,8 +57,9 @@ impl Outputs {
         all.map(|(flag, file)| (flag, file.as_path()))
     }
 
-    /// Fails now rather than after hours where a file could not be written.
-    pub(crate) fn check(&self, args: &RenderArgs) -> Result<(), Failure> {
+    /// Fails now rather than after hours where a file could not be written, or would replace one of
+    /// `inputs`.
+    pub(crate) fn check(&self, args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         let is_kept = self.exr.is_some() || args.long.checkpoint.is_some();
         if args.layers.need_exr() && self.png.is_some() && !is_kept {
             let message = "a PNG cannot hold layers";
@@ -68,20 +70,14 @@ impl Outputs {
         if let Some(folder) = &args.layers.pyramid {
             pyramid::make_folder(folder)?;
         }
-        let mut taken = vec![scene_io::target_of(&args.scene.scene)];
         let film = args.long.checkpoint.as_deref();
+        let films = film.map(lock::files).unwrap_or_default();
+        let films = films.iter().map(|file| ("--checkpoint", file.as_path()));
+        let all: Vec<_> = self.files().chain(films).collect();
+        scene_io::check_apart(inputs, &all)?;
         let film = film.map(|film| ("--checkpoint", film));
-        for (flag, file) in self.files().chain(film) {
-            let target = scene_io::target_of(file);
-            if taken.contains(&target) {
-                let message = format!("{}: two outputs have this name", file.display());
-                let hint = "give the scene, the image, --stats and --checkpoint different names";
-                return Err(Failure::usage(message).with_hint(hint));
-            }
-            taken.push(target);
-            check_file(flag, file)?;
-        }
-        Ok(())
+        let mut named = self.files().chain(film);
+        named.try_for_each(|(flag, file)| check_file(flag, file))
     }
 
     /// Fails where a share would leave nothing behind.

@@ -10,6 +10,7 @@ use crate::exit::Failure;
 use crate::settings::Budget;
 use crate::signals::Signals;
 use bidir::driver::Progress;
+use formats::printable;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::sync::Mutex;
@@ -319,10 +320,7 @@ pub(crate) fn tell_failure(args: TalkArgs, failure: &Failure) {
 
 /// Writes a line of Open Job Description. Where nobody listens there is nobody to tell.
 pub(crate) fn tell_openjd(kind: &str, message: &str) {
-    let _ = print(&format!(
-        "openjd_{kind}: {}\n",
-        message.replace(char::is_control, " ")
-    ));
+    let _ = print(&format!("openjd_{kind}: {}\n", printable(message)));
 }
 
 #[cfg(test)]

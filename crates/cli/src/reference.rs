@@ -1,6 +1,7 @@
 //! `bidir reference`: a picture that others can be measured against.
 
 use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
+use crate::checkpoint::has_passes;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
@@ -41,7 +42,9 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
             settings,
             console,
         )?;
+        settings::warn_missing(&loaded, settings, console);
     }
+    check_apart(&folder, &loaded)?;
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Failure::io(&films, "make", &error))?;
     let _lock = FilmLock::take(&folder.join("reference"))?;
@@ -77,6 +80,13 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
     }
     let message = format!("{} exists already and is not a reference", folder.display());
     Err(Failure::usage(message).with_hint("name another folder with --output"))
+}
+
+/// Refuses a folder with files that the scene reads and the reference would replace.
+fn check_apart(folder: &Path, loaded: &LoadedScene) -> Result<(), Failure> {
+    let written = reference::files(folder);
+    let written = written.iter().map(|file| ("--output", file.as_path()));
+    scene_io::check_apart(&loaded.inputs, &written.collect::<Vec<_>>())
 }
 
 /// The film that a reference has.
@@ -173,14 +183,21 @@ impl Job<'_> {
         watcher.reporter.finish();
         match made.map_err(failure)? {
             Made::Whole(reference) => Ok(self.tell(&reference)),
-            Made::Stopped => {
-                let folder = self.folder.display();
-                self.say(format_args!(
-                    "stopped; run the same command to continue in {folder}"
-                ));
-                Ok(Exit::Checkpoint)
-            }
+            Made::Stopped => Ok(self.stopped()),
         }
+    }
+
+    /// How the command ends because of a signal.
+    fn stopped(&self) -> Exit {
+        if !has_passes(self.folder) {
+            self.say(format_args!("stopped before the first pass"));
+            return self.signals.exit().unwrap_or(Exit::Interrupted);
+        }
+        let folder = self.folder.display();
+        self.say(format_args!(
+            "stopped; run the same command to continue in {folder}"
+        ));
+        Exit::Checkpoint
     }
 
     /// Both estimators are one budget of passes.
@@ -274,7 +291,11 @@ pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     match error {
         Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
-        Error::Io { .. } | Error::Damaged { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Io { .. } => Failure::new(Exit::InputOutput, text),
+        Error::Damaged { .. } => {
+            let hint = "the `bidir reference` command that made it writes it again from its films";
+            Failure::new(Exit::InputOutput, text).with_hint(hint)
+        }
         Error::Missing(_) => {
             let hint = "make one with `bidir reference`, or name another folder";
             Failure::new(Exit::InputOutput, text).with_hint(hint)

@@ -1,7 +1,7 @@
 //! `bidir render`: a scene becomes an image.
 
 use crate::args::RenderArgs;
-use crate::begin::{self, Began};
+use crate::begin::{self, Began, Training};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, LineFormat, json, say};
 use crate::denoise::Filter;
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
-        Outputs::named(args)?.check(args)?;
+        Outputs::named(args)?.check(args, std::slice::from_ref(&args.scene.scene))?;
         Checkpoint::open(&args.long)?
     } else {
         replay::check(args)?;
@@ -48,20 +48,23 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
-    loaded.tell_warnings(&args.scene, unused + lost, console)?;
+    let missing = settings::warn_missing(&loaded, &settings, console);
+    loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
+        replay::check_apart(args, &loaded.inputs)?;
         // Objects that are to be read have standard output to themselves.
         let display = match console.display(args.output.talk) {
             Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
             display => display,
         };
-        return match begin::session(args, &loaded, &settings, &signals, display, console)? {
+        let how = (Training::Whole, display);
+        return match begin::session(args, &loaded, &settings, &signals, how, console)? {
             Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
             Began::Stopped(exit) => Ok(exit),
         };
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
-    outputs.check(args)?;
+    outputs.check(args, &loaded.inputs)?;
     let first = || {
         let name = args.scene.scene.display().to_string();
         Status::preparing(&name, loaded.scene.film())
@@ -105,19 +108,24 @@ impl Job<'_> {
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check(&header(None), budget.range())?;
         }
+        let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
+        let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
+        let training = Training::new(budget.time, earlier);
         let start = Instant::now();
         let began = begin::session(
             self.args,
             self.loaded,
             self.settings,
             self.signals,
-            self.display(),
+            (training, self.display()),
             self.console,
         );
         let mut session = match began? {
             Began::Session(session) => *session,
+            Began::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
             Began::Stopped(exit) => return Ok(self.stopped(exit)),
         };
+        self.warn_short(training, &session);
         session.start_at(budget.first);
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
@@ -170,14 +178,25 @@ impl Job<'_> {
         })
     }
 
-    /// How the command ends where a signal came before there was anything to write.
+    /// Warns that training did not end in time.
+    fn warn_short(&self, training: Training, session: &Session<'_>) {
+        let is_short = session.training().is_some_and(|training| training.is_short);
+        if is_short && matches!(training, Training::By(_)) {
+            self.console.warning(
+                "training did not end within --time, so the image has more noise than it could; allow more \
+                 time, or choose --integrator path or bdpt, which need none",
+            );
+        }
+    }
+
+    /// Ends with `exit` where a signal came before there was anything to write.
     fn stopped(&self, exit: Exit) -> Exit {
         self.console
             .warning("stopped before the first pass: nothing was written");
-        self.exit(exit)
+        exit
     }
 
-    /// How the command ends because of a signal: with a film file the same command goes on.
+    /// How the command ends because of a signal after a pass: with a film file the same command goes on.
     fn exit(&self, exit: Exit) -> Exit {
         match self.args.long.checkpoint {
             Some(_) => Exit::Checkpoint,
@@ -287,7 +306,7 @@ impl Job<'_> {
             say(format_args!("wrote {}", listed(&names)));
             summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
-                say(report.strategy_table().trim_end());
+                report.strategy_table().lines().for_each(say);
             }
             if matches!(end, End::Signal(_)) && keeper.path().is_some() {
                 say("stopped early; the same command with --resume continues");

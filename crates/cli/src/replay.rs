@@ -8,6 +8,7 @@ use crate::scene_io;
 use bidir::driver::Session;
 use bidir::scene::Scene;
 use lab::sample::SampleReport;
+use std::path::PathBuf;
 
 /// Fails now rather than after a scene was read where the drawing could not be written.
 pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
@@ -20,6 +21,12 @@ pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
         return Err(Failure::usage(message).with_hint("name it NAME.svg"));
     }
     output::check_file("--svg", path)
+}
+
+/// Fails where the drawing would replace one of `inputs`.
+pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
+    let drawing = args.svg.as_deref().map(|path| ("--svg", path));
+    scene_io::check_apart(inputs, drawing.as_slice())
 }
 
 /// Repeats a sample and prints what it did.

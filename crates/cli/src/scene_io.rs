@@ -8,7 +8,8 @@ use bidir::film::{self, Film, FilmSettings, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
-use formats::scene::{Crop, LoadOptions, Summary};
+use formats::outputs::Output;
+use formats::scene::{Crop, Lamp, LoadOptions, Summary};
 use lab::image::Pixels;
 use lab::metric::ErrorMap;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,7 @@ use std::sync::Arc;
 pub(crate) use formats::file::{folder_of, remove_leftovers, target_of};
 pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_film};
 pub(crate) use formats::image::{Layers, MetadataValue};
+pub(crate) use formats::outputs::is_same;
 
 /// A scene that was read, with what else its file says.
 pub(crate) struct LoadedScene {
@@ -32,10 +34,14 @@ pub(crate) struct LoadedScene {
     pub(crate) warnings: Vec<String>,
     /// Those of them that tell what stands in for what is not supported.
     pub(crate) refused: Vec<String>,
+    /// The first lamps that no ray can hit.
+    pub(crate) lamps: Vec<Lamp>,
     /// What the scene is made of.
     pub(crate) summary: Summary,
     /// A hash of all that was read.
     pub(crate) digest: String,
+    /// The files that the scene reads or names, which no output may replace.
+    pub(crate) inputs: Vec<PathBuf>,
 }
 
 /// Reads a scene, with the film that `film` asks for instead of the file's.
@@ -67,8 +73,10 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
         output: loaded.settings.output.map(PathBuf::from),
         warnings,
         refused: loaded.refused,
+        lamps: loaded.lamps,
         summary: loaded.summary,
         digest: loaded.digest.to_string(),
+        inputs: loaded.inputs,
     })
 }
 
@@ -361,6 +369,22 @@ fn film_failure(error: formats::Error) -> Failure {
 pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
     formats::file::replace(path, text.as_bytes())
         .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+}
+
+/// Fails where an output, each with the flag that names it, would replace an input or another output.
+pub(crate) fn check_apart<'a>(
+    inputs: impl IntoIterator<Item = &'a PathBuf>,
+    outputs: &[(&str, &Path)],
+) -> Result<(), Failure> {
+    let outputs = outputs.iter().map(|&(flag, path)| Output {
+        path,
+        flag: Some(flag),
+    });
+    let inputs = inputs.into_iter().map(PathBuf::as_path);
+    formats::outputs::check(inputs, &outputs.collect::<Vec<_>>()).map_err(|error| {
+        let failure = Failure::new(Exit::InputOutput, error.message());
+        failure.with_hint(error.hint().unwrap_or_default())
+    })
 }
 
 /// Fails where a file could not be written.

@@ -4,11 +4,13 @@
 use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
+use crate::scene_io::LoadedScene;
 use bidir::driver::{Session, Settings};
-use bidir::integrator::{IntegratorKind, LostLight, lost_light};
+use bidir::integrator::{BlindSpot, IntegratorKind, LostLight, lost_light, missing_light};
 use bidir::path::MAX_VERTICES;
 use bidir::scene::Scene;
 use formats::film::has_influence;
+use formats::scene::Lamp;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -120,6 +122,40 @@ pub(crate) fn check_strategies(
             Ok(1)
         }
     }
+}
+
+/// Warns of light that the estimator of `settings` misses with all its strategies, and of which lamps it is.
+/// Returns the number of warnings.
+pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
+    let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
+    let missing = missing_light(&loaded.scene, settings.integrator, &settings.path);
+    for &spot in &missing {
+        let (paths, remedy) = (spot.description(), spot.remedy());
+        let lamps = lamps(loaded, spot);
+        console.warning(format_args!(
+            "`{integrator}` misses {paths}{lamps}; {remedy}"
+        ));
+    }
+    missing.len()
+}
+
+/// The lamps whose light is missing, as the end of a clause: the first with its place, the others by number.
+/// Nothing where light of all is, whichever they are.
+fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
+    let lights = loaded.scene.lights();
+    let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
+    let first = loaded.lamps.iter().find(is_concerned);
+    let Some(first) = first.filter(|_| spot != BlindSpot::SeenBySpecular) else {
+        return String::new();
+    };
+    let kind = lights[first.light as usize].kind();
+    let count = lights.iter().filter(|light| spot.concerns(light)).count();
+    let others = match count - 1 {
+        0 => String::new(),
+        1 => " and another light".to_owned(),
+        others => format!(" and {others} other lights"),
+    };
+    format!(", here of the {kind} light at {}{others}", first.place)
 }
 
 /// When a render is enough: what is reached first.

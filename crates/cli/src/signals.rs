@@ -55,6 +55,13 @@ pub(crate) fn end_without_memory() {
     let _ = flag::register_conditional_shutdown(SIGABRT, Exit::Scene.code().into(), always);
 }
 
+/// Has a write beyond the limit on the size of files fail, where the system would end the process.
+pub(crate) fn survive_size_limits() {
+    // Where it cannot be watched, the process ends as it would have.
+    #[cfg(unix)]
+    let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
 #[expect(clippy::needless_pass_by_value, reason = "`map_err` gives the value")]
 fn unwatched(error: std::io::Error) -> Failure {
     let message = format!("cannot watch signals: {error}");

@@ -49,6 +49,7 @@ impl Operator {
 pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     // A picture for the screen is a PNG.
     scene_io::image_format(&args.output, &[ImageFormat::Png])?;
+    scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
     output::check_file("--output", &args.output)?;
     let mut image = scene_io::read_image(&args.image)?;
     let scale = libm::exp2f(args.exposure);

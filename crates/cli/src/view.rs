@@ -32,7 +32,8 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let settings = settings::resolve(&args.estimator, loaded.settings.clone());
     // Every flag may have influence: estimators are switched.
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
-    loaded.tell_warnings(&args.scene, lost, console)?;
+    let missing = settings::warn_missing(&loaded, &settings, console);
+    loaded.tell_warnings(&args.scene, lost + missing, console)?;
     let (server, desk) = serve::start(listener, first_status(args, &loaded), &loaded.warnings)?;
     let studio = studio_settings(args, loaded, settings);
     let studio = Studio::open(studio, desk).map_err(|error| serve::failed(&error))?;

@@ -1,27 +1,38 @@
 //! Files as bytes, unpacked.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::limits;
 use flate2::bufread::MultiGzDecoder;
 use std::fs::{File, FileType};
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// The name that stands for standard input.
 pub(crate) const STDIN: &str = "-";
 
+/// The bytes of a file.
+#[derive(Debug)]
+pub(crate) struct FileBytes {
+    /// Unpacked.
+    pub(crate) bytes: Vec<u8>,
+    /// How many there are on the disk, packed.
+    pub(crate) stored: u64,
+}
+
 /// The same as [`read`], where [`STDIN`] is standard input: for what the user names, as files that
 /// are named in files must not wait for what is typed.
-pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<Vec<u8>> {
+pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<FileBytes> {
     if path.as_os_str() == STDIN {
-        return read_to_limit(std::io::stdin().lock(), path, limit);
+        return read_plain(std::io::stdin().lock(), path, limit);
     }
     read(path, limit)
 }
 
 /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
 ///
-/// Errors: among others, a device, whose bytes may have no end.
-pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
+/// Errors: among others, a device, whose bytes may have no end, and a packed file that unpacks to
+/// more than [`limits::UNPACKED`].
+pub(crate) fn read(path: &Path, limit: u64) -> Result<FileBytes> {
     let file = File::open(path).map_err(|error| Error::io(path, "open", &error))?;
     let refused = |what| {
         let message = format!("cannot read `{}`: it is {what}", path.display());
@@ -35,19 +46,20 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>> {
             return Err(refused("a device"));
         }
     }
+    let stored = read_plain(file, path, limit)?;
     if is_packed(path) {
-        read_to_limit(MultiGzDecoder::new(BufReader::new(file)), path, limit)
+        unpack(&stored.bytes, path, limit)
     } else {
-        read_to_limit(file, path, limit)
+        Ok(stored)
     }
 }
 
 /// The same as [`read`] of a file that has the bytes `stored`.
-pub(crate) fn unpack(stored: &[u8], path: &Path, limit: u64) -> Result<Vec<u8>> {
+pub(crate) fn read_stored(stored: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
     if is_packed(path) {
-        read_to_limit(MultiGzDecoder::new(stored), path, limit)
+        unpack(stored, path, limit)
     } else {
-        read_to_limit(stored, path, limit)
+        read_plain(stored, path, limit)
     }
 }
 
@@ -66,14 +78,34 @@ fn is_device(_kind: FileType) -> bool {
     false
 }
 
-fn read_to_limit(reader: impl Read, path: &Path, limit: u64) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let read = reader.take(limit + 1).read_to_end(&mut bytes);
-    read.map_err(|error| Error::io(path, "read", &error))?;
-    if bytes.len() as u64 > limit {
+fn read_plain(reader: impl Read, path: &Path, limit: u64) -> Result<FileBytes> {
+    let bytes = read_some(reader, path, limit + 1)?;
+    let stored = bytes.len() as u64;
+    if stored > limit {
         let message = format!("larger than the limit of {limit} bytes");
         return Err(Error::new(ErrorKind::Limit, message).in_file(path));
     }
+    Ok(FileBytes { bytes, stored })
+}
+
+/// Unpacks no more than `limit`, and no more than the packed bytes can honestly stand for.
+fn unpack(packed: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
+    let stored = packed.len() as u64;
+    let limit = limit.min(limits::UNPACKED.of(stored));
+    let bytes = read_some(MultiGzDecoder::new(packed), path, limit + 1)?;
+    if bytes.len() as u64 > limit {
+        let message = format!("its {stored} bytes unpack to more than {limit}");
+        let error = Error::new(ErrorKind::Limit, message).in_file(path);
+        return Err(error.with_hint("unpack it, if its size is right"));
+    }
+    Ok(FileBytes { bytes, stored })
+}
+
+/// All bytes, or the first `most`.
+fn read_some(reader: impl Read, path: &Path, most: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = reader.take(most).read_to_end(&mut bytes);
+    read.map_err(|error| Error::io(path, "read", &error))?;
     Ok(bytes)
 }
 
@@ -90,7 +122,7 @@ mod tests {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(&vec![0; 100_000]).unwrap();
         std::fs::write(&path, encoder.finish().unwrap()).unwrap();
-        assert_eq!(read(&path, 100_000).unwrap(), vec![0; 100_000]);
+        assert_eq!(read(&path, 100_000).unwrap().bytes, vec![0; 100_000]);
         assert_eq!(read(&path, 99_999).unwrap_err().kind(), ErrorKind::Limit);
     }
 

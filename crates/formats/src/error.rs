@@ -1,4 +1,5 @@
 use crate::source::Excerpt;
+use crate::text::printable;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 /// Why a file could not be read, understood or written: what, where, and what to do about it.
 ///
 /// Its text is `file:line:column: message; hint`. As a [`miette::Diagnostic`] it also shows the
-/// lines of the file with a mark under the exact place.
+/// lines of the file with a mark under the exact place. Both are [`printable`].
 #[derive(Debug)]
 pub struct Error(Box<Details>);
 
@@ -151,15 +152,15 @@ impl fmt::Display for Error {
             ..
         } = &*self.0;
         if let Some(file) = file.as_ref().filter(|_| !names_file) {
-            write!(f, "{}:", file.display())?;
+            write!(f, "{}:", printable(&file.to_string_lossy()))?;
             if let Some(place) = place {
                 write!(f, "{}:{}:", place.line, place.column)?;
             }
             f.write_str(" ")?;
         }
-        f.write_str(message)?;
+        f.write_str(&printable(message))?;
         match hint {
-            Some(hint) => write!(f, "; {hint}"),
+            Some(hint) => write!(f, "; {}", printable(hint)),
             None => Ok(()),
         }
     }
@@ -169,7 +170,7 @@ impl std::error::Error for Error {}
 
 /// The one wording for a file that the system refuses: "cannot open `room.pbrt`: no such file".
 pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
-    use std::io::ErrorKind::{IsADirectory, NotFound, PermissionDenied, StorageFull};
+    use std::io::ErrorKind::{FileTooLarge, IsADirectory, NotFound, PermissionDenied, StorageFull};
     let reason = match error.kind() {
         // Writing makes the file, but not its folder.
         NotFound if action == "write" => "no such folder".to_owned(),
@@ -177,6 +178,7 @@ pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
         IsADirectory => "it is a folder".to_owned(),
         PermissionDenied => "permission denied".to_owned(),
         StorageFull => "the disk is full".to_owned(),
+        FileTooLarge => "it would be larger than the system allows".to_owned(),
         _ => {
             let text = error.to_string();
             let text = text.split(" (os error").next().unwrap_or_default();

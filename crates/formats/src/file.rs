@@ -7,11 +7,12 @@
 //!
 //! The temporary file of `NAME` is called `.NAME.bidir-HOST-PROCESS-RANDOM.tmp`, so that the machines
 //! that write to a shared folder stay apart, and so that what a killed process left behind says what
-//! it was to be and whose it was: who alone writes `NAME` can [`remove_leftovers`].
+//! it was to be and whose it was. Its writer holds its lock, which the system gives back where the
+//! process is killed: so the next writer of `NAME` can [`remove_leftovers`] and nothing else.
 
 use crate::error::{Error, Result};
-use std::ffi::{OsStr, OsString};
-use std::fs::File;
+use std::ffi::OsStr;
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -19,8 +20,10 @@ use tempfile::NamedTempFile;
 
 /// No write takes as long: what is older was left behind, on whatever machine.
 const OLD: Duration = Duration::from_secs(24 * 60 * 60);
-/// The longest name that is part of a temporary file's name. Unit: bytes; file systems take 255.
+/// The most of a name that is part of a temporary file's name. Unit: bytes; file systems take 255.
 const LONGEST_NAME: usize = 128;
+/// How often a temporary file may be taken for a leftover before its writer has locked it.
+const ATTEMPTS: u32 = 100;
 
 /// Replaces a file, or makes it where there is none. Readers that have it open keep the old bytes.
 /// What a link stands for is replaced, not the link; what is no plain file is written to.
@@ -56,6 +59,7 @@ fn replace_with(
         if is_special(target) {
             return std::fs::write(target, bytes);
         }
+        remove_leftovers(target);
         let mut file = temporary_for(target)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
@@ -97,14 +101,12 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Removes the temporary files of `path` that killed writers left behind: those of this machine, and
-/// those of others that are older than a day, as locks may not reach other machines. What cannot be
-/// removed stays.
-///
-/// The caller alone writes `path`: a temporary file of a living writer would be taken away.
+/// Removes the temporary files of `path` that killed writers left behind: those of this machine that
+/// are not locked, and those of others that are older than a day, as locks may not reach other
+/// machines. What cannot be removed stays.
 pub fn remove_leftovers(path: &Path) {
     let target = target_of(path);
-    let Some(prefix) = target.file_name().and_then(prefix) else {
+    let Some(prefix) = target.file_name().map(prefix) else {
         return;
     };
     let Ok(entries) = std::fs::read_dir(folder_of(&target)) else {
@@ -116,26 +118,53 @@ pub fn remove_leftovers(path: &Path) {
         let Some(writer) = writer_of(&name, &prefix) else {
             continue;
         };
-        let changed = entry.metadata().and_then(|metadata| metadata.modified());
-        let age = changed.ok().and_then(|changed| changed.elapsed().ok());
-        if writer == host || age.is_some_and(|age| age > OLD) {
+        let file = entry.path();
+        if writer == host {
+            remove_unlocked(&file);
+        } else if is_old(&file) {
             // Whoever else removes it wants the same.
-            let _ = std::fs::remove_file(entry.path());
+            let _ = std::fs::remove_file(&file);
         }
     }
 }
 
-/// What names of temporary files of `name` begin with. None: the name is too long for it.
-fn prefix(name: &OsStr) -> Option<OsString> {
-    let mut prefix = OsString::from(".");
-    prefix.push(name);
-    prefix.push(".bidir-");
-    (name.len() <= LONGEST_NAME).then_some(prefix)
+/// Removes a temporary file of this machine where its writer is gone. It is locked meanwhile, so that
+/// a writer that has just made it does not take it for its own.
+fn remove_unlocked(path: &Path) {
+    let Ok(file) = OpenOptions::new().write(true).open(path) else {
+        return;
+    };
+    let is_left = match file.try_lock() {
+        Ok(()) => true,
+        Err(TryLockError::WouldBlock) => false,
+        // There are no locks here.
+        Err(TryLockError::Error(_)) => is_old(path),
+    };
+    if is_left {
+        let _ = std::fs::remove_file(path);
+    }
+}
+
+/// True where a file was last written to so long ago that its writer is gone.
+fn is_old(path: &Path) -> bool {
+    let changed = path.metadata().and_then(|metadata| metadata.modified());
+    let age = changed.ok().and_then(|changed| changed.elapsed().ok());
+    age.is_some_and(|age| age > OLD)
+}
+
+/// What names of temporary files of `name` begin with: names that begin alike may share it.
+fn prefix(name: &OsStr) -> String {
+    let name = name.to_string_lossy();
+    let mut end = name.len().min(LONGEST_NAME);
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    format!(".{}.bidir-", &name[..end])
 }
 
 /// The machine that wrote a temporary file. None: the name is no temporary file's with this prefix.
-fn writer_of<'a>(name: &'a OsStr, prefix: &OsStr) -> Option<&'a str> {
-    let rest = name.to_str()?.strip_prefix(prefix.to_str()?)?;
+fn writer_of<'a>(name: &'a OsStr, prefix: &str) -> Option<&'a str> {
+    let rest = name.to_str()?.strip_prefix(prefix)?;
     let (owner, random) = rest.strip_suffix(".tmp")?.rsplit_once('-')?;
     let (host, process) = owner.rsplit_once('-')?;
     let is_ours = host.chars().all(is_plain)
@@ -145,11 +174,10 @@ fn writer_of<'a>(name: &'a OsStr, prefix: &OsStr) -> Option<&'a str> {
     is_ours.then_some(host)
 }
 
-/// An empty file beside `target` that is removed when it is dropped.
+/// An empty file beside `target`, locked where that can be, that is removed when it is dropped.
 fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
-    let named = target.file_name().and_then(prefix);
-    let mut prefix = named.unwrap_or_else(|| ".bidir-".into());
-    prefix.push(format!("{}-{}-", host(), std::process::id()));
+    let prefix = target.file_name().map_or_else(|| ".bidir-".into(), prefix);
+    let prefix = format!("{prefix}{}-{}-", host(), std::process::id());
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");
     // A temporary file is private unless told otherwise; an image is as public as any new file.
@@ -157,7 +185,35 @@ fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
     let public = std::os::unix::fs::PermissionsExt::from_mode(0o666);
     #[cfg(unix)]
     builder.permissions(public);
-    builder.tempfile_in(folder_of(target))
+    for _ in 0..ATTEMPTS {
+        let file = builder.tempfile_in(folder_of(target))?;
+        if is_held(file.as_file())? {
+            return Ok(file);
+        }
+    }
+    Err(io::ErrorKind::ResourceBusy.into())
+}
+
+/// Locks a temporary file that was just made. False: another process takes it for a leftover.
+fn is_held(file: &File) -> io::Result<bool> {
+    match file.try_lock() {
+        Ok(()) => is_linked(file),
+        Err(TryLockError::WouldBlock) => Ok(false),
+        // Without locks the name alone keeps writers apart.
+        Err(TryLockError::Error(_)) => Ok(true),
+    }
+}
+
+/// Does an open file have a name?
+#[cfg(unix)]
+fn is_linked(file: &File) -> io::Result<bool> {
+    Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 0)
+}
+
+/// Open files keep their names here.
+#[cfg(not(unix))]
+fn is_linked(_file: &File) -> io::Result<bool> {
+    Ok(true)
 }
 
 /// The name of this machine, as part of a file's name; `host` where it cannot be told.
@@ -276,7 +332,7 @@ mod tests {
             let text = name.to_str().unwrap();
             let random = text.strip_prefix(&owner).unwrap().strip_suffix(".tmp");
             assert!(random.is_some_and(|random| random.len() == 6), "{text}");
-            let prefix = prefix(OsStr::new("a.film")).unwrap();
+            let prefix = prefix(OsStr::new("a.film"));
             assert_eq!(writer_of(name, &prefix), Some(&*host()));
         }
     }
@@ -286,10 +342,50 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for length in [LONGEST_NAME, LONGEST_NAME + 1, 250] {
             let path = folder.path().join("n".repeat(length));
+            let left = folder.path().join(leftover(path.file_name().unwrap()));
+            File::create(&left).unwrap();
             replace(&path, b"new").unwrap();
-            remove_leftovers(&path);
-            assert!(path.exists());
+            assert!(path.exists() && !left.exists(), "{length}");
         }
+    }
+
+    /// The name of a temporary file of `name` that a killed process of this machine left behind.
+    fn leftover(name: &OsStr) -> String {
+        format!("{}{}-1-aB3dE6.tmp", prefix(name), host())
+    }
+
+    #[test]
+    fn the_next_writer_removes_the_files_of_killed_ones_and_of_no_living_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let mut living = temporary_for(&path).unwrap();
+        living.write_all(b"living").unwrap();
+        let left = folder.path().join(leftover(OsStr::new("a.exr")));
+        File::create(&left).unwrap();
+        replace(&path, b"new").unwrap();
+        assert!(!left.exists());
+        living.persist(&path).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"living");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn writers_that_remove_leftovers_take_no_file_from_each_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        std::thread::scope(|scope| {
+            for writer in 0..4u8 {
+                let path = &path;
+                scope.spawn(move || {
+                    for _ in 0..10 {
+                        replace(path, &[writer; 100]).unwrap();
+                    }
+                });
+            }
+        });
+        assert_eq!(std::fs::read(&path).unwrap().len(), 100);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]

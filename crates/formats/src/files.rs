@@ -1,6 +1,6 @@
 //! Where the files of a scene come from: the disk, or memory.
 
-use crate::bytes;
+use crate::bytes::{self, FileBytes};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -59,9 +59,9 @@ impl Files {
     }
 
     /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
-    pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+    pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         match (self.memory.get(path), self.others) {
-            (Some(stored), _) => bytes::unpack(stored, path, limit),
+            (Some(stored), _) => bytes::read_stored(stored, path, limit),
             (None, Others::OnDisk) => bytes::read(path, limit),
             (None, Others::Missing) => {
                 let error = std::io::ErrorKind::NotFound.into();
@@ -71,7 +71,7 @@ impl Files {
     }
 
     /// The same as [`read`](Self::read), where `-` is standard input unless it is in memory.
-    pub(crate) fn read_or_stdin(&self, path: &Path, limit: u64) -> Result<Vec<u8>> {
+    pub(crate) fn read_or_stdin(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         let is_stdin = path.as_os_str() == bytes::STDIN && self.others == Others::OnDisk;
         if is_stdin && !self.memory.contains_key(path) {
             return bytes::read_or_stdin(path, limit);
@@ -88,6 +88,12 @@ impl Files {
     pub(crate) fn exists(&self, path: &Path) -> bool {
         let is_on_disk = || self.others == Others::OnDisk && path.exists();
         self.memory.contains_key(path) || is_on_disk()
+    }
+
+    /// True where a name is that of a file on the disk, or would be one if it were there.
+    pub(crate) fn is_from_disk(&self, path: &Path) -> bool {
+        let is_stdin = path.as_os_str() == bytes::STDIN;
+        self.others == Others::OnDisk && !is_stdin && !self.memory.contains_key(path)
     }
 
     /// The name that stands for all names of one file.
@@ -157,6 +163,10 @@ mod tests {
         drop(folder);
         let here = load_from(&scene, &options, &Files::only(memory.clone())).unwrap();
         assert_eq!((here.digest, &here.files), (there.digest, &there.files));
+        let mut inputs = there.files.clone();
+        inputs.sort();
+        // Outputs on the disk replace none that is in memory.
+        assert_eq!((there.inputs, here.inputs), (inputs, Vec::new()));
         let mut others = memory.clone();
         others.retain(|path, _| !path.ends_with("m.ply"));
         let error = load_from(&scene, &options, &Files::only(others)).unwrap_err();
@@ -183,8 +193,8 @@ mod tests {
         }
         let memory: InMemory = [(a.clone(), Arc::from(&b"memory"[..]))].into();
         let both = Files::over_disk(memory.clone());
-        assert_eq!(both.read(&a, 9).unwrap(), b"memory");
-        assert_eq!(both.read(&b, 9).unwrap(), b"disk");
+        assert_eq!(both.read(&a, 9).unwrap().bytes, b"memory");
+        assert_eq!(both.read(&b, 9).unwrap().bytes, b"disk");
         assert_eq!(both.read(&a, 3).unwrap_err().kind(), ErrorKind::Limit);
         let only = Files::only(memory);
         assert!(both.exists(&b) && only.exists(&a) && !only.exists(&b));

@@ -7,16 +7,24 @@ mod bytes;
 mod error;
 mod files;
 mod foreign;
+mod lamp;
+mod limits;
+mod precision;
+mod reading;
 mod source;
+mod space;
 mod spectra;
+mod text;
 
 pub mod file;
 pub mod film;
 pub mod gltf;
 pub mod image;
+pub mod outputs;
 pub mod pbrt;
 pub mod ply;
 pub mod scene;
 
 pub use error::{Error, ErrorKind, Result, cannot};
 pub use source::{FileId, SourceMap, Span};
+pub use text::{is_obeyed, number, printable, printable_lines};

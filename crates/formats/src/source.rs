@@ -1,6 +1,7 @@
 //! Texts, places in them, and excerpts for people to look at.
 
 use crate::error::{Error, ErrorKind, Place};
+use crate::text::{printable, printable_lines};
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -189,7 +190,8 @@ pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (line, 1 + before[line_start..].chars().count())
 }
 
-/// The lines around a place. Long lines are cut, so that a mesh on one line does not fill the screen.
+/// The lines around a place, as they are shown: [`printable_lines`]. Long lines are cut, so that a mesh
+/// on one line does not fill the screen.
 #[derive(Clone, Debug)]
 pub(crate) struct Excerpt {
     name: String,
@@ -208,7 +210,7 @@ impl Excerpt {
     const WHOLE: usize = 400;
 
     fn new(name: &Path, text: &str, line: usize, marked: Range<usize>) -> Self {
-        let name = name.display().to_string();
+        let name = printable(&name.to_string_lossy()).into_owned();
         let line_start = text[..marked.start].rfind('\n').map_or(0, |i| i + 1);
         let line_end = text[marked.start..]
             .find('\n')
@@ -222,11 +224,11 @@ impl Excerpt {
         let marked_end = marked.end.min(line_end.max(marked.start));
         if end - start <= Self::WHOLE {
             let first_line = line - 1 - usize::from(line_start > 0);
-            let text = text[start..end].to_owned();
+            let (text, marked) = shown(&text[start..end], marked.start - start..marked_end - start);
             return Self {
                 name,
                 text,
-                marked: marked.start - start..marked_end - start,
+                marked,
                 first_line,
                 cut: 0,
             };
@@ -237,18 +239,38 @@ impl Excerpt {
         ));
         let marked_end = boundary_before(text, marked_end.min(marked.start + Self::WHOLE));
         let end = line_end.min(boundary_before(text, marked_end + Self::MARGIN));
+        let cut = text[line_start..start].chars().count();
+        let (text, marked) = shown(&text[start..end], marked.start - start..marked_end - start);
         Self {
             name,
-            text: text[start..end].to_owned(),
-            marked: marked.start - start..marked_end - start,
+            text,
+            marked,
             first_line: line - 1,
-            cut: text[line_start..start].chars().count(),
+            cut,
         }
     }
 
     pub(crate) fn marked(&self) -> SourceSpan {
         self.marked.clone().into()
     }
+}
+
+/// A text as it is shown, with the place of the same `marked` characters in it. Line ends lose their
+/// carriage return.
+fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
+    let text = text.strip_suffix('\r').unwrap_or(text);
+    let end = marked.end.min(text.len());
+    let is_between = text[..end].ends_with('\r') && text[end..].starts_with('\n');
+    let end = end - usize::from(is_between);
+    let parts = [
+        &text[..marked.start],
+        &text[marked.start..end],
+        &text[end..],
+    ];
+    let [before, mark, after] =
+        parts.map(|part| printable_lines(&part.replace("\r\n", "\n")).into_owned());
+    let place = before.len()..before.len() + mark.len();
+    (before + &mark + &after, place)
 }
 
 /// The last place at or before `offset` where a character begins.
@@ -329,6 +351,17 @@ mod tests {
             (contents.line(), contents.column()),
             (1, start - "first\n".len())
         );
+    }
+
+    #[test]
+    fn an_excerpt_shows_what_a_terminal_would_obey() {
+        let text = "Film \x1b[2J\r\nShape \"\u{202e}ab\"\r\nnext\r\n";
+        let start = text.find("\"\u{202e}").unwrap();
+        let excerpt = Excerpt::new(Path::new("a\x07"), text, 2, start..start + 8);
+        assert_eq!(excerpt.name, r"a\u{7}");
+        let lines: Vec<_> = excerpt.text.split('\n').collect();
+        assert_eq!(lines, [r"Film \u{1b}[2J", r#"Shape "\u{202e}ab""#, "next"]);
+        assert_eq!(&excerpt.text[excerpt.marked], r#""\u{202e}ab""#);
     }
 
     #[test]

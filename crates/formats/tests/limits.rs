@@ -3,7 +3,10 @@
 use bidir_formats::image::{self, Format};
 use bidir_formats::pbrt::{LoadOptions, build, load, parse_text};
 use bidir_formats::{Error, ErrorKind, ply};
+use flate2::Compression;
+use flate2::write::{GzEncoder, ZlibEncoder};
 use std::fs;
+use std::io::Write;
 
 #[track_caller]
 fn check(error: &Error, kind: ErrorKind, words: &str) {
@@ -32,22 +35,44 @@ fn check_size(world: &str) {
 
 #[track_caller]
 fn check_image(format: Format, bytes: &[u8]) {
-    let error = image::decode(format, bytes, None).expect_err("too short");
-    check(&error, ErrorKind::Data, "too short for");
+    let error = image::decode(format, bytes, None).expect_err("too large");
+    check(&error, ErrorKind::Limit, "too large for a file of");
 }
 
-/// A PNG of 20000 × 20000 grey pixels, as far as its header goes.
-fn large_png() -> Vec<u8> {
-    let mut header = b"IHDR".to_vec();
-    header.extend([20000_u32.to_be_bytes(); 2].concat());
-    header.extend([8, 0, 0, 0, 0]);
+/// A chunk of a PNG.
+fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let named = [&name[..], data].concat();
     let mut crc = flate2::Crc::new();
-    crc.update(&header);
-    let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
-    png.extend(header);
-    png.extend(crc.sum().to_be_bytes());
-    png.extend(b"\0\0\0\x10IDAT");
+    crc.update(&named);
+    let length = (data.len() as u32).to_be_bytes();
+    [&length[..], &named, &crc.sum().to_be_bytes()].concat()
+}
+
+/// A PNG whose rows are all black, as far as its header goes and a part of its rows.
+fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) -> Vec<u8> {
+    let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
+    let header = [&size[..], &[depth, color, 0, 0, 0]].concat();
+    let channels = if color == 2 { 3 } else { 1 };
+    let row = 1 + (width as usize * channels * usize::from(depth)).div_ceil(8);
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(&vec![0; rows * row]).unwrap();
+    let mut png = b"\x89PNG\r\n\x1a\n".to_vec();
+    png.extend(chunk(b"IHDR", &header));
+    png.extend(chunk(b"PLTE", &[0, 0, 0, 255, 255, 255]));
+    png.extend(chunk(b"IDAT", &encoder.finish().unwrap()));
+    png.extend(chunk(b"IEND", &[]));
     png
+}
+
+/// A WebP without loss whose pixels are all the same: each takes no bit.
+fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
+    let size = (width - 1) | (height - 1) << 14;
+    // No transformation, no cache, and for each channel a code of one symbol.
+    let codes = [0x28, 0x59, 0xc9, 0x4a, 0xd6, 0xff, 0];
+    let pixels = [&[0x2f][..], &size.to_le_bytes(), &codes].concat();
+    let mut webp = b"RIFF\x18\0\0\0WEBPVP8L\x0c\0\0\0".to_vec();
+    webp.extend(pixels);
+    webp
 }
 
 /// An EXR whose windows are larger than its pixels.
@@ -67,8 +92,11 @@ fn large_exr() -> Vec<u8> {
 
 #[test]
 fn images_do_not_claim_what_they_cannot_hold() {
-    check_image(Format::Png, &large_png());
+    check_image(Format::Png, &black_png([12000, 12000], [8, 2], 1));
     check_image(Format::Exr, &large_exr());
+    check_image(Format::WebP, &grey_webp([8000; 2]));
+    let small = image::decode(Format::WebP, &grey_webp([640, 480]), None).unwrap();
+    assert_eq!([small.width, small.height], [640, 480]);
     let mut tga = [0; 18];
     (tga[2], tga[13], tga[15], tga[16]) = (10, 0x20, 0x20, 24);
     check_image(Format::Tga, &tga);
@@ -84,6 +112,18 @@ fn images_that_pack_well_are_read() {
     assert!(png.len() < 100_000, "{}", png.len());
     let image = image::decode(Format::Png, &png, None).unwrap();
     assert_eq!([image.width, image.height], [2000; 2]);
+}
+
+/// A row of 1-bit pixels takes an eighth of the bytes that it is decoded to.
+#[test]
+fn small_files_of_few_colours_are_read_and_cut_ones_refused() {
+    let png = black_png([1024, 1024], [1, 3], 1024);
+    assert!(png.len() < 400, "{}", png.len());
+    let image = image::decode(Format::Png, &png, None).unwrap();
+    assert_eq!([image.width, image.height, image.channels], [1024, 1024, 3]);
+    let cut = black_png([1024, 1024], [1, 3], 1000);
+    let error = image::decode(Format::Png, &cut, None).unwrap_err();
+    check(&error, ErrorKind::Data, "broken image");
 }
 
 #[test]
@@ -123,24 +163,79 @@ fn warnings_of_many_kinds_are_one() {
     assert_eq!(warnings[200].count, 300);
 }
 
-/// Three texts of which each includes the next a hundred times, by names that differ.
-#[test]
-fn texts_are_not_included_again_and_again() {
+/// The limit that a text runs into which includes another so many times, which does the same with a
+/// third.
+#[track_caller]
+fn check_inclusions(times: [usize; 2], leaf: &str, words: &str) {
     let folder = tempfile::tempdir().unwrap();
-    let including = |name: &str| {
-        let names = (0..100).map(|i| format!("Include \"{}{name}\"\n", "./".repeat(i)));
+    let including = |name: &str, times: usize| {
+        let names = (0..times).map(|i| format!("Include \"{}{name}\"\n", "./".repeat(i % 100)));
         names.collect::<String>()
     };
-    let comment = format!("#{}\n", "x".repeat(1 << 20));
-    for (name, text) in [
-        ("a.pbrt", format!("WorldBegin\n{}", including("b.pbrt"))),
-        ("b.pbrt", including("c.pbrt")),
-        ("c.pbrt", comment),
-    ] {
+    let top = format!("WorldBegin\n{}", including("b.pbrt", times[0]));
+    let middle = including("c.pbrt", times[1]);
+    for (name, text) in [("a.pbrt", &*top), ("b.pbrt", &middle), ("c.pbrt", leaf)] {
         fs::write(folder.path().join(name), text).unwrap();
     }
     let error = load(&folder.path().join("a.pbrt"), &LoadOptions::default()).unwrap_err();
-    check(&error, ErrorKind::Limit, "included repeatedly");
+    check(&error, ErrorKind::Limit, words);
+    assert!(error.line().is_some());
+}
+
+#[test]
+fn texts_are_not_included_again_and_again() {
+    let comment = format!("#{}\n", "x".repeat(1 << 20));
+    check_inclusions([100, 100], &comment, "bytes that are included again");
+    check_inclusions([257, 257], "", "included more than 65536 times");
+    let directives = "ReverseOrientation\n".repeat(1000);
+    check_inclusions([20, 20], &directives, "stand for more than");
+    let parameters = "\"bool b\"true".repeat(1000);
+    let light = format!("AreaLightSource \"\" {parameters}\n");
+    check_inclusions([40, 30], &light, "parameters");
+}
+
+#[test]
+fn packed_texts_are_not_endless() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.pbrt.gz");
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    encoder.write_all(b"WorldBegin\n").unwrap();
+    encoder.write_all(&vec![b' '; 20 << 20]).unwrap();
+    fs::write(&path, encoder.finish().unwrap()).unwrap();
+    let error = load(&path, &LoadOptions::default()).unwrap_err();
+    check(&error, ErrorKind::Limit, "unpack to more than");
+    assert!(error.hint().is_some());
+}
+
+/// Levels of subdivision, patches and places take few bytes for many triangles.
+#[test]
+fn few_bytes_do_not_stand_for_many_primitives() {
+    let check_built = |world: &str, words: &str| {
+        let description = parse_text("s", &format!("WorldBegin\n{world}")).expect("it parses");
+        let error = build(&description, &LoadOptions::default()).expect_err("too much");
+        check(&error, ErrorKind::Limit, words);
+    };
+    let fan = "\"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0 -1 1 0 -1 0 0 -1 -1 0] \
+        \"integer indices\" [0 1 2 0 2 3 0 3 4 0 4 5 0 5 6]";
+    let levels = format!("Shape \"loopsubdiv\" \"integer levels\" 10 {fan}");
+    check_built(&levels, "more than 41");
+    let patches = "0 1 2 3 ".repeat(12_000);
+    check_built(
+        &format!(
+            "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \
+             \"integer indices\" [{patches}]"
+        ),
+        "primitives or vertices",
+    );
+    let places = "ObjectInstance \"o\" ".repeat(4);
+    let lamp = format!(
+        "AreaLightSource \"diffuse\" \"float power\" 1 \
+         Shape \"loopsubdiv\" \"integer levels\" 7 {fan}"
+    );
+    check_built(
+        &format!("ObjectBegin \"o\" {lamp} ObjectEnd {places}"),
+        "shapes, counted at each place",
+    );
 }
 
 #[test]

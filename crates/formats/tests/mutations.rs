@@ -7,6 +7,8 @@
 
 extern crate bidir_formats as formats;
 
+#[path = "../../../fuzz/src/check.rs"]
+mod check;
 #[path = "../../../fuzz/src/inputs.rs"]
 mod inputs;
 #[path = "../../../fuzz/src/mutation.rs"]
@@ -16,7 +18,7 @@ use std::path::Path;
 
 fn check(target: &str, rounds: u64, read: fn(&[u8])) {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
-    mutation::check(&seeds.join(target), rounds, read);
+    check::check(&seeds.join(target), rounds, read);
 }
 
 #[test]

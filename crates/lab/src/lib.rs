@@ -32,4 +32,5 @@ pub mod report;
 pub mod results;
 pub mod sample;
 mod scenes;
+mod seal;
 pub mod statistics;

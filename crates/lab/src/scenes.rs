@@ -131,6 +131,7 @@ pub(crate) fn spec(name: &str, path: PathBuf, reference: ReferenceSpec) -> Scene
         path,
         size: None,
         reference,
+        places: [None, None],
     }
 }
 

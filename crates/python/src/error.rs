@@ -1,22 +1,31 @@
 //! Errors as exceptions: the classes are those of `bidir.errors`.
 
-use formats::ErrorKind;
+use formats::{ErrorKind, printable};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// An exception of `bidir.errors` with a message, and with attributes that are told by name.
+/// An exception of `bidir.errors` with a [`printable`] message, as nothing else is between it and a
+/// terminal, and with attributes that are told by name.
 fn exception(py: Python<'_>, class: &str, message: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
+    let message = printable(message);
     let made = py
         .import("bidir.errors")
         .and_then(|module| module.getattr(class))
-        .and_then(|class| class.call((message,), Some(attributes)));
+        .and_then(|class| class.call((&*message,), Some(attributes)));
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
 /// An exception of `bidir.errors` that has a message alone.
 pub(crate) fn raise(py: Python<'_>, class: &str, message: &str) -> PyErr {
     exception(py, class, message, &PyDict::new(py))
+}
+
+/// A text as a terminal may have it.
+#[pyfunction]
+#[pyo3(name = "printable")]
+pub(crate) fn printable_text(text: &str) -> String {
+    printable(text).into_owned()
 }
 
 /// Where something is wrong, and what to do about it.
@@ -84,9 +93,9 @@ pub(crate) fn of_experiment(py: Python<'_>, error: &lab::experiment::ExperimentE
     let details = Details {
         message: fault.map_or(&message, |fault| &fault.message),
         hint: error.hint(),
-        file: fault.map(|fault| fault.file.as_path()),
-        line: fault.map(|fault| fault.line),
-        column: fault.map(|fault| fault.column),
+        file: fault.map(|fault| fault.place.file.as_path()),
+        line: fault.map(|fault| fault.place.line),
+        column: fault.map(|fault| fault.place.column),
     };
     detailed(py, "ExperimentError", &text, &details)
 }

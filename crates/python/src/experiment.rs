@@ -122,7 +122,7 @@ impl Experiment {
         machine: Option<&str>,
         hear: Option<Py<PyAny>>,
     ) -> PyResult<(Option<String>, String)> {
-        let setup = setup(py, folder, restart, machine)?;
+        let setup = self.setup(py, folder, restart, machine)?;
         let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
         let outcome = wait(py, tell, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
@@ -149,7 +149,7 @@ impl Experiment {
         machine: &str,
         hear: Option<Py<PyAny>>,
     ) -> PyResult<Option<Prepared>> {
-        let setup = setup(py, folder, restart, Some(machine))?;
+        let setup = self.setup(py, folder, restart, Some(machine))?;
         let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
         let prepared = wait(py, tell, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
@@ -157,6 +157,21 @@ impl Experiment {
         })?;
         let prepared = prepared.map_err(|error| of_experiment(py, &error))?;
         Ok(prepared.map(Prepared))
+    }
+}
+
+impl Experiment {
+    /// Where it runs; the results do not replace the description.
+    fn setup(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        restart: bool,
+        machine: Option<&str>,
+    ) -> PyResult<Setup> {
+        let checked = experiment::check_description(&self.file, &folder);
+        checked.map_err(|error| of_experiment(py, &error))?;
+        setup(py, folder, restart, machine)
     }
 }
 

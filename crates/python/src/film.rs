@@ -1,18 +1,36 @@
 //! Films: exact sums, and pictures made of them.
 
 use crate::error::{of_file, raise};
+use crate::scene::Scene;
 use crate::wait::beside;
 use bidir::film::{LayerImage, PassSet, Picture};
-use formats::film::{FilmFile, FilmHeader, counts_by_name, decode, encode, metadata, read, write};
+use formats::film::{
+    FilmFile, FilmHeader, counts_by_name, decode, encode, is_film, metadata, read, write,
+};
 use formats::image::{ExrImage, ExrLayer, Format, write_exr, write_png};
+use formats::outputs::{self, Output};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 /// The exact sums of some passes of a render, with whose they are.
 #[pyclass(frozen, module = "bidir._bidir")]
-pub(crate) struct Film(FilmFile);
+pub(crate) struct Film {
+    file: FilmFile,
+    inputs: Inputs,
+}
+
+/// The files that were read for a film, by absolute names: its outputs do not replace them.
+pub(crate) type Inputs = BTreeSet<PathBuf>;
+
+/// Names that stay right where the working directory changes.
+pub(crate) fn absolute(paths: impl IntoIterator<Item = PathBuf>) -> Inputs {
+    let paths = paths.into_iter();
+    paths
+        .map(|path| std::path::absolute(&path).unwrap_or(path))
+        .collect()
+}
 
 /// Ranges of passes, each with its exclusive end.
 pub(crate) fn ranges(passes: &PassSet) -> Vec<(u64, u64)> {
@@ -42,13 +60,31 @@ type Developed<'py> = (
 );
 
 impl Film {
-    pub(crate) fn new(header: FilmHeader, film: bidir::film::Film) -> Self {
+    pub(crate) fn new(header: FilmHeader, film: bidir::film::Film, inputs: Inputs) -> Self {
         let header = header.of(&film);
-        Self(FilmFile { header, film })
+        Self {
+            file: FilmFile { header, film },
+            inputs,
+        }
     }
 
     pub(crate) fn file(&self) -> &FilmFile {
-        &self.0
+        &self.file
+    }
+
+    pub(crate) fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// Fails where `path` is one of these files.
+    fn check_apart<'a>(
+        py: Python<'_>,
+        inputs: impl Iterator<Item = &'a PathBuf>,
+        path: &Path,
+    ) -> PyResult<()> {
+        let output = Output { path, flag: None };
+        let checked = outputs::check(inputs.map(PathBuf::as_path), &[output]);
+        checked.map_err(|error| of_file(py, &error))
     }
 }
 
@@ -58,52 +94,60 @@ impl Film {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let file = beside(py, || read(&path));
-        file.map(Self).map_err(|error| of_file(py, &error))
+        let file = file.map_err(|error| of_file(py, &error))?;
+        let inputs = absolute([path]);
+        Ok(Self { file, inputs })
     }
 
-    /// Reads the bytes of a film file.
+    /// Reads the bytes of a film file, which may be a film of `scene`.
     #[staticmethod]
-    fn from_bytes(py: Python<'_>, data: &[u8]) -> PyResult<Self> {
+    #[pyo3(signature = (data, scene=None))]
+    fn from_bytes(py: Python<'_>, data: &[u8], scene: Option<&Scene>) -> PyResult<Self> {
         let file = beside(py, || decode(data));
-        file.map(Self).map_err(|error| of_file(py, &error))
+        let file = file.map_err(|error| of_file(py, &error))?;
+        let inputs = scene.map(|scene| scene.inputs.clone()).unwrap_or_default();
+        Ok(Self { file, inputs })
     }
 
     /// The bytes of a film file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let encoded = beside(py, || encode(&self.0.header, &self.0.film));
+        let encoded = beside(py, || encode(&self.file.header, &self.file.film));
         let encoded = encoded.map_err(|error| of_file(py, &error))?;
         Ok(PyBytes::new(py, &encoded))
     }
 
-    /// Writes a film file.
+    /// Writes a film file; it may replace one that it is made of.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let written = beside(py, || write(&path, &self.0.header, &self.0.film));
+        let others = self.inputs.iter().filter(|input| !is_film(input));
+        Self::check_apart(py, others, &path)?;
+        let written = beside(py, || write(&path, &self.file.header, &self.file.film));
         written.map_err(|error| of_file(py, &error))
     }
 
     /// The film of both.
     fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
         let merged = beside(py, || {
-            let (a, b) = (&self.0, &other.0);
+            let (a, b) = (&self.file, &other.file);
             if let Some(difference) = a.header.difference(&b.header) {
                 return Err(format!("films of different renders: {difference}"));
             }
             let mut film = a.film.clone();
             film.merge(&b.film).map_err(|error| error.to_string())?;
-            Ok(Self::new(a.header.joined(&b.header), film))
+            let inputs = &self.inputs | &other.inputs;
+            Ok(Self::new(a.header.joined(&b.header), film, inputs))
         });
         merged.map_err(|message| raise(py, "FilmError", &message))
     }
 
     /// Whether both have the same passes of the same render, bit for bit.
     fn equals(&self, py: Python<'_>, other: &Self) -> bool {
-        let (a, b) = (&self.0, &other.0);
+        let (a, b) = (&self.file, &other.file);
         a.header.identity == b.header.identity && beside(py, || a.film == b.film)
     }
 
     /// The picture and the images beside it.
     fn develop<'py>(&self, py: Python<'py>) -> PyResult<Developed<'py>> {
-        let film = &self.0.film;
+        let film = &self.file.film;
         let (picture, layers) = beside(py, || (film.develop(), film.develop_layers()));
         let layers = layers.into_iter().map(|layer| {
             let data = bytes(py, &layer.data)?;
@@ -119,7 +163,8 @@ impl Film {
 
     /// Writes the picture: with its layers and attributes to EXR, alone to PNG.
     fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let film = &self.0.film;
+        Self::check_apart(py, self.inputs.iter(), &path)?;
+        let film = &self.file.film;
         let written = match Format::of(&path) {
             Some(Format::Exr) => beside(py, || {
                 let (picture, layers) = (film.develop(), film.develop_layers());
@@ -144,43 +189,43 @@ impl Film {
     /// The passes, each range with its exclusive end.
     #[getter]
     fn passes(&self) -> Vec<(u64, u64)> {
-        ranges(self.0.film.passes())
+        ranges(self.file.film.passes())
     }
 
     /// The hash of everything that the bits depend on but the passes.
     #[getter]
     fn identity(&self) -> &str {
-        &self.0.header.identity
+        &self.file.header.identity
     }
 
     /// What the identity is made of, by name.
     #[getter]
     fn settings(&self) -> BTreeMap<String, String> {
-        self.0.header.settings.clone()
+        self.file.header.settings.clone()
     }
 
     /// The name of the scene file.
     #[getter]
     fn scene(&self) -> String {
-        self.0.header.scene_name()
+        self.file.header.scene_name()
     }
 
     /// How the number of passes was decided.
     #[getter]
     fn stopping(&self) -> &'static str {
-        self.0.header.stopping.name()
+        self.file.header.stopping.name()
     }
 
     /// The time that rendering took.
     #[getter]
     fn seconds(&self) -> f64 {
-        self.0.header.seconds
+        self.file.header.seconds
     }
 
     /// What was counted, by name.
     #[getter]
     fn counts(&self) -> BTreeMap<String, u64> {
-        let counts = counts_by_name(&self.0.header).into_iter();
+        let counts = counts_by_name(&self.file.header).into_iter();
         let counts = counts.filter_map(|(name, count)| Some((name, count.parse().ok()?)));
         counts.collect()
     }
@@ -188,18 +233,18 @@ impl Film {
     /// The relative error of the picture.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
-        beside(py, || self.0.film.develop().relative_error())
+        beside(py, || self.file.film.develop().relative_error())
     }
 }
 
 impl Film {
     fn write_exr(
         &self,
-        path: &std::path::Path,
+        path: &Path,
         picture: &Picture,
         layers: &[LayerImage],
     ) -> formats::Result<()> {
-        let settings = self.0.film.settings();
+        let settings = self.file.film.settings();
         let (min, max) = (settings.crop.min, settings.crop.max);
         let own = ExrLayer {
             name: "",
@@ -216,7 +261,7 @@ impl Film {
             resolution: settings.resolution.map(|side| side as usize),
             crop: [min[0], min[1], max[0], max[1]].map(|edge| edge as usize),
             layers: &all,
-            metadata: &metadata(&self.0.header),
+            metadata: &metadata(&self.file.header),
         };
         write_exr(path, &image)
     }

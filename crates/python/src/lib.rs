@@ -29,6 +29,8 @@ mod _bidir {
     #[pymodule_export]
     use super::cluster::{Prepared, machine, render_block};
     #[pymodule_export]
+    use super::error::printable_text;
+    #[pymodule_export]
     use super::experiment::Experiment;
     #[pymodule_export]
     use super::film::Film;
@@ -50,6 +52,8 @@ mod _bidir {
         let metrics = lab::metric::Metric::NAMES.map(|(name, _)| name);
         module.add("METRICS", metrics.to_vec())?;
         let layers = bidir::film::Aov::NAMES.map(|(name, _)| name);
-        module.add("LAYERS", layers.to_vec())
+        module.add("LAYERS", layers.to_vec())?;
+        let most = bidir::film::Layers::MOST_STRATEGY_VERTICES;
+        module.add("MOST_STRATEGY_VERTICES", most)
     }
 }

@@ -1,6 +1,7 @@
 //! Scenes.
 
 use crate::error::of_file;
+use crate::film::{Inputs, absolute};
 use crate::settings;
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
@@ -23,6 +24,8 @@ pub(crate) struct Scene {
     warnings: Vec<String>,
     summary: Summary,
     files: Vec<PathBuf>,
+    /// The files on the disk that it reads or names.
+    pub(crate) inputs: Inputs,
 }
 
 /// Names of one file, and its bytes.
@@ -86,6 +89,7 @@ impl Scene {
             warnings: loaded.warnings,
             summary: loaded.summary,
             files: loaded.files,
+            inputs: absolute(loaded.inputs),
         })
     }
 

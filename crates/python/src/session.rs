@@ -1,7 +1,7 @@
 //! Renders that go pass by pass.
 
 use crate::error::raise;
-use crate::film::Film;
+use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Wanted, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
@@ -27,6 +27,8 @@ struct State {
     header: FilmHeader,
     /// That of the films that were gone on from.
     earlier: Option<FilmHeader>,
+    /// The files that were read for the scene and for films that were gone on from.
+    inputs: Inputs,
     /// What rendering took since the film was taken.
     time: Duration,
     /// Whether the rays of training are in a film that was taken.
@@ -120,6 +122,7 @@ impl Session {
                 header,
                 session,
                 earlier: None,
+                inputs: scene.inputs.clone(),
                 time: begin.elapsed(),
                 is_training_told: false,
             }),
@@ -145,6 +148,7 @@ impl Session {
     /// Goes on from a film of the same render.
     fn add_film(&self, py: Python<'_>, film: &Film) -> PyResult<()> {
         let added = self.with(py, |state| {
+            let inputs = film.inputs();
             let FilmFile { header, film } = film.file();
             if let Some(difference) = state.header.difference(header) {
                 return Err(format!("the film of another render: {difference}"));
@@ -153,6 +157,7 @@ impl Session {
             added.map_err(|error| error.to_string())?;
             let earlier = state.earlier.take();
             state.earlier = Some(earlier.map_or(header.clone(), |other| other.joined(header)));
+            state.inputs.extend(inputs.iter().cloned());
             Ok(())
         });
         added.map_err(|message| raise(py, "FilmError", &message))
@@ -167,7 +172,7 @@ impl Session {
                 ..state.header()
             };
             let film = state.session.film().try_clone()?;
-            Ok(Film::new(header, film))
+            Ok(Film::new(header, film, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
     }
@@ -179,7 +184,7 @@ impl Session {
             let (film, _) = state.session.take_film()?;
             (state.earlier, state.time) = (None, Duration::ZERO);
             state.is_training_told = true;
-            Ok(Film::new(header, film))
+            Ok(Film::new(header, film, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
     }

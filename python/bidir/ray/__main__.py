@@ -10,6 +10,7 @@ import warnings
 
 import bidir
 import bidir.ray
+from bidir import _bidir
 
 
 def _arguments() -> argparse.Namespace:
@@ -26,7 +27,7 @@ def _arguments() -> argparse.Namespace:
 
 
 def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    print(_bidir.printable(text), file=sys.stderr, flush=True)
 
 
 def main() -> int:

@@ -232,7 +232,7 @@ def _hearing(
 
     def hear(kind: str, text: str, done: int, of: int) -> None:
         if kind == "warning":
-            warnings.warn(text, stacklevel=4)
+            warnings.warn(_bidir.printable(text), stacklevel=4)
         elif progress is not None and kind != "render":
             progress(f"{kind} {text}".strip(), done, of)
 

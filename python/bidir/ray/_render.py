@@ -205,7 +205,7 @@ class RenderWork:
             self._lose(part.ranges)
             return
         self._losses = 0
-        self._keeper.add(Film.from_bytes(data))
+        self._keeper.add(Film(_bidir.Film.from_bytes(data, self._scene._native)))
 
     def _lose(self, ranges: Iterable[range]) -> None:
         """Render passes again whose films were lost with the nodes that had them."""

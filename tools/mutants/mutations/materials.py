@@ -37,7 +37,7 @@ MATERIALS = [
         "crates/bidir/src/bsdf/coated_diffuse.rs",
         "rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())",
         "rho * all_orders(rho * trip) * INV_PI",
-        unit("a_varnish_scatters"),
+        unit("a_varnish_reflects"),
     ),
     (
         "directions within a lacquer without their Jacobian",
@@ -51,7 +51,21 @@ MATERIALS = [
         "crates/bidir/src/bsdf/coat/mod.rs",
         "1.0 / (1.0 - x.min(0.9999))",
         "1.0 + 0.0 * x",
-        unit("a_varnish_scatters"),
+        unit("a_varnish_reflects"),
+    ),
+    (
+        "light thrown back within a layer absorbed on one way only",
+        "crates/bidir/src/bsdf/coat/filled.rs",
+        "part * left(w.z) * left(back.z)",
+        "part * left(w.z)",
+        unit("a_varnish_reflects"),
+    ),
+    (
+        "what a layer scatters before it reaches the base forgotten",
+        "crates/bidir/src/bsdf/coated_diffuse.rs",
+        "if !self.thrown.is_black() {",
+        "if false && !self.thrown.is_black() {",
+        unit("a_layer_that_scatters_reflects"),
     ),
     (
         "a pane with one reflection",

@@ -174,6 +174,13 @@ PATHS = [
         analytic("a_closed_sphere"),
     ),
     (
+        "pairs of long subpaths that do not count for those left out",
+        "crates/bidir/src/integrator/pairs.rs",
+        "Some((1.0 / prob) as f32)",
+        "Some(1.0)",
+        unit("pairs::tests"),
+    ),
+    (
         "proposals that forget their uniform part",
         "crates/bidir/src/path/proposals.rs",
         "part / all as f64 + (1.0 - part) * gamma / of_cell as f64",

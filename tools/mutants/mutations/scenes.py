@@ -1,8 +1,30 @@
 """Faults in what scenes are made of, in random numbers and in rays."""
 
-from .tests import unit
+from .tests import ESTIMATORS, layers, reader, unit
 
 SCENES = [
+    # --- where a scene is rendered --------------------------------------------------------
+    (
+        "distant scenes are rendered where they are",
+        "crates/formats/src/space.rs",
+        "_ if is_far(centre, half) => rounded(centre, half),",
+        "_ if is_far(centre, half) => DVec3::ZERO,",
+        ("bidir-formats", ESTIMATORS, "places::far_away"),
+    ),
+    (
+        "intensities keep the unit of the world",
+        "crates/bidir/src/scene/space.rs",
+        "(f64::from(intensity) / (self.unit * self.unit)) as f32",
+        "(f64::from(intensity) / self.unit) as f32",
+        reader("tests::places"),
+    ),
+    (
+        "positions are those of the space that is rendered in",
+        "crates/bidir/src/driver/features.rs",
+        "point: space.world_point(surface.point).as_vec3(),",
+        "point: surface.point,",
+        layers("layers::plane"),
+    ),
     # --- scattering models ----------------------------------------------------------------
     (
         "eta squared forgotten",

@@ -3,8 +3,8 @@
 //! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) (f_m(wo', wi') / η² + M) [1/sr], with
 //! f_m the metal's own reflection for an index relative to the layer's, between directions that a
 //! smooth interface refracts. A rough interface, which scatters what it refracts, broadens the facets
-//! of f_m as variances of slopes add [Belcour18, §4], and T is scaled so that as much leaves as walks
-//! between both surfaces say.
+//! of f_m as variances of slopes add [Belcour18, §4]; T and A are such that as much leaves as walks between
+//! both surfaces say, and f_m is a little brighter, as facets meet light more steeply than it has them.
 //!
 //! M is what the metal reflects more than once, between whiles thrown back by the interface. It is
 //! E(wo) E(wi) / (π Ē) · Σ_k m_k F̄^k, k ≥ 2, as if it had forgotten where it came from
@@ -14,23 +14,25 @@
 //!
 //! Light that the layer scatters (ϖ > 0) goes on as if it had not been.
 
-use super::coat::{Coat, Curve, Layer, Reflections, all_orders, seen_through};
+use super::coat::{
+    Coat, Curve, Layer, METAL_SHAPES, MetalCoat, Reflections, all_orders, seen_through,
+};
 use super::microfacet::Ggx;
 use super::{BsdfSample, Filling, fresnel, same_hemisphere};
-use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
+use crate::math::{INV_PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
 /// A dielectric layer over metal; both sides of the surface look alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedConductor {
-    coat: Coat,
+    coat: MetalCoat,
     metal: CoatedMetal,
-    /// E.
-    trapped: Curve,
-    /// Σ_k m_k F̄^k / (π Ē).
+    /// e.
+    trapped: Curve<METAL_SHAPES>,
+    /// Ē Σ_k m_k F̄^k.
     multiple: Spectrum,
-    /// ∫ E M cosθ dω of the brightest lane.
-    escape: f32,
+    /// How much more steeply than in closed form light meets the metal when it is reflected once.
+    steepness: f32,
 }
 
 /// A metal under a layer.
@@ -72,23 +74,25 @@ impl CoatedConductor {
     ) -> Self {
         let (layer, reflections) = tables;
         let absorption = filling.absorption();
-        let coat = Coat::over_metal(layer, reflections, ggx, absorption);
+        let crossing = (absorption, reflections.length);
+        let coat = Coat::new(layer, ggx, reflections.ratio, crossing);
         let metal = CoatedMetal {
             ggx: seen_through(metal.ggx, ggx, coat.eta()),
             ..metal
         };
-        // Metals reflect much the same from all but grazing directions.
-        let average = metal.fresnel(0.7);
-        let trip = absorption.map(|depth| libm::expf(-depth * layer.path));
+        let [cosine, deviation] = reflections.cosine;
+        let steep = metal.fresnel((cosine - deviation).max(0.0));
+        let average = (steep + metal.fresnel((cosine + deviation).min(1.0))) * 0.5;
+        let trip = absorption.map(|depth| libm::expf(-depth * reflections.path));
         let multiple = average.zip(trip, |average, trip| {
-            reflections.remaining(average, trip) * INV_PI / reflections.mean
+            reflections.mean * reflections.remaining(average, trip)
         });
         Self {
             coat,
             metal,
-            trapped: reflections.part,
+            trapped: reflections.shape,
             multiple,
-            escape: multiple.max_lane() * PI * reflections.mean,
+            steepness: reflections.steepness,
         }
     }
 
@@ -116,14 +120,25 @@ impl CoatedConductor {
         let Some(inner) = self.coat.refracted(w) else {
             return [coat, Spectrum::ZERO, Spectrum::ZERO];
         };
-        let once = self.metal.fresnel(inner.z.abs()) * sqr(self.coat.transmittance(w));
-        let trapped = Spectrum::splat(self.trapped_part(w) * self.escape);
+        let once = self.once_fresnel(inner.z.abs(), fresnel::schlick(w.z.abs()))
+            * sqr(self.coat.transmittance(w));
+        let trapped = self.multiple * self.trapped_part(w);
         [coat, once, trapped]
     }
 
+    /// E(w) / Ē.
     #[inline]
     fn trapped_part(&self, w: Vec3) -> f32 {
-        self.trapped.at(w.z.abs()).clamp(0.0, 1.0)
+        (1.0 - self.coat.reflectance(w)) * self.trapped.at(w.z.abs()).max(0.0)
+    }
+
+    /// The metal's reflectance of what it reflects once, at a facet of cosine `cos`, along directions of
+    /// mean (1-μ)⁵ `grazing`.
+    #[inline]
+    fn once_fresnel(&self, cos: f32, grazing: f32) -> Spectrum {
+        let more = self.steepness * grazing;
+        let fresnel = self.metal.fresnel(cos);
+        fresnel.map(|part| part + (1.0 - part) * more)
     }
 
     /// The probabilities of drawing from each lobe. None: nothing is scattered.
@@ -155,8 +170,9 @@ impl CoatedConductor {
         };
         let (facets, cos) = self.metal.ggx.mirror(inner_o, inner_i);
         let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
-        let once = self.metal.fresnel(cos) * (facets * through / sqr(self.coat.eta()));
-        let trapped = self.multiple * (self.trapped_part(wo) * self.trapped_part(wi));
+        let grazing = (fresnel::schlick(wo.z.abs()) + fresnel::schlick(wi.z.abs())) * 0.5;
+        let once = self.once_fresnel(cos, grazing) * (facets * through / sqr(self.coat.eta()));
+        let trapped = self.multiple * (self.trapped_part(wo) * self.trapped_part(wi) * INV_PI);
         coat + (once + trapped) * self.coat.attenuation(wo, wi)
     }
 
@@ -228,7 +244,7 @@ impl CoatedConductor {
         let coated = |eta, coat: f32, metal: [f32; 2], thickness| {
             let (ggx, facets) = (Ggx::new(coat, coat), Ggx::new(metal[0], metal[1]));
             let (layer, alpha) = (Layer::new(eta, coat), facets.mean_alpha());
-            let reflections = Reflections::new(&layer, [coat, alpha]);
+            let reflections = Reflections::new(&layer, alpha, thickness);
             let filling = Filling {
                 thickness,
                 albedo: Spectrum::splat(0.0),

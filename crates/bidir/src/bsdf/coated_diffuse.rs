@@ -1,15 +1,15 @@
-//! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) A(wo) A(wi) ρ Σ_k (ρ r)^k / (π η²), 1/sr: varnish,
-//! plastic, polished wood.
+//! f = F D G₂ / (4 |cosθ_o cosθ_i|) + T(wo) T(wi) (A(wo) A(wi) ρ Σ_k (ρ R)^k / (π η²) + M(wo, wi)),
+//! 1/sr: varnish, plastic, polished wood.
 //!
-//! The base is Lambertian, so light that the interface throws back comes to it as any diffuse light
-//! does: each round trip leaves the part ρ r of it, r = R̄ exp(-τ l) with R̄ and the mean path l of
-//! [`Layer`]. The sum over all k is 1 / (1 - ρ r): pbrt-v4's random walk in closed form
-//! [PBRT4, §14.3], without its limit of events.
+//! The base is Lambertian, so light that interface and filling throw back comes to it as any diffuse
+//! light does: each round trip leaves the part ρ R of it ([`Filled`]). The sum over all k is
+//! 1 / (1 - ρ R): pbrt-v4's random walk in closed form [PBRT4, §14.3], without its limit of events.
 //!
-//! A layer that scatters with albedo ϖ absorbs the optical depth τ (1-ϖ), and lies as a diffuser over
-//! the base: that is an approximation, exact for ϖ = 0 and where nothing is absorbed.
+//! Light that scatters within the layer and leaves without having reached the base has
+//! M = Ē e(wo) e(wi) / π, as if it had forgotten where it came from: its energy is right from every
+//! direction, its distribution an approximation. So the reflectance is exact, up to tables.
 
-use super::coat::{Coat, Layer, all_orders};
+use super::coat::{Coat, Curve, Filled, LENGTHS, Layer, RATIOS, SHAPES, Slab, all_orders};
 use super::microfacet::Ggx;
 use super::{BsdfSample, same_hemisphere};
 use crate::math::{INV_PI, PI, Vec2, Vec3, sqr, warp};
@@ -18,11 +18,17 @@ use crate::spectrum::Spectrum;
 /// A dielectric layer over a diffuse base; both sides of the surface look alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatedDiffuse {
-    coat: Coat,
-    /// ρ / (π η² (1 - ρ r)).
+    coat: Coat<RATIOS, LENGTHS>,
+    /// ρ / (π η² (1 - ρ R)).
     base: Spectrum,
-    /// ∫ T cosθ dω: what of the base leaves the layer.
+    /// Ē.
+    thrown: Spectrum,
+    /// e.
+    shape: Curve<SHAPES>,
+    /// ∫ T cosθ dω: what of the base leaves a clear layer.
     escape: f32,
+    /// About the part of entering light that leaves again, by the brightest lane.
+    bright: f32,
 }
 
 /// What fills a layer.
@@ -42,52 +48,60 @@ impl Filling {
     pub(crate) fn absorption(&self) -> Spectrum {
         self.albedo.map(|albedo| self.thickness * (1.0 - albedo))
     }
-
-    /// The reflectance of a base of `reflectance` under the part that scatters: a layer that throws
-    /// back R of diffuse light and lets 1 - R through shows R + (1-R)² ρ / (1 - R ρ).
-    #[inline]
-    fn cover(&self, reflectance: Spectrum) -> Spectrum {
-        reflectance.zip(self.albedo, |rho, albedo| {
-            // Diffuse light crosses 2τ on average, and half of what scatters evenly turns back.
-            let depth = (1.0 - self.g) * self.thickness * albedo;
-            let back = depth / (1.0 + depth);
-            back + sqr(1.0 - back) * rho / (1.0 - back * rho).max(1e-6)
-        })
-    }
 }
 
 impl CoatedDiffuse {
-    /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`.
-    pub fn new(layer: &Layer, ggx: Ggx, filling: &Filling, reflectance: Spectrum) -> Self {
-        let absorption = filling.absorption();
-        let coat = Coat::new(layer, ggx, absorption);
-        let trips = absorption.map(|depth| layer.internal * libm::expf(-depth * layer.path));
-        let base = filling.cover(reflectance).zip(trips, |rho, trip| {
+    /// A base of `reflectance` under an interface of `ggx`, tabulated as `layer`; `filled` has the
+    /// tables of each lane.
+    pub fn new(layer: &Layer, ggx: Ggx, filled: &[Filled; 4], reflectance: Spectrum) -> Self {
+        let lanes = |value: fn(&Filled) -> f32| Spectrum(filled.each_ref().map(value));
+        let mean = if filled.iter().all(|lane| lane == &filled[0]) {
+            filled[0]
+        } else {
+            Filled::mixed(filled.iter().map(|&lane| (0.25, lane)))
+        };
+        let crossing = (lanes(|lane| lane.depth), mean.length);
+        let coat = Coat::new(layer, ggx, layer.ratio, crossing);
+        let trips = lanes(|lane| lane.internal);
+        let base = reflectance.zip(trips, |rho, trip| {
             rho * all_orders(rho * trip) * INV_PI / sqr(coat.eta())
         });
-        Self {
+        let unlit = Self {
             coat,
             base,
+            thrown: lanes(|lane| lane.thrown),
+            shape: mean.shape,
             escape: PI * layer.transmitted,
+            bright: 0.0,
+        };
+        Self {
+            bright: unlit.entering_albedo(Vec3::Z).max_lane(),
+            ..unlit
         }
     }
 
-    /// True where the base is black under a smooth coat: a Dirac distribution alone.
+    /// True where nothing below a smooth coat scatters: a Dirac distribution alone.
     #[inline]
     pub(super) fn is_delta(&self) -> bool {
-        self.coat.is_smooth() && self.base.is_black()
+        self.coat.is_smooth() && self.is_black_within()
     }
 
     #[inline]
-    fn base_albedo(&self, w: Vec3) -> Spectrum {
-        self.base * (self.coat.transmittance(w) * self.escape)
+    fn is_black_within(&self) -> bool {
+        self.base.is_black() && self.thrown.is_black()
+    }
+
+    /// About the part that leaves again of light that entered along `w`.
+    #[inline]
+    fn entering_albedo(&self, w: Vec3) -> Spectrum {
+        self.base * self.escape * self.coat.attenuation(w, Vec3::Z) + self.thrown
     }
 
     #[inline]
     pub(super) fn albedo(&self, wo: Vec3) -> Spectrum {
         let coat = Spectrum::splat(self.coat.reflectance(wo));
-        let unfilled = self.base_albedo(wo) * self.coat.attenuation(wo, Vec3::Z);
-        (coat + unfilled).map(|lane| lane.min(1.0))
+        let within = self.entering_albedo(wo) * self.coat.transmittance(wo);
+        (coat + within).map(|lane| lane.min(1.0))
     }
 
     /// The probability of drawing from the interface. It depends on |cosθ| alone, so that a mirrored
@@ -95,7 +109,7 @@ impl CoatedDiffuse {
     #[inline]
     fn coat_prob(&self, w: Vec3) -> f32 {
         let coat = self.coat.reflectance(w);
-        let base = self.base_albedo(w).max_lane();
+        let base = self.coat.transmittance(w) * self.bright;
         if coat > 0.0 {
             coat / (coat + base)
         } else {
@@ -109,8 +123,16 @@ impl CoatedDiffuse {
             return Spectrum::ZERO;
         }
         let through = self.coat.transmittance(wo) * self.coat.transmittance(wi);
-        let base = self.base * self.coat.attenuation(wo, wi) * through;
-        Spectrum::splat(self.coat.eval(wo, wi)) + base
+        let mut within = self.base * self.coat.attenuation(wo, wi);
+        if !self.thrown.is_black() {
+            within += self.thrown * (INV_PI * self.thrown_shape(wo) * self.thrown_shape(wi));
+        }
+        Spectrum::splat(self.coat.eval(wo, wi)) + within * through
+    }
+
+    #[inline]
+    fn thrown_shape(&self, w: Vec3) -> f32 {
+        self.shape.at(w.z.abs()).max(0.0)
     }
 
     #[inline]
@@ -130,7 +152,7 @@ impl CoatedDiffuse {
         }
         let prob = self.coat_prob(wo);
         let wi = if u_lobe >= prob {
-            if self.base.is_black() {
+            if self.is_black_within() {
                 return None;
             }
             let wi = warp::cosine_hemisphere(u);
@@ -149,29 +171,31 @@ impl CoatedDiffuse {
     }
 
     pub(super) fn examples() -> impl Iterator<Item = (&'static str, Self)> {
-        let coated = |eta, [x, y]: [f32; 2], thickness, albedo| {
+        let coated = |eta, [x, y]: [f32; 2], thickness, albedo: [f32; 4]| {
             let ggx = Ggx::new(x, y);
-            let filling = Filling {
-                thickness,
-                albedo: Spectrum::splat(albedo),
-                g: 0.3,
-            };
+            let layer = Layer::new(eta, ggx.mean_alpha());
+            let filled = Slab::new(&layer, thickness, 0.3).tables(&layer, &albedo);
             let reflectance = Spectrum([0.9, 0.5, 0.05, 1.0]);
             Self::new(
-                &Layer::new(eta, ggx.mean_alpha()),
+                &layer,
                 ggx,
-                &filling,
+                &std::array::from_fn(|i| filled[i]),
                 reflectance,
             )
         };
+        let clear = [0.0; 4];
         [
-            ("coated diffuse smooth", coated(1.5, [0.0; 2], 0.01, 0.0)),
-            ("coated diffuse, thick", coated(1.3, [0.0; 2], 0.7, 0.0)),
-            ("coated diffuse sharp", coated(1.5, [0.1; 2], 0.01, 0.0)),
-            ("coated diffuse rough", coated(1.5, [0.4; 2], 0.3, 0.8)),
+            ("coated diffuse smooth", coated(1.5, [0.0; 2], 0.01, clear)),
+            ("coated diffuse, thick", coated(1.3, [0.0; 2], 0.7, clear)),
+            ("coated diffuse sharp", coated(1.5, [0.1; 2], 0.01, clear)),
+            ("coated diffuse rough", coated(1.5, [0.4; 2], 0.3, [0.8; 4])),
+            (
+                "coated diffuse, coloured haze",
+                coated(1.5, [0.0; 2], 1.0, [0.2, 0.9, 1.0, 0.0]),
+            ),
             (
                 "coated diffuse anisotropic",
-                coated(1.8, [0.5, 0.2], 0.0, 0.0),
+                coated(1.8, [0.5, 0.2], 0.0, clear),
             ),
         ]
         .into_iter()

@@ -23,6 +23,13 @@ pub fn dielectric(cos_i: f32, eta: f32) -> f32 {
     (sqr(parallel) + sqr(perpendicular)) / 2.0
 }
 
+/// Schlick's weight (1-μ)⁵ [Schlick94, eq. 15].
+#[inline]
+pub fn schlick(cos: f32) -> f32 {
+    let x = (1.0 - cos).clamp(0.0, 1.0);
+    sqr(sqr(x)) * x
+}
+
 /// The reflectance of a conductor with index `eta + i·k` against vacuum, lane by lane
 /// [Lagarde13, "Fresnel term of conductors"].
 #[inline]

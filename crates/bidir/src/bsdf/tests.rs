@@ -5,6 +5,7 @@ mod densities;
 mod energy;
 mod identities;
 mod layers;
+mod simulation;
 
 use super::{Bsdf, TransportMode};
 use crate::math::{Vec2, Vec3, sin_cos};

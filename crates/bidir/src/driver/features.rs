@@ -110,14 +110,15 @@ impl FirstSurface {
 
     fn new(context: &PathContext<'_>, surface: &Vertex) -> Self {
         let (wo, n_s) = (surface.wo, surface.shading.z);
+        let space = context.scene.space();
         let albedo = surface.bsdf.albedo(surface.shading.to_local(wo));
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
         Self {
             albedo: context.scene.color().to_rgb(albedo, &context.wavelengths),
-            point: surface.point,
+            point: space.world_point(surface.point).as_vec3(),
             n_g: toward_camera(surface.n_g),
             n_s: toward_camera(n_s),
-            depth: context.scene.camera().depth(surface.point),
+            depth: space.world_length(context.scene.camera().depth(surface.point)),
         }
     }
 }

@@ -11,6 +11,7 @@ mod deposit;
 mod features;
 mod replay;
 mod session;
+mod spread;
 mod threads;
 mod training;
 mod variance;
@@ -18,7 +19,7 @@ mod variance;
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
 pub use threads::{Shortage, Threads, stand_alone, start_pool};
-pub use training::{Plan, Training};
+pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 
 use crate::film::{Film, FilmError, Layers};

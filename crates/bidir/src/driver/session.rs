@@ -4,14 +4,17 @@
 
 mod group;
 mod handle;
+mod order;
 
 pub use handle::SceneHandle;
+
+use order::Order;
 
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
 use super::threads::{Shortage, Threads, Workers};
 use super::training::prepare;
-use super::{Progress, Replay, Resources, SessionError, Settings, Training};
+use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
 use crate::path::{Connections, PathContext};
@@ -69,6 +72,7 @@ pub struct Session<'a> {
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
     film: Film,
+    order: Order,
     /// No pass before this one is rendered.
     first_pass: u64,
     buffer: PassBuffer,
@@ -88,6 +92,18 @@ impl<'a> Session<'a> {
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
+        Self::with_effort(scene, settings, resources, Effort::Whole)
+    }
+
+    /// The same with training of some effort, on which the bits of the image depend.
+    ///
+    /// Errors: as [`Self::new`].
+    pub fn with_effort(
+        scene: impl Into<SceneHandle<'a>>,
+        settings: Settings,
+        resources: &Resources,
+        effort: Effort<'_>,
+    ) -> Result<Self, SessionError> {
         let scene = scene.into();
         if let Some(lost) = no_path(settings.integrator, &settings.path) {
             let strategies = settings.path.strategies.to_string();
@@ -98,13 +114,15 @@ impl<'a> Session<'a> {
         let buffer = PassBuffer::new(scene.film(), film.layers())?;
         let workers = Workers::start(Threads::new(resources.threads));
         let threads = workers.count();
-        let (settings, training) = workers.install(|| prepare(&scene, settings));
+        let (settings, training) = workers.install(|| prepare(&scene, settings, effort));
         let rule = selector(&settings, training.as_ref());
         let integrator = settings.integrator.integrator(rule, &settings.lvc);
+        let order = workers.install(|| Order::new(scene.film().crop, &*integrator));
         Ok(Self {
             scene,
             settings,
             integrator,
+            order,
             training,
             film,
             first_pass: 0,
@@ -201,20 +219,20 @@ impl<'a> Session<'a> {
             if let Some(shared) = shared {
                 self.walk_light(shared, begin..end, pass, workspace);
             }
-            for pixel in begin..end {
-                self.render_sample(pixel, pass, workspace, progress);
+            for place in begin..end {
+                self.render_sample(place, pass, workspace, progress);
             }
             progress.advance(end - begin);
         }
     }
 
-    /// Where the contributions of a sample of `pixel` go.
-    fn deposit<'d>(&'d self, context: &'d PathContext<'d>, pixel: u64) -> Deposit<'d> {
+    /// Where the contributions of the sample at `place` go.
+    fn deposit<'d>(&'d self, context: &'d PathContext<'d>, place: u64) -> Deposit<'d> {
         Deposit {
             context,
             layers: self.film.layers(),
             buffer: &self.buffer,
-            pixel: pixel as usize,
+            pixel: self.order.pixel(place),
         }
     }
 
@@ -240,33 +258,33 @@ impl<'a> Session<'a> {
     /// Takes a sample, and keeps what it found.
     fn render_sample(
         &self,
-        pixel: u64,
+        place: u64,
         pass: u64,
         workspace: &mut Workspace,
         progress: &dyn Progress,
     ) {
         workspace.stopwatch.begin_sample();
-        let sample = self.sample(pixel, pass);
+        let sample = self.sample(place, pass);
         let context = self.context(&sample);
         let layers = self.film.layers();
         let before = Meter::read(layers, workspace, progress);
         self.integrator.sample(&context, &sample, workspace);
-        self.deposit(&context, pixel).take(workspace);
+        self.deposit(&context, place).take(workspace);
         if layers.features() > 0 {
             let after = Meter::read(layers, workspace, progress);
             let taken = (&sample, &mut *workspace);
             let features = Features::new(&context, layers, taken, [&before, &after]);
             let values = features.values(layers);
-            self.buffer.set_features(pixel as usize, values);
+            self.buffer.set_features(self.order.pixel(place), values);
         }
         workspace.stopwatch.end(Stage::Film);
     }
 
-    /// Sample number `pixel` (row order of the crop) of a pass, with the light path that goes with it.
-    fn sample(&self, pixel: u64, pass: u64) -> Sample {
+    /// The sample at `place` in the order of a pass, with the light path that goes with it.
+    fn sample(&self, place: u64, pass: u64) -> Sample {
         let film = self.scene.film();
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
-        let [x, y] = film.crop.pixel(pixel as usize);
+        let [x, y] = film.crop.pixel(self.order.pixel(place));
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
         let camera = sampler.stream(Domain::Camera, stream, pass);
         Sample {
@@ -274,20 +292,19 @@ impl<'a> Session<'a> {
             pixel: [x, y],
             ray: camera,
             camera,
-            light: sampler.member(Domain::Light, pixel / self.samples_per_subpath(), pass),
+            light: sampler.member(Domain::Light, place / self.samples_per_subpath(), pass),
         }
     }
 
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
-        let index = self.scene.film().crop.index(x, y)?;
-        let index = index as u64;
+        let place = self.order.place(self.scene.film().crop.index(x, y)?);
         let mut workspace = Workspace::with_journal();
-        let sample = self.sample(index, pass);
+        let sample = self.sample(place, pass);
         let context = self.context(&sample);
         let shared = self.integrator.shared_light();
-        let light = shared.and_then(|s| self.replay_light(s, index, pass, &mut workspace));
+        let light = shared.and_then(|s| self.replay_light(s, place, pass, &mut workspace));
         self.integrator.sample(&context, &sample, &mut workspace);
         let light = light.map(|light| workspace.add_light(light));
         let selector = selector(&self.settings, self.training.as_ref());

@@ -2,6 +2,7 @@
 
 use super::journal::Counted;
 use super::light::{lens_vertex, light_image};
+use super::pairs::Pairs;
 use super::workspace::own_light_vertices;
 use super::{Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
@@ -112,9 +113,10 @@ pub(super) fn light_images(context: &PathContext<'_>, sample: &Sample, workspace
     }
 }
 
-/// s ≥ 1 and t ≥ 2: evaluates every connection, before visibility.
+/// s ≥ 1 and t ≥ 2: evaluates the connections, before visibility.
 #[inline(never)]
 fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
+    let mut pairs = Pairs::new(context, &sample.camera);
     for t in 2..=workspace.camera.vertices.len() {
         let y = &workspace.camera.vertices[t - 1];
         if y.is_delta() {
@@ -127,8 +129,14 @@ fn gather_candidates(context: &PathContext<'_>, sample: &Sample, workspace: &mut
             .len()
             .min(context.settings.max_vertices() - t);
         for s in context.settings.light_point.first_walked()..=longest {
-            let strategy = Strategy::new(s, t);
-            candidate(context, sample, workspace, strategy, LightVertex::Own);
+            if let Some(share) = pairs.take(s + t) {
+                let connected = Connected {
+                    strategy: Strategy::new(s, t),
+                    light_vertex: LightVertex::Own,
+                    share,
+                };
+                candidate(context, sample, workspace, connected);
+            }
         }
     }
 }
@@ -153,13 +161,12 @@ pub(super) fn next_events(
         };
         let light_vertex = LightVertex::NextEvent(workspace.next_events.len() as u32);
         workspace.next_events.push(x0);
-        candidate(
-            context,
-            sample,
-            workspace,
-            Strategy::new(1, t),
+        let connected = Connected {
+            strategy: Strategy::new(1, t),
             light_vertex,
-        );
+            share: 1.0,
+        };
+        candidate(context, sample, workspace, connected);
     }
 }
 
@@ -181,15 +188,28 @@ fn light_point(
     Some(x0)
 }
 
-/// Evaluates the connection (s, t), and offers it for selection.
+/// A pair of vertices that is connected.
+#[derive(Clone, Copy)]
+struct Connected {
+    strategy: Strategy,
+    light_vertex: LightVertex,
+    /// How much it counts.
+    share: f32,
+}
+
+/// Evaluates a connection, and offers it for selection.
 fn candidate(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
-    strategy: Strategy,
-    light_vertex: LightVertex,
+    connected: Connected,
 ) {
-    if let Some(term) = connection(context, workspace, strategy, light_vertex) {
+    let Connected {
+        strategy,
+        light_vertex,
+        ..
+    } = connected;
+    if let Some(term) = connection(context, workspace, connected) {
         let link = |workspace: &Workspace| Link::Connection(workspace.ends(strategy, light_vertex));
         let counted = workspace.count(term, link);
         offer(context, sample, workspace, &counted, light_vertex);
@@ -218,13 +238,17 @@ pub(super) fn offer(
     }
 }
 
-/// The term of the connection (s, t). None: it is zero.
+/// The term of a connection. None: it is zero.
 fn connection(
     context: &PathContext<'_>,
     workspace: &mut Workspace,
-    strategy: Strategy,
-    light_vertex: LightVertex,
+    connected: Connected,
 ) -> Option<Term> {
+    let Connected {
+        strategy,
+        light_vertex,
+        share,
+    } = connected;
     let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
     if !context.takes(s, t) {
         return None;
@@ -244,7 +268,7 @@ fn connection(
     (contribution != Spectrum::ZERO).then(|| Term {
         strategy,
         light: start,
-        contribution,
+        contribution: contribution * share,
         weight: weights.weight(context, &path),
     })
 }

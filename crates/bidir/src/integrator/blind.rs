@@ -16,6 +16,7 @@ use super::IntegratorKind;
 use crate::camera::Camera;
 use crate::light::Light;
 use crate::material::Material;
+use crate::path::PathSettings;
 use crate::scene::Scene;
 
 /// Light paths of a scene that an estimator does not make, or makes by chance only.
@@ -43,6 +44,44 @@ impl BlindSpot {
                 true
             }
             Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => false,
+        }
+    }
+
+    /// True where it is light of `light` that is not made.
+    pub fn concerns(self, light: &Light) -> bool {
+        match self {
+            Self::Caustics | Self::CausticsSeenBySpecular => light.is_delta(),
+            Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => !light.is_delta(),
+            Self::Sky => matches!(light, Light::Infinite(_)),
+            Self::SeenBySpecular => true,
+        }
+    }
+
+    /// The fewest vertices of these paths.
+    const fn shortest(self) -> usize {
+        match self {
+            Self::Sky => 2,
+            Self::CausticsSeenBySpecular | Self::SeenBySpecular => 3,
+            Self::Caustics | Self::ChanceCaustics => 4,
+            Self::ChanceCausticsSeenBySpecular => 5,
+        }
+    }
+
+    /// The strategies that make these paths, and the estimators that have them, as a clause.
+    pub const fn remedy(self) -> &'static str {
+        match self {
+            Self::Caustics => {
+                "strategy t1 makes these paths, which `light`, `bdpt`, `lvc` and `auto` have"
+            }
+            Self::CausticsSeenBySpecular => {
+                "no strategy makes these paths unless the lights have a size"
+            }
+            Self::SeenBySpecular => {
+                "strategies s0 and s1 make these paths, which `path`, `bdpt`, `lvc` and `auto` have"
+            }
+            Self::Sky | Self::ChanceCaustics | Self::ChanceCausticsSeenBySpecular => {
+                "strategy s0 makes these paths, which `path`, `bdpt`, `lvc` and `auto` have"
+            }
         }
     }
 
@@ -74,31 +113,35 @@ impl BlindSpot {
 pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
     let has_specular = scene.materials_of_surfaces().any(Material::may_be_specular);
-    let of_specular: &[(bool, BlindSpot)] = match integrator {
-        IntegratorKind::Path => &[
-            (true, BlindSpot::Caustics),
-            (false, BlindSpot::ChanceCaustics),
-        ],
+    let spots: &[BlindSpot] = match integrator {
+        IntegratorKind::Path => &[BlindSpot::Caustics, BlindSpot::ChanceCaustics],
         IntegratorKind::Bdpt | IntegratorKind::Lvc | IntegratorKind::Auto => &[
-            (true, BlindSpot::CausticsSeenBySpecular),
-            (false, BlindSpot::ChanceCausticsSeenBySpecular),
+            BlindSpot::CausticsSeenBySpecular,
+            BlindSpot::ChanceCausticsSeenBySpecular,
         ],
-        IntegratorKind::Light => &[],
+        IntegratorKind::Light => &[BlindSpot::SeenBySpecular, BlindSpot::Sky],
     };
-    let has_light = |is_delta| lights.iter().any(|light| light.is_delta() == is_delta);
-    let mut spots: Vec<_> = of_specular
-        .iter()
-        .filter(|(is_delta, _)| has_specular && has_light(*is_delta))
-        .map(|(_, spot)| *spot)
-        .collect();
-    if integrator == IntegratorKind::Light {
-        let has_sky = lights
-            .iter()
-            .any(|light| matches!(light, Light::Infinite(_)));
-        let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
-        spots.extend(has_specular.then_some(BlindSpot::SeenBySpecular));
-        spots.extend((has_sky && is_parallel).then_some(BlindSpot::Sky));
-    }
+    let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
+    let is_there = |spot: &BlindSpot| {
+        let has_surface = if *spot == BlindSpot::Sky {
+            is_parallel
+        } else {
+            has_specular
+        };
+        has_surface && lights.iter().any(|light| spot.concerns(light))
+    };
+    spots.iter().copied().filter(is_there).collect()
+}
+
+/// The light that is missing from images of `integrator` with paths as long as `settings` allow: those of its
+/// [`blind_spots`] that are not made at all.
+pub fn missing_light(
+    scene: &Scene,
+    integrator: IntegratorKind,
+    settings: &PathSettings,
+) -> Vec<BlindSpot> {
+    let mut spots = blind_spots(scene, integrator);
+    spots.retain(|spot| spot.is_missing() && spot.shortest() <= settings.max_vertices());
     spots
 }
 

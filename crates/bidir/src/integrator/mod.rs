@@ -11,12 +11,13 @@ mod blind;
 mod journal;
 mod light;
 mod lvc;
+mod pairs;
 mod path;
 mod workspace;
 
 pub use bdpt::Bdpt;
 pub(crate) use blind::no_path;
-pub use blind::{BlindSpot, LostLight, blind_spots, lost_light};
+pub use blind::{BlindSpot, LostLight, blind_spots, lost_light, missing_light};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::{

@@ -126,6 +126,11 @@ impl AreaLight {
         self.coverage = Some(coverage);
     }
 
+    /// False where all its primitives are degenerate.
+    pub fn has_area(&self) -> bool {
+        self.inverse_area > 0.0
+    }
+
     pub(super) fn power(&self) -> f32 {
         self.sides() * PI * self.primitives.total() as f32 * self.mean
     }

@@ -4,11 +4,12 @@
 //! textures, some for slopes between 0 and 1, and what lies between is interpolated.
 
 use super::{Roughness, unit};
-use crate::bsdf::coat::{Layer, Reflections};
+use crate::bsdf::coat::{Filled, Layer, Reflections, Slab};
 use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling};
 use crate::math::{Vec2, sqr};
 use crate::spectrum::{ColorModel, Wavelengths};
 use crate::texture::{ColorTexture, FloatTexture, Needs, TexturePoint};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A dielectric layer.
@@ -39,9 +40,16 @@ impl CoatSettings {
             g: self.g.eval(at).clamp(-1.0, 1.0),
         }
     }
+
+    fn is_clear(&self) -> bool {
+        match self.albedo {
+            ColorTexture::Constant(albedo) => albedo.iter().all(|&part| part <= 0.0),
+            _ => false,
+        }
+    }
 }
 
-/// Slopes that something was integrated for: increasing.
+/// Values of a parameter that something was integrated for: increasing.
 #[derive(Clone, Debug)]
 struct Axis(Vec<f32>);
 
@@ -60,14 +68,22 @@ impl Axis {
         Self((0..=steps).map(|i| sqr(i as f32 / steps as f32)).collect())
     }
 
-    /// The indices of the slopes on both sides of `alpha`, and where it is between them.
+    /// The value where it is constant; else `nodes`.
+    fn of_texture(texture: &FloatTexture, nodes: impl Iterator<Item = f32>) -> Self {
+        match texture {
+            FloatTexture::Constant(value) => Self(vec![*value]),
+            _ => Self(nodes.collect()),
+        }
+    }
+
+    /// The indices of the values on both sides of `value`, and where it is between them.
     #[inline]
-    fn locate(&self, alpha: f32) -> (usize, usize, f32) {
-        let after = self.0.partition_point(|&node| node < alpha);
+    fn locate(&self, value: f32) -> (usize, usize, f32) {
+        let after = self.0.partition_point(|&node| node < value);
         let (low, high) = (after.saturating_sub(1), after.min(self.0.len() - 1));
         let width = self.0[high] - self.0[low];
         let t = if width > 0.0 {
-            ((alpha - self.0[low]) / width).clamp(0.0, 1.0)
+            ((value - self.0[low]) / width).clamp(0.0, 1.0)
         } else {
             0.0
         };
@@ -99,19 +115,115 @@ impl Layers {
     }
 }
 
+/// Filled layers, by slope, optical depth, mean cosine and albedo of scattering.
+#[derive(Clone, Debug)]
+struct Fillings {
+    depths: Axis,
+    cosines: Axis,
+    albedos: Axis,
+    tables: Arc<[Filled]>,
+}
+
+impl Fillings {
+    fn new(coat: &CoatSettings, layers: &Layers) -> Self {
+        let depths = (0..=8).map(|i| 4.0 * sqr(i as f32 / 8.0));
+        let mut depths = Axis::of_texture(&coat.thickness, depths);
+        depths
+            .0
+            .iter_mut()
+            .for_each(|depth| *depth = depth.max(0.0));
+        let cosines = Axis::of_texture(&coat.g, (-2..=2).map(|i| 0.45 * i as f32));
+        let (cosines, albedos) = if coat.is_clear() {
+            (Axis(vec![0.0]), Axis(vec![0.0]))
+        } else {
+            // Closer where light scatters often.
+            let albedos = (0..=16).map(|i| 1.0 - sqr(1.0 - i as f32 / 16.0));
+            (cosines, Axis(albedos.collect()))
+        };
+        let slabs = layers.layers.iter().flat_map(|layer| {
+            let of_depth = |&depth| cosines.0.iter().map(move |&g| Slab::new(layer, depth, g));
+            let slabs = depths.0.iter().flat_map(of_depth);
+            slabs.map(move |slab| (layer, slab)).collect::<Vec<_>>()
+        });
+        let slabs: Vec<_> = slabs.collect();
+        let tables = slabs
+            .par_iter()
+            .flat_map(|(layer, slab)| slab.tables(layer, &albedos.0));
+        let tables: Vec<_> = tables.collect();
+        Self {
+            depths,
+            cosines,
+            albedos,
+            tables: tables.into(),
+        }
+    }
+
+    /// The tables of each lane, for the slope between two of the layers.
+    fn at(&self, slope: (usize, usize, f32), filling: &Filling) -> [Filled; 4] {
+        if let [only] = *self.tables {
+            return [only; 4];
+        }
+        let depth = self.depths.locate(filling.thickness);
+        let cosine = self.cosines.locate(filling.g);
+        let at = |albedo| self.mixed([slope, depth, cosine, self.albedos.locate(albedo)]);
+        let first = at(filling.albedo[0]);
+        filling.albedo.0.map(|albedo| {
+            if albedo.to_bits() == filling.albedo[0].to_bits() {
+                first
+            } else {
+                at(albedo)
+            }
+        })
+    }
+
+    /// The mean of the tables around a point, which is between two values on each axis.
+    fn mixed(&self, point: [(usize, usize, f32); 4]) -> Filled {
+        let sizes = [
+            self.depths.0.len(),
+            self.cosines.0.len(),
+            self.albedos.0.len(),
+        ];
+        let corner = |number: usize| {
+            let is_high = |axis: usize| number >> axis & 1 == 1;
+            let index = |axis: usize| {
+                if is_high(axis) {
+                    point[axis].1
+                } else {
+                    point[axis].0
+                }
+            };
+            let weight = |axis: usize| {
+                if is_high(axis) {
+                    point[axis].2
+                } else {
+                    1.0 - point[axis].2
+                }
+            };
+            let row = (index(0) * sizes[0] + index(1)) * sizes[1] + index(2);
+            let weight = (0..4).map(weight).product::<f32>();
+            (weight, self.tables[row * sizes[2] + index(3)])
+        };
+        let corners = (0..16).map(corner).filter(|&(weight, _)| weight > 0.0);
+        Filled::mixed(corners)
+    }
+}
+
 /// A diffuse base under a layer.
 #[derive(Clone, Debug)]
 pub struct CoatedDiffuseMaterial {
     pub(super) coat: CoatSettings,
     reflectance: ColorTexture,
     layers: Layers,
+    fillings: Fillings,
 }
 
 impl CoatedDiffuseMaterial {
     /// A base of `reflectance`.
     pub fn new(coat: CoatSettings, reflectance: ColorTexture) -> Self {
+        let layers = Layers::new(&coat);
         Self {
-            layers: Layers::new(&coat),
+            fillings: Fillings::new(&coat, &layers),
+            layers,
             coat,
             reflectance,
         }
@@ -130,8 +242,10 @@ impl CoatedDiffuseMaterial {
         let ggx = self.coat.roughness.ggx(at);
         let filling = self.coat.filling(at, color, wavelengths);
         let reflectance = color.albedo(unit(self.reflectance.eval(at)), wavelengths);
-        let layer = self.layers.at(ggx.mean_alpha());
-        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filling, reflectance))
+        let alpha = ggx.mean_alpha();
+        let layer = self.layers.at(alpha);
+        let filled = self.fillings.at(self.layers.axis.locate(alpha), &filling);
+        Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &filled, reflectance))
     }
 }
 
@@ -152,21 +266,23 @@ impl CoatedConductorMaterial {
     pub fn new(coat: CoatSettings, index: super::ConductorIndex, roughness: Roughness) -> Self {
         let layers = Layers::new(&coat);
         let metal_axis = Axis::of(&roughness);
-        let of_coat = |layer: &Layer, alpha: f32| {
-            let metal = metal_axis.0.iter();
-            let tables = metal.map(|&metal| Reflections::new(layer, [alpha, metal]));
-            tables.collect::<Vec<_>>()
+        // Ways within the layer hardly depend on its depth.
+        let depth = match coat.thickness {
+            FloatTexture::Constant(depth) => depth,
+            _ => 0.1,
         };
-        let coats = layers.layers.iter().zip(&layers.axis.0);
-        let reflections = coats.flat_map(|(layer, &alpha)| of_coat(layer, alpha));
-        let reflections = reflections.collect();
+        let of_coat = |layer| {
+            let metal = metal_axis.0.par_iter();
+            metal.map(move |&metal| Reflections::new(layer, metal, depth))
+        };
+        let reflections: Vec<_> = layers.layers.par_iter().flat_map(of_coat).collect();
         Self {
             coat,
             index,
             roughness,
             layers,
             metal_axis,
-            reflections,
+            reflections: reflections.into(),
         }
     }
 
@@ -238,13 +354,9 @@ mod tests {
         for alpha in [0.05, 0.2, 0.7] {
             let [between, exact] = [layers.at(alpha), Layer::new(eta, alpha)].map(|layer| {
                 let ggx = Ggx::new(alpha, alpha);
-                let filling = Filling {
-                    thickness: 0.0,
-                    albedo: Spectrum::ZERO,
-                    g: 0.0,
-                };
+                let filled = Slab::new(&layer, 0.0, 0.0).tables(&layer, &[0.0])[0];
                 let white = Spectrum::ONE;
-                let bsdf = CoatedDiffuse::new(&layer, ggx, &filling, white);
+                let bsdf = CoatedDiffuse::new(&layer, ggx, &[filled; 4], white);
                 Bsdf::CoatedDiffuse(bsdf).albedo(Vec3::Z)[0]
             });
             assert!((between - exact).abs() < 0.02, "{between} and {exact}");

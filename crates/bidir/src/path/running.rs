@@ -147,11 +147,14 @@ impl RunningSums {
         let links = count * end.is_drawn * possible(!y.went_by_delta);
         let up = end.up(1, reversed.y, drawn_density(context, path.camera));
         let from_drawn = chain(links, share(up), self.camera[t - 1]);
-        let others = chain(
+        let mut others = chain(
             0.0,
             share(end.next_event / f64::from(reversed.z)),
             from_drawn,
         );
+        if t == 1 {
+            others = context.settings.mis.share_of_image(others, 1.0);
+        }
         1.0 / (1.0 + others)
     }
 
@@ -194,7 +197,10 @@ impl RunningSums {
         } else {
             0.0
         };
-        let own = share(context.count(s, t, [path.z(), path.y()]));
+        let mut own = share(context.count(s, t, [path.z(), path.y()]));
+        if s + t == 2 {
+            own = context.settings.mis.share_of_image(own, fewer_light);
+        }
         own / (own + fewer_light + fewer_camera)
     }
 }

@@ -38,6 +38,8 @@ pub enum Purpose {
     Mix,
     /// Which vertices of the light vertex cache a camera vertex is connected with.
     CachedVertex,
+    /// Which vertices of long subpaths are connected (vertex 0 of a camera subpath).
+    Pairs,
 }
 
 /// The address of a random number, or of a pair, within a sample.

@@ -3,7 +3,7 @@
 
 use super::check::{check_crop, check_shape};
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, Scene, Surface, TextureFiltering, clamped_coverage};
+use super::{Presence, RenderSpace, Scene, Surface, TextureFiltering, clamped_coverage};
 use crate::camera::Camera;
 use crate::film::FilmSettings;
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
@@ -100,6 +100,7 @@ impl SceneError {
 #[derive(Debug)]
 pub struct SceneBuilder {
     film: FilmSettings,
+    space: RenderSpace,
     camera: Option<Camera>,
     color: ColorModel,
     shapes: Vec<Shape>,
@@ -122,6 +123,7 @@ impl SceneBuilder {
     pub fn new(film: FilmSettings) -> Self {
         Self {
             film,
+            space: RenderSpace::WORLD,
             camera: None,
             color: ColorModel::default(),
             shapes: Vec::new(),
@@ -136,6 +138,12 @@ impl SceneBuilder {
             group: None,
             isa: accel::Isa::detect(),
         }
+    }
+
+    /// Says in which space the camera, the shapes and the lights are given; by default the world.
+    pub fn space(&mut self, space: RenderSpace) -> &mut Self {
+        self.space = space;
+        self
     }
 
     /// Sets the camera.
@@ -279,6 +287,11 @@ impl SceneBuilder {
         self.lights.len() as u32 - 1
     }
 
+    /// The number of the next light.
+    pub fn next_light(&self) -> u32 {
+        self.lights.len() as u32
+    }
+
     /// Checks everything and builds the acceleration structure.
     pub fn build(self) -> Result<Scene, SceneError> {
         let camera = self.camera.ok_or(SceneError::NoCamera)?;
@@ -301,6 +314,7 @@ impl SceneBuilder {
             .filter(|&i| is_environment(&self.lights[i]))
             .map(|i| i as u32);
         Ok(Scene {
+            space: self.space,
             camera,
             film: self.film,
             color: self.color,

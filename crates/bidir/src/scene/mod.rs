@@ -7,6 +7,7 @@ mod builder;
 mod check;
 mod coverage;
 mod object;
+mod space;
 mod visibility;
 
 pub use accel::Isa;
@@ -16,6 +17,7 @@ pub use builder::{
 pub use coverage::Chances;
 pub(crate) use coverage::clamped_coverage;
 pub use object::ObjectId;
+pub use space::RenderSpace;
 pub use visibility::{SegmentEnd, offset_origin};
 
 use object::Placed;
@@ -88,6 +90,7 @@ pub struct SurfaceHit {
 /// A built scene.
 #[derive(Debug)]
 pub struct Scene {
+    space: RenderSpace,
     camera: Camera,
     film: FilmSettings,
     color: ColorModel,
@@ -114,6 +117,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The space of its camera, shapes and lights.
+    #[inline]
+    pub fn space(&self) -> &RenderSpace {
+        &self.space
+    }
+
     /// The camera.
     #[inline]
     pub fn camera(&self) -> &Camera {

@@ -168,7 +168,20 @@ impl Corners {
     #[inline]
     fn area(&self) -> f32 {
         let [a, b, c] = self.positions;
-        (b - a).cross(c - a).length() / 2.0
+        let area = (b - a).cross(c - a).length() / 2.0;
+        // Beyond these its square leaves the normal numbers of `f32`.
+        if area > 1e-18 && area < 1e18 {
+            area
+        } else {
+            self.extreme_area()
+        }
+    }
+
+    /// The area of a triangle that is very large or small.
+    #[cold]
+    fn extreme_area(&self) -> f32 {
+        let [a, b, c] = self.positions.map(Vec3::as_dvec3);
+        ((b - a).cross(c - a).length() / 2.0) as f32
     }
 
     #[inline]

@@ -140,6 +140,24 @@ mod statistics {
         }
     }
 
+    /// Half of the light of such a room comes by more than 64 vertices: of these paths not all pairs are
+    /// connected, and few samples train.
+    #[test]
+    #[ignore = "statistics: .ci/run statistics"]
+    fn rooms_that_reflect_nearly_all_light_are_as_bright_by_every_estimator() {
+        let scene = closed_sphere_of(builder(8, 0.0), [0.99; 3]);
+        let render = |integrator, passes| {
+            let mut settings = settings(integrator, None);
+            settings.set_integrator(integrator);
+            replicates(&scene, &settings, passes)
+        };
+        let bdpt = render(IntegratorKind::Bdpt, 256);
+        let lvc = render(IntegratorKind::Lvc, 512);
+        check_expectation("bdpt", &bdpt, 1.0);
+        check_expectation("lvc", &lvc, 1.0);
+        check_agree("lvc and bdpt", &lvc, &bdpt, &[WHOLE, 4]);
+    }
+
     #[test]
     #[ignore = "statistics: .ci/run statistics"]
     fn roulette_changes_the_mean_by_less_than_a_thousandth() {

@@ -11,3 +11,4 @@ mod path_identities;
 mod relief;
 mod reproducibility;
 mod running_weights;
+mod seen_directly;

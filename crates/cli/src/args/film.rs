@@ -41,7 +41,8 @@ pub(crate) struct MergeArgs {
     /// Output film file.
     ///
     /// An existing film file is replaced only if the result has all of its passes; any other file is
-    /// left alone.
+    /// left alone. It may be one of the input films: those that were merged into it before are then
+    /// skipped, so the same command can be repeated.
     #[arg(short, long, value_name = "FILE.film", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
     /// Also write the image, .exr or .png.

@@ -108,10 +108,11 @@ fn short(arg: Arg, common: Option<&[&str]>) -> Arg {
     let (Some(common), Some(flag)) = (common, arg.get_long()) else {
         return arg.hide_short_help(is_global);
     };
+    let has_values = arg.get_action().takes_values();
     match common.iter().position(|known| *known == flag) {
         Some(place) => arg
             .help_heading(Resettable::Reset)
-            .hide_possible_values(true)
+            .hide_possible_values(has_values)
             .display_order(place),
         None => arg.hide_short_help(true),
     }

@@ -4,6 +4,7 @@
 use clap::builder::PossibleValue;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
+use formats::printable;
 use lab::experiment::nearest;
 use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
@@ -297,6 +298,8 @@ fn expected(arg: &Arg) -> String {
 
 /// An error as [`crate::console::Console`] writes it.
 fn raw(kind: ErrorKind, message: impl Display, hint: Option<&str>) -> Error {
-    let hint = hint.map(|hint| format!("\nhint: {hint}"));
-    Error::raw(kind, format!("{message}{}\n", hint.unwrap_or_default()))
+    let message = message.to_string();
+    let hint = hint.map(|hint| format!("\nhint: {}", printable(hint)));
+    let hint = hint.unwrap_or_default();
+    Error::raw(kind, format!("{}{hint}\n", printable(&message)))
 }

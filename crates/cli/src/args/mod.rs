@@ -12,6 +12,7 @@ mod mistakes;
 mod reference;
 mod renamed;
 mod render;
+mod shown;
 mod sources;
 mod threads;
 mod tonemap;
@@ -58,6 +59,10 @@ pub(crate) struct Cli {
 impl Cli {
     /// Reads the command line and the environment.
     pub(crate) fn read() -> Result<Self, clap::Error> {
+        Self::parsed().map_err(shown::shown)
+    }
+
+    fn parsed() -> Result<Self, clap::Error> {
         let arguments: Vec<_> = std::env::args_os().collect();
         let mut command = mistakes::accept_negative(command(View::asked(&arguments)));
         let matches = command.try_get_matches_from_mut(&arguments);
@@ -81,7 +86,7 @@ impl Cli {
 }
 
 /// Colour of messages.
-#[derive(Args, Clone, Copy, Debug)]
+#[derive(Args, Clone, Copy, Debug, Default)]
 pub(crate) struct ColorArgs {
     /// Print messages without colour.
     ///
@@ -102,8 +107,8 @@ pub(crate) enum Command {
     /// of pixels.
     ///
     /// Ctrl-C finishes the current pass and writes the image; a second Ctrl-C stops at once, and so does
-    /// the first one before the first pass. With --checkpoint, Ctrl-C ends with exit code 75: the same
-    /// command with --resume continues.
+    /// the first one before the first pass. With --checkpoint, Ctrl-C ends with exit code 75 once the film
+    /// file has a pass: the same command with --resume continues.
     Render(Box<RenderArgs>),
     /// Render a scene in the browser: compare integrators, move the camera, inspect pixels.
     ///
@@ -128,8 +133,9 @@ pub(crate) enum Command {
     /// refused as a reference.
     ///
     /// The folder gets `picture.exr`, the mean of the first estimator with its variance; `against.exr`,
-    /// that of the second; `provenance.json`, with all settings and the result of the test; and `films`,
-    /// which --extend adds samples to. `bidir compare --reference` takes the folder.
+    /// that of the second; `provenance.json`, with all settings, the result of the test and checksums; and
+    /// `films`, which --extend adds samples to. `bidir compare --reference` takes the folder, and refuses
+    /// it if one of the first three files is missing or damaged.
     ///
     /// Ctrl-C finishes the current pass and ends with exit code 75: the same command continues. The bits
     /// are those of an uninterrupted run.

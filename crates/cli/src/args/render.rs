@@ -119,7 +119,9 @@ pub(crate) struct OutputArgs {
     /// Output image: .exr with a .png beside it, or .png [default: the scene's name].
     ///
     /// The default is the file name that the scene gives its film, or else the name of the scene file,
-    /// with the ending .exr, in the current folder. pbrt's spelling --outfile is accepted.
+    /// with the ending .exr, in the current folder. No output of any command replaces a file that the
+    /// command reads or its scene names, by whatever path or link: exit code 4. pbrt's spelling
+    /// --outfile is accepted.
     #[arg(short, long, alias = "outfile", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub(crate) output: Option<PathBuf>,
     /// Write settings, ray counts and timings as JSON.
@@ -251,7 +253,8 @@ pub(crate) struct EstimatorArgs {
     pub(crate) light_start: Option<EmissionKind>,
     /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
     ///
-    /// auto tries 1, 2 and 4.
+    /// auto tries 1, 2 and 4. Where light subpaths are so long that those of a group would fill more than
+    /// about 30 MB, there are fewer.
     #[arg(long, value_name = "K", help_heading = "Shared light subpaths")]
     pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
     /// Sample counts in the MIS weights of shared light subpaths (lvc, auto) [default: expected].
@@ -280,7 +283,8 @@ pub(crate) struct BudgetArgs {
     /// Stop after this time: 90, 90s, 10m, 1h30m.
     ///
     /// Counts training and checkpoints, not loading the scene and writing the image. A pass that would
-    /// not finish in time is not started, but every run renders at least one.
+    /// not finish in time is not started, but every run renders at least one. Training that would take more
+    /// than a second beyond this time is cut short, with a warning: the image has more noise.
     #[arg(long, env = "BIDIR_TIME", value_name = "DURATION")]
     pub(crate) time: Option<Duration>,
     /// Stop at this relative error, such as 0.05.

@@ -12,7 +12,7 @@ use std::path::PathBuf;
     bidir tonemap room.exr -o room.png --operator agx"
 )]
 pub(crate) struct TonemapArgs {
-    /// Image: .exr, .hdr, .pfm, .png, .jpg or .tga.
+    /// Image: .exr, .hdr, .pfm, .png, .jpg, .tga or .webp.
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) image: PathBuf,
     /// Output image, 8-bit sRGB.

@@ -34,7 +34,7 @@ pub(crate) struct ViewArgs {
     /// The image's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
-    /// Stop at this number of samples per pixel [default: unlimited].
+    /// Stop rendering at this number of samples per pixel; the page stays [default: unlimited].
     #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Stopping")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: Option<u64>,

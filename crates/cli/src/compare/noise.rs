@@ -1,5 +1,6 @@
 //! Is a difference noise? Tests of images that know their variances.
 
+use crate::console::Console;
 use crate::exit::Failure;
 use crate::reference;
 use crate::scene_io::{self, Variance};
@@ -29,11 +30,14 @@ impl Noisy {
     }
 
     /// Reads an image, or the folder of a reference.
-    pub(super) fn reference(path: &Path) -> Result<Self, Failure> {
+    pub(super) fn reference(path: &Path, console: Console) -> Result<Self, Failure> {
         if !path.is_dir() {
             return Self::read(path);
         }
         let reference = Reference::load(path).map_err(reference::failure)?;
+        if let Some(warning) = reference.warning() {
+            console.warning(warning);
+        }
         let freedom = reference.estimated().freedom;
         let pixels = reference.variance;
         Ok(Self {

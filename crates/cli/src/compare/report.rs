@@ -7,6 +7,7 @@ use lab::statistics::{Interval, mean_interval};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use std::fmt::Write;
+use std::path::PathBuf;
 
 /// A number by name. None: the sizes differ.
 pub(super) type Number = (&'static str, Option<f64>);
@@ -112,14 +113,28 @@ fn as_map<T: Serialize, S: Serializer>(
     map.end()
 }
 
+/// Refuses images that were compared at different sizes.
+fn check_sizes(comparisons: &[Comparison], files: &[PathBuf]) -> Result<(), Failure> {
+    let sized = comparisons.iter().zip(files);
+    let sized: Vec<_> = sized
+        .filter_map(|(one, file)| Some((file, one.size?)))
+        .collect();
+    let mut pairs = sized.windows(2).map(|pair| (pair[0], pair[1]));
+    let Some(((a, [aw, ah]), (b, [bw, bh]))) = pairs.find(|(a, b)| a.1 != b.1) else {
+        return Ok(());
+    };
+    let (a, b) = (a.display(), b.display());
+    let message =
+        format!("the images differ in size: `{a}` is compared at {aw}x{ah}, `{b}` at {bw}x{bh}");
+    let hint = "the images of one comparison are renders of one film, with seeds of their own";
+    Err(Failure::new(Exit::InputOutput, message).with_hint(hint))
+}
+
 impl Replicates {
-    /// Joins what was found of each image.
-    pub(super) fn of(comparisons: &[Comparison]) -> Result<Self, Failure> {
+    /// Joins what was found of each image, of which these are the files.
+    pub(super) fn of(comparisons: &[Comparison], files: &[PathBuf]) -> Result<Self, Failure> {
+        check_sizes(comparisons, files)?;
         let sizes: Vec<_> = comparisons.iter().filter_map(|one| one.size).collect();
-        if sizes.windows(2).any(|pair| pair[0] != pair[1]) {
-            let message = "the images differ in size: they are not renders of one film";
-            return Err(Failure::new(Exit::InputOutput, message));
-        }
         let spread = |i: usize| {
             let values = comparisons.iter().map(|comparison| comparison.numbers[i].1);
             let values: Vec<f64> = values.collect::<Option<_>>()?;
@@ -249,7 +264,7 @@ mod tests {
     fn several_images_have_a_mean_between_bounds() {
         let comparisons =
             [1.0, 2.0, 3.0, 4.0, 5.0].map(|value| comparison(&[("rmse", Some(value))]));
-        let replicates = Replicates::of(&comparisons).unwrap();
+        let replicates = Replicates::of(&comparisons, &[]).unwrap();
         let json = parsed(&replicates);
         assert_eq!(json["rmse"]["mean"], 3.0);
         // 2.776 · √(2.5 / 5)
@@ -271,7 +286,13 @@ mod tests {
     #[test]
     fn images_of_several_sizes_have_no_mean() {
         let mut comparisons = [1.0, 2.0].map(|value| comparison(&[("rmse", Some(value))]));
-        comparisons[1].size = Some([2, 2]);
-        assert!(Replicates::of(&comparisons).is_err());
+        comparisons[1].size = Some([2, 3]);
+        let files = ["a.exr", "b.exr"].map(PathBuf::from);
+        let failure = Replicates::of(&comparisons, &files).unwrap_err();
+        let (message, _) = failure.message().unwrap();
+        assert!(
+            message.ends_with("`a.exr` is compared at 1x1, `b.exr` at 2x3"),
+            "{message}"
+        );
     }
 }

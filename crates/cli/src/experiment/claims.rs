@@ -1,5 +1,6 @@
 //! Claims as text: verdicts, what was found, tables, and histograms as bars.
 
+use formats::printable;
 use lab::report::table_text;
 use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
 
@@ -11,7 +12,7 @@ pub(super) fn text(claim: &Claim) -> String {
         verdict(claim.verdict),
         claim.source,
         claim.claim,
-        claim.found,
+        printable(&claim.found),
         claim.method
     );
     let figures = claim.tables.iter().map(table_text);

@@ -4,6 +4,7 @@ use crate::args::Duration;
 use crate::console::{Console, Display, say};
 use crate::progress::bar;
 use crate::signals::Signals;
+use formats::printable;
 use indicatif::ProgressBar;
 use lab::experiment::{Event, Observer};
 use std::time::{Duration as Time, Instant};
@@ -66,7 +67,7 @@ impl<'a> Watch<'a> {
         match &mut self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
-                bar.set_message(what.to_owned());
+                bar.set_message(printable(what).into_owned());
                 bar.set_position((part * 1000.0) as u64);
             }
             Channel::Lines(last) => {

@@ -76,3 +76,56 @@ fn what_is_odd_is_warned_of() {
         .expect(6)
         .says("1 warning, which --strict makes an error");
 }
+
+/// A spot through glass: the light of the caustic is missing from the image of `path`.
+#[test]
+fn light_that_is_missed_is_told_when_it_is_rendered() {
+    let place = Workplace::new();
+    let spot = "WorldBegin\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .01\n  \
+                LightSource \"spot\"\nLightSource \"point\" \"rgb I\" [0 0 0]\n";
+    let glass = crate::common::SCENE.replace("WorldBegin", spot);
+    let before = glass
+        .split("LightSource \"spot\"")
+        .next()
+        .unwrap_or_default();
+    let line = before.lines().count();
+    place.write("glass.pbrt", &glass);
+    let render = |flags: &str| {
+        let command = format!("render glass.pbrt --size 12x8 --spp 1 {flags}");
+        place.run(&command).expect(0).stderr
+    };
+    let missed = format!(
+        "warning: `path` misses caustics of point, spot, distant and hidden lights (L S+ D), here of the \
+         spot light at glass.pbrt:{line}:15 and 2 other lights; strategy t1 makes these paths, which `light`, \
+         `bdpt`, `lvc` and `auto` have\n"
+    );
+    let dark = format!(
+        "warning: glass.pbrt:{}:13: the point light has no power",
+        line + 1
+    );
+    let path = render("--integrator path");
+    assert_eq!(path.matches(&missed).count(), 1, "{path}");
+    assert_eq!(path.matches(&dark).count(), 1, "{path}");
+    // Paths of one scattering event are no caustics.
+    let short = render("--integrator path --max-depth 1");
+    assert!(!short.contains("misses"), "{short}");
+    for (integrator, says) in [
+        (
+            "bdpt",
+            "no strategy makes these paths unless the lights have a size",
+        ),
+        ("light", "strategies s0 and s1 make these paths"),
+    ] {
+        let told = render(&format!("--integrator {integrator}"));
+        assert!(
+            told.contains(&format!("warning: `{integrator}` misses")),
+            "{told}"
+        );
+        assert!(told.contains(says), "{told}");
+    }
+    let strict = "render glass.pbrt --spp 1 --strict --integrator path";
+    place
+        .run(strict)
+        .expect(6)
+        .says("2 warnings, which --strict");
+}

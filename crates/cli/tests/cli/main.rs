@@ -14,6 +14,7 @@ mod help;
 mod info;
 mod layers;
 mod means;
+mod outputs;
 mod progress;
 #[cfg(unix)]
 mod readme;
@@ -22,6 +23,8 @@ mod render;
 mod replay;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod terminal;
 mod tev;
 mod tonemap;
 #[cfg(unix)]

@@ -176,9 +176,24 @@ fn stale_and_damaged_references_are_refused() {
     place.write("a.reference/provenance.json", &json[..json.len() / 2]);
     let image = "compare a.reference/picture.exr --reference a.reference";
     place.run(image).expect(4).says("provenance.json: damaged");
-    let older = json.replace("\"estimator_version\": ", "\"estimator_version\": 9");
-    place.write("a.reference/provenance.json", &older);
+    let mut older: Value = serde_json::from_str(&json).unwrap();
+    // As before there were checksums.
+    older.as_object_mut().unwrap().remove("checksum");
+    older["format"] = 1.into();
+    place.write("a.reference/provenance.json", &older.to_string());
+    place
+        .run(image)
+        .expect(0)
+        .says("warning: a.reference: of a version without checksums");
+    older["estimator_version"] = 9.into();
+    place.write("a.reference/provenance.json", &older.to_string());
     place.run(image).expect(6).says("stale: made by version");
+    place.write("a.reference/provenance.json", &json);
+    fs::remove_file(place.path("a.reference/against.exr")).unwrap();
+    place
+        .run(image)
+        .expect(4)
+        .says("against.exr: damaged: it is missing");
     fs::remove_file(place.path("a.reference/provenance.json")).unwrap();
     let hint = "hint: make one with `bidir reference`";
     place

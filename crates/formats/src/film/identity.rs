@@ -16,8 +16,12 @@ use std::time::Duration;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The setting that is known after training only.
 const TRAINED_MEAN: &str = "trained-mean";
+/// Whether training was cut short: known after it, too, and named only where it was.
+const TRAINING: &str = "training";
 /// What `auto` renders with: known after training, too.
 const PLAN: &str = "plan";
+/// The value of [`TRAINING`].
+const SHORT: &str = "short";
 
 /// The scene that a film is of.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +62,9 @@ impl SceneIdentity<'_> {
         if let Some(training) = training {
             let mean = format!("{:e}", training.mean_luminance);
             settings.insert(TRAINED_MEAN.to_owned(), mean);
+            if training.is_short {
+                settings.insert(TRAINING.to_owned(), SHORT.to_owned());
+            }
             let plan = training
                 .plan
                 .map(|plan| (PLAN.to_owned(), plan.to_string()));
@@ -76,11 +83,16 @@ fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
     FilmHeader::new(&program(), name.to_owned(), settings)
 }
 
+/// True where the training of that render was cut short.
+pub fn is_short(header: &FilmHeader) -> bool {
+    header.settings.contains_key(TRAINING)
+}
+
 /// The same before training: what can be compared before it.
 #[must_use]
 pub fn untrained(header: &FilmHeader) -> FilmHeader {
     let mut settings = header.settings.clone();
-    for name in [TRAINED_MEAN, PLAN] {
+    for name in [TRAINED_MEAN, TRAINING, PLAN] {
         settings.remove(name);
     }
     new(&header.scene, settings)

@@ -38,13 +38,13 @@ mod tests;
 
 pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
-pub use identity::{SceneIdentity, counts_by_name, metadata, of_run, program, untrained};
+pub use identity::{SceneIdentity, counts_by_name, is_short, metadata, of_run, program, untrained};
 pub use layers::{LayerNames, StrategyImagesName};
 pub use settings::{SettingsText, has_influence, name_of, renamed, settings_from_flags};
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file;
+use crate::{file, limits};
 use bidir::driver::Resources;
 use bidir::film::{Film, Layers};
 use block::Packed;
@@ -56,8 +56,6 @@ use std::path::Path;
 const MAGIC: &[u8; 8] = b"BIDIRFLM";
 const END: &[u8; 8] = b"BIDIREND";
 const VERSION: u32 = 3;
-/// Bytes of a file.
-const LARGEST_FILE: u64 = 1 << 36;
 /// Bytes of a film: what the memory of a render has room for.
 const LARGEST_FILM: u64 = Resources::DEFAULT_FILM_MEMORY;
 /// Blocks that are packed at once: no more of them are in memory twice.
@@ -100,7 +98,7 @@ pub fn is_film(path: &Path) -> bool {
 ///
 /// Errors: it cannot be read, or is no whole film file of this version.
 pub fn read(path: &Path) -> Result<FilmFile> {
-    let bytes = bytes::read_or_stdin(path, LARGEST_FILE)?;
+    let bytes = bytes::read_or_stdin(path, limits::LARGEST_FILM)?.bytes;
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 

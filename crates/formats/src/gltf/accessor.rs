@@ -4,10 +4,8 @@ use super::document::Document;
 use super::json::Accessor;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
+use crate::limits::MOST_ZEROS;
 use std::ops::Range;
-
-/// The most components of an accessor that has no bytes of its own, and so no bound by them.
-const MOST_ZEROS: usize = 1 << 22;
 
 /// A type of component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,15 +132,19 @@ impl<'a> Layout<'a> {
     /// All components of all values in one row.
     fn read(&self, document: &Document) -> Result<Vec<f64>, GltfFault> {
         let count = self.accessor.count;
+        let components = count.saturating_mul(self.components);
         let mut values = match self.accessor.buffer_view {
             Some(view) => self.read_dense(document, view)?,
-            None if count.saturating_mul(self.components) > MOST_ZEROS => {
+            None if components > MOST_ZEROS => {
                 let message = format!(
                     "{count} elements of zeros exceed the limit of {MOST_ZEROS} components"
                 );
                 return Err(self.place.fault(ErrorKind::Limit, message));
             }
-            None => vec![0.0; count * self.components],
+            None => {
+                document.count_components(components, &self.place)?;
+                vec![0.0; components]
+            }
         };
         self.read_sparse(document, &mut values)?;
         if self.accessor.normalized {
@@ -167,6 +169,7 @@ impl<'a> Layout<'a> {
         };
         let range = wanted.range(bytes.len(), &self.place)?;
         let bytes = &bytes[range];
+        document.count_components(self.accessor.count * self.components, &self.place)?;
         let at = |i: usize| &bytes[i * stride..i * stride + size];
         let of_value = |value: &[u8], i: usize| {
             let start = self.offset_of(i);

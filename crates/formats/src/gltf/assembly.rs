@@ -1,22 +1,31 @@
 //! From the structures of a file to a scene.
 
 use super::document::{Context, Document};
-use super::material::{Built, Materials};
+use super::material::{Built as BuiltMaterial, Materials};
 use super::mesh::Surface;
 use super::node::Nodes;
+use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{light, mesh, view};
 use crate::error::ErrorKind;
+use crate::lamp::{self, Placed};
+use crate::limits;
 use crate::pbrt::Summary;
-use bidir::light::{InfiniteLight, Light};
-use bidir::math::Vec3;
+use crate::precision::{self, VertexError, VertexErrors};
+use crate::space::{Layout, Survey};
+use bidir::light::Light;
+use bidir::math::Affine3A;
 use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// The most places of shared meshes.
-const MOST_INSTANCES: usize = 1 << 24;
+/// A scene that was built, with where its lamps are in the file.
+pub(super) struct Built {
+    pub(super) scene: Scene,
+    pub(super) lamps: Vec<Placed<Place>>,
+    pub(super) summary: Summary,
+}
 
 /// A scene in the making.
 pub(super) struct Assembly<'a> {
@@ -27,10 +36,28 @@ pub(super) struct Assembly<'a> {
     /// The places of the shapes in the file, in the order of addition; of instances likewise.
     shape_places: Vec<Place>,
     instance_places: Vec<Place>,
-    /// Of a box around all shapes.
-    corners: [Vec3; 2],
-    most_primitives: u64,
+    /// The same of lamps, with the numbers of their lights.
+    lamps: Vec<Placed<Place>>,
+    /// Of everything in its place, and of each shared object in its own space.
+    survey: Survey,
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<Place>,
+    /// Of all shapes.
+    extent: Extent,
+    most: Most,
+    /// Of all meshes as they are kept.
+    vertices: u64,
+    /// Of all meshes.
+    places: u64,
     summary: Summary,
+}
+
+/// What a scene may have.
+struct Most {
+    /// Primitives, and vertices.
+    primitives: u64,
+    shapes: u64,
+    places: u64,
 }
 
 /// A mesh of the file where a scene has it.
@@ -46,15 +73,47 @@ struct MeshUse<'a> {
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Assembly<'a> {
+    /// Builds the scene that a document shows, in the world or where its layout puts it.
     pub(super) fn build(
         context: &mut Context<'_>,
         document: &'a Document,
-    ) -> Result<(Scene, Summary), GltfFault> {
-        let nodes = Nodes::of(document)?;
+    ) -> Result<Built, GltfFault> {
+        let mut again = context.clone();
+        let mut assembly = Self::gather(context, document)?;
+        assembly.check_vertices()?;
+        let layout = Layout::of(&assembly.survey, &assembly.objects);
+        if layout != Layout::default() {
+            drop(assembly);
+            again.layout = layout;
+            document.start_counting(&again);
+            *context = again;
+            assembly = Self::gather(context, document)?;
+        }
+        if let Some((place, message)) = assembly.vertex_errors.warning() {
+            context.warn(&place, message);
+        }
+        assembly.finish(context)
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    fn check_vertices(&self) -> Result<(), GltfFault> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((place, message)) => {
+                let fault = place.fault(ErrorKind::Limit, message);
+                Err(fault.with_hint(precision::HINT))
+            }
+        }
+    }
+
+    /// Reads everything and puts it in its place.
+    fn gather(context: &mut Context<'_>, document: &'a Document) -> Result<Self, GltfFault> {
+        let nodes = Nodes::of(document, context.layout.from_world())?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
         let resolution = film.resolution;
         let mut builder = SceneBuilder::new(film);
+        builder.space(context.layout.space);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
@@ -65,8 +124,18 @@ impl<'a> Assembly<'a> {
             materials: Materials::default(),
             shape_places: Vec::new(),
             instance_places: Vec::new(),
-            corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
-            most_primitives: context.options.most_primitives(),
+            lamps: Vec::new(),
+            survey: Survey::new(view.eye()),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
+            extent: Extent::NONE,
+            most: Most {
+                primitives: context.options.most_primitives(context.reading.stored()),
+                shapes: limits::SHAPES.of(context.reading.stored()),
+                places: limits::INSTANCES.of(context.reading.stored()),
+            },
+            vertices: 0,
+            places: 0,
             summary: Summary::default(),
         };
         if !document.root.animations.is_empty() {
@@ -77,21 +146,30 @@ impl<'a> Assembly<'a> {
             );
         }
         assembly.add_meshes(context)?;
-        assembly.add_lights(context)?;
+        let world_from_camera = view.placed(context, resolution, &assembly.extent);
+        assembly.add_lights(context, &world_from_camera)?;
         assembly.summary.materials = assembly.materials.count();
         assembly.summary.textures = document.root.textures.len();
-        let camera = view.camera(resolution, assembly.corners)?;
-        let Self {
-            mut builder,
-            shape_places,
-            instance_places,
-            summary,
-            ..
-        } = assembly;
-        builder.camera(camera);
-        let scene = builder.build();
-        let scene = scene.map_err(|error| scene_fault(&error, &shape_places, &instance_places))?;
-        Ok((scene, summary))
+        let camera = view.camera(resolution, world_from_camera)?;
+        assembly.builder.camera(camera);
+        Ok(assembly)
+    }
+
+    /// Builds the scene.
+    fn finish(self, context: &mut Context<'_>) -> Result<Built, GltfFault> {
+        let scene = self.builder.build();
+        let scene = scene
+            .map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
+        for (place, lights) in &self.lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(place, message);
+            }
+        }
+        Ok(Built {
+            scene,
+            lamps: self.lamps,
+            summary: self.summary,
+        })
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.
@@ -119,6 +197,7 @@ impl<'a> Assembly<'a> {
                 weights.iter().map(|weight| weight.to_bits()).collect(),
             );
             let places = self.world_places(context, index, &place)?;
+            self.count_places(places.len(), &place)?;
             let of_mesh = uses.entry(key.clone()).or_insert_with(|| {
                 order.push(key);
                 MeshUse {
@@ -142,9 +221,13 @@ impl<'a> Assembly<'a> {
         index: usize,
         place: &Place,
     ) -> Result<Vec<DAffine3>, GltfFault> {
-        let world_from_node = self.nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        let whole = context.layout.from_world();
+        let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
-        let mut places: Vec<_> = local.into_iter().map(|map| world_from_node * map).collect();
+        let mut places: Vec<_> = local
+            .into_iter()
+            .map(|map| render_from_node * map)
+            .collect();
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
@@ -160,17 +243,25 @@ impl<'a> Assembly<'a> {
         mesh: usize,
         of_mesh: &MeshUse<'_>,
     ) -> Result<(), GltfFault> {
-        let mut object = None;
         let is_shared = of_mesh.places.len() > 1;
+        let mut object = None;
+        let mut survey = Survey::new(None);
+        let origin = context.layout.object_origin(self.objects.len());
+        let at_origin = DAffine3::from_translation(-origin);
+        let places = of_mesh.places.iter();
+        let places: Vec<_> = places.map(|map| *map * at_origin.inverse()).collect();
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
+            if let Some(first) = of_mesh.places.first() {
+                self.measure(context, &surface, first, &place);
+            }
             if is_shared && material.emission.is_none() {
                 let object = *object.get_or_insert_with(|| self.builder.object());
-                let shape = surface.place(&DAffine3::IDENTITY, &material.uv, &place)?;
-                self.add_to_object(object, shape, &material, &of_mesh.places, &place)?;
+                let shape = surface.place(&at_origin, (&material.uv, &mut survey), &place)?;
+                self.add_to_object((object, &places), shape, &material, &place)?;
                 continue;
             }
             for map in &of_mesh.places {
-                let shape = surface.place(map, &material.uv, &place)?;
+                let shape = surface.place(map, (&material.uv, &mut self.survey), &place)?;
                 self.add_to_world(shape, &material, &place)?;
             }
         }
@@ -178,14 +269,14 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         self.summary.instances += of_mesh.places.len();
-        if self.summary.instances > MOST_INSTANCES {
-            let message = format!("the scene has more than {MOST_INSTANCES} mesh instances");
-            return Err(of_mesh.node.1.fault(ErrorKind::Limit, message));
-        }
-        for map in &of_mesh.places {
-            self.builder.instance(object, *map);
+        for map in places {
+            if let Some(corners) = survey.corners() {
+                self.survey.include_box(corners, &map);
+            }
+            self.builder.instance(object, map);
             self.instance_places.push(of_mesh.node.1.clone());
         }
+        self.objects.push(survey);
         Ok(())
     }
 
@@ -195,7 +286,7 @@ impl<'a> Assembly<'a> {
         context: &mut Context<'_>,
         mesh: usize,
         weights: &[f32],
-    ) -> Result<Vec<(Surface, Built, Place)>, GltfFault> {
+    ) -> Result<Vec<(Surface, BuiltMaterial, Place)>, GltfFault> {
         let mut surfaces = Vec::new();
         let primitives = &self.document.root.meshes[mesh].primitives;
         for (i, primitive) in primitives.iter().enumerate() {
@@ -219,44 +310,70 @@ impl<'a> Assembly<'a> {
         weights: &[f32],
     ) -> Result<(), GltfFault> {
         let place = place.key("skin");
-        let world_from_node = &self.nodes.world_from_node;
-        let joints = mesh::joints(self.document, world_from_node, skin, &place)?;
+        let render_from_node = &self.nodes.render_from_node;
+        let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
+        let whole = context.layout.from_world();
         for (surface, material, place) in self.surfaces(context, mesh, weights)? {
+            let user = (&material.uv, &mut self.survey);
             let shape = if surface.joints.is_empty() {
-                surface.place(&DAffine3::IDENTITY, &material.uv, &place)?
+                surface.place(&whole, user, &place)?
             } else {
-                surface.skinned(&joints, &material.uv, &place)?
+                surface.skinned(&joints, user, &place)?
             };
             self.add_to_world(shape, &material, &place)?;
         }
         Ok(())
     }
 
+    fn count_places(&mut self, count: usize, place: &Place) -> Result<(), GltfFault> {
+        self.places += count as u64;
+        let most = self.most.places;
+        if self.places <= most {
+            return Ok(());
+        }
+        let message = format!("the scene has more than {most} mesh instances");
+        Err(place.fault(ErrorKind::Limit, message))
+    }
+
     fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
         self.summary.shapes += 1;
         self.summary.primitives += shape.triangles.len() as u64;
-        let most = self.most_primitives;
-        if self.summary.primitives <= most {
-            return Ok(());
+        self.vertices += shape.positions.len() as u64;
+        let limit = |message| Err(place.fault(ErrorKind::Limit, message));
+        let most = self.most.primitives;
+        if self.summary.primitives.max(self.vertices) > most {
+            return limit(format!(
+                "the scene has more than {most} triangles or vertices"
+            ));
         }
-        let message = format!("the scene has more than {most} triangles");
-        Err(place.fault(ErrorKind::Limit, message))
+        let most = self.most.shapes;
+        if self.summary.shapes as u64 > most {
+            return limit(format!(
+                "the scene has more than {most} shapes, counted at each place"
+            ));
+        }
+        Ok(())
     }
 
     fn add_to_world(
         &mut self,
         shape: Mesh,
-        material: &Built,
+        material: &BuiltMaterial,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
-        self.include(&shape, &DAffine3::IDENTITY);
+        self.extent.include(&extent_of(&shape), &DAffine3::IDENTITY);
         self.summary.area_lights += usize::from(material.emission.is_some());
         let shape = Shape::Mesh(shape);
+        let first_light = self.builder.next_light();
         let number = self
             .builder
             .shape(shape, material.id, material.emission.clone());
         self.shape_places.push(place.clone());
+        if material.emission.is_some() {
+            let lights = first_light..self.builder.next_light();
+            self.lamps.push((place.clone(), lights));
+        }
         if let Some(coverage) = &material.coverage {
             self.builder.coverage(number, coverage.clone());
         }
@@ -265,15 +382,15 @@ impl<'a> Assembly<'a> {
 
     fn add_to_object(
         &mut self,
-        object: ObjectId,
+        (object, places): (ObjectId, &[DAffine3]),
         shape: Mesh,
-        material: &Built,
-        places: &[DAffine3],
+        material: &BuiltMaterial,
         place: &Place,
     ) -> Result<(), GltfFault> {
         self.count(&shape, place)?;
+        let own = extent_of(&shape);
         for map in places {
-            self.include(&shape, map);
+            self.extent.include(&own, map);
         }
         let number = self
             .builder
@@ -285,36 +402,44 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Widens the box around everything.
-    fn include(&mut self, shape: &Mesh, map: &DAffine3) {
-        let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let own = shape
-            .positions
-            .iter()
-            .fold(nowhere, |[low, high], &p| [low.min(p), high.max(p)]);
-        for i in 0..8_usize {
-            let corner = Vec3::from_array(std::array::from_fn(|axis| own[i >> axis & 1][axis]));
-            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
-            if corner.is_finite() {
-                self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
-            }
-        }
+    /// Takes note of what the vertices of a primitive lose, which `render_from_mesh` puts in place.
+    fn measure(
+        &mut self,
+        context: &Context<'_>,
+        surface: &Surface,
+        render_from_mesh: &DAffine3,
+        place: &Place,
+    ) {
+        let linear = render_from_mesh.matrix3 * context.layout.space.unit;
+        let error = VertexError::of(&surface.positions, &linear);
+        self.vertex_errors.add(place, error);
     }
 
-    /// Adds the lights that are no shapes; an even surrounding where there is no light at all.
-    fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), GltfFault> {
+    /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.
+    fn add_lights(
+        &mut self,
+        context: &mut Context<'_>,
+        world_from_camera: &Affine3A,
+    ) -> Result<(), GltfFault> {
         let mut lights = light::all(context, self.document, &self.nodes)?;
         if lights.is_empty() && self.summary.area_lights == 0 {
-            let message = "the scene has no light; using a uniform environment of radiance 1";
+            let message = "the scene has no light; using a soft one from behind the viewer";
             context.warn(&Place::TOP, message);
-            lights.push(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+            let sky = Light::Infinite(outside::surroundings(world_from_camera));
+            lights.push((Place::TOP, sky));
         }
         self.summary.other_lights = lights.len();
-        for light in lights {
-            self.builder.light(light);
+        for (place, light) in lights {
+            let number = self.builder.light(light);
+            self.lamps.push((place, number..number + 1));
         }
         Ok(())
     }
+}
+
+fn extent_of(shape: &Mesh) -> Extent {
+    let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
+    Extent::of(&shape.positions, triangles)
 }
 
 /// Says where in the file the builder's error is.

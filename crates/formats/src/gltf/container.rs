@@ -1,15 +1,15 @@
 //! What a glTF file is made of: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
 
 use super::place::{GltfFault, Place};
+use crate::bytes::FileBytes;
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
 use crate::foreign;
+use crate::limits::LARGEST_GLTF;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
 
-/// Bytes of a file.
-const LARGEST_FILE: u64 = 1 << 33;
 /// What a `.glb` begins with.
 const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: [u8; 4] = *b"JSON";
@@ -23,10 +23,18 @@ pub(super) struct Container {
     pub(super) binary: Option<Vec<u8>>,
 }
 
+impl Container {
+    /// Bytes of the file.
+    pub(super) fn size(&self) -> u64 {
+        let binary = self.binary.as_ref().map_or(0, Vec::len);
+        (self.json.len() + binary) as u64
+    }
+}
+
 /// Reads a `.gltf` or `.glb`; which of them it is, its first bytes say.
 pub(super) fn read(path: &Path, files: &Files) -> Result<Container> {
     foreign::check_folder(path, files)?;
-    let bytes = files.read(path, LARGEST_FILE)?;
+    let bytes = files.read(path, LARGEST_GLTF)?.bytes;
     foreign::check_gltf(path, &bytes)?;
     let container = if bytes.starts_with(MAGIC) {
         chunks(&bytes)
@@ -94,8 +102,8 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
 /// What a URI stands for.
 pub(super) struct Resource {
     pub(super) bytes: Vec<u8>,
-    /// The file that they are of. None: they stand in the URI.
-    pub(super) file: Option<PathBuf>,
+    /// The file that they are of, and its size on the disk. None: they stand in the URI.
+    pub(super) file: Option<(PathBuf, u64)>,
 }
 
 /// Reads what `uri`, found at `place`, stands for; relative names are of files in `folder`.
@@ -108,18 +116,23 @@ pub(super) fn resource(
         let bytes = data_uri(data, place)?;
         return Ok(Resource { bytes, file: None });
     }
-    if uri.split_once("://").is_some() {
+    let Some(path) = file(folder, uri) else {
         let fault = place.fault(
             ErrorKind::Unsupported,
             "a resource on the network is not read",
         );
         return Err(fault.with_hint("save it beside the file"));
-    }
-    let path = folder.join(file_of(uri));
-    let read = files.read(&path, LARGEST_FILE);
-    let bytes = read.map_err(|error| GltfFault::from_error(place, &error))?;
-    let file = Some(path);
+    };
+    let read = files.read(&path, LARGEST_GLTF);
+    let FileBytes { bytes, stored } = read.map_err(|error| GltfFault::from_error(place, &error))?;
+    let file = Some((path, stored));
     Ok(Resource { bytes, file })
+}
+
+/// The file that `uri` names. None: it names none.
+pub(super) fn file(folder: &Path, uri: &str) -> Option<PathBuf> {
+    let is_other = uri.starts_with("data:") || uri.contains("://");
+    (!is_other).then(|| folder.join(file_of(uri)))
 }
 
 fn data_uri(data: &str, place: &Place) -> Result<Vec<u8>, GltfFault> {

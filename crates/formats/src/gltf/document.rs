@@ -3,16 +3,22 @@
 use super::container::{self, Container, Resource};
 use super::json::Root;
 use super::place::{GltfFault, Place, describe};
+use super::texture::IMAGES_TO_EXPORT;
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
+use crate::limits::{self, FURTHER_WARNINGS, MOST_WARNINGS};
 use crate::pbrt::{Content, DigestBuilder, LoadOptions};
+use crate::reading::Reading;
 use crate::source::{Fault, FileId, SourceMap, Span};
+use crate::space::Layout;
+use std::cell::Cell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Extensions that are understood, as docs/reference/gltf.md says how far.
-pub(super) const EXTENSIONS: [&str; 16] = [
+pub(super) const EXTENSIONS: [&str; 17] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -38,6 +44,8 @@ pub(super) struct Document {
     /// Where they are looked for.
     files: Files,
     buffers: Vec<Vec<u8>>,
+    /// Components that accessors may still read.
+    components_left: Cell<u64>,
 }
 
 /// Whether something simpler may replace what is not supported.
@@ -48,8 +56,11 @@ enum StandIns {
 }
 
 /// What building knows beside the document: warnings, what was read, what the caller wants.
+#[derive(Clone)]
 pub(super) struct Context<'a> {
     pub(super) options: &'a LoadOptions,
+    /// Where everything goes.
+    pub(super) layout: Layout,
     stand_ins: StandIns,
     sources: SourceMap,
     file: FileId,
@@ -59,6 +70,9 @@ pub(super) struct Context<'a> {
     pub(super) digest: DigestBuilder,
     /// The names of the files that were read.
     pub(super) files: Vec<PathBuf>,
+    pub(super) reading: Reading,
+    /// Those of the files that buffers and images name.
+    named: Vec<PathBuf>,
 }
 
 impl<'a> Context<'a> {
@@ -68,7 +82,9 @@ impl<'a> Context<'a> {
         options: &'a LoadOptions,
         files: &Files,
     ) -> Result<(Self, Option<Vec<u8>>)> {
-        let Container { json, binary } = container::read(path, files)?;
+        let container = container::read(path, files)?;
+        let reading = Reading::new(container.size());
+        let Container { json, binary } = container;
         let mut digest = DigestBuilder::new();
         digest.add(Content::Text, json.as_bytes());
         if let Some(binary) = &binary {
@@ -83,6 +99,7 @@ impl<'a> Context<'a> {
         };
         let context = Self {
             options,
+            layout: Layout::default(),
             stand_ins,
             sources,
             file,
@@ -90,8 +107,17 @@ impl<'a> Context<'a> {
             refused: BTreeSet::new(),
             digest,
             files: vec![path.to_owned()],
+            reading,
+            named: Vec::new(),
         };
         Ok((context, binary))
+    }
+
+    /// Every file on the disk that was read or is named.
+    pub(super) fn inputs(&self, files: &Files) -> Vec<PathBuf> {
+        let all: BTreeSet<_> = self.files.iter().chain(&self.named).collect();
+        let here = all.into_iter().filter(|path| files.is_from_disk(path));
+        here.cloned().collect()
     }
 
     /// The JSON as a tree. Errors: where it is none, with line and column.
@@ -122,7 +148,11 @@ impl<'a> Context<'a> {
 
     /// Something odd that is no error; what is said twice is counted.
     pub(super) fn warn(&mut self, place: &Place, message: impl Into<String>) {
-        let message = message.into();
+        let mut message = message.into();
+        let is_new = self.warnings.iter().all(|(_, known, _)| *known != message);
+        if is_new && self.warnings.len() >= MOST_WARNINGS {
+            FURTHER_WARNINGS.clone_into(&mut message);
+        }
         let known = self
             .warnings
             .iter_mut()
@@ -162,20 +192,22 @@ impl<'a> Context<'a> {
         self.told(|message| self.refused.contains(message))
     }
 
+    /// A place as `file:line:column`.
+    pub(super) fn text_of(&self, place: &Place) -> String {
+        let span = place.span(self.file, &self.sources.text(self.file));
+        let (line, column) = self.sources.line_and_column(span);
+        let file = self.sources.name(self.file).display();
+        format!("{file}:{line}:{column}")
+    }
+
     fn told(&self, is_meant: impl Fn(&str) -> bool) -> Vec<String> {
-        let text = self.sources.text(self.file);
         let tell = |(place, message, count): &(Place, String, usize)| {
-            let span = place.span(self.file, &text);
-            let (line, column) = self.sources.line_and_column(span);
-            let file = self.sources.name(self.file).display();
             let times = match count {
                 1 => String::new(),
                 count => format!(" ({count} times)"),
             };
-            format!(
-                "{file}:{line}:{column}: {}{times}",
-                describe(place, message)
-            )
+            let at = self.text_of(place);
+            format!("{at}: {}{times}", describe(place, message))
         };
         let meant = self
             .warnings
@@ -195,23 +227,58 @@ impl Document {
     ) -> Result<Self, GltfFault> {
         check_version(&root)?;
         check_extensions(context, &root)?;
+        let uris = root.buffers.iter().map(|buffer| &buffer.uri);
+        let uris = uris.chain(root.images.iter().map(|image| &image.uri));
+        let named = uris
+            .flatten()
+            .filter_map(|uri| container::file(folder, uri));
+        context.named = named.collect();
         let mut document = Self {
             root,
             folder: folder.to_owned(),
             files: files.clone(),
             buffers: Vec::new(),
+            components_left: Cell::new(0),
         };
         let mut binary = binary;
         for index in 0..document.root.buffers.len() {
             let buffer = document.read_buffer(context, index, &mut binary)?;
             document.buffers.push(buffer);
         }
+        document.start_counting(context);
         Ok(document)
     }
 
+    /// Lets accessors read as much as they may, once more.
+    pub(super) fn start_counting(&self, context: &Context<'_>) {
+        let components = limits::COMPONENTS.of(context.reading.stored());
+        self.components_left.set(components);
+    }
+
     /// Reads what `uri`, found at `place`, stands for.
-    pub(super) fn resource(&self, uri: &str, place: &Place) -> Result<Resource, GltfFault> {
-        container::resource((&self.folder, &self.files), uri, place)
+    pub(super) fn resource(
+        &self,
+        context: &mut Context<'_>,
+        uri: &str,
+        place: &Place,
+    ) -> Result<Resource, GltfFault> {
+        let resource = container::resource((&self.folder, &self.files), uri, place)?;
+        if let Some((file, stored)) = &resource.file {
+            let (identity, length) = (self.files.identity(file), resource.bytes.len() as u64);
+            let counted = context.reading.file(identity, *stored, length);
+            counted.map_err(|error| GltfFault::from_error(place, &error))?;
+        }
+        Ok(resource)
+    }
+
+    /// Counts components that an accessor at `place` reads: many may read the same.
+    pub(super) fn count_components(&self, count: usize, place: &Place) -> Result<(), GltfFault> {
+        let left = self.components_left.get().checked_sub(count as u64);
+        self.components_left.set(left.ok_or_else(|| {
+            let message = "accessors read the same bytes again and again";
+            place.fault(ErrorKind::Limit, message)
+        })?);
+        Ok(())
     }
 
     fn read_buffer(
@@ -223,8 +290,8 @@ impl Document {
         let buffer = &self.root.buffers[index];
         let place = Place::of("buffers", index);
         let mut bytes = if let Some(uri) = &buffer.uri {
-            let resource = self.resource(uri, &place.key("uri"))?;
-            if let Some(file) = resource.file {
+            let resource = self.resource(context, uri, &place.key("uri"))?;
+            if let Some((file, _)) = resource.file {
                 context.digest.add(Content::Mesh, &resource.bytes);
                 context.files.push(file);
             }
@@ -304,7 +371,7 @@ fn check_extensions(context: &mut Context<'_>, root: &Root) -> Result<(), GltfFa
             "KHR_draco_mesh_compression"
             | "EXT_meshopt_compression"
             | "KHR_meshopt_compression" => "export it without compression of meshes",
-            "KHR_texture_basisu" | "EXT_texture_webp" => "export its images as png or jpg",
+            "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => IMAGES_TO_EXPORT,
             _ => return Err(fault.with_nearest(name, EXTENSIONS)),
         };
         return Err(fault.with_hint(hint));

@@ -154,6 +154,23 @@ object!(Spot {
 object!(Texture {
     source: Option<Index>,
     sampler: Option<Index>,
+    extensions: ImageExtensions,
+});
+object!(
+    /// The image of a texture in formats that the core of glTF does not have.
+    ImageExtensions {
+        #[serde(rename = "EXT_texture_webp")]
+        webp: Option<OtherImage>,
+        #[serde(rename = "KHR_texture_basisu")]
+        basisu: Option<OtherImage>,
+        #[serde(rename = "EXT_texture_avif")]
+        avif: Option<OtherImage>,
+        #[serde(rename = "MSFT_texture_dds")]
+        dds: Option<OtherImage>,
+    }
+);
+object!(OtherImage {
+    source: Option<Index>,
 });
 object!(Image {
     uri: Option<String>,

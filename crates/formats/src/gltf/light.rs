@@ -9,12 +9,12 @@ use bidir::light::{DistantLight, Light, PointLight, SpotLight};
 use bidir::math::Vec3;
 use glam::{DAffine3, DVec3};
 
-/// The lights of the scene, in the order of its nodes.
+/// The lights of the scene with their places, in the order of its nodes.
 pub(super) fn all(
     context: &mut Context<'_>,
     document: &Document,
     nodes: &Nodes,
-) -> Result<Vec<Light>, GltfFault> {
+) -> Result<Vec<(Place, Light)>, GltfFault> {
     let mut lights = Vec::new();
     for &index in &nodes.order {
         let node = &document.root.nodes[index];
@@ -24,8 +24,9 @@ pub(super) fn all(
         let place = Place::of("nodes", index)
             .key("extensions")
             .key("KHR_lights_punctual");
-        let world_from_node = nodes.world_from_node[index].unwrap_or(DAffine3::IDENTITY);
-        lights.push(build(context, document, (light, &place), &world_from_node)?);
+        let render_from_node = nodes.render_from_node[index].unwrap_or(DAffine3::IDENTITY);
+        let light = build(context, document, (light, &place), &render_from_node)?;
+        lights.push((place, light));
     }
     Ok(lights)
 }
@@ -34,7 +35,7 @@ fn build(
     context: &mut Context<'_>,
     document: &Document,
     (index, user): (usize, &Place),
-    world_from_node: &DAffine3,
+    render_from_node: &DAffine3,
 ) -> Result<Light, GltfFault> {
     let all = document.root.extensions.lights.as_ref();
     let described = all.and_then(|all| all.lights.get(index));
@@ -45,14 +46,15 @@ fn build(
         .key("lights")
         .index(index);
     let power = power(described, &place)?;
+    let intensity = power.map(|channel| context.layout.space.intensity(channel));
     if described.range.is_some() {
         context.warn(
             &place,
             "the `range` of a light has no effect: light falls off with the square of the distance",
         );
     }
-    let position = world_from_node.translation.as_vec3();
-    let ahead = world_from_node.transform_vector3(DVec3::NEG_Z);
+    let position = render_from_node.translation.as_vec3();
+    let ahead = render_from_node.transform_vector3(DVec3::NEG_Z);
     let axis = ahead.normalize_or(DVec3::NEG_Z).as_vec3();
     if !position.is_finite() || position.abs().max_element() > 1e12 {
         return Err(user.scene("the light is too far away"));
@@ -64,9 +66,9 @@ fn build(
         })),
         "point" => Ok(Light::Point(PointLight {
             position,
-            intensity: power,
+            intensity,
         })),
-        "spot" => spot(described, &place, (position, axis), power).map(Light::Spot),
+        "spot" => spot(described, &place, (position, axis), intensity).map(Light::Spot),
         other => {
             let fault = place
                 .key("type")

@@ -8,8 +8,8 @@
 //! replaced by something simpler, is a warning; what the format itself demands and the renderer has
 //! not is refused, and [`LoadOptions::lenient`] lets something stand in. docs/reference/gltf.md has it all.
 //!
-//! A file without a camera is seen from its front, +z, as a whole; one without light stands in an
-//! even white surrounding. Units are taken as they are: nothing is divided by 683 lm/W.
+//! A file without a camera is seen as a whole, and one without light is lit from behind the viewer
+//! (`outside`). Units are taken as they are: nothing is divided by 683 lm/W.
 
 mod accessor;
 mod assembly;
@@ -20,6 +20,7 @@ mod light;
 mod material;
 mod mesh;
 mod node;
+mod outside;
 mod place;
 mod texture;
 mod view;
@@ -30,8 +31,9 @@ mod tests;
 use crate::error::Result;
 use crate::file::folder_of;
 use crate::files::Files;
+use crate::lamp;
 use crate::pbrt::{LoadOptions, Loaded, SceneSettings};
-use assembly::Assembly;
+use assembly::{Assembly, Built};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use document::{Context, Document};
@@ -69,13 +71,19 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
     let root = context.parse()?;
     let built = Document::new(&mut context, root, (folder_of(path), files), binary)
         .and_then(|document| Assembly::build(&mut context, &document));
-    let (scene, summary) = built.map_err(|fault| context.error(fault))?;
+    let Built {
+        scene,
+        lamps,
+        summary,
+    } = built.map_err(|fault| context.error(fault))?;
     Ok(Loaded {
+        lamps: lamp::unhittable(&scene, &lamps, |place| context.text_of(place)),
         scene,
         settings: SETTINGS,
         warnings: context.told_warnings(),
         refused: context.told_refusals(),
         summary,
+        inputs: context.inputs(files),
         digest: context.digest.finish(),
         files: context.files,
     })

@@ -9,42 +9,43 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 pub(super) struct Nodes {
     /// Nodes by index.
     pub(super) order: Vec<usize>,
-    /// The map to the world of each node of the file. None: it is not in the scene.
-    pub(super) world_from_node: Vec<Option<DAffine3>>,
+    /// The map to the space that is rendered in of each node of the file. None: it is not in the
+    /// scene.
+    pub(super) render_from_node: Vec<Option<DAffine3>>,
 }
 
 impl Nodes {
     /// Walks the scene that the file shows. Errors: nodes that are their own ancestors, or have two
     /// parents.
-    pub(super) fn of(document: &Document) -> Result<Self, GltfFault> {
+    pub(super) fn of(document: &Document, render_from_world: DAffine3) -> Result<Self, GltfFault> {
         let root = &document.root;
         let mut nodes = Self {
             order: Vec::new(),
-            world_from_node: vec![None; root.nodes.len()],
+            render_from_node: vec![None; root.nodes.len()],
         };
         // Nodes to visit, the next one last, each with where it is named.
-        let mut waiting = roots(root)?;
+        let mut waiting = roots(root, render_from_world)?;
         waiting.reverse();
         while let Some((index, parent, named)) = waiting.pop() {
             let Some(node) = root.nodes.get(index) else {
                 let count = root.nodes.len();
                 return Err(named.scene(format!("there is no node {index}: the file has {count}")));
             };
-            if nodes.world_from_node[index].is_some() {
+            if nodes.render_from_node[index].is_some() {
                 let message =
                     format!("node {index} is reached twice: nodes have one parent, and no cycles");
                 return Err(named.scene(message));
             }
             let place = Place::of("nodes", index);
-            let world_from_node = parent * local(node, &place)?;
-            if !world_from_node.is_finite() {
+            let render_from_node = parent * local(node, &place)?;
+            if !render_from_node.is_finite() {
                 return Err(place.scene("its transformation is not finite"));
             }
-            nodes.world_from_node[index] = Some(world_from_node);
+            nodes.render_from_node[index] = Some(render_from_node);
             nodes.order.push(index);
             let children = place.key("children");
             let below = node.children.iter().enumerate().rev();
-            waiting.extend(below.map(|(i, &child)| (child, world_from_node, children.index(i))));
+            waiting.extend(below.map(|(i, &child)| (child, render_from_node, children.index(i))));
         }
         Ok(nodes)
     }
@@ -52,11 +53,14 @@ impl Nodes {
 
 /// The roots of the scene that the file shows: its default scene, else the first, else all nodes that
 /// are nobody's children.
-fn roots(root: &Root) -> Result<Vec<(usize, DAffine3, Place)>, GltfFault> {
+fn roots(
+    root: &Root,
+    render_from_world: DAffine3,
+) -> Result<Vec<(usize, DAffine3, Place)>, GltfFault> {
     let index = root.scene.unwrap_or(0);
     let place = Place::of("scenes", index).key("nodes");
     let from_top = |nodes: &[usize]| {
-        let named = |(i, &node)| (node, DAffine3::IDENTITY, place.index(i));
+        let named = |(i, &node)| (node, render_from_world, place.index(i));
         nodes.iter().enumerate().map(named).collect()
     };
     if let Some(scene) = root.scenes.get(index) {

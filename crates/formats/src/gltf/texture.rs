@@ -2,7 +2,7 @@
 
 use super::container::Resource;
 use super::document::{Context, Document};
-use super::json::{Sampler, TextureInfo};
+use super::json::{ImageExtensions, Sampler, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
@@ -142,7 +142,8 @@ impl Textures {
         let is_known = self.last.as_ref().is_some_and(|(known, _)| *known == key);
         if !is_known {
             let place = Place::of("images", source);
-            let Resource { bytes, file } = resource(document, source, &place)?;
+            let Resource { bytes, file } = resource((&mut *context, document), source, &place)?;
+            let file = file.map(|(file, _)| file);
             if let Some(file) = file.filter(|_| !self.told.contains(&source)) {
                 self.told.push(source);
                 context.digest.add(Content::Image, &bytes);
@@ -150,6 +151,7 @@ impl Textures {
             }
             let format = format_of(&bytes, &place)?;
             let data = image::decode_stored(format, &bytes, encoding);
+            let data = data.and_then(|data| context.reading.image(data));
             let data = data.map_err(|error| GltfFault::from_error(&place, &error))?;
             self.last = Some((key, data));
         }
@@ -181,9 +183,19 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
             .scene(format!("there is no texture {index}: the file has {count}"))
     })?;
     let place = Place::of("textures", index);
-    let source = texture.source.ok_or_else(|| {
-        let fault = place.fault(ErrorKind::Unsupported, "it has no image in png or jpg");
-        fault.with_hint("export it as png or jpg")
+    let webp = texture.extensions.webp.as_ref();
+    let source = texture.source.or(webp.and_then(|webp| webp.source));
+    let source = source.ok_or_else(|| {
+        let found = match &texture.extensions {
+            ImageExtensions {
+                basisu: Some(_), ..
+            } => "its only image is a KTX2 file",
+            ImageExtensions { avif: Some(_), .. } => "its only image is an AVIF file",
+            ImageExtensions { dds: Some(_), .. } => "its only image is a DDS file",
+            _ => "it has no image",
+        };
+        let fault = place.fault(ErrorKind::Unsupported, found);
+        fault.with_hint(IMAGES_TO_EXPORT)
     })?;
     if source >= root.images.len() {
         let count = root.images.len();
@@ -204,10 +216,14 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
 }
 
 /// The bytes of an image.
-fn resource(document: &Document, source: usize, place: &Place) -> Result<Resource, GltfFault> {
+fn resource(
+    (context, document): (&mut Context<'_>, &Document),
+    source: usize,
+    place: &Place,
+) -> Result<Resource, GltfFault> {
     let image = &document.root.images[source];
     match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => document.resource(uri, &place.key("uri")),
+        (Some(uri), _) => document.resource(context, uri, &place.key("uri")),
         (None, Some(view)) => {
             let (bytes, _) = document.view(view, &place.key("bufferView"))?;
             let bytes = bytes.to_vec();
@@ -222,12 +238,47 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
         [0xff, 0xd8, 0xff, ..] => Ok(Format::Jpeg),
+        [
+            b'R',
+            b'I',
+            b'F',
+            b'F',
+            _,
+            _,
+            _,
+            _,
+            b'W',
+            b'E',
+            b'B',
+            b'P',
+            ..,
+        ] => Ok(Format::WebP),
         _ => {
-            let fault = place.fault(ErrorKind::Unsupported, "it is neither png nor jpg");
-            Err(fault.with_hint("export images as png or jpg"))
+            let has =
+                |at: usize, magic| bytes.get(at..).is_some_and(|rest| rest.starts_with(magic));
+            let known = OTHER_FORMATS.iter().find(|(at, magic, _)| has(*at, magic));
+            let found = match known {
+                Some((.., name)) => format!("it is {name}, which is not read"),
+                None => "it is neither png, jpg nor webp".into(),
+            };
+            let fault = place.fault(ErrorKind::Unsupported, found);
+            Err(fault.with_hint(IMAGES_TO_EXPORT))
         }
     }
 }
+
+/// What to do about images in other formats.
+pub(super) const IMAGES_TO_EXPORT: &str =
+    "export its images as png, jpg or webp; `ktx extract` makes png of KTX2";
+
+/// What images in other formats have at some byte.
+const OTHER_FORMATS: [(usize, &[u8], &str); 5] = [
+    (0, b"\xabKTX 20", "a KTX2 file"),
+    (0, b"\xabKTX 11", "a KTX file"),
+    (0, b"DDS ", "a DDS file"),
+    (4, b"ftypavif", "an AVIF file"),
+    (0, b"GIF8", "a GIF file"),
+];
 
 /// The image laid over the mesh's parameters.
 fn map<const N: usize>(

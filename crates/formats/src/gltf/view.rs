@@ -3,12 +3,15 @@
 use super::document::{Context, Document};
 use super::json;
 use super::node::Nodes;
+use super::outside::Extent;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
-use crate::pbrt::{Crop, LARGEST_SIDE};
+use crate::limits::LARGEST_SIDE;
+use crate::pbrt::Crop;
+use crate::text::number;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
-use bidir::math::{Affine3A, Vec2, Vec3};
+use bidir::math::{Affine3A, Vec2};
 use glam::{DAffine3, DVec3};
 use std::ops::RangeInclusive;
 
@@ -53,10 +56,6 @@ pub(super) fn find(
         .filter_map(|&node| Some((node, document.root.nodes[node].camera?)))
         .collect();
     let Some(&(node, camera)) = cameras.first() else {
-        context.warn(
-            &Place::TOP,
-            "the scene has no camera; using one in front of it that sees everything",
-        );
         return Ok(View {
             world_from_camera: None,
             screen: Screen::Perspective(libm::tan(ANGLE / 2.0)),
@@ -68,11 +67,16 @@ pub(super) fn find(
         let message = format!("the scene has {} cameras; using the first", cameras.len());
         context.warn(&Place::of("nodes", node), message);
     }
-    let world_from_node = nodes.world_from_node[node].unwrap_or(DAffine3::IDENTITY);
-    read(document, camera, &world_from_node)
+    let render_from_node = nodes.render_from_node[node].unwrap_or(DAffine3::IDENTITY);
+    let mut view = read(document, camera, &render_from_node)?;
+    // Only what parallel rays see has a size in the unit of the scene.
+    if let Screen::Orthographic(half) = &mut view.screen {
+        *half /= context.layout.space.unit;
+    }
+    Ok(view)
 }
 
-fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result<View, GltfFault> {
+fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Result<View, GltfFault> {
     let place = Place::of("cameras", index);
     let count = document.root.cameras.len();
     let missing = || place.scene(format!("there is no camera {index}: the file has {count}"));
@@ -95,7 +99,7 @@ fn read(document: &Document, index: usize, world_from_node: &DAffine3) -> Result
         }
     };
     Ok(View {
-        world_from_camera: Some(rigid(world_from_node)),
+        world_from_camera: Some(rigid(render_from_node)),
         screen,
         aspect,
         place,
@@ -109,9 +113,11 @@ fn perspective(
 ) -> Result<(Screen, Option<f64>), GltfFault> {
     let (yfov, aspect) = (camera.yfov, camera.aspect_ratio);
     if !(yfov > 1e-4 && yfov < 3.1) {
+        let yfov = number(yfov);
         return Err(place.scene(format!("`yfov` is {yfov}, which is not an angle of view")));
     }
     if let Some(aspect) = aspect.filter(|aspect| !RATIOS.contains(aspect)) {
+        let aspect = number(aspect);
         return Err(place.scene(format!("`aspectRatio` is {aspect}, which is not a ratio")));
     }
     let screen = Screen::Perspective(libm::tan(yfov / 2.0));
@@ -126,6 +132,7 @@ fn orthographic(
     let (width, height) = (camera.xmag, camera.ymag);
     let is_size = |side: f64| side > 0.0 && side <= 1e12;
     if !(is_size(width) && is_size(height) && RATIOS.contains(&(width / height))) {
+        let [width, height] = [width, height].map(number);
         return Err(place.scene(format!(
             "`xmag` {width} and `ymag` {height} are not the size of a view"
         )));
@@ -134,23 +141,29 @@ fn orthographic(
 }
 
 /// The place of a camera that looks along -z of its node, whose scale does not matter.
-fn rigid(world_from_node: &DAffine3) -> Affine3A {
-    let m = world_from_node.matrix3;
+fn rigid(render_from_node: &DAffine3) -> Affine3A {
+    let m = render_from_node.matrix3;
     let forward = (-m.z_axis).normalize_or(DVec3::NEG_Z);
     let up = m.y_axis.reject_from_normalized(forward);
     let up = up
         .try_normalize()
         .unwrap_or_else(|| forward.any_orthonormal_vector());
-    looking(world_from_node.translation, forward, up)
+    looking(render_from_node.translation, forward, up)
 }
 
-fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
+pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
     let right = forward.cross(up);
     let columns = [right, up, forward, eye].map(DVec3::as_vec3a);
     Affine3A::from_cols(columns[0], columns[1], columns[2], columns[3])
 }
 
 impl View {
+    /// Where the camera of the file stands, in the space that is rendered in.
+    pub(super) fn eye(&self) -> Option<DVec3> {
+        let place = self.world_from_camera?;
+        Some(place.translation.as_dvec3())
+    }
+
     /// The film: as large as the caller says, else of the camera's proportions.
     pub(super) fn film(&self, context: &Context<'_>) -> Result<FilmSettings, GltfFault> {
         let own = match self.aspect {
@@ -180,19 +193,33 @@ impl View {
         Err(Place::TOP.fault(ErrorKind::Options, message))
     }
 
+    /// Where the camera is: where the file has it, else where it sees all of `extent`.
+    pub(super) fn placed(
+        &self,
+        context: &mut Context<'_>,
+        resolution: [u32; 2],
+        extent: &Extent,
+    ) -> Affine3A {
+        self.world_from_camera.unwrap_or_else(|| {
+            let viewpoint = extent.viewpoint();
+            let name = viewpoint.name;
+            let message = format!("the scene has no camera; using one {name} that sees everything");
+            context.warn(&Place::TOP, message);
+            viewpoint.camera(extent, self.half(resolution))
+        })
+    }
+
     /// The camera in front of a film of `resolution`. What the file's camera sees is in view
     /// whatever the film's shape; nothing is stretched.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
-        corners: [Vec3; 2],
+        world_from_camera: Affine3A,
     ) -> Result<Camera, GltfFault> {
         let half = self.half(resolution);
         let [x, y] = [half.x as f32, half.y as f32];
         let screen = [Vec2::new(-x, y), Vec2::new(x, -y)];
         let resolution = Vec2::from(resolution.map(|side| side as f32));
-        let placed = self.world_from_camera;
-        let world_from_camera = placed.unwrap_or_else(|| in_front(corners, half));
         let camera = match self.screen {
             Screen::Perspective(_) => Perspective::new(&PerspectiveSettings {
                 world_from_camera,
@@ -221,18 +248,4 @@ impl View {
         }
         DVec3::new(half * width / height, half, 0.0)
     }
-}
-
-/// A place on the side of +z from which a box between two corners fills a view of half size `half`
-/// at distance 1.
-fn in_front(corners: [Vec3; 2], half: DVec3) -> Affine3A {
-    let [low, high] = corners.map(Vec3::as_dvec3);
-    let (centre, size) = if low.cmple(high).all() {
-        ((low + high) / 2.0, (high - low) / 2.0)
-    } else {
-        (DVec3::ZERO, DVec3::ONE)
-    };
-    let distance = (size.x / half.x).max(size.y / half.y) * 1.05 + size.z;
-    let eye = centre + DVec3::Z * distance.max(1e-6);
-    looking(eye, DVec3::NEG_Z, DVec3::Y)
 }

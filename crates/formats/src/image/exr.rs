@@ -1,6 +1,6 @@
 //! OpenEXR: every kind of flat image in, 32-bit scan lines out.
 
-use super::{ImageData, broken, check_room, check_size};
+use super::{ImageData, broken, check_size};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
@@ -175,28 +175,16 @@ fn attribute_length(bytes: &[u8]) -> Option<usize> {
 pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
     for header in &meta.headers {
-        let Vec2(width, height) = header.layer_size;
-        check_size(
-            width as u64,
-            height as u64,
-            header.channels.list.len() as u64,
-        )?;
-        let bits = 8 * header.channels.bytes_per_pixel as u64;
-        check_room([width as u64, height as u64], bits, bytes)?;
+        let channels = header.channels.list.len() as u64;
+        let check =
+            |Vec2(width, height)| check_size([width as u64, height as u64], channels, bytes);
+        check(header.layer_size)?;
+        // Tiles may be larger than the image, and memory is taken for one.
         if let BlockDescription::Tiles(tiles) = header.blocks {
-            check_tile(tiles.tile_size, bits, bytes)?;
+            check(tiles.tile_size)?;
         }
     }
     Ok(meta)
-}
-
-/// Tiles may be larger than the image, and memory is taken for one.
-fn check_tile(Vec2(width, height): Vec2<usize>, bits: u64, bytes: &[u8]) -> Result<()> {
-    const ALWAYS_FINE: usize = 1 << 20;
-    if width.saturating_mul(height) <= ALWAYS_FINE {
-        return Ok(());
-    }
-    check_room([width as u64, height as u64], bits, bytes)
 }
 
 /// All channels of the first part that can be read.

@@ -2,9 +2,9 @@
 
 use super::exr::{ENCODING, OnePart, check_headers, not_written, read_part, subsampled};
 use super::exr::{text, to_bytes};
-use super::{Format, LARGEST_FILE, broken, catch_silently};
+use super::{Format, broken, catch_silently};
 use crate::error::{Error, ErrorKind, Result};
-use crate::{bytes, file};
+use crate::{bytes, file, limits};
 use exr::image::{AnyChannel, AnyChannels, FlatSamples};
 use exr::meta::attribute::AttributeValue;
 use std::path::Path;
@@ -105,7 +105,7 @@ pub fn read_layers(path: &Path) -> Result<Layers> {
             .with_hint("name an image that ends in .exr")
             .in_file(path));
     }
-    let bytes = bytes::read(path, LARGEST_FILE)?;
+    let bytes = bytes::read(path, limits::LARGEST_IMAGE)?.bytes;
     decode_layers(&bytes).map_err(|error| error.in_file(path))
 }
 

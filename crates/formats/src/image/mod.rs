@@ -1,4 +1,4 @@
-//! Images: PNG, JPEG, TGA, HDR, PFM and EXR to linear numbers; linear numbers to EXR and PNG.
+//! Images: PNG, JPEG, WebP, TGA, HDR, PFM and EXR to linear numbers; linear numbers to EXR and PNG.
 //!
 //! Rows go from top to bottom, whatever the file's order. Eight-bit files hold sRGB and become
 //! linear; only for PNG can the caller say otherwise, as scene files do. EXR, HDR and PFM are
@@ -22,13 +22,9 @@ pub use transfer::Encoding;
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};
+use crate::limits;
 use catch::catch_silently;
 use std::path::Path;
-
-/// Bytes of a file.
-pub(crate) const LARGEST_FILE: u64 = 1 << 33;
-/// Numbers of an image: 2 GiB.
-const MOST_NUMBERS: u64 = 1 << 29;
 
 /// An image of linear numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,6 +59,8 @@ pub enum Format {
     Png,
     /// JPEG.
     Jpeg,
+    /// WebP, with and without loss; of an animation the first image.
+    WebP,
     /// Targa.
     Tga,
     /// Radiance RGBE.
@@ -80,6 +78,7 @@ impl Format {
         Some(match extension.as_str() {
             "png" => Self::Png,
             "jpg" | "jpeg" => Self::Jpeg,
+            "webp" => Self::WebP,
             "tga" => Self::Tga,
             "hdr" | "pic" => Self::Hdr,
             "pfm" => Self::Pfm,
@@ -96,7 +95,7 @@ pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
         let missing = path.metadata().err();
         missing.map_or(unknown, |error| Error::io(path, "open", &error))
     })?;
-    let bytes = bytes::read(path, LARGEST_FILE)?;
+    let bytes = bytes::read(path, limits::LARGEST_IMAGE)?.bytes;
     decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
 }
 
@@ -105,7 +104,7 @@ pub(crate) fn named_format(path: &Path) -> Result<Format> {
     Format::of(path).ok_or_else(|| {
         let error = Error::new(ErrorKind::Unsupported, "unknown image format");
         error
-            .with_hint("use exr, hdr, pfm, png, jpg or tga")
+            .with_hint("use exr, hdr, pfm, png, jpg, tga or webp")
             .in_file(path)
     })
 }
@@ -135,33 +134,31 @@ fn broken(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("broken image: {message}"))
 }
 
-/// Refuses sizes that are zero or too large, before memory is taken for them.
-fn check_size(width: u64, height: u64, channels: u64) -> Result<()> {
-    let numbers = width
-        .checked_mul(height)
-        .and_then(|pixels| pixels.checked_mul(channels.max(1)));
-    match numbers {
-        Some(0) => Err(broken("it has no pixels")),
-        Some(1..=MOST_NUMBERS) => Ok(()),
-        _ => {
-            let message = format!("an image of {width} × {height} pixels is too large");
-            Err(Error::new(ErrorKind::Limit, message))
-        }
-    }
+/// The numbers of an image, for limits: grey becomes three channels where colours are asked for.
+pub(crate) fn numbers([width, height]: [u64; 2], channels: u64) -> u64 {
+    width.saturating_mul(height).saturating_mul(channels.max(3))
 }
 
-/// Refuses sizes that the bytes of the file cannot be packed from, before memory is taken for them.
-///
-/// No format packs better: DEFLATE reaches 1032 to 1, and a block of 16 × 16 pixels of a JPEG has six
-/// bits at least.
-fn check_room([width, height]: [u64; 2], bits_per_pixel: u64, bytes: &[u8]) -> Result<()> {
-    const BEST_RATIO: u64 = 2048;
-    let stored = width.saturating_mul(height).saturating_mul(bits_per_pixel) / 8;
-    if stored <= BEST_RATIO * bytes.len() as u64 {
-        return Ok(());
+/// Refuses sizes that are zero, or too large for the bytes of the file, before memory is taken for
+/// them.
+fn check_size([width, height]: [u64; 2], channels: u64, bytes: &[u8]) -> Result<()> {
+    let numbers = numbers([width, height], channels);
+    if numbers == 0 {
+        return Err(broken("it has no pixels"));
     }
-    let message = format!("it is too short for {width} × {height} pixels");
-    Err(broken(message))
+    let refused = |message: String| Error::new(ErrorKind::Limit, message);
+    let size = format!("an image of {width} × {height} pixels");
+    if numbers > limits::MOST_NUMBERS {
+        return Err(refused(format!("{size} is too large")));
+    }
+    let (stored, per_byte) = (bytes.len() as u64, limits::IMAGE.per_byte);
+    if numbers > limits::IMAGE.of(stored) {
+        let error = refused(format!("{size} is too large for a file of {stored} bytes"));
+        return Err(error.with_hint(format!(
+            "the file is cut, or has fewer than one byte for {per_byte} numbers"
+        )));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

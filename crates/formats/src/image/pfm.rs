@@ -19,7 +19,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
     let scale = scale
         .filter(|scale| scale.is_normal())
         .ok_or_else(|| broken("no scale"))?;
-    check_size(width as u64, height as u64, channels as u64)?;
+    check_size([width as u64, height as u64], channels as u64, bytes)?;
     let row = width * channels;
     let (numbers, _) = rest.as_chunks::<4>();
     if numbers.len() < row * height {

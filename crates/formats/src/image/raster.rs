@@ -1,7 +1,8 @@
-//! What the `image` crate decodes: PNG, JPEG, TGA, HDR.
+//! What the `image` crate decodes: PNG, JPEG, WebP, TGA, HDR.
 
-use super::{Encoding, Format, ImageData, broken, check_room, check_size};
+use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;
+use crate::limits;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 
@@ -10,27 +11,24 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
         Format::Png => ImageFormat::Png,
         Format::Tga => ImageFormat::Tga,
         Format::Hdr => ImageFormat::Hdr,
+        Format::WebP => ImageFormat::WebP,
         _ => ImageFormat::Jpeg,
     };
     let mut reader = ImageReader::with_format(Cursor::new(bytes), known);
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(4 * super::MOST_NUMBERS);
-    reader.limits(limits);
+    let mut own = Limits::default();
+    // For packed chunks beside the pixels, such as colour profiles.
+    own.max_alloc = Some(limits::UNPACKED.of(bytes.len() as u64));
+    reader.limits(own);
     let decoder = reader.into_decoder().map_err(broken)?;
     let (width, height) = decoder.dimensions();
-    check_size(
-        width.into(),
-        height.into(),
-        decoder.color_type().channel_count().into(),
-    )?;
-    let bits = decoder.original_color_type().bits_per_pixel();
-    check_room([width.into(), height.into()], bits.into(), bytes)?;
+    let channels = decoder.color_type().channel_count();
+    check_size([width.into(), height.into()], channels.into(), bytes)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
     let (channels, data) = linear(decoded, encoding);
-    // Grey with alpha is taken as grey; of the others only PNG keeps its alpha.
+    // Grey with alpha is taken as grey; of the others PNG and WebP keep their alpha.
     let kept = match channels {
         2 => 1,
-        4 if format != Format::Png => 3,
+        4 if !matches!(format, Format::Png | Format::WebP) => 3,
         channels => channels,
     };
     let data = if kept == channels {

@@ -34,6 +34,7 @@ pub(crate) enum Content {
 }
 
 /// A digest in the making.
+#[derive(Clone)]
 pub(crate) struct DigestBuilder(Sha256);
 
 impl DigestBuilder {

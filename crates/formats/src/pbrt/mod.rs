@@ -13,6 +13,8 @@ mod build;
 mod definitions;
 mod digest;
 mod directives;
+mod inclusion;
+mod inputs;
 mod known;
 mod lexer;
 mod parameters;
@@ -25,7 +27,6 @@ mod v3;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use build::LARGEST_SIDE;
 pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load, load_from};
 pub use digest::SceneDigest;
 pub(crate) use digest::{Content, DigestBuilder};

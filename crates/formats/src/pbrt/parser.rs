@@ -1,29 +1,22 @@
 //! From files to a [`SceneDescription`].
 
 use super::directives;
+use super::inclusion::Counts;
 use super::known::{self, Block, DIRECTIVES};
 use super::lexer::{Token, TokenKind, Tokens, shorten};
 use super::parameters::{Parameter, parse_list};
 use super::scene::{Entity, MaterialDescription, SceneDescription, TextureKind, warn};
 use super::state::{OpenBlock, Opener, Scope};
 use super::v3;
-use crate::bytes;
+use crate::bytes::{self, FileBytes};
 use crate::error::{Error, ErrorKind, Place, Result};
 use crate::files::Files;
 use crate::foreign;
+use crate::limits::{self, LONGEST_TEXT};
 use crate::source::{Fault, FileId, Span, line_and_column};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Files within files within files.
-const DEEPEST: usize = 64;
-/// Bytes of texts that are included again, each time: ends exponential nests.
-const MOST_REPEATED: u64 = 1 << 28;
-/// Blocks within blocks.
-const MOST_BLOCKS: usize = 1 << 16;
-/// Bytes of one text: places in it are 32-bit numbers.
-const LONGEST_TEXT: u64 = u32::MAX as u64;
 
 /// Parses a scene file; `-` is standard input.
 pub fn parse_file(path: &Path) -> Result<SceneDescription> {
@@ -33,7 +26,7 @@ pub fn parse_file(path: &Path) -> Result<SceneDescription> {
 /// The same as [`parse_file`], with files from where `files` says.
 pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
     foreign::check_folder(path, files)?;
-    let bytes = files.read_or_stdin(path, LONGEST_TEXT)?;
+    let FileBytes { bytes, stored } = files.read_or_stdin(path, LONGEST_TEXT)?;
     foreign::check_pbrt(path, &bytes)?;
     let text = decode(path, bytes)?;
     let folder = if path.as_os_str() == bytes::STDIN {
@@ -42,16 +35,23 @@ pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
         path.parent()
     };
     let parser = Parser::new(folder.unwrap_or(Path::new("")), files.clone());
-    parse(parser, path, text)
+    parse(parser, path, (text, stored))
 }
 
 /// Parses a scene that is already in memory; files are looked for in the working directory.
 pub fn parse_text(name: &str, text: &str) -> Result<SceneDescription> {
     let parser = Parser::new(Path::new(""), Files::default());
-    parse(parser, Path::new(name), text.to_owned())
+    let text = (text.to_owned(), text.len() as u64);
+    parse(parser, Path::new(name), text)
 }
 
-fn parse(mut parser: Parser, name: &Path, text: String) -> Result<SceneDescription> {
+/// Parses a text that takes `stored` bytes on the disk.
+fn parse(
+    mut parser: Parser,
+    name: &Path,
+    (text, stored): (String, u64),
+) -> Result<SceneDescription> {
+    parser.scene.stored = stored;
     parser.scene.texts.push(name.to_owned());
     let file = parser.scene.sources.add(name, text)?;
     match parser.top(name, file) {
@@ -61,7 +61,7 @@ fn parse(mut parser: Parser, name: &Path, text: String) -> Result<SceneDescripti
 }
 
 /// Bytes as text: UTF-8 and nothing else.
-fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
+pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         let error = Error::new(ErrorKind::Syntax, "the text is UTF-16").in_file(path);
         return Err(error.with_hint("save it as UTF-8"));
@@ -94,12 +94,13 @@ pub(super) struct Parser {
     /// Objects by name, in the same way.
     pub(super) objects: BTreeMap<String, (usize, Option<Span>)>,
     /// The files that are being read, outermost first.
-    open: Vec<PathBuf>,
-    texts: BTreeMap<PathBuf, FileId>,
+    pub(super) open: Vec<PathBuf>,
+    pub(super) texts: BTreeMap<PathBuf, FileId>,
+    /// The files that were included, by the names that the scene has for them, beside it.
+    pub(super) included: BTreeMap<PathBuf, (PathBuf, FileId)>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
-    /// Bytes that may be included again.
-    repeats_left: u64,
+    pub(super) counts: Counts,
 }
 
 impl Parser {
@@ -126,7 +127,8 @@ impl Parser {
             texts: BTreeMap::new(),
             texture_names: BTreeSet::new(),
             medium_names: BTreeSet::new(),
-            repeats_left: MOST_REPEATED,
+            included: BTreeMap::new(),
+            counts: Counts::default(),
         }
     }
 
@@ -142,7 +144,7 @@ impl Parser {
     }
 
     /// Parses one text to its end, which it returns.
-    fn file(&mut self, file: FileId) -> Result<Span, Fault> {
+    pub(super) fn file(&mut self, file: FileId) -> Result<Span, Fault> {
         let text = self.scene.sources.text(file);
         let mut tokens = Tokens::new(&text, file);
         while let Some(token) = tokens.next()? {
@@ -156,6 +158,9 @@ impl Parser {
             let message = format!("expected a directive, found {}", token.describe());
             return Err(Fault::syntax(token.span, message));
         };
+        self.counts.directives += 1;
+        let directives = (self.counts.directives, "directives");
+        self.check_count(directives, limits::DIRECTIVES, token.span)?;
         if let Some(hint) = v3::directive(word) {
             return Err(v3::fault(token.span, &format!("`{word}`"), hint));
         }
@@ -177,13 +182,19 @@ impl Parser {
     }
 
     /// Parses the parameters that follow.
-    pub(super) fn parameters(&self, tokens: &mut Tokens<'_>) -> Result<Vec<Parameter>, Fault> {
-        parse_list(tokens, self.scope.state.color_space)
+    pub(super) fn parameters(&mut self, tokens: &mut Tokens<'_>) -> Result<Vec<Parameter>, Fault> {
+        let list = parse_list(tokens, self.scope.state.color_space)?;
+        if let Some(last) = list.last() {
+            self.counts.parameters += list.len() as u64;
+            let parameters = (self.counts.parameters, "parameters");
+            self.check_count(parameters, limits::PARAMETERS, last.span)?;
+        }
+        Ok(list)
     }
 
     /// Parses a type word and parameters.
     pub(super) fn entity(
-        &self,
+        &mut self,
         tokens: &mut Tokens<'_>,
         names: &known::Names,
         defaults: &Arc<Vec<Parameter>>,
@@ -206,67 +217,10 @@ impl Parser {
         warn(&mut self.scene.warnings, span, message);
     }
 
-    /// Reads `Include`d files with the state as it is.
-    pub(super) fn include(&mut self, name: &str, span: Span) -> Result<(), Fault> {
-        if self.open.len() >= DEEPEST {
-            let message = format!("files include files more than {DEEPEST} deep");
-            return Err(Fault::new(ErrorKind::Limit, span, message));
-        }
-        let path = self.scene.resolve(name);
-        if self.open.contains(&path) {
-            return Err(Fault::scene(
-                span,
-                format!("`{}` includes itself", path.display()),
-            ));
-        }
-        let file = self
-            .load(&path)
-            .map_err(|error| Fault::from_error(span, &error))?;
-        self.open.push(path);
-        let result = self.file(file);
-        self.open.pop();
-        result.map(|_| ())
-    }
-
-    /// Reads an `Import`ed file with a copy of the state.
-    pub(super) fn import(&mut self, name: &str, span: Span) -> Result<(), Fault> {
-        let copy = Scope {
-            state: self.scope.state.clone(),
-            ..Scope::default()
-        };
-        let outer = std::mem::replace(&mut self.scope, copy);
-        self.include(name, span)?;
-        self.check_closed(0)?;
-        self.scope = outer;
-        Ok(())
-    }
-
-    fn load(&mut self, path: &Path) -> Result<FileId> {
-        // One file has many names.
-        let key = self.scene.files.identity(path);
-        if !self.scene.texts.iter().any(|known| known == path) {
-            self.scene.texts.push(path.to_owned());
-        }
-        if let Some(&file) = self.texts.get(&key) {
-            let length = self.scene.sources.text(file).len() as u64;
-            let left = self.repeats_left.checked_sub(length);
-            self.repeats_left = left.ok_or_else(|| {
-                let message = format!(
-                    "files are included repeatedly, more than {MOST_REPEATED} bytes in all"
-                );
-                Error::new(ErrorKind::Limit, message).in_file(path)
-            })?;
-            return Ok(file);
-        }
-        let text = decode(path, self.scene.files.read(path, LONGEST_TEXT)?)?;
-        let file = self.scene.sources.add(path, text)?;
-        self.texts.insert(key, file);
-        Ok(file)
-    }
-
     pub(super) fn open_block(&mut self, opener: Opener, span: Span) -> Result<(), Fault> {
-        if self.scope.blocks.len() >= MOST_BLOCKS {
-            let message = format!("blocks within blocks, more than {MOST_BLOCKS} deep");
+        let deepest = limits::DEEPEST_BLOCK;
+        if self.scope.blocks.len() >= deepest {
+            let message = format!("blocks within blocks, more than {deepest} deep");
             return Err(Fault::new(ErrorKind::Limit, span, message));
         }
         let saved = self.scope.state.clone();
@@ -295,7 +249,7 @@ impl Parser {
         }
     }
 
-    fn check_closed(&self, depth: usize) -> Result<(), Fault> {
+    pub(super) fn check_closed(&self, depth: usize) -> Result<(), Fault> {
         let Some(block) = self.scope.blocks.get(depth) else {
             return Ok(());
         };

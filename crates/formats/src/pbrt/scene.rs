@@ -3,6 +3,7 @@
 use super::parameters::{Parameter, ParameterList};
 use super::transform::Transforms;
 use crate::files::Files;
+use crate::limits::{FURTHER_WARNINGS, MOST_WARNINGS};
 use crate::source::{SourceMap, Span};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,6 +20,8 @@ pub struct SceneDescription {
     pub files: Files,
     /// The files that the texts are of, by each name that they were asked for.
     pub texts: Vec<PathBuf>,
+    /// Bytes that these files take on the disk, packed, each once.
+    pub stored: u64,
     /// The folder that relative file names are taken from: that of the top-level file.
     pub folder: PathBuf,
     /// The camera. None: where the file has no such directive; so below.
@@ -230,14 +233,11 @@ pub struct Warning {
     pub count: usize,
 }
 
-/// The most warnings that differ: the list is searched for each.
-const MOST_WARNINGS: usize = 200;
-
 /// Counts a warning: the same words occur once in the list.
 pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
     let mut message = message.into();
     if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
-        "further warnings, of other kinds".clone_into(&mut message);
+        FURTHER_WARNINGS.clone_into(&mut message);
     }
     match warnings
         .iter_mut()

@@ -38,7 +38,7 @@ impl Transforms {
         }
     }
 
-    pub(super) fn inverse(self) -> Self {
+    pub(crate) fn inverse(self) -> Self {
         Self {
             start: self.start.inverse(),
             end: self.end.inverse(),

@@ -11,14 +11,11 @@
 mod body;
 mod header;
 
-use crate::bytes;
 use crate::error::{Error, ErrorKind, Place, Result};
+use crate::{bytes, limits};
 use body::Body;
 use header::{Element, Header, PropertyKind};
 use std::path::Path;
-
-/// Bytes of a file after unpacking.
-pub(crate) const LARGEST: u64 = 1 << 34;
 
 /// A mesh of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +58,7 @@ impl Broken {
 
 /// Reads the mesh of a file; `.gz` is unpacked.
 pub fn read(path: &Path) -> Result<PlyMesh> {
-    let bytes = bytes::read(path, LARGEST)?;
+    let bytes = bytes::read(path, limits::LARGEST_MESH)?.bytes;
     parse(&bytes).map_err(|error| error.in_file(path))
 }
 

@@ -9,7 +9,7 @@ use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
 use std::path::Path;
 
 /// Few pixels with many samples each: then the mean of a pixel is close to normal.
-const RESOLUTION: [u32; 2] = [16, 16];
+pub(crate) const RESOLUTION: [u32; 2] = [16, 16];
 /// The film's mean and every pixel are compared.
 pub(crate) const PIXELS: &[usize] = &[WHOLE, 1];
 /// For estimators whose pixels have heavy tails: the film's mean and its quarters.

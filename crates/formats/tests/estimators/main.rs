@@ -2,10 +2,12 @@
 //! to be wrong. The scenes are the project's own, in `scenes/torture`.
 //!
 //! Here are those that need comparisons of their own; `matrix` has every integrator with every choice
-//! of shadow rays on all scenes; `plans` has what `auto` takes.
+//! of shadow rays on all scenes; `plans` has what `auto` takes;
+//! `places` moves and scales a scene.
 
 mod case;
 mod matrix;
+mod places;
 mod plans;
 
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]

@@ -73,7 +73,7 @@ pub fn prepare(
     observer: &mut dyn Observer,
 ) -> Result<Option<Prepared>> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner)?;
+    let mut journal = Journal::start(setup, &owner, observer)?;
     let threads = experiment.threads;
     let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
         return Ok(None);
@@ -171,6 +171,7 @@ pub fn render_block(
         words: String::new(),
         image: None,
         mse: None,
+        warning: None,
     };
     let mut all = Vec::new();
     for name in &block.methods {

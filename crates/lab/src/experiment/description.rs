@@ -1,6 +1,6 @@
 //! From TOML to an [`Experiment`].
 
-use super::error::ExperimentError;
+use super::error::{ExperimentError, Place};
 use super::names::{file_name, nearest};
 use super::reader::{Entry, Section, Source};
 use super::settings::{Changes, named, no_effect};
@@ -262,15 +262,19 @@ fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
 
 fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result<SceneSpec> {
     section.only(&SCENE, &OLD_SCENE)?;
-    let file = section.need("file")?.text()?.to_owned();
+    let named = section.need("file")?;
+    let file = named.text()?.to_owned();
     let stem = Path::new(&file).file_stem().unwrap_or_default();
     let stem = stem.to_string_lossy();
+    let name = or(text_of(section, "name")?, &stem);
+    let (reference, place) = reference(section, folder, defaults)?;
     Ok(SceneSpec {
-        name: or(text_of(section, "name")?, &stem),
+        name,
         path: joined(folder, &file),
         size: size(section)?,
-        reference: reference(section, folder, defaults)?,
+        reference,
         file,
+        places: [Some(named.at()), place],
     })
 }
 
@@ -293,12 +297,12 @@ fn joined(folder: &Path, file: &str) -> PathBuf {
     path
 }
 
-/// A reference that is there, or how many samples the one that is made has.
+/// A reference that is there, with the place of its name, or how many samples the one that is made has.
 fn reference(
     section: &mut Section<'_>,
     folder: &Path,
     defaults: &Changes,
-) -> Result<ReferenceSpec> {
+) -> Result<(ReferenceSpec, Option<Place>)> {
     let image = section.take("reference");
     let spp = section.take("reference-spp");
     let strategies = section.take("reference-strategies");
@@ -309,13 +313,19 @@ fn reference(
                 "an existing reference cannot be changed".to_owned(),
                 "leave this out, or have the reference made with `reference-spp`".to_owned(),
             )),
-            None => Ok(ReferenceSpec::There(folder.join(image.text()?))),
+            None => {
+                let there = ReferenceSpec::There(folder.join(image.text()?));
+                Ok((there, Some(image.at())))
+            }
         },
-        (None, Some(spp)) => Ok(ReferenceSpec::Make {
-            spp: spp.whole(1)?,
-            changes: Box::new(reference_changes(strategies, defaults)?),
-            witness: cross_check.as_ref().map(cross_check_of).transpose()?,
-        }),
+        (None, Some(spp)) => {
+            let made = ReferenceSpec::Make {
+                spp: spp.whole(1)?,
+                changes: Box::new(reference_changes(strategies, defaults)?),
+                witness: cross_check.as_ref().map(cross_check_of).transpose()?,
+            };
+            Ok((made, None))
+        }
         (Some(_), Some(spp)) => {
             Err(spp.fault("`reference` and `reference-spp` exclude each other"))
         }

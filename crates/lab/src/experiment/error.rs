@@ -23,6 +23,16 @@ pub enum ExperimentError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// A line of the records is not as it was written.
+    #[error("{}:{line}: damaged: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
     /// The folder has the records of another experiment.
     #[error("{}: the records are of another experiment", .0.display())]
     Mismatch(PathBuf),
@@ -121,6 +131,10 @@ impl ExperimentError {
         match self {
             Self::Description(fault) => fault.hint.as_deref(),
             Self::File(error) => error.hint(),
+            Self::Damaged { line: 1, .. } => Some("start over with --restart"),
+            Self::Damaged { .. } => {
+                Some("remove the line, to have its render repeated, or start over with --restart")
+            }
             Self::Mismatch(_) => {
                 Some("name another folder with -o, or start over in this one with --restart")
             }
@@ -146,15 +160,38 @@ impl ExperimentError {
     }
 }
 
-/// Something wrong in a description. Its text is `file:line:column: message`.
+/// A place in a description.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct Place {
     /// The file.
     pub file: PathBuf,
     /// The line, counted from 1.
     pub line: usize,
     /// The column, counted from 1, in characters.
     pub column: usize,
+}
+
+impl Place {
+    /// An error with a file that is named here; one that has a place in that file keeps it.
+    pub(super) fn of_named(place: Option<&Self>, error: formats::Error) -> ExperimentError {
+        use formats::ErrorKind::{Io, MissingFile};
+        let is_absent = matches!(error.kind(), MissingFile | Io) && error.line().is_none();
+        match place.filter(|_| is_absent) {
+            Some(place) => ExperimentError::Description(Fault {
+                place: place.clone(),
+                message: error.message().to_owned(),
+                hint: error.hint().map(str::to_owned),
+            }),
+            None => ExperimentError::File(error),
+        }
+    }
+}
+
+/// Something wrong in a description. Its text is `file:line:column: message`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Where.
+    pub place: Place,
     /// What is wrong.
     pub message: String,
     /// What to do about it.
@@ -163,8 +200,7 @@ pub struct Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { line, column, .. } = self;
-        write!(f, "{}:{line}:{column}: ", self.file.display())?;
-        write!(f, "{}", self.message)
+        let Place { file, line, column } = &self.place;
+        write!(f, "{}:{line}:{column}: {}", file.display(), self.message)
     }
 }

@@ -4,8 +4,8 @@ use super::settings::texts;
 use super::stage::{Reference, Stage};
 use super::{Experiment, ReferenceSpec};
 use crate::image::digest;
+use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
-use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
 /// The hash of an experiment; `given` has the references of the scenes that are there before it begins.
@@ -35,7 +35,7 @@ pub(super) fn identity(
             let _ = writeln!(text, "method {:?} {settings:?}", method.name);
         }
     }
-    hash(&text)
+    sha256(text.as_bytes())
 }
 
 /// One that is there is its pixels, wherever it lies; another is how it is made.
@@ -44,14 +44,4 @@ fn reference(spec: &ReferenceSpec, given: Option<&Reference>) -> String {
         Some(given) => format!("pixels {}", digest(&[&given.pixels])),
         None => format!("{spec:?}"),
     }
-}
-
-/// SHA-256 in hexadecimal.
-pub(super) fn hash(text: &str) -> String {
-    let mut hash = String::new();
-    for byte in Sha256::digest(text.as_bytes()) {
-        // Writing to a string cannot fail.
-        let _ = write!(hash, "{byte:02x}");
-    }
-    hash
 }

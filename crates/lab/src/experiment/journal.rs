@@ -2,18 +2,21 @@
 //!
 //! The first line says whose they are, and of which machine; every other line is a record, or
 //! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Where experiments
-//! have parts, it has that line alone in the folder of all.
+//! have parts, it has that line alone in the folder of all. Each line has its checksum.
 
 use super::error::ExperimentError;
-use super::run::{Setup, Start};
+use super::run::{Event, Observer, Setup, Start};
 use crate::results::{Machine, Pyramid, Record};
+use crate::seal::{self, Seal};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The name of the file.
-const FILE: &str = "records.ndjson";
+pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
+/// The version before, whose lines have no checksums.
+const UNSEALED: u32 = 2;
 
 /// Makes the folder that of the experiment `name`, whose parts have folders and records of their own
 /// below it: it then has a journal without records.
@@ -89,6 +92,8 @@ struct PyramidLine {
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
+    /// False where it was read from a file without checksums.
+    is_sealed: bool,
     records: Vec<Record>,
     pyramids: Vec<Pyramid>,
 }
@@ -111,6 +116,7 @@ impl Journal {
         Self {
             path: folder.join(FILE),
             text: line(&head),
+            is_sealed: true,
             records: Vec::new(),
             pyramids: Vec::new(),
         }
@@ -118,48 +124,110 @@ impl Journal {
 
     /// The journal that is there, or an empty one.
     ///
-    /// Errors: it cannot be read, is of another experiment, or of another machine or program: times
-    /// that are compared are of one.
+    /// Errors: it cannot be read, is damaged, of another experiment, or of another machine or program:
+    /// times that are compared are of one.
     pub(super) fn open(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
         let mut journal = Self::new(folder, owner);
-        let text = match std::fs::read_to_string(&journal.path) {
-            Ok(text) => text,
+        let bytes = match std::fs::read(&journal.path) {
+            Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
             Err(error) => {
                 let path = journal.path;
                 return Err(ExperimentError::Folder { path, error });
             }
         };
-        let others = || ExperimentError::Mismatch(folder.to_owned());
-        let mut lines = text.lines();
-        let head: Option<Head> = lines
-            .next()
-            .and_then(|line| serde_json::from_str(line).ok());
-        let is_same =
-            |head: &Head| head.format == FORMAT && head.owner.experiment == owner.experiment;
-        let there = head.filter(is_same).ok_or_else(others)?.owner;
-        if let Some(difference) = there.difference(owner) {
-            let folder = folder.to_owned();
-            return Err(ExperimentError::Elsewhere { folder, difference });
-        }
-        for line in lines {
-            if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
-                journal.pyramids.push(pyramid);
-            } else {
-                let record = serde_json::from_str(line).map_err(|_| others())?;
-                journal.records.push(record);
-            }
-        }
-        journal.text = text;
+        journal.read(&bytes, folder, owner)?;
         Ok(journal)
     }
 
-    /// The journal of a run that begins.
-    pub(super) fn start(setup: &Setup, owner: &Owner) -> Result<Self, ExperimentError> {
-        match setup.start {
-            Start::Resume => Self::open(&setup.folder, owner),
-            Start::Anew => Self::begin(&setup.folder, owner),
+    /// Takes what is in the file.
+    fn read(&mut self, bytes: &[u8], folder: &Path, owner: &Owner) -> Result<(), ExperimentError> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let before = bytes.iter().take(error.valid_up_to());
+            let line = 1 + before.filter(|byte| **byte == b'\n').count();
+            self.damaged(line, "it is no text")
+        })?;
+        let mut lines = (1..).zip(text.split_terminator('\n'));
+        let (_, head) = lines.next().unwrap_or((1, ""));
+        self.read_head(folder, head, owner)?;
+        lines.try_for_each(|(number, line)| self.read_line(line, number))
+    }
+
+    /// Takes the first line.
+    fn read_head(
+        &mut self,
+        folder: &Path,
+        line: &str,
+        owner: &Owner,
+    ) -> Result<(), ExperimentError> {
+        let others = || ExperimentError::Mismatch(folder.to_owned());
+        if seal::check(line) == Seal::Broken {
+            return self.check(line, 1);
         }
+        let head: Option<Head> = serde_json::from_str(line).ok();
+        let is_known = |head: &Head| [UNSEALED, FORMAT].contains(&head.format);
+        let head = head.filter(is_known).ok_or_else(others)?;
+        self.is_sealed = head.format != UNSEALED;
+        self.check(line, 1)?;
+        let there = head.owner;
+        if there.experiment != owner.experiment {
+            return Err(others());
+        }
+        let difference = there.difference(owner);
+        difference.map_or(Ok(()), |difference| {
+            let folder = folder.to_owned();
+            Err(ExperimentError::Elsewhere { folder, difference })
+        })
+    }
+
+    /// Takes a line of a record or of what was found of strategies.
+    fn read_line(&mut self, line: &str, number: usize) -> Result<(), ExperimentError> {
+        self.check(line, number)?;
+        if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
+            self.pyramids.push(pyramid);
+        } else {
+            let record = serde_json::from_str(line);
+            self.records
+                .push(record.map_err(|_| self.damaged(number, "it is no record"))?);
+        }
+        self.text += &match seal::check(line) {
+            Seal::Missing => seal::sealed(line),
+            _ => line.to_owned(),
+        };
+        self.text.push('\n');
+        Ok(())
+    }
+
+    /// Compares a line with its checksum.
+    fn check(&self, line: &str, number: usize) -> Result<(), ExperimentError> {
+        match seal::check(line) {
+            Seal::Broken => Err(self.damaged(number, "its checksum is that of another text")),
+            Seal::Missing if self.is_sealed => Err(self.damaged(number, "it has no checksum")),
+            Seal::Missing | Seal::Whole => Ok(()),
+        }
+    }
+
+    fn damaged(&self, line: usize, reason: &'static str) -> ExperimentError {
+        let path = self.path.clone();
+        ExperimentError::Damaged { path, line, reason }
+    }
+
+    /// The journal of a run that begins.
+    pub(super) fn start(
+        setup: &Setup,
+        owner: &Owner,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, ExperimentError> {
+        if setup.start == Start::Anew {
+            return Self::begin(&setup.folder, owner);
+        }
+        let journal = Self::open(&setup.folder, owner)?;
+        if !journal.is_sealed {
+            let path = journal.path.display();
+            let text = format!("{path}: of a version without checksums: damage in it is not seen");
+            observer.tell(Event::Warning(&text));
+        }
+        Ok(journal)
     }
 
     /// Adds a record.
@@ -208,5 +276,87 @@ impl Journal {
 
 fn line(value: &impl Serialize) -> String {
     let text = serde_json::to_string(value);
-    text.expect("texts and numbers have a JSON") + "\n"
+    seal::sealed(&text.expect("texts and numbers have a JSON")) + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    const PLACE: &str = "out";
+
+    fn owner() -> Owner {
+        Owner {
+            experiment: "a hash".to_owned(),
+            program: "bidir 0".to_owned(),
+            machine: Machine::default(),
+        }
+    }
+
+    fn record(seed: u64) -> Record {
+        let record = json!({
+            "scene": "room", "method": "all", "budget": "2 spp", "seed": seed, "spp": 2,
+            "seconds": 0.25, "connections_blocked": 3, "metrics": {"rmse": 0.5},
+            "rays": {"camera": 1, "light": 2, "connection": 3, "light_image": 4, "training": 0},
+            "efficiency_rays": 0.125, "efficiency_seconds": 16.0, "image": null,
+        });
+        serde_json::from_value(record).unwrap()
+    }
+
+    /// A journal of two records, as it is written.
+    fn written() -> String {
+        let journal = Journal::new(Path::new(PLACE), &owner());
+        journal.text + &line(&record(1)) + &line(&record(2))
+    }
+
+    fn read(bytes: &[u8]) -> Result<Journal, ExperimentError> {
+        let mut journal = Journal::new(Path::new(PLACE), &owner());
+        journal.read(bytes, Path::new(PLACE), &owner())?;
+        Ok(journal)
+    }
+
+    #[test]
+    fn every_flip_of_a_bit_is_an_error_with_its_line() {
+        let text = written();
+        let journal = read(text.as_bytes()).unwrap();
+        assert!(journal.records == [record(1), record(2)] && journal.text == text);
+        for bit in (0..8 * (text.len() - 1)).step_by(5) {
+            let mut bytes = text.clone().into_bytes();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            let before = &text[..bit / 8];
+            let expected = 1 + before.matches('\n').count();
+            match read(&bytes) {
+                Err(ExperimentError::Damaged { line, .. }) => assert_eq!(line, expected),
+                // Half a checksum of the first line leaves no sign whose it is.
+                Err(ExperimentError::Mismatch(_)) => assert_eq!(expected, 1),
+                other => panic!("bit {bit}: {other:?}"),
+            }
+        }
+        for end in 0..text.len() - 1 {
+            let whole = read(&text.as_bytes()[..end]).map(|journal| journal.records.len());
+            let is_line = text[..end].ends_with('\n') || text[end..].starts_with('\n');
+            assert_eq!(whole.is_ok(), is_line && end > 0, "{end}");
+        }
+    }
+
+    #[test]
+    fn records_of_before_are_read_and_get_checksums() {
+        let unsealed: String = written()
+            .lines()
+            .map(|line| {
+                let mut line: Value = serde_json::from_str(line).unwrap();
+                let object = line.as_object_mut().unwrap();
+                object.remove("checksum");
+                object
+                    .entry("format")
+                    .and_modify(|format| *format = UNSEALED.into());
+                format!("{line}\n")
+            })
+            .collect();
+        let journal = read(unsealed.as_bytes()).unwrap();
+        assert!(!journal.is_sealed && journal.records == [record(1), record(2)]);
+        let sealed = read(journal.text.as_bytes()).unwrap();
+        assert!(sealed.is_sealed && sealed.records == journal.records);
+    }
 }

@@ -47,6 +47,7 @@ mod journal;
 #[cfg(test)]
 mod keys;
 mod names;
+mod outputs;
 pub use names::nearest;
 mod page;
 mod pyramid;
@@ -57,8 +58,9 @@ mod settings;
 mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
-pub use error::{ExperimentError, Fault};
+pub use error::{ExperimentError, Fault, Place};
 pub(crate) use journal::claim;
+pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
 pub use settings::{Changes, texts};
@@ -124,6 +126,8 @@ pub struct SceneSpec {
     pub size: Option<[u32; 2]>,
     /// What its images are compared with.
     pub reference: ReferenceSpec,
+    /// Where a description names the file, and the reference that is there. None: it does not.
+    pub places: [Option<Place>; 2],
 }
 
 /// What images are compared with.

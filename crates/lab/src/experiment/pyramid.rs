@@ -50,6 +50,22 @@ pub(super) fn found(
     found.cloned().collect()
 }
 
+/// The names of the files of all contact sheets, relative to the folder of the results.
+pub(super) fn files(experiment: &Experiment, stages: &[Stage<'_>]) -> Vec<String> {
+    let shown = stages.iter().filter(|_| wanted(experiment).is_some());
+    let files = shown.flat_map(|stage| ["weighted", "raw"].map(|word| file(stage, word)));
+    files.collect()
+}
+
+/// The name of a contact sheet.
+fn file(stage: &Stage<'_>, word: &str) -> String {
+    // No image of a method has this name: those end in `.exr`.
+    format!(
+        "images/{}--strategies-{word}.png",
+        file_name(&stage.spec.name)
+    )
+}
+
 /// Refuses a method that is not bidirectional in one of the scenes.
 pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>]) -> Result<()> {
     let Some((_, method)) = wanted(experiment) else {
@@ -158,8 +174,7 @@ impl Work<'_> {
     fn sheet(&self, session: &Session<'_>, kind: Kind, word: &str) -> Result<String> {
         let scene = &self.stage.spec.name;
         let pixels = pyramid::sheet(session.film(), kind, scene);
-        // No image of a method has this name: those end in `.exr`.
-        let name = format!("images/{}--strategies-{word}.png", file_name(scene));
+        let name = file(self.stage, word);
         let size = pixels.size.map(|side| side as u32);
         formats::image::write_png(&self.setup.folder.join(&name), size, &pixels.data)?;
         Ok(name)

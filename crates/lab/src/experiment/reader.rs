@@ -3,7 +3,7 @@
 //! A [`Section`] is first checked for keys that it does not have: a misspelt key is reported before the
 //! one that is missing for it.
 
-use super::error::{ExperimentError, Fault};
+use super::error::{ExperimentError, Fault, Place};
 use super::names::nearest;
 use std::ops::Range;
 use std::path::Path;
@@ -33,14 +33,21 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// An error at a place.
-    fn fault(self, place: Range<usize>, message: String, hint: Option<String>) -> ExperimentError {
+    fn at(self, place: &Range<usize>) -> Place {
         let before = self.text.get(..place.start).unwrap_or(self.text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        ExperimentError::Description(Fault {
+        Place {
             file: self.file.to_owned(),
             line: before.matches('\n').count() + 1,
             column: before[line_start..].chars().count() + 1,
+        }
+    }
+
+    /// An error at a place.
+    fn fault(self, place: Range<usize>, message: String, hint: Option<String>) -> ExperimentError {
+        let place = self.at(&place);
+        ExperimentError::Description(Fault {
+            place,
             message,
             hint,
         })
@@ -141,6 +148,11 @@ impl<'a> Entry<'a> {
             place: value.span(),
             value: value.into_inner(),
         }
+    }
+
+    /// Where it stands.
+    pub(super) fn at(&self) -> Place {
+        self.source.at(&self.place)
     }
 
     /// An error of this value.

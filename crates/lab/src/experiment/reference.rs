@@ -2,19 +2,19 @@
 
 use super::ReferenceSpec;
 use super::cell::write_image;
-use super::error::ExperimentError;
-use super::identity::hash;
+use super::error::{ExperimentError, Place};
 use super::names::file_name;
 use super::run::{Event, Observer, Setup};
 use super::settings::{Changes, texts};
 use super::stage::{Reference, Stage};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Made, Plan, Subject};
+use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -32,6 +32,7 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
             words: format!("the image {}", path.display()),
             image: None,
             mse: stored_mse(path),
+            warning: None,
         })),
         ReferenceSpec::Make { .. } => Ok(None),
     }
@@ -80,12 +81,32 @@ fn obtain(
 /// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
 /// report shows.
 fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
-    let name = format!("references/{}.exr", file_name(&stage.spec.name));
+    let name = copy(stage);
     write_image(&setup.folder.join(&name), &reference.pixels)?;
     Ok(Reference {
         image: Some(name),
         ..reference
     })
+}
+
+/// The name of the picture of a reference that lies elsewhere, in the folder of the results.
+fn copy(stage: &Stage<'_>) -> String {
+    format!("references/{}.exr", file_name(&stage.spec.name))
+}
+
+/// The files that are written for the reference of a scene.
+pub(super) fn written(stage: &Stage<'_>, setup: &Setup) -> Vec<PathBuf> {
+    match &stage.spec.reference {
+        ReferenceSpec::There(_) => vec![setup.folder.join(copy(stage))],
+        ReferenceSpec::Make {
+            spp,
+            changes,
+            witness,
+        } => {
+            let plan = plan(stage, *spp, changes, *witness);
+            references::files(&setup.folder.join(folder(stage, &plan)))
+        }
+    }
 }
 
 /// A reference that is there; `name` is its folder in that of the results, if it lies there.
@@ -104,6 +125,7 @@ fn new(
 ) -> Result<Reference> {
     Ok(Reference {
         mse: reference.mse(),
+        warning: reference.warning(),
         words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
         pixels: finite(reference.picture, &reference.folder, stage)?,
@@ -119,7 +141,9 @@ fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
 
 /// Reads an image, which has the size of the scene's.
 fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
-    let pixels = Pixels::from(&formats::image::read(path, None)?);
+    let image = formats::image::read(path, None);
+    let place = stage.spec.places[1].as_ref();
+    let pixels = Pixels::from(&image.map_err(|error| Place::of_named(place, error))?);
     if pixels.size != stage.size() {
         return Err(ExperimentError::Size {
             path: path.to_owned(),
@@ -191,7 +215,7 @@ fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
         stage.digest, plan.spp
     );
-    let hash = hash(&identity);
+    let hash = sha256(identity.as_bytes());
     format!("references/{}-{}", file_name(&stage.spec.name), &hash[..12])
 }
 
@@ -205,6 +229,7 @@ fn make(
     let name = folder(stage, plan);
     let path = setup.folder.join(&name);
     if let Ok(reference) = load(stage, &path, Some(&name)) {
+        reference.warn(observer);
         return Ok(Some(reference));
     }
     let subject = Subject {

@@ -5,6 +5,7 @@ use super::cell::Cell;
 use super::error::ExperimentError;
 use super::identity::identity;
 use super::journal::{Journal, Owner};
+use super::outputs;
 use super::pyramid;
 use super::reference;
 use super::settings::{no_effect, texts};
@@ -120,7 +121,7 @@ pub struct Outcome {
 /// Runs what no record has yet, and writes `results.json`.
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner)?;
+    let mut journal = Journal::start(setup, &owner, observer)?;
     let threads = experiment.threads;
     let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
         return Ok(Outcome {
@@ -180,6 +181,9 @@ pub(super) fn begin<'a>(
     pyramid::check(experiment, &stages)?;
     let given = stages.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
+    outputs::check(experiment, &stages, setup)?;
+    let found = given.iter().flatten();
+    found.for_each(|reference| reference.warn(observer));
     let owner = Owner {
         experiment: identity(experiment, &stages, &given),
         program: setup.program.clone(),
@@ -263,7 +267,7 @@ fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
 
 /// Writes `results.json` into the folder of the results.
 pub fn write_results(folder: &Path, results: &Results) -> Result<()> {
-    formats::file::replace(&folder.join("results.json"), json(results).as_bytes())?;
+    formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
     Ok(())
 }
 

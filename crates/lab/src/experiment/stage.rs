@@ -1,6 +1,7 @@
 //! A scene that is ready to be rendered and compared.
 
-use super::error::ExperimentError;
+use super::error::{ExperimentError, Place};
+use super::run::{Event, Observer};
 use super::{Experiment, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
@@ -20,6 +21,8 @@ pub(super) struct Stage<'a> {
     pub(super) warnings: Vec<String>,
     /// All files that were read.
     pub(super) files: Vec<PathBuf>,
+    /// Those that no output may replace.
+    pub(super) inputs: Vec<PathBuf>,
 }
 
 /// What the images of a scene are compared with.
@@ -31,6 +34,17 @@ pub(super) struct Reference {
     pub(super) image: Option<String>,
     /// The mean square error of its own. None: nobody knows.
     pub(super) mse: Option<f64>,
+    /// What is odd about its files.
+    pub(super) warning: Option<String>,
+}
+
+impl Reference {
+    /// Tells what is odd about its files.
+    pub(super) fn warn(&self, observer: &mut dyn Observer) {
+        if let Some(warning) = &self.warning {
+            observer.tell(Event::Warning(warning));
+        }
+    }
 }
 
 impl<'a> Stage<'a> {
@@ -44,7 +58,8 @@ impl<'a> Stage<'a> {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
         };
-        let loaded = formats::scene::load_from(&spec.path, &options, files)?;
+        let loaded = formats::scene::load_from(&spec.path, &options, files);
+        let loaded = loaded.map_err(|error| Place::of_named(spec.places[0].as_ref(), error))?;
         let mut settings = Settings {
             sampler: loaded.settings.sampler,
             ..Settings::default()
@@ -58,6 +73,7 @@ impl<'a> Stage<'a> {
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
             files: loaded.files,
+            inputs: loaded.inputs,
         })
     }
 

@@ -69,7 +69,10 @@ impl Room {
     pub(super) fn write(self, folder: &Path, name: &str) -> io::Result<PathBuf> {
         let mesh = format!("room-{}.ply", self.count());
         if !folder.join(&mesh).exists() {
-            std::fs::write(folder.join(&mesh), ply(&faces(), self.division()))?;
+            // As a whole: what a killed process wrote of it would be taken for the mesh.
+            let bytes = ply(&faces(), self.division());
+            let written = formats::file::replace(&folder.join(&mesh), &bytes);
+            written.map_err(io::Error::other)?;
         }
         let path = folder.join(format!("{name}.pbrt"));
         std::fs::write(&path, self.text(&mesh))?;

@@ -6,6 +6,7 @@ use super::replicate::{Estimator, Replicates, film};
 use super::{AGAINST, Error, FILMS, PICTURE, PROVENANCE, REPLICATES, Reference, picture};
 use crate::image::digest;
 use crate::results::Rays;
+use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources, Settings};
 use bidir::film::{Aov, Layers};
@@ -14,8 +15,9 @@ use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use formats::film::{FilmHeader, SceneIdentity, SettingsText, settings_from_flags};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The first of all seeds: far from those that people choose.
 const SEEDS: u64 = 1 << 40;
@@ -160,13 +162,23 @@ pub fn make(
     Ok(Made::Whole(Box::new(reference)))
 }
 
+/// All files of a reference in `folder`, whether or not they are there.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let named = [PICTURE, AGAINST, PROVENANCE].map(|name| folder.join(name));
+    named.into_iter().chain(films(folder)).collect()
+}
+
+/// The films of both estimators.
+fn films(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let films = NAMES
+        .iter()
+        .flat_map(|name| (0..REPLICATES).map(move |r| (name, r)));
+    films.map(|(name, replicate)| film(folder, name, replicate))
+}
+
 /// Removes what says that `folder` has a reference, and its films: the next one begins anew.
 pub fn clear(folder: &Path) -> Result<(), Error> {
-    let films = NAMES.iter().flat_map(|name| {
-        let films = 0..REPLICATES;
-        films.map(|replicate| film(folder, name, replicate))
-    });
-    for path in std::iter::once(folder.join(PROVENANCE)).chain(films) {
+    for path in std::iter::once(folder.join(PROVENANCE)).chain(films(folder)) {
         match std::fs::remove_file(&path) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 return Err(Error::io(&path, error));
@@ -186,8 +198,12 @@ fn finish(
 ) -> Result<Reference, Error> {
     let agreement = agreement(&made[0].pictures, &made[1].pictures)
         .ok_or_else(|| Error::damaged(folder, "the films have no pixels, or not one size"))?;
+    let mut files = BTreeMap::new();
     for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {
-        picture::write(&folder.join(name), &replicates.header, &replicates.film)?;
+        let path = folder.join(name);
+        picture::write(&path, &replicates.header, &replicates.film)?;
+        let bytes = std::fs::read(&path).map_err(|error| Error::io(&path, error))?;
+        files.insert(name.to_owned(), sha256(&bytes));
     }
     let [picture, variance] = picture::of(made[0].film.develop());
     let header = &made[0].header;
@@ -202,6 +218,7 @@ fn finish(
         estimators: [0, 1].map(|i| record(&plan.estimators[i], i as u64, &made[i].header)),
         agreement,
         picture: digest(&[&picture, &variance]),
+        files,
     };
     provenance.write(folder)?;
     Ok(Reference {

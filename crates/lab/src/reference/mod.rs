@@ -22,7 +22,7 @@
 //! |---|---|
 //! | `picture.exr` | the picture, with the layers `Variance`, `RelativeVariance` and `Samples` |
 //! | `against.exr` | the same of the second estimator |
-//! | `provenance.json` | [`Provenance`]: how it was made, and whether the estimators agree |
+//! | `provenance.json` | [`Provenance`]: how it was made, and whether the estimators agree, with checksums of itself and both images |
 //! | `films/*.film` | the film of each replicate, by which [`make()`] goes on |
 //!
 //! The films are needed to add samples only. As each holds whole passes, a reference that was
@@ -38,7 +38,7 @@ mod tests;
 mod witness;
 
 pub use agreement::{Agreement, Comparison};
-pub use make::{Host, Made, Plan, Subject, clear, make};
+pub use make::{Host, Made, Plan, Subject, clear, files, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::{Pixels, digest};
@@ -167,6 +167,7 @@ impl Reference {
     pub fn load(folder: &Path) -> Result<Self, Error> {
         let provenance = Provenance::read(folder)?;
         provenance.check_usable(folder)?;
+        provenance.check_files(folder)?;
         let file = folder.join(PICTURE);
         let [picture, variance] = picture::read(&file)?;
         if digest(&[&picture, &variance]) != provenance.picture {
@@ -178,6 +179,20 @@ impl Reference {
             picture,
             variance,
             provenance,
+        })
+    }
+
+    /// What is odd about its files: of older ones, damage may go unseen. None: nothing.
+    pub fn warning(&self) -> Option<String> {
+        let folder = self.folder.display();
+        (self.provenance.format == provenance::UNSEALED).then(|| {
+            let lacks = !self.folder.join(AGAINST).is_file();
+            let lacks = if lacks {
+                ", and it has no against.exr"
+            } else {
+                ""
+            };
+            format!("{folder}: of a version without checksums: damage in it may go unseen{lacks}")
         })
     }
 

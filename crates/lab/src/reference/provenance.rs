@@ -3,6 +3,7 @@
 use super::agreement::Agreement;
 use super::{Error, LEVEL, PROVENANCE};
 use crate::results::Rays;
+use crate::seal::{self, Seal, sha256};
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::Settings;
 use bidir::film::FilmSettings;
@@ -14,7 +15,9 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 /// The version of the format of `provenance.json`.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+/// The version before, without checksums.
+pub(super) const UNSEALED: u32 = 1;
 
 /// How a reference was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,6 +42,9 @@ pub struct Provenance {
     pub agreement: Agreement,
     /// The SHA-256 of the picture and its variances.
     pub picture: String,
+    /// The SHA-256 of the files beside it, by their names.
+    #[serde(default)]
+    pub files: BTreeMap<String, String>,
 }
 
 /// What one of the two estimators did.
@@ -93,7 +99,7 @@ impl EstimatorRecord {
 impl Provenance {
     /// Reads `provenance.json` of the reference in `folder`, whatever it says.
     ///
-    /// Errors: it is not there, is no such JSON, or has another format.
+    /// Errors: it is not there, is damaged, is no such JSON, or has another format.
     pub fn read(folder: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct Format {
@@ -105,14 +111,23 @@ impl Provenance {
             _ => Error::io(&path, error),
         })?;
         let damaged = |error: serde_json::Error| Error::damaged(&path, error.to_string());
+        if seal::check(&text) == Seal::Broken {
+            return Err(Error::damaged(
+                &path,
+                "its checksum is that of another text",
+            ));
+        }
         let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
-        if format != FORMAT {
+        if ![FORMAT, UNSEALED].contains(&format) {
             let reason =
                 format!("the reference has format {format}; this program reads format {FORMAT}");
             return Err(Error::Refused {
                 folder: folder.to_owned(),
                 reason,
             });
+        }
+        if format != UNSEALED && seal::check(&text) == Seal::Missing {
+            return Err(Error::damaged(&path, "it has no checksum"));
         }
         let mut provenance: Self = serde_json::from_str(&text).map_err(damaged)?;
         for record in &mut provenance.estimators {
@@ -124,9 +139,25 @@ impl Provenance {
     /// Writes it to the reference in `folder`.
     pub(super) fn write(&self, folder: &Path) -> Result<(), Error> {
         let json = serde_json::to_string_pretty(self);
-        let json = json.expect("it is numbers and texts") + "\n";
+        let json = seal::sealed(&json.expect("it is numbers and texts")) + "\n";
         let path = folder.join(PROVENANCE);
         Ok(formats::file::replace(&path, json.as_bytes())?)
+    }
+
+    /// Refuses the reference in `folder` where one of its files is not as it was written.
+    pub(super) fn check_files(&self, folder: &Path) -> Result<(), Error> {
+        for (name, sum) in &self.files {
+            let path = folder.join(name);
+            let bytes = std::fs::read(&path).map_err(|error| match error.kind() {
+                ErrorKind::NotFound => Error::damaged(&path, "it is missing"),
+                _ => Error::io(&path, error),
+            })?;
+            if sha256(&bytes) != *sum {
+                let reason = format!("it is not the file that {PROVENANCE} describes");
+                return Err(Error::damaged(&path, reason));
+            }
+        }
+        Ok(())
     }
 
     /// How it was made, in words.

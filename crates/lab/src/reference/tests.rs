@@ -1,4 +1,5 @@
 use super::*;
+use crate::seal;
 use crate::statistics::z_test;
 use bidir::driver::{Progress, Resources, Settings};
 use bidir::integrator::IntegratorKind;
@@ -151,7 +152,8 @@ fn an_estimator_that_misses_paths_is_found_out() {
     // A flag that was set by hand does not help.
     let path = place.path("a/provenance.json");
     let json = fs::read_to_string(&path).unwrap();
-    fs::write(&path, json.replace("\"agree\": false", "\"agree\": true")).unwrap();
+    let by_hand = json.replace("\"agree\": false", "\"agree\": true");
+    fs::write(&path, resealed(&by_hand)).unwrap();
     assert!(place.refusal("a").contains("its estimators disagree"));
 }
 
@@ -271,6 +273,60 @@ fn films_of_another_render_are_not_gone_on_from() {
     assert!(error.contains("scene-digest is"), "{error}");
 }
 
+/// The JSON with a checksum of its own.
+fn resealed(json: &str) -> String {
+    seal::sealed(&unsealed(json).to_string())
+}
+
+fn unsealed(json: &str) -> serde_json::Value {
+    let mut json: serde_json::Value = serde_json::from_str(json).unwrap();
+    json.as_object_mut().unwrap().remove("checksum");
+    json
+}
+
+#[test]
+fn every_flip_in_a_file_of_a_reference_is_noticed() {
+    let place = Workplace::new();
+    place.make("a", &plan(1));
+    for name in [PICTURE, AGAINST, PROVENANCE] {
+        let path = place.path("a").join(name);
+        let whole = fs::read(&path).unwrap();
+        let bits = 8 * (whole.len() - 1);
+        for bit in (0..bits).step_by(bits / 40) {
+            let mut bytes = whole.clone();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            fs::write(&path, bytes).unwrap();
+            let refusal = place.refusal("a");
+            assert!(refusal.contains(name), "bit {bit}: {refusal}");
+        }
+        fs::remove_file(&path).unwrap();
+        let refusal = place.refusal("a");
+        assert!(refusal.contains(name), "{refusal}");
+        fs::write(&path, whole).unwrap();
+    }
+    assert_eq!(Reference::load(&place.path("a")).unwrap().warning(), None);
+}
+
+#[test]
+fn references_of_before_are_read_with_a_warning() {
+    let place = Workplace::new();
+    place.make("a", &plan(1));
+    let path = place.path("a/provenance.json");
+    let mut json = unsealed(&fs::read_to_string(&path).unwrap());
+    json["format"] = provenance::UNSEALED.into();
+    json.as_object_mut().unwrap().remove("files");
+    fs::write(&path, json.to_string()).unwrap();
+    let warning = || {
+        Reference::load(&place.path("a"))
+            .unwrap()
+            .warning()
+            .unwrap()
+    };
+    assert!(warning().ends_with("without checksums: damage in it may go unseen"));
+    fs::remove_file(place.path("a/against.exr")).unwrap();
+    assert!(warning().ends_with(", and it has no against.exr"));
+}
+
 #[test]
 fn damaged_and_stale_references_are_refused() {
     let place = Workplace::new();
@@ -286,20 +342,29 @@ fn damaged_and_stale_references_are_refused() {
     check("{}", "damaged: missing field `format`");
     check("[1]", "damaged");
     check(
-        &whole.replace("\"format\": 1", "\"format\": 2"),
-        "the reference has format 2; this program reads format 1",
+        &resealed(&whole.replace("\"format\": 2", "\"format\": 3")),
+        "the reference has format 3; this program reads format 2",
     );
+    check(&unsealed(&whole).to_string(), "damaged: it has no checksum");
     let version = bidir::ESTIMATOR_VERSION;
     let line = |version: u32| format!("\"estimator_version\": {version}");
     check(
-        &whole.replace(&line(version), &line(version + 1)),
+        &resealed(&whole.replace(&line(version), &line(version + 1))),
         "stale: made by version",
     );
     fs::write(&path, &whole).unwrap();
     fs::copy(place.path("a/against.exr"), place.path("a/picture.exr")).unwrap();
-    assert!(place.refusal("a").contains("not the image that"));
+    assert!(
+        place
+            .refusal("a")
+            .contains("picture.exr: damaged: it is not the file that")
+    );
     fs::remove_file(place.path("a/picture.exr")).unwrap();
-    assert!(place.refusal("a").contains("no such file"));
+    assert!(
+        place
+            .refusal("a")
+            .contains("picture.exr: damaged: it is missing")
+    );
     fs::remove_file(&path).unwrap();
     assert!(place.refusal("a").contains("provenance.json"));
     assert!(!is_reference(&place.path("a")));

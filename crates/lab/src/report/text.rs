@@ -1,10 +1,12 @@
 //! Tables as text.
 
 use crate::results::{Cell, Table};
+use formats::printable;
 
-/// A table with its caption, in columns.
+/// A table with its caption, in columns, all of them [`printable`].
 pub fn table_text(table: &Table) -> String {
-    let head = table.columns.clone();
+    let shown = |text: &String| printable(text).into_owned();
+    let head = table.columns.iter().map(shown).collect();
     let rows = table.rows.iter().map(|row| row.iter().map(cell).collect());
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
     let width = |column: usize| {
@@ -19,12 +21,12 @@ pub fn table_text(table: &Table) -> String {
         line.trim_end().to_owned() + "\n"
     };
     let lines: String = rows.iter().map(line).collect();
-    format!("{}\n{lines}", table.caption)
+    format!("{}\n{lines}", printable(&table.caption))
 }
 
 fn cell(cell: &Cell) -> String {
     match cell {
-        Cell::Text(text) => text.clone(),
+        Cell::Text(text) => printable(text).into_owned(),
         Cell::Number(value) => number(*value),
         Cell::Interval { value, low, high } => {
             format!("{} [{}, {}]", number(*value), number(*low), number(*high))

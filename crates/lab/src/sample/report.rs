@@ -59,7 +59,7 @@ impl SampleReport {
             model: scene.color(),
             wavelengths: replay.wavelengths,
         };
-        let view = View::new(scene.camera(), &workspace.camera);
+        let view = View::new(scene, &workspace.camera);
         let Terms {
             hits,
             candidates,

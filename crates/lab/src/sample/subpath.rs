@@ -4,7 +4,7 @@ use super::report::Color;
 use bidir::camera::{Camera, LensSample};
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{Subpath, Vertex, VertexKind};
-use bidir::scene::SegmentEnd;
+use bidir::scene::{RenderSpace, Scene, SegmentEnd};
 use bidir::spectrum::Rgb;
 use serde::Serialize;
 
@@ -31,7 +31,10 @@ pub(super) struct VertexReport {
 /// Where something is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Place {
-    /// The direction towards it where it is at infinity.
+    /// In the space of the scene's numbers, which drawings are made in.
+    #[serde(skip)]
+    point: Vec3,
+    /// In the world. The direction towards it where it is at infinity.
     pub(super) position: [f32; 3],
     pub(super) is_infinite: bool,
     /// Where the sample's lens point sees it on the film, or beyond its edges, whatever is in between.
@@ -52,6 +55,7 @@ impl Place {
     /// A point that is on no film.
     pub(super) fn finite(point: Vec3) -> Self {
         Self {
+            point,
             position: point.to_array(),
             is_infinite: false,
             raster: None,
@@ -60,7 +64,7 @@ impl Place {
 
     /// The point, or the direction.
     pub(super) fn point(&self) -> Vec3 {
-        Vec3::from(self.position)
+        self.point
     }
 }
 
@@ -70,6 +74,7 @@ fn middle_of_lens(camera: &Camera) -> LensSample {
 
 /// From where a sample looks.
 pub(super) struct View<'a> {
+    space: RenderSpace,
     camera: &'a Camera,
     lens: LensSample,
 }
@@ -77,11 +82,16 @@ pub(super) struct View<'a> {
 impl<'a> View<'a> {
     /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
     /// camera subpath, from the middle of the lens.
-    pub(super) fn new(camera: &'a Camera, subpath: &Subpath) -> Self {
+    pub(super) fn new(scene: &'a Scene, subpath: &Subpath) -> Self {
+        let camera = scene.camera();
         let middle = middle_of_lens(camera);
         let point = subpath.vertices.first().map_or(middle.point, |y0| y0.point);
         let lens = LensSample { point, ..middle };
-        Self { camera, lens }
+        Self {
+            space: *scene.space(),
+            camera,
+            lens,
+        }
     }
 
     pub(super) fn end(&self, end: &SegmentEnd) -> Place {
@@ -90,8 +100,14 @@ impl<'a> View<'a> {
 
     fn place(&self, point: Vec3, is_infinite: bool) -> Place {
         let raster = self.raster(point, is_infinite);
+        let position = if is_infinite {
+            point
+        } else {
+            self.space.world_point(point).as_vec3()
+        };
         Place {
-            position: point.to_array(),
+            point,
+            position: position.to_array(),
             is_infinite,
             raster: raster.filter(|p| p.is_finite()).map(|p| p.to_array()),
         }

@@ -9,13 +9,20 @@ use std::sync::Arc;
 
 /// A scene in 12 x 8 pixels: a floor, a wall, a sphere, a lamp and a sky.
 pub(super) fn scene(camera: &str) -> Scene {
+    scene_at(camera, 0.0)
+}
+
+/// The same moved along x.
+fn scene_at(camera: &str, x: f64) -> Scene {
     let text = format!(
         r#"
 LookAt 0 1 -4  0 1 0  0 1 0
+Translate -{x} 0 0
 Camera {camera}
 Film "rgb" "integer xresolution" 12 "integer yresolution" 8
 PixelFilter "box"
 WorldBegin
+Translate {x} 0 0
 LightSource "infinite" "rgb L" [0.3 0.3 0.3]
 Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-2 0 -2 -2 0 2 2 0 2 2 0 -2]
@@ -94,6 +101,26 @@ fn the_first_hit_is_seen_in_the_pixel() {
         }
         assert!(hits > 5, "{camera}: {hits}");
     }
+}
+
+/// Also far away, where the scene is rendered around another origin.
+#[test]
+fn positions_are_those_of_the_world() {
+    let x = 1_048_576.0;
+    let scene = scene_at(CAMERAS[0], x);
+    assert_eq!(scene.space().origin.x, x);
+    let session = session(&scene, IntegratorKind::Bdpt, "all");
+    let mut count = 0;
+    for report in reports(&session, 1) {
+        let all = report.camera.vertices.iter().chain(&report.light.vertices);
+        for vertex in all.filter(|vertex| !vertex.place.is_infinite) {
+            let [found, y, _] = vertex.place.position;
+            assert!((f64::from(found) - x).abs() < 2.5 && y < 4.0, "{found} {y}");
+            count += 1;
+        }
+        assert!(report.drawing(&scene, "s.pbrt").contains("<svg"));
+    }
+    assert!(count > 96, "{count}");
 }
 
 #[test]

@@ -5,6 +5,8 @@
     reason = "the modules belong to a crate where they are reached"
 )]
 
+#[path = "../../../../fuzz/src/check.rs"]
+mod check;
 #[path = "../../../../fuzz/src/experiments.rs"]
 mod experiments;
 #[path = "../../../../fuzz/src/mutation.rs"]
@@ -15,5 +17,5 @@ use std::path::Path;
 #[test]
 fn experiments() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/experiment");
-    mutation::check(&seeds, 20_000, experiments::experiment);
+    check::check(&seeds, 20_000, experiments::experiment);
 }

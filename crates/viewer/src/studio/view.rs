@@ -6,7 +6,7 @@ use bidir::camera::{Camera, Pose, Turn};
 use bidir::film::{FilmSettings, PixelRect};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::scene::{Chances, RenderSpace, Scene};
 use std::time::{Duration, Instant};
 
 /// A camera that has not moved for so long stands still.
@@ -19,6 +19,7 @@ const REACH: [f32; 2] = [1e-4, 1e3];
 /// The view of a scene.
 #[derive(Debug)]
 pub(super) struct View {
+    space: RenderSpace,
     home: Camera,
     film: FilmSettings,
     camera: Camera,
@@ -43,6 +44,7 @@ impl View {
         let (camera, film) = (*scene.camera(), scene.film().clone());
         let target = target(scene);
         Self {
+            space: *scene.space(),
             home: camera,
             film,
             camera,
@@ -91,11 +93,16 @@ impl View {
         let pose = self.camera.pose();
         CameraStatus {
             kind: self.camera.kind(),
-            origin: pose.origin.to_array(),
-            target: self.world_target(pose).to_array(),
+            origin: self.in_world(pose.origin),
+            target: self.in_world(self.world_target(pose)),
             up: pose.up.to_array(),
             moved: self.is_elsewhere(),
         }
+    }
+
+    /// A point in the coordinates of the scene's file.
+    fn in_world(&self, point: Vec3) -> [f32; 3] {
+        self.space.world_point(point).as_vec3().to_array()
     }
 
     fn is_elsewhere(&self) -> bool {
@@ -244,7 +251,7 @@ mod tests {
     use bidir::camera::{Orthographic, OrthographicSettings, Spherical, SphericalMapping};
     use bidir::film::Filter;
     use bidir::light::{InfiniteLight, Light};
-    use bidir::math::Affine3A;
+    use bidir::math::{Affine3A, DVec3};
     use bidir::scene::SceneBuilder;
 
     const SIDE: f32 = 30.0;
@@ -291,6 +298,25 @@ mod tests {
         assert!(view.status().moved);
         view.go_home();
         assert!(!view.status().moved && view.text().is_none());
+    }
+
+    #[test]
+    fn the_camera_is_reported_where_it_is_in_the_world() {
+        let camera = |pose: Affine3A| {
+            let size = Vec2::splat(SIDE);
+            Spherical::new(&pose, size, SphericalMapping::EqualArea).unwrap()
+        };
+        let mut builder = SceneBuilder::new(film());
+        builder.space(RenderSpace {
+            origin: DVec3::new(1e6, 0.0, 0.0),
+            unit: 4.0,
+        });
+        let pose = Affine3A::from_translation(Vec3::new(1.0, 2.0, 3.0));
+        builder.camera(Camera::Spherical(camera(pose)));
+        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
+        let status = View::new(&builder.build().unwrap()).status();
+        assert_eq!(status.origin, [1e6 + 4.0, 8.0, 12.0]);
+        assert!(status.target[2] > 12.0, "{:?}", status.target);
     }
 
     #[test]

@@ -5,98 +5,67 @@
 //!
 //! f = T(wo) T(wi) A(wo) A(wi) f_b / η²,
 //!
-//! T the interface's directional transmittance, A = exp(-τ/cosθ') what the layer leaves of light
-//! that crosses it along the refracted direction, and 1/η² the compression of radiance
-//! (docs/derivations/layered-materials.md). Each factor belongs to one direction, so f is symmetric.
+//! T the interface's directional transmittance, A = exp(-D ℓ) what the layer leaves of light that
+//! crosses it, and 1/η² the compression of radiance (docs/derivations/layered-materials.md). Each factor
+//! belongs to one direction, so f is symmetric.
 //!
 //! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps
-//! Fresnel's equations off the rim as facets do, and q is a cubic through four values that were
-//! integrated when the material was built ([`Layer`]). For a smooth interface g = 0 and q = 1.
+//! Fresnel's equations off the rim as facets do. q and ℓ are polynomials ([`Curve`]) through values that
+//! were integrated when the material was built: over a diffuse base by [`Layer`] and [`Slab`], over metal
+//! by [`Reflections`]. For a smooth interface g = 0 and q = 1.
 
+mod curve;
+mod filled;
 mod layer;
 mod reflections;
 
+pub(super) use curve::Curve;
+pub use filled::{Filled, Slab};
+pub(super) use filled::{LENGTHS, SHAPES};
+pub(super) use layer::KNOTS as RATIOS;
 pub use layer::Layer;
 pub use reflections::Reflections;
+pub(super) use reflections::{KNOTS as METAL_SHAPES, MetalCoat};
 
 use super::fresnel;
 use super::microfacet::{Ggx, SMOOTH_ALPHA};
-use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
+use crate::math::{Vec2, Vec3, sqr};
 use crate::spectrum::Spectrum;
 
-/// √μ of the values that a [`Curve`] goes through.
-const KNOTS: [f32; 4] = [0.15, 0.45, 0.75, 1.0];
-
-/// A function of the cosine μ: the cubic in √μ through its values at [`KNOTS`].
+/// The interface of a layer, and how much the layer leaves of light. Both sides of the surface have it.
+///
+/// `R` and `L` are the numbers of coefficients of q and ℓ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Curve([f32; 4]);
-
-impl Curve {
-    const ONE: Self = Self([1.0; 4]);
-
-    /// The curve through `value(μ)`.
-    fn through(value: impl Fn(f32) -> f32) -> Self {
-        Self(KNOTS.map(|knot| value(sqr(knot))))
-    }
-
-    #[inline]
-    pub(super) fn at(self, cos: f32) -> f32 {
-        let x = cos.sqrt();
-        let [a, b, c, d] = KNOTS.map(|knot| x - knot);
-        let [ka, kb, kc, kd] = KNOTS;
-        let basis = [
-            b * c * d / ((ka - kb) * (ka - kc) * (ka - kd)),
-            a * c * d / ((kb - ka) * (kb - kc) * (kb - kd)),
-            a * b * d / ((kc - ka) * (kc - kb) * (kc - kd)),
-            a * b * c / ((kd - ka) * (kd - kb) * (kd - kc)),
-        ];
-        self.0[0] * basis[0] + self.0[1] * basis[1] + self.0[2] * basis[2] + self.0[3] * basis[3]
-    }
-
-    /// ∫ 2μ value dμ over `[0, 1]`.
-    fn mean(self) -> f32 {
-        mean(|cos| self.at(cos))
-    }
-
-    /// Between two curves.
-    fn lerp(self, other: Self, t: f32) -> Self {
-        Self(std::array::from_fn(|i| {
-            self.0[i] + (other.0[i] - self.0[i]) * t
-        }))
-    }
-}
-
-/// The interface of a layer, and what the layer absorbs. Both sides of the surface have it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coat {
-    /// The optical depth of absorption.
-    absorption: Spectrum,
+pub(super) struct Coat<const R: usize, const L: usize> {
+    /// D: the mean depth of a crossing.
+    depth: Spectrum,
     /// Index of refraction of the layer, divided by that outside.
     eta: f32,
     ggx: Ggx,
     /// g: the cosine that a grazing direction meets facets at.
     grazing: f32,
     /// q: what facets shadow of the transmitted light.
-    ratio: Curve,
+    ratio: Curve<R>,
+    /// ℓ: the depth of a crossing, divided by D.
+    length: Curve<L>,
 }
 
-impl Coat {
-    /// A coat with facets of `ggx`, an interface that `layer` was tabulated for.
-    pub fn new(layer: &Layer, ggx: Ggx, absorption: Spectrum) -> Self {
+impl<const R: usize, const L: usize> Coat<R, L> {
+    /// A coat with facets of `ggx` under the interface of `layer`, which `ratio` gives the
+    /// transmittance.
+    pub(super) fn new(
+        layer: &Layer,
+        ggx: Ggx,
+        ratio: Curve<R>,
+        (depth, length): (Spectrum, Curve<L>),
+    ) -> Self {
         Self {
-            absorption,
-            eta: layer.eta,
+            depth,
+            eta: layer.eta(),
             ggx,
             grazing: layer.grazing,
-            ratio: layer.ratio,
-        }
-    }
-
-    /// The same over metal, which keeps directions, so that another part of light gets through.
-    pub fn over_metal(layer: &Layer, reflections: &Reflections, ggx: Ggx, depth: Spectrum) -> Self {
-        Self {
-            ratio: reflections.ratio,
-            ..Self::new(layer, ggx, depth)
+            ratio,
+            length,
         }
     }
 
@@ -144,15 +113,20 @@ impl Coat {
     /// A(wo) A(wi): what the layer leaves of light that crosses it along both.
     #[inline]
     pub(super) fn attenuation(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        if self.absorption.is_black() {
+        if self.depth.is_black() {
             return Spectrum::ONE;
         }
-        let length = |w: Vec3| {
-            let sin2 = 1.0 - sqr(w.z);
-            1.0 / safe_sqrt(1.0 - sin2 / sqr(self.eta)).max(1e-3)
-        };
-        let both = length(wo) + length(wi);
-        self.absorption.map(|depth| libm::expf(-depth * both))
+        let both = self.length.at(wo.z.abs()) + self.length.at(wi.z.abs());
+        let left = |depth: f32| libm::expf(-depth * both.max(0.0));
+        let first = left(self.depth[0]);
+        // Most layers are grey.
+        self.depth.map(|depth| {
+            if depth.to_bits() == self.depth[0].to_bits() {
+                first
+            } else {
+                left(depth)
+            }
+        })
     }
 
     /// f of the interface's reflection. Unit: 1/sr. Zero where it is smooth.
@@ -181,11 +155,10 @@ impl Coat {
     }
 }
 
-/// ∫ 2μ value(μ) dμ over `[0, 1]`, with points even in μ².
-fn mean(value: impl Fn(f32) -> f32) -> f32 {
-    let points = 24;
-    let at = |i| value(((i as f32 + 0.5) / points as f32).sqrt());
-    (0..points).map(at).sum::<f32>() / points as f32
+/// ∫ 2μ value(μ) dμ over `[0, 1]`, with `points` even in μ².
+fn mean(points: usize, value: impl Fn(f32) -> f32) -> f32 {
+    let at = |i| f64::from(value(((i as f32 + 0.5) / points as f32).sqrt()));
+    ((0..points).map(at).sum::<f64>() / points as f64) as f32
 }
 
 /// The facets of a metal as they look through those of an interface `coat` of index `eta`.

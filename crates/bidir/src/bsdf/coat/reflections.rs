@@ -6,17 +6,21 @@
 //!
 //! The closed form of one reflection has a factor T = (1 - F(μ̂)) q(√μ) for each direction. Here q is
 //! such that it scatters E₁: a fixed point, which is near after some rounds because the reflected
-//! direction has about the cosine of the other.
+//! direction has about the cosine of the other. Walks also say how far light goes within the layer, and
+//! how steeply it meets the facets of the metal.
 
-use super::{Coat, Curve, KNOTS, Layer, seen_through};
+use super::layer::Interface;
+use super::{Coat, Curve, Layer, mean, seen_through};
+use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Conductor, Dielectric, TransportMode};
 use crate::math::{Vec2, Vec3, safe_sqrt, sqr};
 use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
 
-/// Walks for each value of the curve.
-const WALKS: u64 = 1 << 13;
+/// Walks for each value of a curve.
+const WALKS: u64 = 1 << 12;
+/// The part of light that walks are not worth.
+const FAINT: f32 = 3e-4;
 /// The most reflections of a walk: few need as many.
 const MOST: usize = 100;
 /// Reflections that are told apart; the last stands for all that are more.
@@ -24,51 +28,126 @@ const ORDERS: usize = 32;
 /// Points of an integral over facets, in each dimension.
 const FACETS: usize = 32;
 /// Rounds towards the fixed point.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
+/// Coefficients of q and e over metal.
+pub(in crate::bsdf) const KNOTS: usize = 8;
+/// Coefficients of ℓ over metal.
+pub(in crate::bsdf) const LENGTHS: usize = 4;
+
+/// The coat of a metal.
+pub(in crate::bsdf) type MetalCoat = Coat<KNOTS, LENGTHS>;
 
 /// The tabulated quantities of a layer over metal, with isotropic facets on both surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflections {
     /// q.
-    pub(super) ratio: Curve,
-    /// E.
-    pub(in crate::bsdf) part: Curve,
+    pub(in crate::bsdf) ratio: Curve<KNOTS>,
+    /// ℓ: half of the way of light that is reflected once, in thicknesses.
+    pub(in crate::bsdf) length: Curve<LENGTHS>,
+    /// e, which E = Ē (1 - F(μ̂)) e defines.
+    pub(in crate::bsdf) shape: Curve<KNOTS>,
     /// Ē = ∫ 2μ E dμ.
     pub(in crate::bsdf) mean: f32,
+    /// The way between two reflections, in thicknesses.
+    pub(in crate::bsdf) path: f32,
+    /// Mean and deviation of cosθ at the facets of more than one reflection.
+    pub(in crate::bsdf) cosine: [f32; 2],
+    /// s: at the facet of one reflection (1 - cosθ)⁵ is larger by s (1-μ)⁵ than in closed form.
+    pub(in crate::bsdf) steepness: f32,
     /// m_k, from k = 2.
     shares: [f32; ORDERS - 1],
 }
 
 /// Two surfaces, one above the other.
 struct Surfaces {
-    coat: Dielectric,
-    metal: Conductor,
+    coat: Interface,
+    metal: Ggx,
+    /// The optical depth between them.
+    depth: f32,
+}
+
+/// Light between the surfaces.
+#[derive(Clone, Copy)]
+struct Light {
+    w: Vec3,
+    part: f32,
+    /// The way so far, in thicknesses.
+    way: f32,
+    /// Σ cosθ, Σ cos²θ and Σ (1 - cosθ)⁵ over the facets of the metal.
+    cosines: [f32; 3],
+}
+
+/// What leaves of the light from one direction.
+#[derive(Clone, Copy)]
+struct Leaving {
+    /// By the number of reflections, from 1.
+    parts: [f32; ORDERS],
+    /// Of `parts[0]`: what absorption leaves, and with the weight (1 - cosθ)⁵.
+    once: [f32; 2],
+    /// After more: Σ w way, Σ w (reflections - 1), Σ w cosθ, Σ w cos²θ, Σ w reflections.
+    more: [f32; 5],
+}
+
+impl Leaving {
+    fn more_than_once(&self) -> f32 {
+        self.parts[1..].iter().sum()
+    }
+
+    fn add(&mut self, reflections: usize, light: &Light, depth: f32) {
+        let Light {
+            part, way, cosines, ..
+        } = *light;
+        self.parts[reflections.min(ORDERS) - 1] += part;
+        if reflections == 1 {
+            self.once[0] += part * libm::expf(-depth * way);
+            self.once[1] += part * cosines[2];
+            return;
+        }
+        let count = reflections as f32;
+        self.more[0] += part * way;
+        self.more[1] += part * (count - 1.0);
+        // Coloured metals reflect little more often than twice.
+        let early = part * libm::exp2f(-count);
+        self.more[2] += early * cosines[0];
+        self.more[3] += early * cosines[1];
+        self.more[4] += early * count;
+    }
 }
 
 impl Reflections {
-    /// Integrates for a layer with facets of slope `coat_alpha`, over metal of slope `metal_alpha`.
-    pub fn new(layer: &Layer, [coat_alpha, metal_alpha]: [f32; 2]) -> Self {
+    /// Integrates for the interface of `layer` over metal of slope `metal_alpha`, with the optical
+    /// depth `depth` between them.
+    pub fn new(layer: &Layer, metal_alpha: f32, depth: f32) -> Self {
         let surfaces = Surfaces {
-            coat: Dielectric {
-                eta: layer.eta,
-                ggx: Ggx::new(coat_alpha, coat_alpha),
-            },
-            metal: Conductor {
-                eta: Spectrum::ZERO,
-                k: Spectrum::ONE,
-                ggx: Ggx::new(metal_alpha, metal_alpha),
-            },
+            coat: layer.interface,
+            metal: Ggx::new(metal_alpha, metal_alpha),
+            depth: depth.clamp(1e-3, 10.0),
         };
-        let leaving = KNOTS.map(|knot| surfaces.leaving(sqr(knot)));
-        let once = Curve(leaving.map(|parts| parts[0]));
-        let part = Curve(leaving.map(|parts| parts[1..].iter().sum()));
-        let of_order = |k: usize| Curve(leaving.map(|parts| parts[k - 1])).mean();
+        let leaving = Curve::<KNOTS>::cosines().map(|cos| surfaces.leaving(cos));
+        let coat = surfaces.fitted_coat(layer, &leaving);
+        let entering = |cos: f32| 1.0 - coat.reflectance(along(cos));
+        let cosines = Curve::<KNOTS>::cosines();
+        let part = |i: usize| leaving[i].more_than_once() / entering(cosines[i]).max(1e-3);
+        let shape = Curve::<KNOTS>::through(std::array::from_fn(part));
+        let trapped = mean(64, |cos| entering(cos) * shape.at(cos).max(0.0)).max(1e-6);
+        let of_order = |k: usize| Curve::through(leaving.map(|of| of.parts[k - 1])).mean();
         let shares: [f32; ORDERS - 1] = std::array::from_fn(|i| of_order(i + 2).max(0.0));
         let sum = shares.iter().sum::<f32>().max(1e-6);
+        let more = |i: usize| leaving.iter().map(|of| of.more[i]).sum::<f32>();
+        let crossings = surfaces.crossings(&leaving);
+        let in_and_out = leaving
+            .iter()
+            .zip(crossings)
+            .map(|(of, crossing)| 2.0 * crossing * of.more_than_once());
+        let cosine = more(2) / more(4).max(1e-6);
         Self {
-            ratio: surfaces.ratio(layer, once),
-            part,
-            mean: part.mean().max(1e-6),
+            ratio: coat.ratio,
+            length: coat.length,
+            shape: shape.scaled(1.0 / trapped),
+            mean: trapped,
+            path: ((more(0) - in_and_out.sum::<f32>()) / more(1).max(1e-6)).clamp(2.0, 20.0),
+            cosine: [cosine, safe_sqrt(more(3) / more(4).max(1e-6) - sqr(cosine))],
+            steepness: surfaces.steepness(&coat, &leaving),
             shares: shares.map(|share| share / sum),
         }
     }
@@ -79,8 +158,12 @@ impl Reflections {
         let mix = |a: f32, b: f32| a + (b - a) * t;
         Self {
             ratio: self.ratio.lerp(other.ratio, t),
-            part: self.part.lerp(other.part, t),
+            length: self.length.lerp(other.length, t),
+            shape: self.shape.lerp(other.shape, t),
             mean: mix(self.mean, other.mean),
+            path: mix(self.path, other.path),
+            cosine: std::array::from_fn(|i| mix(self.cosine[i], other.cosine[i])),
+            steepness: mix(self.steepness, other.steepness),
             shares: std::array::from_fn(|i| mix(self.shares[i], other.shares[i])),
         }
     }
@@ -95,89 +178,188 @@ impl Reflections {
     }
 }
 
+/// The direction of cosine `cos` in the plane of incidence.
+fn along(cos: f32) -> Vec3 {
+    Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos)
+}
+
 impl Surfaces {
-    /// q: that the closed form of one reflection scatters `once`.
-    fn ratio(&self, layer: &Layer, once: Curve) -> Curve {
-        let (coat, metal) = (self.coat.ggx, self.metal.ggx);
-        if coat.is_smooth() {
-            return Curve::ONE;
-        }
-        let metal = seen_through(metal, coat, layer.eta);
-        let mut ratio = Curve::ONE;
-        for _ in 0..ROUNDS {
-            let coat = Coat {
-                ratio,
-                ..Coat::new(layer, coat, Spectrum::ZERO)
-            };
-            let closed = KNOTS.map(|knot| once_in_closed_form(&coat, metal, sqr(knot)));
-            ratio = Curve(std::array::from_fn(|i| {
-                let scale = (once.0[i] / closed[i].max(1e-4)).sqrt();
-                ratio.0[i] * scale.clamp(0.5, 2.0)
-            }));
-        }
-        ratio
+    /// The way of one reflection, in thicknesses and halved, at the cosines of q.
+    fn crossings(&self, leaving: &[Leaving; KNOTS]) -> [f32; KNOTS] {
+        leaving.map(|of| crossing(of.once[0] / of.parts[0].max(1e-6), self.depth))
     }
 
-    /// The parts of light with cosine `cos` that leave after one reflection, after two, and so on.
-    fn leaving(&self, cos: f32) -> [f32; ORDERS] {
-        let wo = Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos);
+    /// The coat whose q scatters E₁ in the closed form of one reflection, and whose ℓ absorbs as much.
+    fn fitted_coat(&self, layer: &Layer, leaving: &[Leaving; KNOTS]) -> MetalCoat {
+        let ggx = self.coat.ggx;
+        let cosines = Curve::<KNOTS>::cosines();
+        let inner = |cos: f32| safe_sqrt(1.0 - (1.0 - sqr(cos)) / sqr(layer.eta())).max(0.05);
+        let mut ratios = cosines.map(|cos| layer.ratio.at(cos));
+        let mut lengths = cosines.map(|cos| 1.0 / inner(cos));
+        let coat = |ratios, lengths| {
+            let lengths = Curve::<KNOTS>::through(lengths);
+            let length = Curve::through(Curve::<LENGTHS>::cosines().map(|cos| lengths.at(cos)));
+            let ratio = Curve::through(ratios);
+            Coat::new(layer, ggx, ratio, (Spectrum::splat(self.depth), length))
+        };
+        if ggx.is_smooth() {
+            return coat([1.0; KNOTS], lengths);
+        }
+        let metal = seen_through(self.metal, ggx, layer.eta());
+        let crossings = self.crossings(leaving);
+        for _ in 0..ROUNDS {
+            let fitted = coat(ratios, lengths);
+            for i in 0..KNOTS {
+                let closed = once_in_closed_form(&fitted, metal, cosines[i]);
+                let scale = (leaving[i].parts[0] / closed.part.max(1e-4)).sqrt();
+                ratios[i] *= scale.clamp(0.5, 2.0);
+                let longer = crossings[i] - closed.crossing(self.depth);
+                lengths[i] = (lengths[i] + longer).clamp(1.0, 20.0);
+            }
+        }
+        coat(ratios, lengths)
+    }
+
+    /// s, by least squares.
+    fn steepness(&self, coat: &MetalCoat, leaving: &[Leaving; KNOTS]) -> f32 {
+        if self.coat.ggx.is_smooth() {
+            return 0.0;
+        }
+        let metal = seen_through(self.metal, self.coat.ggx, self.coat.eta);
+        let cosines = Curve::<KNOTS>::cosines();
+        let (mut products, mut squares) = (0.0, 0.0);
+        for (of, cos) in leaving.iter().zip(cosines) {
+            let closed = once_in_closed_form(coat, metal, cos);
+            let more = of.once[1] / of.parts[0].max(1e-6) - closed.steep / closed.part.max(1e-6);
+            let scale = fresnel::schlick(cos);
+            products += more * scale;
+            squares += sqr(scale);
+        }
+        (products / squares).clamp(0.0, 1.0)
+    }
+
+    /// What leaves of light with cosine `cos`.
+    fn leaving(&self, cos: f32) -> Leaving {
+        let wo = along(cos);
         let sampler = Sampler::new(SamplerKind::Sobol, 0);
-        let mut sums = [0.0; ORDERS];
+        let mut leaving = Leaving {
+            parts: [0.0; ORDERS],
+            once: [0.0; 2],
+            more: [0.0; 5],
+        };
         for index in 0..WALKS {
             let stream = sampler.stream(Domain::Light, 0, index);
-            if let Some((reflections, weight)) = self.walk(wo, &stream) {
-                sums[reflections.min(ORDERS) - 1] += weight;
-            }
+            self.walk(wo, &stream, |reflections, light| {
+                leaving.add(reflections, &light, self.depth);
+            });
         }
-        sums.map(|sum| sum / WALKS as f32)
+        let scale = 1.0 / WALKS as f32;
+        Leaving {
+            parts: leaving.parts.map(|part| part * scale),
+            once: leaving.once.map(|part| part * scale),
+            more: leaving.more.map(|part| part * scale),
+        }
     }
 
-    /// A walk from outside: after how many reflections at the metal it leaves, and with what weight.
-    /// None: it does not enter, is lost below a surface, or is reflected too often.
-    fn walk(&self, wo: Vec3, stream: &SampleStream) -> Option<(usize, f32)> {
-        let (mut w, mut weight) = self.meet_coat(wo, stream, 0)?;
-        if w.z > 0.0 {
-            return None;
-        }
+    /// A walk from outside: `leaves` gets what leaves after each reflection at the metal.
+    fn walk(&self, wo: Vec3, stream: &SampleStream, mut leaves: impl FnMut(usize, Light)) {
+        let at = |step| stream.get_2d(Dimension::at(step, Purpose::LightDirection));
+        let Some((w, part)) = self.coat.split(wo, at(0)).refracted else {
+            return;
+        };
+        let mut light = Light {
+            w,
+            part,
+            way: 0.0,
+            cosines: [0.0; 3],
+        };
         for reflections in 1..=MOST {
-            let at = Dimension::at(reflections, Purpose::Scatter);
-            let reflected = self.metal.sample(-w, stream.get_2d(at))?;
-            let (next, passed) = self.meet_coat(-reflected.wi, stream, reflections)?;
-            weight *= reflected.weight[0] * passed;
-            if next.z > 0.0 {
-                return Some((reflections, weight));
+            let u = stream.get_2d(Dimension::at(reflections, Purpose::Scatter));
+            let Some(up) = self.reflected(&light, u) else {
+                return;
+            };
+            let split = self.coat.split(-up.w, at(reflections));
+            if let Some((_, share)) = split.refracted {
+                let part = up.part * share;
+                leaves(reflections, Light { part, ..up });
             }
-            w = next;
+            let Some((w, share)) = split.reflected else {
+                return;
+            };
+            light = Light {
+                w,
+                part: up.part * share,
+                ..up
+            };
+            if light.part < FAINT {
+                return;
+            }
         }
-        None
     }
 
-    /// Where light goes that meets the interface coming from `wo`, and its weight.
-    fn meet_coat(&self, wo: Vec3, stream: &SampleStream, step: usize) -> Option<(Vec3, f32)> {
-        let u_lobe = stream.get_1d(Dimension::at(step, Purpose::Lobe));
-        let u = stream.get_2d(Dimension::at(step, Purpose::LightDirection));
-        let sample = self.coat.sample(wo, TransportMode::Importance, u_lobe, u)?;
-        Some((sample.wi, sample.weight[0]))
+    /// Light that comes down, after its reflection at the metal and back at the interface. None: a
+    /// facet sends it below the surface.
+    fn reflected(&self, light: &Light, u: Vec2) -> Option<Light> {
+        let v = -light.w;
+        let (w, unshadowed) = if self.metal.is_smooth() {
+            (Vec3::new(-v.x, -v.y, v.z), 1.0)
+        } else {
+            let w = self.metal.sample_mirror(v, u)?;
+            (w, self.metal.g2(v, w) / self.metal.g1(v))
+        };
+        let cos = safe_sqrt((1.0 + v.dot(w)) / 2.0);
+        let [sum, squares, steep] = light.cosines;
+        Some(Light {
+            w,
+            part: light.part * unshadowed,
+            way: light.way + 1.0 / v.z.max(1e-3) + 1.0 / w.z.max(1e-3),
+            cosines: [sum + cos, squares + sqr(cos), steep + fresnel::schlick(cos)],
+        })
     }
 }
 
-/// The part of light with cosine `cos` that white metal reflects once under `coat`, as
-/// `CoatedConductor` has it.
-fn once_in_closed_form(coat: &Coat, metal: Ggx, cos: f32) -> f32 {
-    let wo = Vec3::new(safe_sqrt(1.0 - sqr(cos)), 0.0, cos);
+/// The way that leaves the part `left` at the optical depth `depth`, in thicknesses and halved.
+fn crossing(left: f32, depth: f32) -> f32 {
+    -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * depth)
+}
+
+/// What white metal reflects once in closed form.
+#[derive(Default)]
+struct Once {
+    part: f32,
+    /// With the weight (1 - cosθ)⁵ at the metal's facets.
+    steep: f32,
+    /// Of `part`: what absorption leaves.
+    left: f32,
+}
+
+impl Once {
+    fn crossing(&self, depth: f32) -> f32 {
+        crossing(self.left / self.part.max(1e-6), depth)
+    }
+}
+
+/// What of light with cosine `cos` white metal reflects once under `coat`, as `CoatedConductor` has it,
+/// but for the number of points.
+fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
+    let wo = along(cos);
+    let mut once = Once::default();
     let Some(inner) = coat.refracted(wo) else {
-        return 0.0;
+        return once;
     };
-    let mut sum = 0.0;
     for i in 0..FACETS * FACETS {
-        let (x, y) = (i % FACETS, i / FACETS);
-        let u = (Vec2::new(x as f32, y as f32) + 0.5) / FACETS as f32;
+        let u = (Vec2::new((i % FACETS) as f32, (i / FACETS) as f32) + 0.5) / FACETS as f32;
         if let Some(reflected) = metal.sample_mirror(inner, u)
             && let Some(wi) = coat.emerging(reflected)
         {
             let unshadowed = metal.g2(inner, reflected) / metal.g1(inner);
-            sum += unshadowed * coat.transmittance(wo) * coat.transmittance(wi);
+            let through = coat.transmittance(wo) * coat.transmittance(wi);
+            let part = unshadowed * through / (FACETS * FACETS) as f32;
+            let cos = safe_sqrt((1.0 + inner.dot(reflected)) / 2.0);
+            once.part += part;
+            once.steep += part * fresnel::schlick(cos);
+            once.left += part * coat.attenuation(wo, wi)[0];
         }
     }
-    sum / (FACETS * FACETS) as f32
+    once
 }

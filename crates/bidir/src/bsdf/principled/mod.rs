@@ -169,7 +169,7 @@ impl Principled {
     /// F and T at the cosine `cos` between a direction and a facet.
     #[inline]
     fn facet(&self, cos: f32) -> (Spectrum, Spectrum) {
-        let reflected = self.reflectance(cos, under::schlick(cos.abs()));
+        let reflected = self.reflectance(cos, fresnel::schlick(cos.abs()));
         if self.glass <= 0.0 {
             return (reflected, Spectrum::ZERO);
         }
@@ -285,5 +285,5 @@ fn mirrored_below(w: Vec3) -> Vec3 {
 
 #[inline]
 fn coat_fresnel(cos: f32) -> f32 {
-    COAT_F0 + (1.0 - COAT_F0) * under::schlick(cos)
+    COAT_F0 + (1.0 - COAT_F0) * fresnel::schlick(cos)
 }

@@ -1,6 +1,6 @@
 use super::{Principled, PrincipledCoat, PrincipledParameters, Wall, sheen, under};
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{Bsdf, CoatedConductor, TransportMode};
+use crate::bsdf::{Bsdf, CoatedConductor, TransportMode, fresnel};
 use crate::math::{PI, Vec2, Vec3, sqr, warp};
 use crate::spectrum::Spectrum;
 
@@ -29,7 +29,7 @@ fn facets_reflect_no_more_than_the_bound_says() {
                 let wi = ggx.sample_mirror(wo, u)?;
                 let m = (wo + wi).normalize();
                 Some(f64::from(
-                    under::schlick(wo.dot(m)) * ggx.g2(wo, wi) / ggx.g1(wo),
+                    fresnel::schlick(wo.dot(m)) * ggx.g2(wo, wi) / ggx.g1(wo),
                 ))
             });
             let exact = (weights.sum::<f64>() / (n * n) as f64) as f32;

@@ -5,20 +5,14 @@
 //! were fitted to quadratures, as docs/derivations/principled.md tells; they are at most 0.08 above
 //! the true values where α > 0.05.
 
+use crate::bsdf::fresnel;
 use crate::math::sqr;
-
-/// Schlick's weight (1-μ)⁵ [Schlick94, eq. 15].
-#[inline]
-pub(super) fn schlick(cos: f32) -> f32 {
-    let x = (1.0 - cos).clamp(0.0, 1.0);
-    sqr(sqr(x)) * x
-}
 
 /// W̃(μ): a bound of ∫ (1 - wo·m)⁵ D G₂ / (4 |cosθ_o cosθ_i|) cosθ_i dω for facets of slope `alpha`.
 #[inline]
 pub(super) fn facet_weight(cos: f32, alpha: f32) -> f32 {
     let cos = cos.clamp(0.0, 1.0);
-    let smooth = schlick(cos);
+    let smooth = fresnel::schlick(cos);
     let spread = 14.8 * sqr(alpha) / (alpha + 0.03) + 5.5 * sqr(alpha);
     let tail = 0.011 * cos * (1.0 - cos) * (8.0 * alpha).min(1.0);
     smooth / (1.0 + smooth * spread) + tail

@@ -1,5 +1,5 @@
 use super::{MODES, direction};
-use crate::bsdf::coat::{Layer, Reflections};
+use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
 use crate::bsdf::{
     Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse,
@@ -58,16 +58,21 @@ fn coated() -> Vec<Bsdf> {
     for eta in [1.0, 1.0 + 1e-5, 0.7, 1.5, 3.0, 1e3, 1e-3] {
         for alpha in [0.0, 1.1e-3, 0.3, 1.0] {
             let layer = Layer::new(eta, alpha);
-            let reflections = Reflections::new(&layer, [alpha, 0.2]);
+            let reflections = Reflections::new(&layer, 0.2, 2.0);
             let ggx = Ggx::new(alpha, alpha);
-            for (thickness, albedo) in [(0.0, 0.0), (1e4, 1.0), (2.0, 0.5)] {
+            // Few indices: what scatters is walked.
+            let is_hazy = (eta, alpha) == (1.5, 0.0) || (eta, alpha) == (0.7, 0.3);
+            let hazes = if is_hazy { 3 } else { 1 };
+            for &(thickness, albedo) in &[(0.0, 0.0), (1e4, 1.0), (2.0, 0.5)][..hazes] {
                 let filling = Filling {
                     thickness,
                     albedo: Spectrum::splat(albedo),
                     g: -1.0,
                 };
                 let white = Spectrum::ONE;
-                let varnished = CoatedDiffuse::new(&layer, ggx, &filling, white);
+                let slab = Slab::new(&layer, thickness, -1.0);
+                let filled = slab.tables(&layer, &[albedo])[0];
+                let varnished = CoatedDiffuse::new(&layer, ggx, &[filled; 4], white);
                 all.push(Bsdf::CoatedDiffuse(varnished));
                 let metal = CoatedMetal {
                     eta: Spectrum::ZERO,

@@ -1,119 +1,102 @@
-//! Layered materials against a walk between their surfaces, which decides by chance at each: the
-//! albedo of both, over roughness, angle and base. `BIDIR_TEST_SHOW` prints the tables of
+//! Layered materials against a simulation between their surfaces ([`Stack`]): the reflectance of both,
+//! over index, roughness, angle, base and filling. `BIDIR_TEST_SHOW` prints the tables of
 //! docs/data/layer-albedos.csv.
 
+use super::simulation::{Base, Leaving, Stack};
 use super::{direction, numbers};
-use crate::bsdf::coat::{Layer, Reflections};
+use crate::bsdf::coat::{Layer, Reflections, Slab};
 use crate::bsdf::microfacet::Ggx;
-use crate::bsdf::{
-    Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Conductor, Dielectric, Diffuse, Filling,
-    TransportMode,
-};
-use crate::math::{Frame, PI, Vec2, Vec3, safe_sqrt, sin_cos, sqr};
-use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerKind};
+use crate::bsdf::{Bsdf, CoatedConductor, CoatedDiffuse, CoatedMetal, Filling, TransportMode};
+use crate::math::Vec3;
+use crate::sampler::{Domain, Sampler, SamplerKind};
 use crate::spectrum::Spectrum;
+use crate::testing::{Battery, means};
 use std::fmt::Write;
 
-/// Index of all layers here.
+/// The index of most layers here.
 const ETA: f32 = 1.5;
-/// The events of a walk: more than any that carries light out has.
-const MAX_DEPTH: usize = 200;
+/// The relative error of a reflectance that a closed form may have where it is exact.
+const TOLERANCE: f64 = 0.005;
+/// Sets of walks for each direction, and walks of a set.
+const WALKS: [u64; 2] = [64, 1 << 8];
+/// The same where facets lose much of the light by chance.
+const WALKS_OF_ROUGH: [u64; 2] = [64, 1 << 11];
+/// The same for a table.
+const WALKS_SHOWN: [u64; 2] = [64, 1 << 10];
+const COSINES: [f32; 3] = [0.2, 0.6, 1.0];
 
-/// What a walk goes through. All is grey.
-#[derive(Clone, Copy)]
-struct Stack {
-    coat: Ggx,
-    base: Bsdf,
-    thickness: f32,
-    albedo: f32,
-    g: f32,
-}
+/// A clear layer of the default thickness.
+const VARNISH: Stack = Stack {
+    eta: 1.5,
+    alpha: 0.0,
+    thickness: 0.01,
+    albedo: 0.0,
+    g: 0.0,
+    base: Base::Diffuse(0.5),
+};
 
 impl Stack {
-    /// The part of light from `wo` that walks carry out of the layer.
-    fn albedo_of_walks(&self, wo: Vec3) -> f32 {
-        let n = 1 << 15;
-        let sampler = Sampler::new(SamplerKind::Sobol, 7);
-        let walk = |i| self.walk(wo, &sampler.stream(Domain::Camera, 0, i));
-        let sum: f64 = (0..n).filter_map(walk).map(f64::from).sum();
-        (sum / n as f64) as f32
+    fn filling(&self) -> Filling {
+        Filling {
+            thickness: self.thickness as f32,
+            albedo: Spectrum::splat(self.albedo as f32),
+            g: self.g as f32,
+        }
     }
 
-    /// What one walk carries out. None: nothing.
-    fn walk(&self, wo: Vec3, stream: &SampleStream) -> Option<f32> {
-        let (mut w, mut weight) = self.interface(wo, stream, 0)?;
-        if w.z > 0.0 {
-            return Some(weight);
-        }
-        let mut height = self.thickness;
-        for step in 1..=MAX_DEPTH {
-            let (u_free, u_phase) = {
-                let at = |purpose| Dimension::at(step, purpose);
-                (
-                    stream.get_1d(at(Purpose::Roulette)),
-                    stream.get_2d(at(Purpose::Lens)),
-                )
-            };
-            let free = -libm::logf(1.0 - u_free) * w.z.abs();
-            let to_surface = if w.z > 0.0 {
-                self.thickness - height
-            } else {
-                height
-            };
-            if self.albedo == 0.0 {
-                weight *= libm::expf(-to_surface / w.z.abs());
-            } else if free < to_surface {
-                height += free.copysign(w.z);
-                weight *= self.albedo;
-                w = henyey_greenstein(w, self.g, u_phase);
-                continue;
-            }
-            if w.z > 0.0 {
-                height = self.thickness;
-                let (next, passed) = self.interface(-w, stream, step)?;
-                weight *= passed;
-                if next.z > 0.0 {
-                    return Some(weight);
-                }
-                w = next;
-            } else {
-                height = 0.0;
-                let u = stream.get_2d(Dimension::at(step, Purpose::Scatter));
-                let drawn = self.base.sample(-w, TransportMode::Importance, || 0.5, u)?;
-                weight *= drawn.weight[0];
-                w = drawn.wi;
+    /// The closed form of it.
+    fn bsdf(&self) -> Bsdf {
+        let filling = self.filling();
+        match self.base {
+            Base::Diffuse(rho) => varnish(
+                [self.eta, self.alpha].map(|x| x as f32),
+                rho as f32,
+                &filling,
+            ),
+            Base::Metal { eta, k, alpha } => {
+                let alphas = [self.alpha as f32, alpha as f32];
+                lacquer(self.eta as f32, alphas, [eta as f32, k as f32], &filling)
             }
         }
-        None
     }
 
-    fn interface(&self, wo: Vec3, stream: &SampleStream, step: usize) -> Option<(Vec3, f32)> {
-        let coat = Dielectric {
-            eta: ETA,
-            ggx: self.coat,
-        };
-        let u_lobe = stream.get_1d(Dimension::at(step, Purpose::Lobe));
-        let u = stream.get_2d(Dimension::at(step, Purpose::LightDirection));
-        let drawn = coat.sample(wo, TransportMode::Importance, u_lobe, u)?;
-        Some((drawn.wi, drawn.weight[0]))
+    /// A name, and the first columns of the table.
+    fn name(&self) -> String {
+        let Self {
+            eta,
+            alpha,
+            thickness,
+            albedo,
+            g,
+            base,
+        } = *self;
+        match base {
+            Base::Diffuse(rho) => {
+                format!("coateddiffuse,{eta},{alpha},{rho},,,{thickness},{albedo},{g}")
+            }
+            Base::Metal {
+                eta: n,
+                k,
+                alpha: metal,
+            } => format!(
+                "coatedconductor,{eta},{alpha},,{metal},{:.3}+{:.3}i,{thickness},{albedo},{g}",
+                n * eta,
+                k * eta
+            ),
+        }
+    }
+
+    /// Means of what walks of light with cosine `cos` carry out: all, or early.
+    fn walked(&self, cos: f32, walks: [u64; 2], part: fn(Leaving) -> f64) -> Vec<f64> {
+        let wo = direction(cos, 0.3).as_dvec3();
+        let case = format!("{}, {cos}", self.name());
+        means(&case, walks, |stream| part(self.walk(wo, stream))).collect()
     }
 }
 
-/// The direction after scattering of what goes along `w`.
-fn henyey_greenstein(w: Vec3, g: f32, u: Vec2) -> Vec3 {
-    let cos = if g.abs() < 1e-3 {
-        1.0 - 2.0 * u.x
-    } else {
-        (1.0 + sqr(g) - sqr((1.0 - sqr(g)) / (1.0 + g - 2.0 * g * u.x))) / (2.0 * g)
-    };
-    let (sin_phi, cos_phi) = sin_cos(2.0 * PI * u.y);
-    let sin = safe_sqrt(1.0 - sqr(cos));
-    Frame::from_z(w).to_world(Vec3::new(sin * cos_phi, sin * sin_phi, cos))
-}
-
-/// The part of light from `wo` that draws of `bsdf` scatter.
+/// The part of the light from `wo` that draws of `bsdf` scatter.
 fn albedo_of_draws(bsdf: &Bsdf, wo: Vec3) -> f32 {
-    let n = 1 << 15;
+    let n = 1 << 14;
     let sampler = Sampler::new(SamplerKind::Sobol, 3);
     let draw = |i| {
         let (u_lobe, u) = numbers(&sampler.stream(Domain::Camera, 1, i));
@@ -133,117 +116,163 @@ fn filling(thickness: f32, albedo: f32, g: f32) -> Filling {
     }
 }
 
-fn varnish(alpha: f32, rho: f32, filling: &Filling) -> Bsdf {
-    let (layer, ggx) = (Layer::new(ETA, alpha), Ggx::new(alpha, alpha));
+fn varnish([eta, alpha]: [f32; 2], rho: f32, filling: &Filling) -> Bsdf {
+    let (layer, ggx) = (Layer::new(eta, alpha), Ggx::new(alpha, alpha));
+    let slab = Slab::new(&layer, filling.thickness, filling.g);
+    let filled = slab.tables(&layer, &[filling.albedo[0]])[0];
     let rho = Spectrum::splat(rho);
-    Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, filling, rho))
+    Bsdf::CoatedDiffuse(CoatedDiffuse::new(&layer, ggx, &[filled; 4], rho))
 }
 
-fn lacquer(alpha: f32, metal_alpha: f32, index: [f32; 2], filling: &Filling) -> Bsdf {
-    let layer = Layer::new(ETA, alpha);
-    let reflections = Reflections::new(&layer, [alpha, metal_alpha]);
+/// A metal of `index`, relative to the layer.
+fn lacquer(eta: f32, [alpha, metal]: [f32; 2], index: [f32; 2], filling: &Filling) -> Bsdf {
+    let layer = Layer::new(eta, alpha);
+    let reflections = Reflections::new(&layer, metal, filling.thickness);
     let metal = CoatedMetal {
-        eta: Spectrum::splat(index[0] / ETA),
-        k: Spectrum::splat(index[1] / ETA),
-        ggx: Ggx::new(metal_alpha, metal_alpha),
+        eta: Spectrum::splat(index[0]),
+        k: Spectrum::splat(index[1]),
+        ggx: Ggx::new(metal, metal),
     };
-    let ggx = Ggx::new(alpha, alpha);
-    Bsdf::CoatedConductor(CoatedConductor::new(
-        (&layer, &reflections),
-        ggx,
-        filling,
-        metal,
-    ))
+    let (tables, ggx) = ((&layer, &reflections), Ggx::new(alpha, alpha));
+    Bsdf::CoatedConductor(CoatedConductor::new(tables, ggx, filling, metal))
 }
 
-/// A line of the table: the albedos of the closed form and of walks, from three directions. Returns
-/// the largest difference.
-fn compare(name: &str, bsdf: &Bsdf, stack: &Stack) -> f32 {
-    let mut line = format!("| {name} |");
-    let mut largest = 0.0f32;
-    for cos in [0.2, 0.6, 1.0] {
-        let wo = direction(cos, 0.3);
-        let [closed, walked] = [albedo_of_draws(bsdf, wo), stack.albedo_of_walks(wo)];
-        let _ = write!(line, " {closed:.3} | {walked:.3} |");
-        largest = largest.max((closed - walked).abs());
-    }
+/// The reflectances of the closed form of `stack`, one for each of [`COSINES`]; prints a line of the
+/// table: from each direction the closed form, walks, and walks that end as pbrt-v4's do.
+fn reflectances(stack: &Stack) -> [f64; 3] {
+    let bsdf = stack.bsdf();
+    let closed = COSINES.map(|cos| f64::from(albedo_of_draws(&bsdf, direction(cos, 0.3))));
     if std::env::var_os("BIDIR_TEST_SHOW").is_some() {
+        let mut line = stack.name();
+        for (cos, closed) in COSINES.into_iter().zip(closed) {
+            let mean = |part| {
+                let means = stack.walked(cos, WALKS_SHOWN, part);
+                means.iter().sum::<f64>() / means.len() as f64
+            };
+            let (all, early) = (mean(|leaving| leaving.all), mean(|leaving| leaving.early));
+            let _ = write!(line, ",{closed:.4},{all:.4},{early:.4}");
+        }
         println!("{line}");
     }
-    largest
+    closed
 }
 
-#[track_caller]
-fn check_varnish([alpha, rho]: [f32; 2], filling: &Filling, tolerance: f32) {
-    let stack = Stack {
-        coat: Ggx::new(alpha, alpha),
-        base: Bsdf::Diffuse(Diffuse {
-            reflectance: Spectrum::splat(rho),
-        }),
-        thickness: filling.thickness,
-        albedo: filling.albedo[0],
-        g: filling.g,
-    };
-    let bsdf = varnish(alpha, rho, filling);
-    let Filling { thickness, g, .. } = filling;
-    let name = format!(
-        "{alpha} | {rho} | {thickness} | {} | {g}",
-        filling.albedo[0]
-    );
-    let difference = compare(&name, &bsdf, &stack);
-    assert!(difference < tolerance, "{name}: {difference}");
-}
-
-#[test]
-fn a_varnish_scatters_what_walks_between_its_surfaces_do() {
-    for alpha in [0.0, 0.1, 0.3, 0.6, 1.0] {
-        for rho in [0.2, 0.5, 0.9] {
-            check_varnish([alpha, rho], &filling(0.01, 0.0, 0.0), 0.008);
+/// Adds a comparison of `stack` with walks from the directions of `cosines`.
+fn compare(battery: &mut Battery, stack: &Stack, cosines: &[f32], walks: [u64; 2]) {
+    for (cos, closed) in COSINES.into_iter().zip(reflectances(stack)) {
+        if cosines.contains(&cos) {
+            let walked = stack.walked(cos, walks, |leaving| leaving.all);
+            let case = format!("{}, cosine {cos}", stack.name());
+            battery.mean_within(&case, walked.into_iter(), closed, TOLERANCE);
         }
     }
-    // Thick layers: facets bend light to longer ways than the surface's own normal does.
-    check_varnish([0.0, 0.5], &filling(0.5, 0.0, 0.0), 0.008);
-    check_varnish([0.3, 0.5], &filling(0.5, 0.0, 0.0), 0.02);
-    // Layers that scatter are an approximation.
-    check_varnish([0.0, 0.5], &filling(0.01, 0.9, 0.0), 0.01);
-    check_varnish([0.0, 0.5], &filling(0.3, 0.9, 0.0), 0.06);
-    check_varnish([0.3, 0.1], &filling(0.3, 0.9, 0.5), 0.06);
-}
-
-#[track_caller]
-fn check_lacquer(alphas: [f32; 2], index: [f32; 2], filling: &Filling, tolerance: f32) {
-    let stack = Stack {
-        coat: Ggx::new(alphas[0], alphas[0]),
-        base: Bsdf::Conductor(Conductor {
-            eta: Spectrum::splat(index[0] / ETA),
-            k: Spectrum::splat(index[1] / ETA),
-            ggx: Ggx::new(alphas[1], alphas[1]),
-        }),
-        thickness: filling.thickness,
-        albedo: filling.albedo[0],
-        g: filling.g,
-    };
-    let bsdf = lacquer(alphas[0], alphas[1], index, filling);
-    let [coat, metal] = alphas;
-    let name = format!(
-        "{coat} | {metal} | {} + {}i | {}",
-        index[0], index[1], filling.thickness
-    );
-    let difference = compare(&name, &bsdf, &stack);
-    assert!(difference < tolerance, "{name}: {difference}");
 }
 
 #[test]
-fn a_lacquer_scatters_about_what_walks_between_its_surfaces_do() {
+fn a_varnish_reflects_what_walks_between_its_surfaces_do() {
+    let mut battery = Battery::new("reflectance of varnish");
+    let stack = |eta, alpha, rho, thickness| Stack {
+        eta,
+        alpha,
+        thickness,
+        base: Base::Diffuse(rho),
+        ..VARNISH
+    };
+    for (eta, alpha, rho, thickness) in [
+        (1.5, 0.0, 0.5, 0.0),
+        (1.5, 0.0, 0.9, 0.0),
+        (1.5, 0.0, 0.2, 0.01),
+        (1.5, 0.0, 0.5, 0.01),
+        (1.5, 0.0, 0.9, 0.01),
+        (1.3, 0.0, 0.9, 0.01),
+        (1.5, 0.0, 0.9, 0.5),
+        (1.5, 0.05, 0.5, 0.01),
+        (1.5, 0.1, 0.9, 0.01),
+    ] {
+        let stack = stack(eta, alpha, rho, thickness);
+        compare(&mut battery, &stack, &COSINES, WALKS);
+    }
+    for (eta, alpha, rho, thickness, cos) in [
+        (1.5, 0.3, 0.2, 0.01, 0.2),
+        (1.2, 0.3, 0.9, 0.01, 0.6),
+        (2.0, 0.3, 0.9, 0.01, 0.2),
+        (1.5, 0.3, 0.9, 0.5, 0.2),
+        (1.5, 0.6, 0.5, 0.1, 0.6),
+        (1.5, 1.0, 0.9, 0.01, 0.2),
+    ] {
+        let stack = stack(eta, alpha, rho, thickness);
+        compare(&mut battery, &stack, &[cos], WALKS_OF_ROUGH);
+    }
+    // Thin haze.
+    let haze = Stack {
+        albedo: 0.9,
+        ..VARNISH
+    };
+    compare(&mut battery, &haze, &COSINES, WALKS);
+    battery.check();
+}
+
+/// Checks that no reflectance of `stack` is further than `bound`, as a relative error, from the walks'.
+#[track_caller]
+fn check_within(stack: &Stack, bound: f64) {
+    for (cos, closed) in COSINES.into_iter().zip(reflectances(stack)) {
+        let walked = stack.walked(cos, WALKS, |leaving| leaving.all);
+        let walked = walked.iter().sum::<f64>() / walked.len() as f64;
+        let error = closed / walked - 1.0;
+        let name = stack.name();
+        assert!(error.abs() < bound, "{name}, cosine {cos}: {error:+.4}");
+    }
+}
+
+#[test]
+fn a_layer_that_scatters_reflects_about_what_walks_do() {
+    for (alpha, rho, thickness, albedo, g) in [
+        (0.0, 0.5, 0.3, 0.9, 0.0),
+        (0.3, 0.1, 0.3, 0.9, 0.5),
+        (0.3, 0.1, 2.0, 0.9, 0.5),
+        (0.1, 0.0, 2.0, 1.0, -0.3),
+    ] {
+        let stack = Stack {
+            alpha,
+            thickness,
+            albedo,
+            g,
+            base: Base::Diffuse(rho),
+            ..VARNISH
+        };
+        check_within(&stack, 0.04);
+    }
+}
+
+#[test]
+fn a_lacquer_reflects_about_what_walks_between_its_surfaces_do() {
     // Silver, and copper in blue light.
-    for index in [[0.125, 3.34], [1.17, 2.39]] {
-        check_lacquer([0.0, 0.0], index, &filling(0.01, 0.0, 0.0), 0.005);
-        for metal in [0.1, 0.3, 0.6] {
-            check_lacquer([0.0, metal], index, &filling(0.01, 0.0, 0.0), 0.02);
-        }
-        for alphas in [[0.1, 0.0], [0.1, 0.3], [0.3, 0.1], [0.3, 0.3], [0.6, 0.3]] {
-            check_lacquer(alphas, index, &filling(0.01, 0.0, 0.0), 0.02);
-        }
+    for (n, k) in [(0.125, 3.34), (1.17, 2.39)] {
+        let check = |[alpha, metal]: [f64; 2], thickness, bound| {
+            let base = Base::Metal {
+                eta: n / VARNISH.eta,
+                k: k / VARNISH.eta,
+                alpha: metal,
+            };
+            let stack = Stack {
+                alpha,
+                thickness,
+                base,
+                ..VARNISH
+            };
+            check_within(&stack, bound);
+        };
+        check([0.0, 0.0], 0.01, 0.005);
+        check([0.0, 0.1], 0.01, 0.015);
+        check([0.0, 0.3], 0.01, 0.015);
+        check([0.0, 0.3], 0.5, 0.03);
+        check([0.1, 0.0], 0.01, 0.03);
+        check([0.1, 0.3], 0.01, 0.02);
+        check([0.3, 0.1], 0.01, 0.03);
+        check([0.3, 0.3], 0.01, 0.03);
+        check([0.3, 0.3], 0.5, 0.05);
+        check([0.6, 0.3], 0.01, 0.04);
+        check([1.0, 0.3], 0.01, 0.06);
     }
 }
 
@@ -251,10 +280,10 @@ fn a_lacquer_scatters_about_what_walks_between_its_surfaces_do() {
 /// the light from every direction.
 #[track_caller]
 fn check_furnace(bsdf: &Bsdf, least: f32, case: &str) {
-    let mut line = format!("| {case} |");
+    let mut line = case.to_owned();
     for cos in [0.05, 0.1, 0.2, 0.4, 0.7, 1.0] {
         let part = albedo_of_draws(bsdf, direction(cos, 0.3));
-        let _ = write!(line, " {part:.3} |");
+        let _ = write!(line, ",{part:.3}");
         assert!(
             (least..1.003).contains(&part),
             "{case}, cosine {cos}: {part}"
@@ -277,13 +306,22 @@ fn white_bases_under_clear_layers_vanish_in_a_furnace_but_for_light_between_face
         (0.6, 0.3),
         (1.0, 0.2),
     ] {
-        let case = format!("varnish {alpha}");
-        check_furnace(&varnish(alpha, 1.0, &clear), least, &case);
-        check_furnace(&varnish(alpha, 1.0, &diffuser), least, &case);
-        let case = format!("lacquer {alpha} over 0.3");
+        for filling in [&clear, &diffuser] {
+            let case = format!("coateddiffuse,{alpha},,{}", filling.thickness);
+            check_furnace(&varnish([ETA, alpha], 1.0, filling), least, &case);
+        }
+        let case = format!("coatedconductor,{alpha},0.3,0");
         let white = [0.0, 1.0];
-        check_furnace(&lacquer(alpha, 0.3, white, &clear), least * 0.6, &case);
+        check_furnace(
+            &lacquer(ETA, [alpha, 0.3], white, &clear),
+            least * 0.6,
+            &case,
+        );
     }
     let white = [0.0, 1.0];
-    check_furnace(&lacquer(0.0, 0.0, white, &clear), 0.999, "all smooth");
+    check_furnace(
+        &lacquer(ETA, [0.0; 2], white, &clear),
+        0.999,
+        "coatedconductor,0,0,0",
+    );
 }

@@ -14,27 +14,27 @@ impl Session<'_> {
         }
     }
 
-    /// Those of `pixels`, the range of a group, that bring a light subpath: as many of each group begin
+    /// Those of `places`, the range of a group, that bring a light subpath: as many of each group begin
     /// with one.
-    fn bringers(&self, pixels: Range<u64>) -> impl Iterator<Item = u64> {
-        pixels.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
+    fn bringers(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
+        places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))
     }
 
-    /// Walks the light subpaths of the samples at `pixels`, a group, and keeps their images.
+    /// Walks the light subpaths of the samples at `places`, a group, and keeps their images.
     pub(super) fn walk_light(
         &self,
         shared: &dyn SharedLight,
-        pixels: Range<u64>,
+        places: Range<u64>,
         pass: u64,
         workspace: &mut Workspace,
     ) {
         shared.begin(workspace);
-        for pixel in self.bringers(pixels) {
+        for place in self.bringers(places) {
             workspace.stopwatch.begin_light();
-            let sample = self.sample(pixel, pass);
+            let sample = self.sample(place, pass);
             let context = self.context(&sample);
             shared.walk(&context, &sample, workspace);
-            self.deposit(&context, pixel).take_light(workspace);
+            self.deposit(&context, place).take_light(workspace);
             workspace.stopwatch.end(Stage::Film);
         }
         shared.end(self.connections(), workspace);
@@ -46,25 +46,25 @@ impl Session<'_> {
         pixels.div_ceil(self.samples_per_subpath())
     }
 
-    /// Walks the light subpaths of the group of `pixel` again; returns that of `pixel`, of which alone
+    /// Walks the light subpaths of the group of `place` again; returns that of `place`, of which alone
     /// anything is counted. None: another sample brings it.
     pub(super) fn replay_light(
         &self,
         shared: &dyn SharedLight,
-        pixel: u64,
+        place: u64,
         pass: u64,
         workspace: &mut Workspace,
     ) -> Option<BroughtLight> {
         let pixels = self.scene.film().crop.area();
         let size = group_size(pixels);
-        let begin = pixel / size * size;
+        let begin = place / size * size;
         let mut own = None;
         shared.begin(workspace);
         for other in self.bringers(begin..(begin + size).min(pixels)) {
             let sample = self.sample(other, pass);
             workspace.stats = Stats::default();
             shared.walk(&self.context(&sample), &sample, workspace);
-            if other == pixel {
+            if other == place {
                 own = Some((workspace.take_light(), std::mem::take(&mut workspace.stats)));
             }
         }

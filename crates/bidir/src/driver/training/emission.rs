@@ -6,7 +6,7 @@
 //! second moment of all connections of the same cell of camera vertices: a dark corner counts as much as
 //! what is bright.
 
-use super::pilot::{self, Connection};
+use super::pilot::Connection;
 use crate::light::LightChoice;
 use crate::path::Cells;
 
@@ -15,15 +15,19 @@ const POWER_PART: f64 = 0.1;
 /// As many subpaths as this tell no more of a light than what is known of all.
 const PRIOR: f64 = 16.0;
 
-/// The choice that suits what `found` connections contribute, whose subpaths chose by `power`. None: it is
+/// The choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
 /// that one.
-pub(super) fn learnt(power: &LightChoice, found: &[Connection]) -> Option<LightChoice> {
+pub(super) fn learnt(
+    power: &LightChoice,
+    found: &[Connection],
+    subpaths: u64,
+) -> Option<LightChoice> {
     let moments = relative_moments(power.count(), found);
     let all: f64 = moments.iter().sum();
     if power.count() < 2 || all == 0.0 {
         return None;
     }
-    let subpaths = pilot::SAMPLES as f64;
+    let subpaths = subpaths as f64;
     let wanted = |(light, moment): (usize, &f64)| {
         let prob = f64::from(power.prob(light));
         let mean = (moment + PRIOR * all / subpaths) / (prob * subpaths + PRIOR);
@@ -71,6 +75,8 @@ fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    const SUBPATHS: u64 = 1 << 14;
+
     fn by_power(weights: &[f32]) -> LightChoice {
         LightChoice::with_weights(weights.iter().copied())
     }
@@ -84,7 +90,7 @@ mod tests {
     }
 
     fn probs(power: &LightChoice, found: &[Connection]) -> Vec<f64> {
-        let learnt = learnt(power, found).expect("there is something to learn");
+        let learnt = learnt(power, found, SUBPATHS).expect("there is something to learn");
         (0..power.count())
             .map(|light| f64::from(learnt.prob(light)))
             .collect()
@@ -103,7 +109,7 @@ mod tests {
         let hidden = libm::sqrt(16.0 / (16384.0 + 16.0));
         let expected = 0.05 + 0.9 * hidden / (1.0 + hidden);
         assert!((probs[1] - expected).abs() < 1e-4, "{probs:?}");
-        let gain = gain(&power, learnt(&power, &seen).as_ref(), 1);
+        let gain = gain(&power, learnt(&power, &seen, SUBPATHS).as_ref(), 1);
         assert!((gain - 2.0 * expected).abs() < 2e-4);
     }
 
@@ -123,8 +129,8 @@ mod tests {
 
     #[test]
     fn where_there_is_no_choice_nothing_is_learnt() {
-        assert!(learnt(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))]).is_none());
-        assert!(learnt(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)]).is_none());
+        assert!(learnt(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))], SUBPATHS).is_none());
+        assert!(learnt(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)], SUBPATHS).is_none());
         assert!((gain(&by_power(&[1.0]), None, 0) - 1.0).abs() < 1e-12);
     }
 }

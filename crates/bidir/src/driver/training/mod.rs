@@ -4,7 +4,9 @@
 
 mod blocks;
 mod choice;
+mod effort;
 mod emission;
+mod extent;
 mod pilot;
 mod plan;
 mod probe;
@@ -14,11 +16,14 @@ mod survey;
 mod tests;
 mod trial;
 
+pub use effort::Effort;
 pub use plan::Plan;
 
 use super::Settings;
 use super::session::path_context;
-use crate::integrator::{EmissionKind, IntegratorKind, LvcSettings, ProposalKind};
+use crate::integrator::{
+    EmissionKind, IntegratorKind, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
+};
 use crate::light::LightChoice;
 use crate::path::{Cells, Connections, LightProposals, MisCount};
 use crate::scene::Scene;
@@ -26,10 +31,16 @@ use crate::select::ShadowRays;
 use crate::stats::RayCounts;
 use blocks::Blocks;
 use choice::Judge;
+use effort::{IsLate, Late};
+use extent::Extent;
 use pilot::Found;
 use plan::Trials;
 use probe::Probe;
 use survey::Survey;
+
+/// The vertices of a light cache, of which each thread has one: some 30 MB. Subpaths of 128 vertices on
+/// average reach it, of two samples each.
+const MOST_CACHED: f64 = 131_072.0;
 
 /// What a short render before the first pass found: a pure function of scene and settings. Its
 /// samples have random numbers of their own and never enter the film.
@@ -49,71 +60,156 @@ pub struct Training {
     pub samples: u64,
     /// The rays it cost.
     pub rays: RayCounts,
+    /// True where there was no time for more than a few samples ([`Effort::Short`]).
+    pub is_short: bool,
+    /// How many samples connections are learnt from.
+    learning: Extent,
+    /// How many samples compare plans.
+    trials: Extent,
+    /// The mean number of rays of a light subpath.
+    subpath_rays: f64,
 }
 
 /// The settings with everything decided that they leave open, and what was learnt, where anything had
 /// to be.
-pub(super) fn prepare(scene: &Scene, settings: Settings) -> (Settings, Option<Training>) {
-    let mut settings = settings;
+pub(super) fn prepare(
+    scene: &Scene,
+    settings: Settings,
+    effort: Effort<'_>,
+) -> (Settings, Option<Training>) {
+    let is_late: IsLate<'_> = match effort {
+        Effort::Whole => &|| false,
+        Effort::Until(is_late) => is_late,
+        Effort::Short => return effort::short(scene, settings),
+    };
+    let task = Task {
+        scene,
+        settings: &settings,
+        is_late,
+    };
+    train(task).unwrap_or_else(|Late| effort::short(scene, settings))
+}
+
+/// What is trained for.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    is_late: IsLate<'a>,
+}
+
+fn train(task: Task<'_>) -> Result<(Settings, Option<Training>), Late> {
+    let mut settings = task.settings.clone();
     if settings.integrator == IntegratorKind::Auto {
-        let (plan, training) = Training::plan(scene, &settings);
-        return (plan.apply(&settings), Some(training));
+        let (plan, training) = Training::plan(task)?;
+        return Ok((plan.apply(&settings), Some(training)));
     }
     settings.decide();
-    let needs_mean = settings.integrator.has_candidates() && settings.shadow_rays.needs_mean();
-    let needs_training = needs_mean || settings.integrator == IntegratorKind::Lvc;
-    let training = needs_training.then(|| Training::run(scene, &settings));
-    (settings, training)
+    if !settings.needs_training() {
+        return Ok((settings, None));
+    }
+    let training = Training::run(task.with(&settings))?;
+    training.bound_cache(task.scene, &mut settings);
+    Ok((settings, Some(training)))
+}
+
+impl<'a> Task<'a> {
+    /// The same with other settings.
+    fn with<'b>(self, settings: &'b Settings) -> Task<'b>
+    where
+        'a: 'b,
+    {
+        Task { settings, ..self }
+    }
+}
+
+impl Settings {
+    /// True where the estimator needs to know something of the scene.
+    fn needs_training(&self) -> bool {
+        let needs_mean = self.integrator.has_candidates() && self.shadow_rays.needs_mean();
+        needs_mean || self.integrator == IntegratorKind::Lvc
+    }
 }
 
 impl Training {
     /// Finds what to render with, and trains for it.
-    fn plan(scene: &Scene, settings: &Settings) -> (Plan, Self) {
+    fn plan(task: Task<'_>) -> Result<(Plan, Self), Late> {
+        let Task {
+            scene, settings, ..
+        } = task;
         let default = Plan::default().keeping(settings);
-        let mut training = Self::run(scene, &default.apply(settings));
-        let plan = if scene.lights().is_empty() {
+        let mut training = Self::run(task.with(&default.apply(settings)))?;
+        let mut plan = if scene.lights().is_empty() {
             plan::path(1).keeping(settings)
         } else {
             // What nothing found yet is found by what makes most paths.
-            training.choose(scene, settings).unwrap_or(default)
+            training.choose(task)?.unwrap_or(default)
         };
+        if plan.is_shared() {
+            let pixels = scene.film().crop.area();
+            plan.samples_per_subpath =
+                training.samples_per_subpath(pixels, plan.samples_per_subpath);
+        }
         training.plan = Some(plan);
-        (plan, training)
+        Ok((plan, training))
     }
 
     /// The best plan. None: no trial found any light.
-    fn choose(&mut self, scene: &Scene, settings: &Settings) -> Option<Plan> {
+    fn choose(&mut self, task: Task<'_>) -> Result<Option<Plan>, Late> {
         let trials = Trials {
-            scene,
-            settings,
+            task,
             training: self,
         };
-        let (mut tried, blocks) = (trials.run(), Blocks::new(scene.film().crop));
-        let first = Judge::new(&blocks, settings, &tried);
+        let (mut tried, blocks) = (trials.run()?, Blocks::new(task.scene.film().crop));
+        let first = Judge::new(&blocks, task.settings, &tried);
         let (close, shared) = (first.close(), first.best_shared());
-        trials.run_more(&close, &mut tried);
+        trials.run_more(&close, &mut tried)?;
         for (_, trial) in &tried {
             self.count(trial.stats.samples, trial.stats.rays);
         }
-        Judge::new(&blocks, settings, &tried).best(shared)
+        Ok(Judge::new(&blocks, task.settings, &tried).best(shared))
     }
 
-    /// Renders a few samples spread over the film, tracing every connection.
-    fn run(scene: &Scene, settings: &Settings) -> Self {
-        let survey = Survey::run(scene, settings);
-        let mut training = Self {
-            mean_luminance: (survey.luminance / survey::SAMPLES as f64) as f32,
-            light_vertices: survey.light.len() as f64 / survey::SAMPLES as f64,
+    /// Renders a few samples spread over the film, tracing every connection, and learns from them.
+    fn run(task: Task<'_>) -> Result<Self, Late> {
+        let survey = Survey::run(task)?;
+        let mut training = Self::of(&survey);
+        if task.settings.learns() && training.light_vertices > 0.0 {
+            training.learn(task, &survey)?;
+        }
+        Ok(training)
+    }
+
+    /// What is known before anything is learnt.
+    fn of(survey: &Survey) -> Self {
+        Self {
+            mean_luminance: (survey.luminance / survey.samples()) as f32,
+            light_vertices: survey.light.len() as f64 / survey.samples(),
             proposals: None,
             emission: None,
             plan: None,
-            samples: survey::SAMPLES,
-            rays: survey.rays,
-        };
-        if settings.learns() && training.light_vertices > 0.0 {
-            training.learn(scene, settings, &survey);
+            samples: survey.stats.samples,
+            rays: survey.stats.rays,
+            is_short: false,
+            learning: survey.extent_of_learning(),
+            trials: survey.extent_of_trials(),
+            subpath_rays: survey.stats.rays.light as f64 / survey.samples(),
         }
-        training
+    }
+
+    /// Lets so few light subpaths be in a cache that it stays small.
+    fn bound_cache(&self, scene: &Scene, settings: &mut Settings) {
+        if settings.integrator == IntegratorKind::Lvc {
+            let (pixels, wanted) = (scene.film().crop.area(), settings.lvc.samples_per_subpath);
+            settings.lvc.samples_per_subpath = self.samples_per_subpath(pixels, wanted);
+        }
+    }
+
+    /// How many samples of an image with so many pixels there are for a light subpath: as `wanted`, or so many
+    /// that the cache of a group has [`MOST_CACHED`] vertices on average.
+    fn samples_per_subpath(&self, pixels: u64, wanted: SamplesPerSubpath) -> SamplesPerSubpath {
+        let group = group_size(pixels).min(pixels) as f64;
+        wanted.or_more(group * self.subpath_rays / MOST_CACHED)
     }
 
     /// How many connections a camera vertex makes, where each sample has a light subpath.
@@ -141,11 +237,12 @@ impl Training {
 
     /// Learns where light subpaths shall begin, which of their vertices to propose, which are visible, and
     /// which are chosen.
-    fn learn(&mut self, scene: &Scene, settings: &Settings, survey: &Survey) {
-        let (lvc, cells) = (&settings.lvc, survey.cells());
-        let found = self.explore(scene, settings, survey, &cells);
+    fn learn(&mut self, task: Task<'_>, survey: &Survey) -> Result<(), Late> {
+        let (scene, lvc, cells) = (task.scene, &task.settings.lvc, survey.cells());
+        let found = self.explore(task, survey, &cells)?;
         if lvc.emission == EmissionKind::Learned {
-            self.emission = emission::learnt(scene.light_choice(), &found.connections);
+            let (power, subpaths) = (scene.light_choice(), self.learning.samples());
+            self.emission = emission::learnt(power, &found.connections, subpaths);
         }
         let gain = |light| emission::gain(scene.light_choice(), self.emission.as_ref(), light);
         let mut sums = survey.pair_sums(&cells, gain);
@@ -166,63 +263,55 @@ impl Training {
             ProposalKind::Learned => LightProposals::new(cells, &sums),
             ProposalKind::Uniform => LightProposals::uniform(cells, &sums),
         };
-        let proposals = self.counting_rays(scene, settings, proposals);
+        let proposals = self.counting_rays(task, proposals)?;
         let is_uniform =
             lvc.proposal == ProposalKind::Uniform && lvc.mis_count != MisCount::Resampled;
         self.proposals = (!is_uniform).then_some(proposals);
+        Ok(())
     }
 
     /// Connections with light vertices that are chosen by nothing, where somebody learns from them.
-    fn explore(
-        &mut self,
-        scene: &Scene,
-        settings: &Settings,
-        survey: &Survey,
-        cells: &Cells,
-    ) -> Found {
+    fn explore(&mut self, task: Task<'_>, survey: &Survey, cells: &Cells) -> Result<Found, Late> {
         let LvcSettings {
             proposal, emission, ..
-        } = settings.lvc;
+        } = task.settings.lvc;
         if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
-            return Found::default();
+            return Ok(Found::default());
         }
         let uniform = LightProposals::uniform(cells.clone(), &survey.pair_sums(cells, |_| 1.0));
-        let (found, rays) = pilot::run(&self.probe(scene, settings, &uniform));
-        self.count(pilot::SAMPLES, rays);
-        found
+        let (found, rays) = pilot::run(&self.probe(task, &uniform))?;
+        self.count(self.learning.samples(), rays);
+        Ok(found)
     }
 
     /// The proposals with counts of traced rays, where weights take these and not all are traced.
     fn counting_rays(
         &mut self,
-        scene: &Scene,
-        settings: &Settings,
+        task: Task<'_>,
         proposals: LightProposals,
-    ) -> LightProposals {
+    ) -> Result<LightProposals, Late> {
+        let settings = task.settings;
         let all_are_traced = settings.shadow_rays == ShadowRays::All;
         if settings.lvc.mis_count != MisCount::Resampled || all_are_traced {
-            return proposals;
+            return Ok(proposals);
         }
-        let probe = self.probe(scene, settings, &proposals);
-        let (inclusion, rays) = rays::run(&probe, self.mean_luminance);
-        self.count(rays::SAMPLES, rays);
-        proposals.counting_rays(&inclusion)
+        let probe = self.probe(task, &proposals);
+        let (inclusion, rays) = rays::run(&probe, self.mean_luminance)?;
+        self.count(self.learning.samples(), rays);
+        Ok(proposals.counting_rays(&inclusion))
     }
 
     /// More samples, where `proposals` are all that is known.
-    fn probe<'a>(
-        &'a self,
-        scene: &'a Scene,
-        settings: &'a Settings,
-        proposals: &'a LightProposals,
-    ) -> Probe<'a> {
+    fn probe<'a>(&'a self, task: Task<'a>, proposals: &'a LightProposals) -> Probe<'a> {
         Probe {
-            scene,
-            settings,
+            scene: task.scene,
+            settings: task.settings,
             connections: Connections {
                 proposals: Some(proposals),
-                ..self.connections(settings.lvc)
+                ..self.connections(task.settings.lvc)
             },
+            is_late: task.is_late,
+            extent: self.learning,
             first: self.samples,
             pixels: u64::MAX,
         }

@@ -1,7 +1,8 @@
 //! What is learnt about connections: uniform candidates, all of them traced, of groups of samples that
 //! share light subpaths as those of the image do.
 
-use super::probe::{GROUP, Probe, Witness, groups, keep};
+use super::effort::Late;
+use super::probe::{Probe, Witness, groups, keep};
 use crate::integrator::{
     CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
 };
@@ -9,11 +10,8 @@ use crate::path::{Cell, Cells, PathContext};
 use crate::select::{LightVertex, ShadowRays};
 use crate::stats::RayCounts;
 
-const GROUPS: u64 = 64;
 /// For each camera vertex.
-const CANDIDATES: Candidates = Candidates::Of(CandidateCount::of(16));
-/// The samples of all groups, each of which brings a light subpath.
-pub(super) const SAMPLES: u64 = GROUPS * GROUP;
+pub(super) const CANDIDATES: u16 = 16;
 
 /// A connection with a vertex of the light cache that was traced.
 #[derive(Clone, Copy)]
@@ -82,23 +80,23 @@ impl Witness for Found {
 }
 
 /// What all groups found, in their order, and the rays that it took.
-pub(super) fn run(probe: &Probe<'_>) -> (Found, RayCounts) {
-    let groups = groups(GROUPS, |group, workspace| {
+pub(super) fn run(probe: &Probe<'_>) -> Result<(Found, RayCounts), Late> {
+    let groups = groups(probe.extent.groups(), probe.is_late, |group, workspace| {
         let mut found = Found::default();
         let selector = ShadowRays::All.selector(0.0);
         let lvc = LvcSettings {
-            candidates: CANDIDATES,
+            candidates: Candidates::Of(CandidateCount::of(CANDIDATES)),
             ..probe.settings.lvc
         };
         let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);
         probe.group(&*integrator, group, workspace, &mut found);
         found
-    });
+    })?;
     let (mut all, mut rays) = (Found::default(), RayCounts::default());
     for (found, stats) in groups {
         all.connections.extend(found.connections);
         all.next_events.extend(found.next_events);
         rays += stats.rays;
     }
-    (all, rays)
+    Ok((all, rays))
 }

@@ -1,8 +1,9 @@
 //! What `auto` may render with, and how each is tried.
 
+use super::effort::Late;
 use super::probe::Probe;
 use super::trial::{self, Trial};
-use super::{Settings, Training};
+use super::{Settings, Task, Training};
 use crate::integrator::{
     BlindSpot, CandidateCount, Candidates, IntegratorKind, SamplesPerSubpath, blind_spots,
 };
@@ -183,43 +184,54 @@ fn open_plans(settings: &Settings) -> Vec<Plan> {
     plans
 }
 
-/// The pixels that each plan is tried with, at first.
-const PIXELS: u64 = 4096;
-/// And the next time, where several may be the best.
-const MORE_PIXELS: u64 = 3 * PIXELS;
+/// As many samples of an [`Extent`](super::extent::Extent) are for a pixel that plans are tried with at first.
+const SAMPLES_PER_PIXEL: u64 = 4;
+/// So many times the pixels are tried the next time, where several plans may be the best.
+const MORE: u64 = 3;
 
 /// Where plans are tried.
 pub(super) struct Trials<'a> {
-    pub(super) scene: &'a Scene,
-    pub(super) settings: &'a Settings,
+    pub(super) task: Task<'a>,
     pub(super) training: &'a Training,
 }
 
 impl Trials<'_> {
     /// Tries the plans that are possible.
-    pub(super) fn run(&self) -> Vec<Tried> {
-        let mut plans = open_plans(self.settings);
-        plans.retain(|plan| plan.is_possible(self.scene, self.settings));
-        let attempt = |plan| (plan, self.attempt(&plan, 0, PIXELS));
+    pub(super) fn run(&self) -> Result<Vec<Tried>, Late> {
+        let Task {
+            scene, settings, ..
+        } = self.task;
+        let mut plans = open_plans(settings);
+        plans.retain(|plan| plan.is_possible(scene, settings));
+        let attempt = |plan| Ok((plan, self.attempt(&plan, 0, self.pixels())?));
         plans.into_iter().map(attempt).collect()
     }
 
     /// Tries those of `plans` with more samples.
-    pub(super) fn run_more(&self, plans: &[Plan], tried: &mut [Tried]) {
+    pub(super) fn run_more(&self, plans: &[Plan], tried: &mut [Tried]) -> Result<(), Late> {
         for (plan, trial) in tried {
             if plans.contains(plan) {
-                trial.add(self.attempt(plan, trial::THIRDS * PIXELS, MORE_PIXELS));
+                let first = trial::THIRDS * self.pixels();
+                trial.add(self.attempt(plan, first, MORE * self.pixels())?);
             }
         }
+        Ok(())
+    }
+
+    /// The pixels that each plan is tried with at first.
+    fn pixels(&self) -> u64 {
+        self.training.trials.samples() / SAMPLES_PER_PIXEL
     }
 
     /// Tries `plan` with so many pixels; there were `first` samples before.
-    fn attempt(&self, plan: &Plan, first: u64, pixels: u64) -> Trial {
-        let settings = plan.apply(self.settings);
+    fn attempt(&self, plan: &Plan, first: u64, pixels: u64) -> Result<Trial, Late> {
+        let settings = plan.apply(self.task.settings);
         let probe = Probe {
-            scene: self.scene,
+            scene: self.task.scene,
             settings: &settings,
+            is_late: self.task.is_late,
             connections: plan.connections(&settings, self.training),
+            extent: self.training.trials,
             first: self.training.samples + first,
             pixels,
         };

@@ -1,7 +1,9 @@
 //! Groups of training samples, taken as the image takes its own.
 
+use super::super::spread;
+use super::effort::{IsLate, Late};
+use super::extent::Extent;
 use super::{Settings, path_context};
-use crate::film::PixelRect;
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::{Connections, PathContext};
 use crate::sampler::{Domain, Sampler};
@@ -10,15 +12,16 @@ use crate::stats::Stats;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The samples of a group.
-pub(super) const GROUP: u64 = 256;
-
 /// What samples are taken of, and how.
 #[derive(Clone, Copy)]
 pub(super) struct Probe<'a> {
     pub(super) scene: &'a Scene,
     pub(super) settings: &'a Settings,
     pub(super) connections: Connections<'a>,
+    /// Whether training is given up, asked before each group.
+    pub(super) is_late: IsLate<'a>,
+    /// How many samples, and in which groups.
+    pub(super) extent: Extent,
     /// The first sample's number.
     pub(super) first: u64,
     /// After so many samples their pixels come again; the first time with the same camera rays.
@@ -71,34 +74,20 @@ pub(super) fn landed<'a>(
     })
 }
 
-/// Where samples lie on the film: point number i of the additive recurrence by 1/ρ and 1/ρ², ρ being the
-/// root of ρ³ = ρ + 1 \[Roberts18\], which spreads evenly over both sides whatever their lengths are, as
-/// steps through the pixels row by row do not. Unit: 2⁻⁶⁴ of a side.
-const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
-
-/// Pixel number `i`.
-fn pixel(crop: &PixelRect, i: u64) -> [u32; 2] {
-    let along = |step: u64, size: u32| {
-        let part = i.wrapping_mul(step) >> 32;
-        ((part * u64::from(size)) >> 32) as u32
-    };
-    let [x, y] = [
-        along(STEPS[0], crop.width()),
-        along(STEPS[1], crop.height()),
-    ];
-    [crop.min[0] + x, crop.min[1] + y]
-}
-
 /// What `of_group` finds of each of so many groups, with what was counted, in their order, whichever threads
 /// had them.
 pub(super) fn groups<T: Send>(
     count: u64,
+    is_late: IsLate<'_>,
     of_group: impl Fn(u64, &mut Workspace) -> T + Sync,
-) -> Vec<(T, Stats)> {
+) -> Result<Vec<(T, Stats)>, Late> {
     let groups = (0..count).into_par_iter();
     let found = groups.map_init(Workspace::default, |workspace, group| {
+        if is_late() {
+            return Err(Late);
+        }
         let found = of_group(group, workspace);
-        (found, std::mem::take(&mut workspace.stats))
+        Ok((found, std::mem::take(&mut workspace.stats)))
     });
     found.collect()
 }
@@ -112,8 +101,9 @@ impl Probe<'_> {
         workspace: &mut Workspace,
         witness: &mut impl Witness,
     ) {
-        let begin = self.first + group * GROUP;
-        let numbers = begin..begin + GROUP;
+        let size = self.extent.group();
+        let begin = self.first + group * size;
+        let numbers = begin..begin + size;
         self.walk_light(integrator, numbers.clone(), workspace, witness);
         for number in numbers {
             let sample = self.sample(number);
@@ -156,7 +146,7 @@ impl Probe<'_> {
         let subpath = self.first + (number - self.first) / samples_per_subpath;
         Sample {
             pass: 0,
-            pixel: pixel(&crop, place),
+            pixel: spread::point(&crop, place),
             ray: sampler.stream(Domain::TrainingCamera, ray, 0),
             camera: sampler.stream(Domain::TrainingCamera, number, 0),
             light: sampler.stream(Domain::TrainingLight, 0, subpath),
@@ -173,6 +163,7 @@ mod tests {
     use super::*;
     use crate::driver::training::blocks::{BLOCKS, Blocks};
     use crate::driver::training::trial::tests::lamp;
+    use crate::film::PixelRect;
     use crate::sampler::{Dimension, Purpose};
 
     #[test]
@@ -190,7 +181,7 @@ mod tests {
             let blocks = Blocks::new(crop);
             let mut counts = [0; BLOCKS];
             for i in 0..16 * BLOCKS as u64 {
-                let [x, y] = pixel(&crop, 32_768 + i).map(i64::from);
+                let [x, y] = spread::point(&crop, 32_768 + i).map(i64::from);
                 counts[blocks.of(crop.index(x, y).expect("a pixel of the film"))] += 1;
             }
             let most = counts.iter().max().copied().unwrap_or(0);
@@ -212,6 +203,8 @@ mod tests {
                     samples_per_subpath,
                     ..Connections::ONE_SUBPATH
                 },
+                is_late: &|| false,
+                extent: Extent::new(1.0, 1e9),
                 first: 768,
                 pixels: u64::MAX,
             };

@@ -1,15 +1,13 @@
 //! What is learnt about chosen rays: how likely connections from cell to cell are to be traced, under the
 //! rule and with the candidates of the image.
 
-use super::probe::{GROUP, Probe, Witness, groups, keep};
+use super::effort::Late;
+use super::probe::{Probe, Witness, groups, keep};
 use crate::integrator::{Sample, Workspace};
 use crate::path::{Cells, Inclusion, PathContext};
 use crate::select::{LightVertex, Selector};
 use crate::stats::RayCounts;
 
-const GROUPS: u64 = 64;
-/// The samples of all groups.
-pub(super) const SAMPLES: u64 = GROUPS * GROUP;
 /// How much one candidate counts that is chosen as often as all are: where training saw few, they say
 /// little.
 const PRIOR: f64 = 4.0;
@@ -60,11 +58,11 @@ impl Witness for Found<'_> {
 
 /// Finds how likely candidates are to be chosen in an image of the luminance `mean`, and the rays that
 /// it took.
-pub(super) fn run(probe: &Probe<'_>, mean: f32) -> (Inclusion, RayCounts) {
+pub(super) fn run(probe: &Probe<'_>, mean: f32) -> Result<(Inclusion, RayCounts), Late> {
     let selector = probe.settings.shadow_rays.selector(mean);
-    let groups = groups(GROUPS, |group, workspace| {
+    let groups = groups(probe.extent.groups(), probe.is_late, |group, workspace| {
         of_group(probe, &*selector, mean, group, workspace)
-    });
+    })?;
     let mut connections = vec![Mean::default(); Cells::COUNT * Cells::COUNT];
     let mut next_events = vec![Mean::default(); Cells::COUNT];
     let mut rays = RayCounts::default();
@@ -81,7 +79,7 @@ pub(super) fn run(probe: &Probe<'_>, mean: f32) -> (Inclusion, RayCounts) {
         connections: means(&connections),
         next_events: means(&next_events),
     };
-    (inclusion, rays)
+    Ok((inclusion, rays))
 }
 
 fn of_group<'a>(

@@ -1,17 +1,25 @@
 //! The first samples: of the full estimator, which traces every connection. They tell how bright the
 //! image is, and where vertices are.
 
-use super::Settings;
-use super::probe::{GROUP, Probe, groups, landed};
+use super::effort::Late;
+use super::extent::{Extent, work};
+use super::pilot;
+use super::probe::{Probe, groups, landed};
+use super::{Settings, Task};
 use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
 use crate::math::Vec3;
 use crate::path::{Cells, Connections, PairSums, PathContext};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
-use crate::stats::RayCounts;
+use crate::stats::Stats;
 
-/// Enough for the mean luminance to within a few percent in most scenes.
-pub(super) const SAMPLES: u64 = 1 << 14;
+/// What a sample seldom costs where the length of paths is limited, or surfaces absorb something. Unit: as
+/// [`work`].
+const USUAL: f64 = 256.0;
+/// The same of samples that learn about connections.
+const USUAL_OF_LEARNING: f64 = 384.0;
+/// The first samples, by which the others are counted.
+const FIRST: u64 = 16;
 
 /// A light vertex that can be connected.
 #[derive(Clone, Copy)]
@@ -31,51 +39,56 @@ pub(super) struct Survey {
     pub(super) light: Vec<LightVertex>,
     /// The camera vertices that can be, by their points.
     camera: Vec<Vec3>,
-    pub(super) rays: RayCounts,
+    pub(super) stats: Stats,
+}
+
+/// How samples of every connection are taken.
+struct Full<'a> {
+    probe: Probe<'a>,
+    integrator: Box<dyn Integrator>,
 }
 
 impl Survey {
-    pub(super) fn run(scene: &Scene, settings: &Settings) -> Self {
-        let integrator =
-            IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), &LvcSettings::default());
-        let probe = Probe {
-            scene,
-            settings,
-            connections: Connections::ONE_SUBPATH,
-            first: 0,
-            pixels: u64::MAX,
-        };
-        let groups = groups(SAMPLES / GROUP, |group, workspace| {
-            let mut survey = Self::default();
-            for number in group * GROUP..(group + 1) * GROUP {
-                survey.sample(&probe, &*integrator, number, workspace);
-            }
-            survey
-        });
-        let mut all = Self::default();
-        for (group, stats) in groups {
-            all.luminance += group.luminance;
-            all.light.extend(group.light);
-            all.camera.extend(group.camera);
-            all.rays += stats.rays;
-        }
-        all
+    pub(super) fn run(task: Task<'_>) -> Result<Self, Late> {
+        let full = Full::new(task);
+        let first = full.take(FIRST, 1)?;
+        let extent = Extent::new(USUAL, work(&first.stats) / FIRST as f64);
+        full.take(extent.groups(), extent.group())
     }
 
-    fn sample(
-        &mut self,
-        probe: &Probe<'_>,
-        integrator: &dyn Integrator,
-        number: u64,
-        workspace: &mut Workspace,
-    ) {
-        let (scene, sample) = (probe.scene, probe.sample(number));
-        let context = probe.context(&sample);
-        integrator.sample(&context, &sample, workspace);
-        let splats: f64 = landed(&context, workspace).map(|splat| splat.value).sum();
-        let own = f64::from(context.luminance(workspace.value));
-        self.luminance += own + splats / scene.film().crop.area() as f64;
-        self.keep_vertices(&context, workspace);
+    /// A few samples, which take no time.
+    pub(super) fn short(scene: &Scene, settings: &Settings) -> Self {
+        let task = Task {
+            scene,
+            settings,
+            is_late: &|| false,
+        };
+        // It is never late.
+        Full::new(task).take(FIRST, 1).unwrap_or_default()
+    }
+
+    fn add(&mut self, group: Self, stats: &Stats) {
+        self.luminance += group.luminance;
+        self.light.extend(group.light);
+        self.camera.extend(group.camera);
+        self.stats += stats;
+    }
+
+    /// The number of samples.
+    pub(super) fn samples(&self) -> f64 {
+        self.stats.samples as f64
+    }
+
+    /// How many samples connections are learnt from.
+    pub(super) fn extent_of_learning(&self) -> Extent {
+        let connected = 2 * u64::from(pilot::CANDIDATES) * self.stats.rays.camera;
+        let work = work(&self.stats) + connected as f64;
+        Extent::new(USUAL_OF_LEARNING, work / self.samples())
+    }
+
+    /// How many samples compare plans.
+    pub(super) fn extent_of_trials(&self) -> Extent {
+        Extent::new(USUAL, work(&self.stats) / self.samples())
     }
 
     fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
@@ -105,19 +118,123 @@ impl Survey {
         let mut light_vertices = vec![0.0; Cells::COUNT];
         for vertex in &self.light {
             let [point, n] = vertex.place;
-            light_vertices[cells.of(point, n).index()] += gain(vertex.light) / SAMPLES as f64;
+            light_vertices[cells.of(point, n).index()] += gain(vertex.light) / self.samples();
         }
         PairSums::uniform(light_vertices)
+    }
+}
+
+impl<'a> Full<'a> {
+    fn new(task: Task<'a>) -> Self {
+        let probe = Probe {
+            scene: task.scene,
+            settings: task.settings,
+            connections: Connections::ONE_SUBPATH,
+            is_late: task.is_late,
+            extent: Extent::new(USUAL, 0.0),
+            first: 0,
+            pixels: u64::MAX,
+        };
+        let all = ShadowRays::All.selector(0.0);
+        Self {
+            probe,
+            integrator: IntegratorKind::Bdpt.integrator(all, &LvcSettings::default()),
+        }
+    }
+
+    /// Takes the first samples, in so many groups of `size`.
+    fn take(&self, count: u64, size: u64) -> Result<Survey, Late> {
+        let groups = groups(count, self.probe.is_late, |group, workspace| {
+            let mut survey = Survey::default();
+            for number in group * size..(group + 1) * size {
+                self.sample(number, workspace, &mut survey);
+            }
+            survey
+        })?;
+        let mut all = Survey::default();
+        for (group, stats) in groups {
+            all.add(group, &stats);
+        }
+        Ok(all)
+    }
+
+    fn sample(&self, number: u64, workspace: &mut Workspace, survey: &mut Survey) {
+        let sample = self.probe.sample(number);
+        let context = self.probe.context(&sample);
+        self.integrator.sample(&context, &sample, workspace);
+        let splats: f64 = landed(&context, workspace).map(|splat| splat.value).sum();
+        let own = f64::from(context.luminance(workspace.value));
+        let pixels = context.scene.film().crop.area() as f64;
+        survey.luminance += own + splats / pixels;
+        survey.keep_vertices(&context, workspace);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::{Camera, Perspective, PerspectiveSettings};
     use crate::driver::training::trial::tests::lamp;
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
+    use crate::film::{FilmSettings, Filter};
+    use crate::light::{Light, PointLight};
+    use crate::material::Material;
+    use crate::math::{Affine3A, Vec2};
+    use crate::path::{MAX_VERTICES, PathSettings};
+    use crate::scene::SceneBuilder;
+    use crate::shape::{Orientation, Shape, Sphere};
     use crate::spectrum::luminance;
+    use crate::texture::ColorTexture;
+
+    /// A camera and a lamp in a white sphere: no walk ends before it is as long as any may be.
+    fn white_room() -> Scene {
+        let mut builder = SceneBuilder::new(FilmSettings::new([8; 2], Filter::default()));
+        let camera = Perspective::new(&PerspectiveSettings {
+            world_from_camera: Affine3A::IDENTITY,
+            resolution: Vec2::splat(8.0),
+            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+            lens_radius: 0.0,
+            focal_distance: 1.0,
+        });
+        builder.camera(Camera::Perspective(camera.expect("the map is rigid")));
+        let white = builder.material(Material::Diffuse {
+            reflectance: ColorTexture::Constant([1.0; 3]),
+        });
+        let wall = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
+        builder.shape(Shape::Sphere(wall), white, None);
+        builder.light(Light::Point(PointLight {
+            position: Vec3::new(0.0, 0.5, 0.0),
+            intensity: [1.0; 3],
+        }));
+        builder.build().expect("the scene is valid")
+    }
+
+    #[test]
+    fn where_walks_do_not_end_samples_and_training_do() {
+        let scene = white_room();
+        let settings = Settings {
+            path: PathSettings {
+                max_depth: None,
+                ..PathSettings::default()
+            },
+            ..Settings::default()
+        };
+        let count = 4;
+        let task = Task {
+            scene: &scene,
+            settings: &settings,
+            is_late: &|| false,
+        };
+        let survey = Full::new(task).take(count, 1).expect("nothing is late");
+        let longest = count * (MAX_VERTICES as u64 - 1);
+        assert_eq!(survey.stats.rays.camera, longest);
+        // All pairs are half a million.
+        let of_sample = work(&survey.stats) / survey.samples();
+        assert!((20_000.0..40_000.0).contains(&of_sample), "{of_sample}");
+        let [learning, trials] = [survey.extent_of_learning(), survey.extent_of_trials()];
+        assert_eq!([learning, trials].map(Extent::samples), [64; 2]);
+    }
 
     /// Light images of pixels that are not rendered are none of the image.
     #[test]

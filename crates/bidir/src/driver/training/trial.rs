@@ -27,7 +27,8 @@
 
 use super::Settings;
 use super::blocks::{BLOCKS, Blocks};
-use super::probe::{GROUP, Probe, Witness, groups, landed};
+use super::effort::Late;
+use super::probe::{Probe, Witness, groups, landed};
 use crate::integrator::{IntegratorKind, Sample, Workspace};
 use crate::path::PathContext;
 use crate::stats::{RayCounts, Stats};
@@ -161,7 +162,7 @@ impl Trying<'_> {
 
 impl Trial {
     /// `mean` is the mean luminance of the image.
-    pub(super) fn run(probe: &Probe<'_>, mean: f32) -> Self {
+    pub(super) fn run(probe: &Probe<'_>, mean: f32) -> Result<Self, Late> {
         let Settings {
             shadow_rays,
             integrator,
@@ -170,7 +171,8 @@ impl Trial {
         } = probe.settings;
         let blocks = Blocks::new(probe.scene.film().crop);
         let samples = THIRDS * probe.pixels;
-        let groups = groups(samples / GROUP, |group, workspace| {
+        let count = samples / probe.extent.group();
+        let groups = groups(count, probe.is_late, |group, workspace| {
             let mut trying = Trying {
                 blocks: &blocks,
                 trial: Self::default(),
@@ -178,14 +180,14 @@ impl Trial {
             let integrator = integrator.integrator(shadow_rays.selector(mean), lvc);
             probe.group(&*integrator, group, workspace, &mut trying);
             trying.trial
-        });
+        })?;
         let mut all = Self::default();
         for (trial, stats) in groups {
             all.add(trial);
             all.stats += &stats;
         }
         all.sum_values();
-        all
+        Ok(all)
     }
 
     /// Adds what more samples found.

@@ -111,3 +111,24 @@ fn what_is_rarely_specular_is_a_blind_spot() {
         assert_eq!(spots, [BlindSpot::Caustics]);
     }
 }
+
+#[test]
+fn light_is_missing_where_paths_are_long_enough_for_it() {
+    let scene = scene(&[diffuse(), metal(0.0)], vec![point(), sky()]);
+    let of = |integrator, depth| {
+        let settings = PathSettings {
+            max_depth: Some(depth),
+            ..PathSettings::default()
+        };
+        missing_light(&scene, integrator, &settings)
+    };
+    // L S D E has two scattering events.
+    assert_eq!(of(IntegratorKind::Path, 1), []);
+    assert_eq!(of(IntegratorKind::Path, 2), [BlindSpot::Caustics]);
+    assert_eq!(of(IntegratorKind::Light, 0), []);
+    assert_eq!(of(IntegratorKind::Light, 1), [BlindSpot::SeenBySpecular]);
+    let concerned = |spot: BlindSpot| [point(), sky()].map(|light| spot.concerns(&light));
+    assert_eq!(concerned(BlindSpot::Caustics), [true, false]);
+    assert_eq!(concerned(BlindSpot::ChanceCaustics), [false, true]);
+    assert_eq!(concerned(BlindSpot::Sky), [false, true]);
+}

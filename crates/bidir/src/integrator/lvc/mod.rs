@@ -33,11 +33,11 @@ use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 use cache::{Cached, Draw};
 
-/// How many samples share light subpaths where so many pixels are rendered: those of pixels that follow
-/// each other in row order of the crop. So few that the subpaths stay in a processor's cache, and that
-/// there are some groups for every thread.
+/// How many samples share light subpaths where so many pixels are rendered. So few that the subpaths stay
+/// in a processor's cache, that there are some groups for every thread, and that pixels near each other
+/// are in different groups.
 pub(crate) fn group_size(pixels: u64) -> u64 {
-    (pixels / 64).next_power_of_two().clamp(256, 2048)
+    (pixels / 64).next_power_of_two().clamp(64, 2048)
 }
 
 /// Bidirectional path tracing with a light vertex cache, and with the connections that `selector`

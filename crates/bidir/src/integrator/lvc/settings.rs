@@ -152,6 +152,13 @@ impl SamplesPerSubpath {
         }
     }
 
+    /// The least number that is neither below this one nor below `count`, or the most.
+    #[must_use]
+    pub fn or_more(self, count: f64) -> Self {
+        let count = (count.ceil() as u32).next_power_of_two();
+        Self::power_of_two(count.max(self.0.into()).ilog2())
+    }
+
     /// The number.
     #[inline]
     pub fn get(self) -> u16 {
@@ -289,6 +296,14 @@ mod tests {
         assert_eq!("suited".parse(), Ok(Candidates::Suited));
         let bad = ["", "0", "-2", "3", "512", "65536", "x"];
         check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, "from 1 to 256");
+    }
+
+    #[test]
+    fn fewer_subpaths_are_asked_for_by_powers_of_two() {
+        let two = SamplesPerSubpath::default();
+        for (count, expected) in [(0.0, 2), (2.0, 2), (2.1, 4), (64.0, 64), (1e9, 256)] {
+            assert_eq!(two.or_more(count).get(), expected);
+        }
     }
 
     #[test]

@@ -213,3 +213,19 @@ fn a_mesh_has_the_tangents_of_its_vertices() {
     };
     assert!(tangent(&without, None).is_finite());
 }
+
+#[test]
+fn triangles_of_any_size_have_their_area() {
+    for size in [1e-18_f32, 1e-12, 1e-9, 1.0, 1e9, 1e12] {
+        let triangle = Mesh {
+            positions: vec![Vec3::ZERO, Vec3::X * size, Vec3::Y * size],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let area = triangle.triangle_area(0);
+        assert!(
+            (area / (size * size / 2.0) - 1.0).abs() < 1e-5,
+            "{size}: {area}"
+        );
+    }
+}

@@ -6,15 +6,21 @@ use bidir::driver::{Progress, Resources, Session};
 use bidir::film::{Aov, LayerImage, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
-use bidir::math::Vec3;
-use bidir::scene::Scene;
+use bidir::math::{DVec3, Vec3};
+use bidir::scene::{RenderSpace, Scene};
 use bidir::shape::Shape;
 use bidir::spectrum::Rgb;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
 fn plane() -> Scene {
+    plane_in(RenderSpace::WORLD)
+}
+
+/// The same where these numbers are those of another space.
+fn plane_in(space: RenderSpace) -> Scene {
     let mut builder = builder(4, 0.0);
+    builder.space(space);
     let material = builder.material(diffuse([0.8, 0.4, 0.2]));
     let plane = quad(Vec3::new(-9.0, -9.0, 1.0), Vec3::Y * 18.0, Vec3::X * 9.42);
     let plane = tilt(plane, Vec3::ZERO);
@@ -92,6 +98,28 @@ fn features_of_a_plane_are_known() {
         check_edge(&images);
         check_sky(&images);
     }
+}
+
+#[test]
+fn positions_and_depths_are_those_of_the_world() {
+    let space = RenderSpace {
+        origin: DVec3::new(2048.0, 0.0, -512.0),
+        unit: 4.0,
+    };
+    let [here, there] = [RenderSpace::WORLD, space].map(|space| {
+        let scene = plane_in(space);
+        let layers = Layers::new(&[Aov::Position, Aov::Depth], &[], 0);
+        let settings = settings(IntegratorKind::Path, layers);
+        let images = film(&scene, &settings, 16, 1).develop_layers();
+        let position = Vec3::from_slice(&at(&images, "P", "X", 4));
+        (position, at(&images, "", "Z", 4)[0])
+    });
+    let expected = space.world_point(here.0).as_vec3();
+    assert!(
+        there.0.distance(expected) < 1e-2,
+        "{there:?}, not {expected}"
+    );
+    check_near(&[there.1], &[4.0 * here.1]);
 }
 
 #[test]

@@ -40,9 +40,12 @@ fn files_that_are_no_films_are_not_replaced_by_one() {
     let render = "render room.pbrt -q --spp 1 --restart --checkpoint";
     place
         .run(&format!("{render} room.pbrt"))
-        .expect(2)
-        .says("two outputs have this name");
-    place.run(&format!("{render} a.exr -o a.exr")).expect(2);
+        .expect(4)
+        .says("cannot write `room.pbrt`: it would replace the input `room.pbrt`");
+    place
+        .run(&format!("{render} a.exr -o ./a.exr"))
+        .expect(4)
+        .says("cannot write `a.exr`: it would replace the other output `./a.exr`");
     fs::write(place.path("copy.pbrt"), &scene).unwrap();
     place
         .run(&format!("{render} copy.pbrt"))

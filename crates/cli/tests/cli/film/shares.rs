@@ -142,9 +142,9 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
             "name another file",
         ),
         (
-            "d.exr --image d.exr",
-            2,
-            "d.exr is a film file, and is not replaced by an image",
+            "d.exr --image ./d.exr",
+            4,
+            "cannot write `./d.exr`: it would replace the other output `d.exr`",
             "name another file with --image",
         ),
     ] {
@@ -164,9 +164,43 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
     place.run(whole).expect(0);
     place.run(whole).expect(0);
     let more = "merge -o whole.film whole.film c.film";
-    place.run(more).expect(0).says("passes 0..3");
-    place.run(more).expect(5).says("both have the passes 2..3");
+    place.run(more).expect(0).says("passes 0..3 of 2 files; ");
     place.run("merge -o b.film a.film b.film c.film").expect(0);
+}
+
+#[test]
+fn a_merge_into_one_of_its_films_can_be_given_again() {
+    let place = Workplace::new();
+    for (passes, film) in [("0..1", "a"), ("1..2", "b"), ("2..3", "c"), ("2..4", "d")] {
+        place.render_share(passes, &format!("{film}.film"));
+    }
+    place.run("merge -o whole.film a.film b.film").expect(0);
+    // In any order, and by any name.
+    for films in [
+        "c.film whole.film",
+        "./whole.film c.film",
+        "a.film c.film whole.film",
+    ] {
+        let merge = format!("merge -o whole.film {films} --image whole.exr");
+        place.run(&merge).expect(0).says("passes 0..3 of ");
+        let film = fs::read(place.path("whole.film")).unwrap();
+        let again = place.run(&merge).expect(0);
+        again.says("passes 0..3 of ").says("of them merged before");
+        assert!(
+            fs::read(place.path("whole.film")).unwrap() == film,
+            "{films}"
+        );
+    }
+    place
+        .run("render room.pbrt -q --spp 3 -o undivided.exr")
+        .expect(0);
+    place.expect_same("whole.exr", "undivided.exr");
+    // A film with some of the passes was not merged before.
+    let part = place.run("merge -o whole.film whole.film d.film");
+    part.expect(5).says("both have the passes 2..3");
+    // Where the output is none of them, every pass counts once.
+    let twice = place.run("merge -o other.film a.film c.film c.film");
+    twice.expect(5).says("both have the passes 2..3");
 }
 
 #[test]

@@ -16,12 +16,52 @@ fn what_killed_writers_left_behind_is_removed() {
     for name in ["a.film", "a.film.previous", "b.film"] {
         place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
     }
+    // An image has no lock, and its next writer removes what no living one holds.
+    for name in ["b.exr", "b.png"] {
+        place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
+    }
     place.write("a.film.lock", "");
     place.render_share("0..1", "a.film");
+    place.run("film develop a.film -o b.exr").expect(0);
+    place.run("film develop a.film -o b.png").expect(0);
     place.run("merge a.film -o c.film").expect(0);
     place.run("merge a.film -o /dev/null").expect(0);
     let other = format!(".b.film.bidir-{host}-1-aB3dE6.tmp");
-    assert_eq!(place.names(), [&*other, "a.film", "c.film", "room.pbrt"]);
+    let names = [&*other, "a.film", "b.exr", "b.png", "c.film", "room.pbrt"];
+    assert_eq!(place.names(), names);
+}
+
+#[test]
+fn a_file_with_something_in_it_is_no_lock() {
+    let place = Workplace::new();
+    place.write("a.film.lock", "notes");
+    let render = "render room.pbrt -q --spp 1 --checkpoint a.film";
+    let says = "a.film.lock is not an empty lock file";
+    place.run(render).expect(4).says(says);
+    assert_eq!(place.read("a.film.lock"), "notes");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_that_grows_beyond_its_limit_is_an_error() {
+    let place = Workplace::new();
+    let program = env!("CARGO_BIN_EXE_bidir");
+    let limited = |arguments: &str| {
+        let script = format!("ulimit -f 1; exec {program} {arguments}");
+        let mut shell = std::process::Command::new("sh");
+        let shell = shell.args(["-c", &script]).current_dir(place.path(""));
+        crate::common::Ran::of(shell)
+    };
+    let says = "larger than the system allows";
+    let render = "render room.pbrt -q --spp 1 -o";
+    limited(&format!("{render} a.exr")).expect(4).says(says);
+    let film = format!("{render} a.png --size 4x4 --checkpoint a.film");
+    limited(&film).expect(4).says("a.film").says(says);
+    place.render_share("0..1", "b.film");
+    let before = fs::read(place.path("b.film")).unwrap();
+    limited("merge b.film -o b.film").expect(4).says("b.film");
+    assert_eq!(fs::read(place.path("b.film")).unwrap(), before);
+    assert_eq!(place.names(), ["a.png", "b.film", "room.pbrt"]);
 }
 
 #[test]
@@ -52,26 +92,21 @@ fn two_writers_of_one_film_are_kept_apart() {
         .expect(0);
 }
 
-/// How often a render is killed: the variable BIDIR_TEST_KILLS, else 3 times.
-fn kills() -> u64 {
-    let text = std::env::var("BIDIR_TEST_KILLS").ok();
-    text.map_or(3, |text| {
-        text.parse().expect("BIDIR_TEST_KILLS is a whole number")
-    })
-}
+/// How often a render is killed; `tools/attack` kills many more.
+const KILLS: u64 = 3;
 
 #[test]
 fn a_killed_render_goes_on_to_the_same_bits() {
     let place = Workplace::new();
-    let passes = 50 * kills();
+    let passes = 50 * KILLS;
     let render = format!("render room.pbrt -q --size 96x64 --spp {passes}");
     let start = Instant::now();
     place.run(&format!("{render} -o whole.exr")).expect(0);
     // All runs that are killed take about half as long, whatever else the machine does.
-    let share = start.elapsed().div_f64(kills() as f64);
+    let share = start.elapsed().div_f64(KILLS as f64);
     let resumed = format!("{render} --checkpoint a.film --resume -o a.exr");
     let often = format!("{resumed} --checkpoint-every 0.001s");
-    for kill in 0..kills() {
+    for kill in 0..KILLS {
         let mut child = place.command(&often).spawn().unwrap();
         let moment = 0.2 + 0.6 * (kill * 7919 % 140) as f64 / 140.0;
         std::thread::sleep(share.mul_f64(moment));

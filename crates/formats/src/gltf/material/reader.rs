@@ -6,6 +6,7 @@ use crate::gltf::mesh::UvMap;
 use crate::gltf::place::{GltfFault, Place};
 use crate::gltf::texture::{Change, Lookup, Part, Textures};
 use crate::image::Encoding;
+use crate::text::number;
 use bidir::bsdf::Wall;
 use bidir::light::EmissionSides;
 use bidir::material::{
@@ -116,6 +117,7 @@ impl Reader<'_, '_> {
         if let Some(ior) = &extensions.ior {
             let ior = ior.ior.unwrap_or(1.5);
             if !(ior == 0.0 || (1.0..=100.0).contains(&ior)) {
+                let ior = number(ior);
                 let message = format!("the index of refraction {ior} is neither 0 nor at least 1");
                 return Err(self
                     .place

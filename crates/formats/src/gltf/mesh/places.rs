@@ -7,10 +7,10 @@ use crate::gltf::place::{GltfFault, Place};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// The maps of a node's skin from the mesh to the world, by joint.
+/// The maps of a node's skin from the mesh to where it is rendered, by joint.
 pub(in crate::gltf) fn joints(
     document: &Document,
-    world_from_node: &[Option<DAffine3>],
+    render_from_node: &[Option<DAffine3>],
     skin: usize,
     user: &Place,
 ) -> Result<Vec<DAffine3>, GltfFault> {
@@ -35,13 +35,13 @@ pub(in crate::gltf) fn joints(
     };
     let place = place.key("joints");
     let of_joint = |(i, &joint): (usize, &usize)| {
-        let world_from_joint = world_from_node.get(joint).copied().flatten();
+        let render_from_joint = render_from_node.get(joint).copied().flatten();
         let missing = || {
             place
                 .index(i)
                 .scene(format!("node {joint} is not in the scene"))
         };
-        Ok(world_from_joint.ok_or_else(missing)? * inverse[i])
+        Ok(render_from_joint.ok_or_else(missing)? * inverse[i])
     };
     of_skin.joints.iter().enumerate().map(of_joint).collect()
 }

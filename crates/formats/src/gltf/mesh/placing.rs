@@ -3,6 +3,7 @@
 use super::{Surface, UvMap};
 use crate::error::ErrorKind;
 use crate::gltf::place::{GltfFault, Place};
+use crate::space::Survey;
 use bidir::math::Vec3;
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
@@ -11,11 +12,12 @@ use glam::{DAffine3, DVec3};
 const FARTHEST: f64 = 1e12;
 
 impl Surface {
-    /// The mesh where `world_from_mesh` puts it. Errors: it reaches too far.
+    /// The mesh where `world_from_mesh` puts it, of which `survey` takes note. Errors: it reaches too
+    /// far.
     pub(in crate::gltf) fn place(
         &self,
         world_from_mesh: &DAffine3,
-        uv: &UvMap,
+        (uv, survey): (&UvMap, &mut Survey),
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
         let normal_matrix = normal_matrix(world_from_mesh);
@@ -30,14 +32,15 @@ impl Surface {
         } else {
             Orientation::Natural
         };
-        self.mesh((positions, normals, tangents), (orientation, uv), place)
+        let vertices = (positions, normals, tangents);
+        self.mesh(vertices, (orientation, uv, survey), place)
     }
 
     /// The mesh as its joints move it, each by a map from the mesh to the world.
     pub(in crate::gltf) fn skinned(
         &self,
         joints: &[DAffine3],
-        uv: &UvMap,
+        (uv, survey): (&UvMap, &mut Survey),
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
         let mut maps = Vec::with_capacity(self.joints.len());
@@ -56,7 +59,7 @@ impl Surface {
         let tangents = self.tangents.iter().zip(&maps);
         let tangents = tangents.map(|(&t, map)| map.transform_vector3(vector(t)));
         let vertices = (positions, normals, tangents);
-        self.mesh(vertices, (Orientation::Natural, uv), place)
+        self.mesh(vertices, (Orientation::Natural, uv, survey), place)
     }
 
     fn mesh(
@@ -66,7 +69,7 @@ impl Surface {
             impl Iterator<Item = DVec3>,
             impl Iterator<Item = DVec3>,
         ),
-        (orientation, uv): (Orientation, &UvMap),
+        (orientation, uv, survey): (Orientation, &UvMap, &mut Survey),
         place: &Place,
     ) -> Result<Mesh, GltfFault> {
         let mut placed = Vec::with_capacity(self.positions.len());
@@ -76,6 +79,7 @@ impl Surface {
                 let message = format!("a coordinate is beyond {FARTHEST:e}");
                 return Err(place.fault(ErrorKind::Limit, message));
             }
+            survey.include(position);
             placed.push(position.as_vec3());
         }
         let uvs = self.uvs[uv.set.min(1)].iter();

@@ -1,7 +1,9 @@
 use super::{Draft, F32, U8, U16, check_points, floats, front, mesh, shorts};
-use bidir::math::{Vec2, Vec3};
+use crate::pbrt::Loaded;
+use bidir::light::Light;
+use bidir::math::{DVec3, Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::Chances;
+use bidir::scene::{Chances, Scene};
 use serde_json::json;
 
 /// Five corners of a fan or a zigzag.
@@ -249,4 +251,68 @@ fn the_upper_left_corner_is_the_origin_of_textures() {
     draft.primitive()["attributes"]["TEXCOORD_0"] = json!(uvs);
     let loaded = draft.load().unwrap();
     assert_eq!(mesh(&loaded, 0).uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO]);
+}
+
+/// A triangle whose node and whose parallel camera are moved, or scaled.
+fn placed(translation: [f64; 3], scale: f64) -> Loaded {
+    let mut draft = Draft::triangle();
+    let [x, y, z] = translation;
+    draft.json["cameras"] = json!([{ "type": "orthographic",
+        "orthographic": { "xmag": scale, "ymag": scale, "znear": 0, "zfar": 1 } }]);
+    let sizes = [scale; 3];
+    draft.json["nodes"] = json!([
+        { "mesh": 0, "translation": translation, "scale": sizes },
+        { "camera": 0, "translation": [x, y, z + 3.0 * scale] },
+        { "translation": [x, y + scale, z],
+          "extensions": { "KHR_lights_punctual": { "light": 0 } } }
+    ]);
+    draft.json["extensions"] =
+        json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    draft.json["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
+    draft.load().unwrap()
+}
+
+#[test]
+fn nodes_that_are_far_away_keep_their_shape() {
+    let scene = placed([0.1, -3e6, 1e7], 1.0).scene;
+    let (space, bounds) = (scene.space(), scene.bvh().bounds());
+    assert!(bounds.max.length() < 3.0, "{bounds:?}");
+    let world = |p| space.world_point(p) - DVec3::new(0.1, -3e6, 1e7);
+    assert!(world(bounds.min).length() < 1e-6, "{bounds:?}");
+    assert!((world(scene.camera().pose().origin) - DVec3::Z * 3.0).length() < 1e-6);
+}
+
+#[test]
+fn what_is_seen_of_a_tiny_or_huge_file_is_the_same() {
+    let [unit, tiny, huge] = [1.0, 1e-9, 1e9].map(|scale| placed([0.0; 3], scale).scene);
+    assert_eq!(unit.space().unit, 1.0);
+    for (scene, scale) in [(&tiny, 1e-9), (&huge, 1e9)] {
+        assert_ne!(scene.space().unit, 1.0);
+        let raster = |scene: &Scene| scene.camera().raster(scene.bvh().bounds().max, Vec3::NEG_Z);
+        let [found, expected] = [scene, &unit].map(|scene| raster(scene).unwrap());
+        assert!(found.distance(expected) < 1e-2, "{found} {expected}");
+        let Light::Point(light) = scene.light(0) else {
+            panic!("the light is a point");
+        };
+        let irradiance = f64::from(light.intensity[0]) / f64::from(light.position.y).powi(2);
+        assert!(
+            (irradiance * scale * scale - 1.0).abs() < 1e-5,
+            "{irradiance}"
+        );
+    }
+}
+
+#[test]
+fn vertices_far_from_their_node_are_warned_of() {
+    let mut draft = Draft::empty();
+    let corners = [1e6, 0.0, 0.0, 1e6 + 2.0, 0.0, 0.0, 1e6, 2.0, 0.0];
+    draft.accessor(&floats(&corners), (F32, "VEC3", 3));
+    draft.json["meshes"] = json!([{ "primitives": [{ "attributes": { "POSITION": 0 } }] }]);
+    draft.json["nodes"] = json!([{ "mesh": 0 }]);
+    draft.json["scenes"] = json!([{ "nodes": [0] }]);
+    let loaded = draft.load().unwrap();
+    let warnings = loaded.warnings.iter();
+    let found: Vec<_> = warnings.filter(|text| text.contains("32-bit")).collect();
+    assert_eq!(found.len(), 1, "{:?}", loaded.warnings);
+    assert!(found[0].contains("meshes[0].primitives[0]: coordinates of 1.00e6"));
 }

@@ -279,6 +279,33 @@ fn emissive_textures_are_pictures_that_shine() {
 }
 
 #[test]
+fn lamps_that_give_no_light_are_warned_of() {
+    let mut draft = Draft::triangle();
+    draft.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let mut loaded = |intensity: f32| {
+        let light = json!({ "type": "point", "intensity": intensity });
+        draft.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+        draft.load().unwrap()
+    };
+    let warning = "the point light has no power: it adds nothing to the image";
+    let of_dark = |loaded: &Loaded| {
+        let warnings = loaded.warnings.iter();
+        warnings.filter(|told| told.contains(warning)).count()
+    };
+    let (dark, bright) = (loaded(0.0), loaded(1.0));
+    assert_eq!([&dark, &bright].map(of_dark), [1, 0], "{:?}", dark.warnings);
+    let place = bright
+        .lamps
+        .first()
+        .map(|lamp| lamp.place.clone())
+        .unwrap_or_default();
+    assert!(
+        dark.warnings.iter().any(|told| told.starts_with(&place)),
+        "{place}"
+    );
+}
+
+#[test]
 fn punctual_lights_shine_along_minus_z_of_their_node() {
     let mut draft = Draft::triangle();
     draft.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
@@ -321,7 +348,7 @@ fn with_camera(camera: &Value) -> Draft {
 }
 
 /// The raster position of the direction towards `point`, as part of the film.
-fn seen(loaded: &Loaded, point: Vec3) -> Vec2 {
+pub(super) fn seen(loaded: &Loaded, point: Vec3) -> Vec2 {
     let camera = loaded.scene.camera();
     let eye = camera.sample_lens(|| Vec2::ZERO).point;
     let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
@@ -363,6 +390,25 @@ fn without_a_camera_all_is_in_view_and_without_light_it_is_lit() {
     }
     assert_eq!(loaded.scene.environment().len(), 1);
     assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
+}
+
+#[test]
+fn webp_textures_are_read() {
+    let mut draft = textured();
+    let texels = [255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255];
+    let mut webp = Vec::new();
+    let encoder = ::image::codecs::webp::WebPEncoder::new_lossless(&mut webp);
+    let color = ::image::ExtendedColorType::Rgb8;
+    encoder.encode(&texels, 2, 2, color).unwrap();
+    let view = draft.view(&webp);
+    draft.json["images"] = json!([{ "bufferView": view, "mimeType": "image/webp" }]);
+    let source = json!({ "EXT_texture_webp": { "source": 0 } });
+    draft.json["textures"] = json!([{ "sampler": 0, "extensions": source }]);
+    draft.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let loaded = draft.load().unwrap();
+    check_color(&loaded, [0.1, 0.1], RED);
+    check_color(&loaded, [0.9, 0.1], GREEN);
+    check_color(&loaded, [0.1, 0.9], BLUE);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod geometry;
 mod look;
+mod outside;
 mod refusals;
 
 use super::load;
@@ -192,6 +193,26 @@ fn the_digest_is_of_all_files() {
     let mut moved = draft.buffer.clone();
     moved[2] = 1;
     assert_ne!(first, digest(&moved));
+}
+
+#[test]
+fn inputs_are_all_files_that_are_named() {
+    let mut draft = Draft::triangle();
+    draft.json["buffers"][0]["uri"] = json!("my%20mesh.bin");
+    let images = [
+        "unused.png",
+        "data:image/png;base64,",
+        "https://a.org/b.png",
+    ];
+    draft.json["images"] = json!(images.map(|uri| json!({ "uri": uri })));
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("a.gltf"), serde_json::to_vec(&draft.json).unwrap()).unwrap();
+    std::fs::write(at("my mesh.bin"), &draft.buffer).unwrap();
+    let loaded = crate::scene::load(&at("a.gltf"), &LoadOptions::default()).unwrap();
+    let inputs = ["a.gltf", "my mesh.bin", "unused.png"].map(at);
+    assert_eq!(loaded.inputs, inputs);
+    assert_eq!(loaded.files, inputs[..2]);
 }
 
 /// No bytes make it panic: files cut anywhere, and with a byte changed.

@@ -227,7 +227,29 @@ fn broken_images_and_numbers_are_refused() {
     check(&draft, ErrorKind::Data, &["images[0]"]);
     let view = draft.view(b"RIFF1234WEBP");
     draft.json["images"] = json!([{ "bufferView": view }]);
-    check(&draft, ErrorKind::Unsupported, &["neither png nor jpg"]);
+    check(&draft, ErrorKind::Data, &["images[0]", "broken image"]);
+    for (bytes, words) in [
+        (&b"BM1234"[..], "neither png, jpg nor webp"),
+        (b"\xabKTX 20\xbb\r\n\x1a\n", "it is a KTX2 file"),
+        (b"\0\0\0\x20ftypavif", "it is an AVIF file"),
+    ] {
+        let view = draft.view(bytes);
+        draft.json["images"] = json!([{ "bufferView": view }]);
+        check(
+            &draft,
+            ErrorKind::Unsupported,
+            &[words, "as png, jpg or webp"],
+        );
+    }
+    draft.json["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+    let only = "its only image is a KTX2 file";
+    check(&draft, ErrorKind::Unsupported, &["textures[0]", only]);
+    draft.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+    check(
+        &draft,
+        ErrorKind::Unsupported,
+        &["KHR_texture_basisu", "ktx extract"],
+    );
     let mut draft = Draft::triangle();
     let bad = [0.0, 0.0, 0.0, 1.0, f32::NAN, 0.0, 0.0, 1.0, 0.0];
     let bad = draft.accessor(&floats(&bad), (F32, "VEC3", 3));
@@ -240,4 +262,27 @@ fn broken_images_and_numbers_are_refused() {
     let mut draft = Draft::triangle();
     draft.json["nodes"][0]["translation"] = json!([1e30, 0, 0]);
     check(&draft, ErrorKind::Limit, &["beyond"]);
+}
+
+/// Accessors, buffers and meshes that are named again take few bytes.
+#[test]
+fn what_is_named_again_and_again_has_limits() {
+    let mut draft = Draft::triangle();
+    let zeros = json!({ "componentType": 5126, "type": "VEC3", "count": 1_398_000 });
+    draft.json["accessors"] = json!([zeros]);
+    let primitive = json!({ "attributes": { "POSITION": 0 } });
+    draft.json["meshes"] = json!([{ "primitives": vec![primitive.clone(); 4] }]);
+    check(&draft, ErrorKind::Limit, &["triangles or vertices"]);
+    // Positions that are not used are read all the same.
+    let indexed = json!({ "attributes": { "POSITION": 0 }, "indices": 1 });
+    let corners = draft.accessor(&[0, 0, 0], (U8, "SCALAR", 3));
+    assert_eq!(corners, 1);
+    draft.json["meshes"] = json!([{ "primitives": vec![indexed; 20] }]);
+    check(&draft, ErrorKind::Limit, &["again and again"]);
+    draft = Draft::triangle();
+    let attributes = json!({ "TRANSLATION": 1 });
+    draft.json["accessors"].as_array_mut().unwrap().push(zeros);
+    draft.json["nodes"][0]["extensions"] =
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+    check(&draft, ErrorKind::Limit, &["mesh instances"]);
 }

@@ -11,12 +11,16 @@ use bidir::camera::{
     SphericalMapping,
 };
 use bidir::math::{Affine3A, Vec2};
+use glam::DVec3;
 
 /// A camera but for the film's size.
 pub(super) struct CameraSettings {
     /// Seconds between opening and closing of the shutter.
     pub(super) exposure_time: f32,
-    world_from_camera: Affine3A,
+    /// Where it stands. Space: world.
+    pub(super) eye: DVec3,
+    /// To the space that is rendered in.
+    render_from_camera: Affine3A,
     view: View,
     pub(super) span: Span,
 }
@@ -44,7 +48,8 @@ struct Screen {
 /// Reads the camera; without one it is the format's default.
 pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
     let Some(camera) = &context.description.camera else {
-        return Ok(CameraSettings::default_at(SourceMap::BEGINNING));
+        let place = (&*context, &Transforms::default());
+        return Ok(CameraSettings::default_at(SourceMap::BEGINNING, place));
     };
     if camera.transforms.is_animated() {
         context.unsupported(
@@ -76,24 +81,17 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         kind => {
             let what = format!("the camera `{kind}`");
             context.unsupported(camera.entity.span, &what, "`perspective` is used instead")?;
-            return Ok(CameraSettings {
-                world_from_camera: place(&camera.transforms),
-                ..CameraSettings::default_at(camera.entity.span)
-            });
+            let place = (&*context, &camera.transforms);
+            return Ok(CameraSettings::default_at(camera.entity.span, place));
         }
     };
     let exposure_time = exposure_time(&mut reader)?;
     reader.finish()?;
     Ok(CameraSettings {
         exposure_time,
-        world_from_camera: place(&camera.transforms),
         view,
-        span: camera.entity.span,
+        ..CameraSettings::default_at(camera.entity.span, (context, &camera.transforms))
     })
-}
-
-fn place(camera_from_world: &Transforms) -> Affine3A {
-    camera_from_world.start.inverse().as_affine3a()
 }
 
 fn exposure_time(reader: &mut Reader<'_>) -> Result<f32, Fault> {
@@ -148,10 +146,13 @@ impl Screen {
 }
 
 impl CameraSettings {
-    fn default_at(span: Span) -> Self {
+    /// The format's default camera at a place.
+    fn default_at(span: Span, (context, camera_from_world): (&Context<'_>, &Transforms)) -> Self {
+        let world_from_camera = camera_from_world.inverse();
         Self {
             exposure_time: 1.0,
-            world_from_camera: Affine3A::IDENTITY,
+            eye: world_from_camera.start.translation,
+            render_from_camera: context.place(&world_from_camera).as_affine3a(),
             view: View::Perspective {
                 fov: 90.0,
                 screen: Screen {
@@ -177,7 +178,7 @@ impl CameraSettings {
         own_resolution: [u32; 2],
     ) -> Result<Camera, Fault> {
         let [film, own] = [resolution, own_resolution].map(|[w, h]| Vec2::new(w as f32, h as f32));
-        let place = &self.world_from_camera;
+        let place = &self.render_from_camera;
         let camera = match &self.view {
             View::Perspective { fov, screen } => {
                 let half = libm::tan(f64::from(*fov).to_radians() / 2.0) as f32;
@@ -210,7 +211,7 @@ impl CameraSettings {
     /// A lens in front of a film with these corners on the plane z = 1.
     fn lens(&self, screen: &Screen, resolution: Vec2, corners: [Vec2; 2]) -> Option<Camera> {
         let settings = PerspectiveSettings {
-            world_from_camera: self.world_from_camera,
+            world_from_camera: self.render_from_camera,
             resolution,
             screen: corners,
             lens_radius: screen.lens_radius,

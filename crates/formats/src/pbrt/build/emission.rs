@@ -5,6 +5,7 @@ use super::context::Context;
 use super::group;
 use super::light;
 use super::reader::Reader;
+use super::shape::Geometry;
 use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use bidir::light::EmissionSides;
@@ -22,7 +23,8 @@ pub(super) struct AreaEmission {
     /// What it is multiplied by over the surface's parameters, with the mean luminance.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// What each primitive emits in all. None: the radiance is as given.
+    /// What each primitive emits in all, in the space that is rendered in. None: the radiance is as
+    /// given.
     power: Option<f32>,
     /// The name of its group of lights.
     pub(super) group: Option<String>,
@@ -48,6 +50,8 @@ impl AreaEmission {
         let group = group::read(&mut reader)?;
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
+        // Power per area is the same in every unit, as is power per square of a distance.
+        let power = power.map(|power| context.layout.space.intensity(power));
         Ok(Self {
             radiance,
             pattern,
@@ -85,6 +89,14 @@ impl AreaEmission {
             pattern: self.pattern.as_ref().map(|(pattern, _)| pattern.clone()),
             sides: self.sides,
         })
+    }
+
+    /// How many [`parts`](Self::parts) a shape has.
+    pub(super) fn part_count(&self, geometry: &Geometry) -> u64 {
+        match (self.power, geometry) {
+            (Some(_), Geometry::Mesh(_)) => geometry.primitives(),
+            _ => 1,
+        }
     }
 
     /// The parts of a shape that emit each for itself.

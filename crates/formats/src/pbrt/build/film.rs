@@ -6,14 +6,12 @@ use super::filter;
 use super::reader::Reader;
 use super::sensor;
 use crate::error::ErrorKind;
+use crate::limits::LARGEST_SIDE;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterList, ParameterType, Values};
 use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::film::{Aov, FilmSettings, PixelRect};
-
-/// The most pixels along one side.
-pub(crate) const LARGEST_SIDE: u32 = 1 << 16;
 
 /// The part of a film that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]

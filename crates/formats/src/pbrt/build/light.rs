@@ -82,13 +82,33 @@ fn point(
     reader: &mut Reader<'_>,
     world_from_light: &DAffine3,
 ) -> Result<PointLight, Fault> {
-    let intensity = emission(context, reader, "I", ("power", 4.0 * PI))?;
+    let intensity = intensity(context, reader, 4.0 * PI)?;
     let from = vector(reader.point3("from", [0.0; 3])?);
-    let position = shape::check_place(reader.span(), world_from_light.transform_point3(from))?;
+    let position = world_from_light.transform_point3(from);
     Ok(PointLight {
-        position,
+        position: position_of(context, reader.span(), position)?,
         intensity,
     })
+}
+
+/// The intensity of a light in a point, whose power goes to a solid angle.
+fn intensity(
+    context: &mut Context<'_>,
+    reader: &mut Reader<'_>,
+    solid_angle: f32,
+) -> Result<Rgb, Fault> {
+    let intensity = emission(context, reader, "I", ("power", solid_angle))?;
+    Ok(intensity.map(|channel| context.layout.space.intensity(channel)))
+}
+
+/// A point of the world in the space that is rendered in.
+fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, Fault> {
+    shape::check_point(span, world)?;
+    Ok(context
+        .layout
+        .from_world()
+        .transform_point3(world)
+        .as_vec3())
 }
 
 /// Where the light stands and the world direction from there to where it points.
@@ -118,9 +138,9 @@ fn spot(
     let [full, end] = [full, end].map(f32::to_radians);
     let (cos_full, cos_end) = (libm::cosf(full), libm::cosf(end));
     let solid_angle = 2.0 * PI * ((1.0 - cos_full) + (cos_full - cos_end) / 2.0);
-    let intensity = emission(context, reader, "I", ("power", solid_angle))?;
+    let intensity = intensity(context, reader, solid_angle)?;
     let (position, axis) = aim(reader, world_from_light)?;
-    let position = shape::check_place(reader.span(), position)?;
+    let position = position_of(context, reader.span(), position)?;
     Ok(SpotLight::new(position, axis, intensity, [full, end]))
 }
 

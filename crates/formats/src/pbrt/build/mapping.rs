@@ -10,7 +10,7 @@ use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::texture::{Mapping, TextureSpace};
 use glam::DAffine3;
 
-/// The map from the world to the space of a texture.
+/// The map from the space that is rendered in to that of a texture.
 fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result<DAffine3, Fault> {
     let span = texture.entity.span;
     if texture.transforms.is_animated() {
@@ -19,7 +19,7 @@ fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result
             "textures cannot move: the first position of the texture is used",
         );
     }
-    let inverse = texture.transforms.start.inverse();
+    let inverse = context.place(&texture.transforms).inverse();
     if inverse.is_finite() && inverse.as_affine3a().is_finite() {
         return Ok(inverse);
     }

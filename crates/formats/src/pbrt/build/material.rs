@@ -16,7 +16,8 @@ use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
     Material, Mixture, NormalMap, Relief, Roughness, RoughnessMapping,
 };
-use bidir::texture::{ColorTexture, FloatTexture};
+use bidir::scene::RenderSpace;
+use bidir::texture::{ColorTexture, FloatTexture, Scale};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -166,7 +167,18 @@ fn relief(
             bitangent: Bitangent::RightHanded,
         })));
     }
-    Ok(height.map(Relief::Displacement))
+    Ok(height.map(|height| Relief::Displacement(in_space(height, &context.layout.space))))
+}
+
+/// Heights of the world in the unit of a space.
+fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
+    if *space == RenderSpace::WORLD {
+        return height;
+    }
+    FloatTexture::Scale(Arc::new(Scale {
+        texture: height,
+        factor: FloatTexture::Constant((1.0 / space.unit) as f32),
+    }))
 }
 
 fn diffuse(

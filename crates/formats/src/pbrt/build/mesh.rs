@@ -5,6 +5,7 @@ use super::patches::PatchMesh;
 use super::reader::Reader;
 use super::subdivision::ControlMesh;
 use crate::error::ErrorKind;
+use crate::limits::MOST_LEVELS;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::ply::PlyMesh;
 use crate::source::Fault;
@@ -110,11 +111,6 @@ pub(super) fn patch_mesh(
     Ok(mesh.triangulated())
 }
 
-/// The most steps: each makes four triangles of one.
-const MOST_LEVELS: u32 = 10;
-/// The most triangles of a mesh after all steps.
-const MOST_TRIANGLES: u64 = 1 << 22;
-
 pub(super) fn subdivided_mesh(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -123,14 +119,11 @@ pub(super) fn subdivided_mesh(
     let triangles = faces::<3>(context, reader, positions.len())?;
     let levels = reader.integer("levels", 3, 0)?;
     reader.ignore(context, ParameterType::String, "scheme");
-    let count = (triangles.len() as u64) << (2 * levels.min(MOST_LEVELS));
-    if levels > MOST_LEVELS || count > MOST_TRIANGLES {
-        let message = format!(
-            "{levels} steps of subdivision are too many: at most {MOST_LEVELS}, and {MOST_TRIANGLES} \
-             triangles in the end"
-        );
+    if levels > MOST_LEVELS {
+        let message = format!("{levels} steps of subdivision are too many: at most {MOST_LEVELS}");
         return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
     }
+    let count = (triangles.len() as u64) << (2 * levels);
     context.check_size(count, reader.span())?;
     let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
     let control = ControlMesh {

@@ -9,6 +9,7 @@
 mod camera;
 mod color;
 mod context;
+mod count;
 mod emission;
 mod film;
 mod filter;
@@ -30,25 +31,28 @@ mod texture;
 mod texture_class;
 
 pub use film::Crop;
-pub(crate) use film::LARGEST_SIDE;
 pub use settings::SceneSettings;
 
 use super::digest::SceneDigest;
-use super::scene::{SceneDescription, ShapeDescription, Warning};
+use super::scene::{Entity, SceneDescription, ShapeDescription, Warning};
 use crate::error::{ErrorKind, Result};
 use crate::files::Files;
+use crate::lamp::{self, Lamp, Placed};
+use crate::limits;
+use crate::precision::{self, VertexErrors};
 use crate::source::{Fault, SourceMap, Span};
-use bidir::math::Vec3;
+use crate::space::{Layout, Survey};
 use bidir::scene::{MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
 use context::Context;
 use emission::AreaEmission;
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use material::Materials;
 use shape::Geometry;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use texture::Textures;
 
 /// What a caller may want otherwise than the file.
@@ -64,17 +68,15 @@ pub struct LoadOptions {
     /// The instruction set of the intersector. None: the fastest that the machine has.
     pub isa: Option<bidir::scene::Isa>,
     /// The most primitives of the scene, and the most vertices of its meshes, those of shared objects
-    /// counted once. None: 2²⁸.
+    /// counted once. None: 2²², and 16 more for every byte of the scene's files; at most 2²⁸.
     pub most_primitives: Option<u64>,
 }
 
 impl LoadOptions {
-    /// The most primitives of a scene where the caller says nothing of it.
-    const MOST_PRIMITIVES: u64 = 1 << 28;
-
-    /// The most primitives, and the most vertices.
-    pub(crate) fn most_primitives(&self) -> u64 {
-        self.most_primitives.unwrap_or(Self::MOST_PRIMITIVES)
+    /// The most primitives, and the most vertices, of a scene whose files take `stored` bytes.
+    pub(crate) fn most_primitives(&self, stored: u64) -> u64 {
+        let allowed = limits::PRIMITIVES.of(stored).min(limits::MOST_PRIMITIVES);
+        self.most_primitives.unwrap_or(allowed)
     }
 }
 
@@ -91,10 +93,15 @@ pub struct Loaded {
     pub refused: Vec<String>,
     /// What the scene is made of.
     pub summary: Summary,
+    /// The first lamps that no ray can hit.
+    pub lamps: Vec<Lamp>,
     /// Which scene it is.
     pub digest: SceneDigest,
     /// Every file that was read, by each name that it was asked for; the scene file is the first.
     pub files: Vec<PathBuf>,
+    /// Every file on the disk that the scene reads or names: no output may replace it
+    /// ([`outputs`](crate::outputs)).
+    pub inputs: Vec<PathBuf>,
 }
 
 /// What a scene is made of.
@@ -128,34 +135,79 @@ pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Lo
 
 /// Builds a described scene: reads its meshes and images, and checks everything.
 pub fn build(description: &SceneDescription, options: &LoadOptions) -> Result<Loaded> {
-    let mut context = Context::new(description, options);
-    let built = Assembly::build(&mut context);
-    let (scene, settings, summary) = built.map_err(|fault| description.sources.error(fault))?;
+    let (mut context, assembly) =
+        gather(description, options).map_err(|fault| description.sources.error(fault))?;
+    let built = assembly.finish(&mut context);
+    let Built {
+        scene,
+        settings,
+        lamps,
+        summary,
+    } = built.map_err(|fault| description.sources.error(fault))?;
+    let place = |span: Span| {
+        let (line, column) = description.sources.line_and_column(span);
+        let file = description.sources.name(span.file).display();
+        format!("{file}:{line}:{column}")
+    };
     let text = |warning: &Warning| {
-        let (line, column) = description.sources.line_and_column(warning.span);
-        let file = description.sources.name(warning.span.file).display();
         let times = match warning.count {
             1 => String::new(),
             count => format!(" ({count} times)"),
         };
-        format!("{file}:{line}:{column}: {}{times}", warning.message)
+        format!("{}: {}{times}", place(warning.span), warning.message)
     };
     let is_refusal = |warning: &&Warning| context.refused.contains(&warning.message);
     let refused = context.warnings.iter().filter(is_refusal);
     Ok(Loaded {
+        lamps: lamp::unhittable(&scene, &lamps, |span| place(*span)),
         scene,
         settings,
         warnings: context.warnings.iter().map(text).collect(),
         refused: refused.map(text).collect(),
         summary,
         digest: context.digest.finish(),
+        inputs: description.inputs(&context.files),
         files: context.files,
     })
+}
+
+/// A scene that was built, with where its lamps are in the text.
+struct Built {
+    scene: Scene,
+    settings: SceneSettings,
+    lamps: Vec<Placed<Span>>,
+    summary: Summary,
+}
+
+/// Places everything: in the world, or where its layout puts it.
+fn gather<'a>(
+    description: &'a SceneDescription,
+    options: &'a LoadOptions,
+) -> Result<(Context<'a>, Assembly<'a>), Fault> {
+    let mut context = Context::new(description, options, Layout::default());
+    let mut assembly = Assembly::gather(&mut context)?;
+    assembly.check_vertices()?;
+    let layout = Layout::of(&assembly.survey, &assembly.objects);
+    if layout != Layout::default() {
+        drop(assembly);
+        context = Context::new(description, options, layout);
+        assembly = Assembly::gather(&mut context)?;
+    }
+    if let Some((span, message)) = assembly.vertex_errors.warning() {
+        context.warn(span, message);
+    }
+    Ok((context, assembly))
 }
 
 /// A scene in the making.
 struct Assembly<'a> {
     builder: SceneBuilder,
+    settings: SceneSettings,
+    world_from_render: DAffine3,
+    /// Of everything but shared objects, and of each of these.
+    survey: Survey,
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<Span>,
     textures: Textures<'a>,
     /// By index; None where there is no surface.
     materials: Vec<Option<MaterialId>>,
@@ -163,67 +215,91 @@ struct Assembly<'a> {
     shape_spans: Vec<Span>,
     /// The same of instances.
     instance_spans: Vec<Span>,
-    /// Of a box around the object that is being read.
-    object_corners: [Vec3; 2],
+    /// The same of lamps, with the numbers of their lights.
+    lamps: Vec<Placed<Span>>,
     /// Of all meshes as they are kept.
     vertices: u64,
+    /// What shapes emitted last.
+    last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
     summary: Summary,
 }
-
-/// The corners of no box.
-const NOWHERE: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
 
 /// Where a shape goes.
 #[derive(Clone, Copy)]
 enum Destination<'a> {
-    /// Into the world, once for each of these places of its space.
+    /// Into the space that is rendered in, once for each of these places of its space.
     World(&'a [DAffine3]),
-    /// Into an object that is shared.
-    Object(ObjectId),
+    /// Into an object that is shared, with this origin.
+    Object(ObjectId, DVec3),
 }
 
 impl<'a> Assembly<'a> {
-    fn build(context: &mut Context<'a>) -> Result<(Scene, SceneSettings, Summary), Fault> {
+    /// Reads everything and puts it in its place.
+    fn gather(context: &mut Context<'a>) -> Result<Self, Fault> {
         let description = context.description;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
         let settings = settings::build(context, &film)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
         let mut builder = SceneBuilder::new(film.settings);
-        builder.camera(camera);
+        builder.space(context.layout.space).camera(camera);
         builder.texture_filtering(settings::texture_filtering(description)?);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
         }
         let mut assembly = Self {
             builder,
+            settings,
+            world_from_render: context.layout.from_world().inverse(),
+            survey: Survey::new(Some(lens.eye)),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
             textures: Textures::new(description),
             materials: Vec::new(),
             shape_spans: Vec::new(),
             instance_spans: Vec::new(),
-            object_corners: NOWHERE,
+            lamps: Vec::new(),
             vertices: 0,
+            last_emission: None,
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
+        let from_world = [context.layout.from_world()];
         for shape in &description.shapes {
-            let world = Destination::World(&[DAffine3::IDENTITY]);
-            assembly.add_shape(context, shape, world)?;
+            assembly.add_shape(context, shape, Destination::World(&from_world))?;
         }
         assembly.add_objects(context)?;
         assembly.textures.check_unused(context)?;
         assembly.add_lights(context)?;
-        let Self {
-            builder,
-            shape_spans,
-            instance_spans,
-            summary,
-            ..
-        } = assembly;
-        let scene = builder
-            .build()
-            .map_err(|error| scene_fault(&error, &shape_spans, &instance_spans))?;
-        Ok((scene, settings, summary))
+        Ok(assembly)
+    }
+
+    /// Builds the scene.
+    fn finish(self, context: &mut Context<'a>) -> Result<Built, Fault> {
+        let scene = self.builder.build();
+        let scene =
+            scene.map_err(|error| scene_fault(&error, &self.shape_spans, &self.instance_spans))?;
+        for (span, lights) in &self.lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(*span, message);
+            }
+        }
+        Ok(Built {
+            scene,
+            settings: self.settings,
+            lamps: self.lamps,
+            summary: self.summary,
+        })
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    fn check_vertices(&self) -> Result<(), Fault> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((span, message)) => {
+                Err(Fault::new(ErrorKind::Limit, span, message).with_hint(precision::HINT))
+            }
+        }
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
@@ -262,27 +338,32 @@ impl<'a> Assembly<'a> {
             return Ok(());
         };
         let emission = match &shape.area_light {
-            Some(entity) => Some(AreaEmission::read(context, entity)?),
+            Some(entity) => Some(self.emission(context, entity)?),
             None => None,
         };
         let copies = match destination {
             Destination::World(places) => places.len() as u64,
-            Destination::Object(_) => 1,
+            Destination::Object(..) => 1,
         };
-        self.summary.primitives += geometry.primitives() * copies;
-        self.vertices += geometry.vertices() * copies;
-        context.check_size(self.summary.primitives.max(self.vertices), span)?;
+        let emission = emission.as_deref();
+        self.count(context, (&geometry, emission), copies, span)?;
+        let error = geometry.vertex_error(&shape.transforms.start.matrix3);
+        self.vertex_errors.add(&span, error);
         match destination {
             Destination::World(places) => {
                 for place in places {
-                    let placed = place_shape(&geometry, shape, place)?;
+                    let placed = place_shape(&geometry, shape, place, &mut self.survey)?;
                     let first = self.shape_spans.len();
-                    self.add_placed(placed, material, emission.as_ref(), span)?;
+                    self.add_placed(placed, material, emission, span)?;
                     self.cover(first, alpha.as_ref());
                 }
             }
-            Destination::Object(object) => {
-                let shape = place_shape(&geometry, shape, &DAffine3::IDENTITY)?;
+            Destination::Object(object, origin) => {
+                let Some(survey) = self.objects.last_mut() else {
+                    return Ok(());
+                };
+                let place = DAffine3::from_translation(-origin);
+                let shape = place_shape(&geometry, shape, &place, survey)?;
                 self.add_to_object(object, shape, material, alpha.as_ref(), span);
             }
         }
@@ -297,11 +378,6 @@ impl<'a> Assembly<'a> {
         alpha: Option<&FloatTexture>,
         span: Span,
     ) {
-        let [low, high] = shape::bounds(&shape);
-        self.object_corners = [
-            self.object_corners[0].min(low),
-            self.object_corners[1].max(high),
-        ];
         self.summary.shapes += 1;
         let number = self.builder.object_shape(object, shape, material);
         self.shape_spans.push(span);
@@ -330,6 +406,7 @@ impl<'a> Assembly<'a> {
         };
         let group = emission.and_then(|emission| emission.group.as_deref());
         self.builder.light_group(group);
+        let first_light = self.builder.next_light();
         for part in parts {
             let emitted = emission.map(|emission| emission.of(&part)).transpose()?;
             self.summary.shapes += 1;
@@ -337,14 +414,20 @@ impl<'a> Assembly<'a> {
             self.builder.shape(part, material, emitted);
             self.shape_spans.push(span);
         }
+        if emission.is_some() {
+            let lights = first_light..self.builder.next_light();
+            self.lamps.push((span, lights));
+        }
         Ok(())
     }
 
     fn add_lights(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
         for light in &context.description.lights {
+            let span = light.entity.span;
             if let Some((light, group)) = light::build(context, light)? {
                 self.summary.other_lights += 1;
-                self.builder.light_group(group.as_deref()).light(light);
+                let number = self.builder.light_group(group.as_deref()).light(light);
+                self.lamps.push((span, number..number + 1));
             }
         }
         Ok(())
@@ -387,9 +470,10 @@ fn place_shape(
     geometry: &Geometry,
     shape: &ShapeDescription,
     place: &DAffine3,
+    survey: &mut Survey,
 ) -> Result<Shape, Fault> {
-    let world_from_local = *place * shape.transforms.start;
-    let placed = geometry.place(&world_from_local, shape::orientation(shape));
+    let placed_from_local = *place * shape.transforms.start;
+    let placed = geometry.place(&placed_from_local, shape::orientation(shape), survey);
     shape::check_extent(shape.entity.span, &placed)?;
     Ok(placed)
 }

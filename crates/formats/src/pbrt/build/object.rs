@@ -5,9 +5,10 @@
 //! emit are lights of the world, one for each place; the format leaves undefined what they do.
 
 use super::context::Context;
-use super::{Assembly, Destination, NOWHERE, shape};
+use super::{Assembly, Destination, shape};
 use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
 use crate::source::Fault;
+use crate::space::Survey;
 use glam::DAffine3;
 
 impl Assembly<'_> {
@@ -36,11 +37,14 @@ impl Assembly<'_> {
         object: &ObjectDescription,
         instances: &[&InstanceDescription],
     ) -> Result<(), Fault> {
-        let places = instances.iter().map(|instance| instance.transforms.start);
-        let places: Vec<DAffine3> = places.collect();
+        let places = instances.iter();
+        let places: Vec<DAffine3> = places.map(|it| context.place(&it.transforms)).collect();
         let everywhere = Destination::World(&places);
-        self.object_corners = NOWHERE;
         let shared = (instances.len() > 1).then(|| self.builder.object());
+        let origin = context.layout.object_origin(self.objects.len());
+        if shared.is_some() {
+            self.objects.push(Survey::new(None));
+        }
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
                 let message = "a shape of an object emits: it becomes a light at every instance";
@@ -49,18 +53,24 @@ impl Assembly<'_> {
             match shared {
                 _ if instances.is_empty() => {}
                 Some(object) if shape.area_light.is_none() => {
-                    self.add_shape(context, shape, Destination::Object(object))?;
+                    self.add_shape(context, shape, Destination::Object(object, origin))?;
                 }
                 _ => self.add_shape(context, shape, everywhere)?,
             }
         }
-        if let Some(object) = shared {
-            for instance in instances {
-                let place = instance.transforms.start;
-                shape::check_instance(instance.span, &place, self.object_corners)?;
-                self.builder.instance(object, place);
-                self.instance_spans.push(instance.span);
+        let Some(object) = shared else {
+            return Ok(());
+        };
+        let corners = self.objects.last().and_then(Survey::corners);
+        for (instance, place) in instances.iter().zip(&places) {
+            let place = *place * DAffine3::from_translation(origin);
+            if let Some(corners) = corners {
+                self.survey.include_box(corners, &place);
+                let world_from_object = self.world_from_render * place;
+                shape::check_instance(instance.span, &world_from_object, corners)?;
             }
+            self.builder.instance(object, place);
+            self.instance_spans.push(instance.span);
         }
         Ok(())
     }

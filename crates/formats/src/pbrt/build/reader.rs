@@ -5,6 +5,7 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
+use crate::text::number;
 
 /// Reads the parameters of one entity. What is asked for is what is known: anything else that the
 /// file gives is an error when the reader [finishes](Self::finish).
@@ -69,7 +70,7 @@ impl<'a> Reader<'a> {
         if (min..=max).contains(&value) {
             return Ok(value);
         }
-        Err(self.out_of_range(ParameterType::Float, name, &format!("{value}"), [min, max]))
+        Err(self.out_of_range(ParameterType::Float, name, &number(value), [min, max]))
     }
 
     fn out_of_range(
@@ -81,10 +82,11 @@ impl<'a> Reader<'a> {
     ) -> Fault {
         let parameter = self.entity.parameters.get(kind, name);
         let span = parameter.map_or(self.entity.span, |parameter| parameter.value_span);
-        let range = if max >= f32::MAX {
-            format!("at least {min}")
-        } else {
-            format!("between {min} and {max}")
+        let range = match [min, max] {
+            // Numbers between are too near 0 to count with.
+            [f32::MIN_POSITIVE, f32::MAX] => "above 0".to_owned(),
+            [min, f32::MAX] => format!("at least {}", number(min)),
+            [min, max] => format!("between {} and {}", number(min), number(max)),
         };
         Fault::scene(span, format!("`{name}` is {value}, but must be {range}"))
     }

@@ -5,6 +5,7 @@ use super::reader::Reader;
 use crate::pbrt::known::SENSORS;
 use crate::source::Fault;
 use crate::spectra;
+use crate::text::number;
 use bidir::film::Sensor;
 
 /// Temperatures of a white that the film is balanced for. Unit: K.
@@ -60,9 +61,9 @@ fn limit(
         return Ok(None);
     }
     let message = format!(
-        "samples are clamped at {most}: the image is darker than the scene, by an amount that \
-         depends on \
-         the integrator"
+        "samples are clamped at {}: the image is darker than the scene, by an amount that depends on \
+         the integrator",
+        number(most)
     );
     context.warn(reader.span(), message);
     Ok(Some(most / exposure))

@@ -1,6 +1,5 @@
 //! Shapes.
 
-use super::NOWHERE;
 use super::context::Context;
 use super::mesh;
 use super::reader::Reader;
@@ -8,11 +7,13 @@ use super::texture::Textures;
 use crate::error::ErrorKind;
 use crate::pbrt::scene::ShapeDescription;
 use crate::ply::PlyMesh;
+use crate::precision::VertexError;
 use crate::source::{Fault, Span};
+use crate::space::{Survey, box_corners};
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// A shape in its own space, ready to be placed any number of times.
 pub(super) enum Geometry {
@@ -89,10 +90,37 @@ impl Geometry {
         }
     }
 
-    /// The shape at a place. Mirroring does not change which side is the front: of a quadric it is
+    /// Two corners of a box around a quadric. None: it is a mesh.
+    fn quadric_box(&self) -> Option<[DVec3; 2]> {
+        let (radius, low, high) = match self {
+            Self::Mesh(_) => return None,
+            Self::Sphere(radius, z) | Self::Cylinder(radius, z) => (*radius, z.x, z.y),
+            Self::Disk(height, [_, radius], _) => (*radius, *height, *height),
+        };
+        let corner = |sign: f32, z: f32| Vec3::new(sign * radius, sign * radius, z).as_dvec3();
+        Some([corner(-1.0, low.min(high)), corner(1.0, low.max(high))])
+    }
+
+    /// The error of the vertices as the file holds them, of a shape that `linear` takes to the world.
+    pub(super) fn vertex_error(&self, linear: &DMat3) -> Option<VertexError> {
+        match self {
+            Self::Mesh(mesh) => VertexError::of(&mesh.positions, linear),
+            Self::Sphere(..) | Self::Disk(..) | Self::Cylinder(..) => None,
+        }
+    }
+
+    /// The shape at a place, of which `survey` takes note. Mirroring does not change which side is the front: of a quadric it is
     /// the outside, of a mesh what its corners say in its own space.
-    pub(super) fn place(&self, world_from_local: &DAffine3, orientation: Orientation) -> Shape {
+    pub(super) fn place(
+        &self,
+        world_from_local: &DAffine3,
+        orientation: Orientation,
+        survey: &mut Survey,
+    ) -> Shape {
         let affine = world_from_local.as_affine3a();
+        if let Some(corners) = self.quadric_box() {
+            survey.include_box(corners, world_from_local);
+        }
         match self {
             Self::Sphere(radius, limits) => {
                 Shape::Sphere(Sphere::partial(affine, *radius, *limits, orientation))
@@ -103,7 +131,9 @@ impl Geometry {
             Self::Disk(height, radii, phi_max) => {
                 Shape::Disk(Disk::new(affine, *height, *radii, *phi_max, orientation))
             }
-            Self::Mesh(mesh) => Shape::Mesh(place_mesh(mesh, world_from_local, orientation)),
+            Self::Mesh(mesh) => {
+                Shape::Mesh(place_mesh(mesh, world_from_local, orientation, survey))
+            }
         }
     }
 }
@@ -119,40 +149,24 @@ fn too_far(span: Span) -> Fault {
     )
 }
 
-/// A point of the world as the renderer computes with it.
-pub(super) fn check_place(span: Span, point: DVec3) -> Result<Vec3, Fault> {
-    let place = point.as_vec3();
-    if place.abs().max_element() <= FARTHEST {
-        Ok(place)
+/// Refuses points of the world that are too far away.
+pub(super) fn check_point(span: Span, point: DVec3) -> Result<(), Fault> {
+    // Also true for NaN.
+    if point.abs().max_element() <= f64::from(FARTHEST) && point.is_finite() {
+        Ok(())
     } else {
         Err(too_far(span))
     }
-}
-
-/// Two corners of a box around a shape.
-pub(super) fn bounds(shape: &Shape) -> [Vec3; 2] {
-    let boxes = (0..shape.primitive_count()).map(|i| shape.primitive(i).bounds());
-    boxes.fold(NOWHERE, |[low, high], next| {
-        [low.min(next.min), high.max(next.max)]
-    })
 }
 
 /// Refuses instances that reach too far, of an object between two corners.
 pub(super) fn check_instance(
     span: Span,
     world_from_object: &DAffine3,
-    corners: [Vec3; 2],
+    corners: [DVec3; 2],
 ) -> Result<(), Fault> {
-    // Without shapes there is no box.
-    if !corners[0].cmple(corners[1]).all() {
-        return Ok(());
-    }
-    for i in 0..8_usize {
-        let pick = |axis: usize| f64::from(corners[i >> axis & 1][axis]);
-        let corner = DVec3::new(pick(0), pick(1), pick(2));
-        check_place(span, world_from_object.transform_point3(corner))?;
-    }
-    Ok(())
+    let mut corners = box_corners(corners);
+    corners.try_for_each(|corner| check_point(span, world_from_object.transform_point3(corner)))
 }
 
 /// Refuses shapes that reach too far to compute with.
@@ -168,12 +182,21 @@ pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
     if fits { Ok(()) } else { Err(too_far(span)) }
 }
 
-fn place_mesh(mesh: &PlyMesh, world_from_local: &DAffine3, orientation: Orientation) -> Mesh {
+fn place_mesh(
+    mesh: &PlyMesh,
+    world_from_local: &DAffine3,
+    orientation: Orientation,
+    survey: &mut Survey,
+) -> Mesh {
     let normal_matrix = world_from_local.matrix3.inverse().transpose();
     let sign = f64::from(orientation.sign());
     let is_mirrored = world_from_local.matrix3.determinant() < 0.0;
     let vector = |v: &[f32; 3]| DVec3::from(v.map(f64::from));
-    let point = |p| world_from_local.transform_point3(vector(p)).as_vec3();
+    let point = |p| {
+        let placed = world_from_local.transform_point3(vector(p));
+        survey.include(placed);
+        placed.as_vec3()
+    };
     // Normalised, so that interpolation weighs the corners as the file means it.
     let normal = |n| ((normal_matrix * vector(n)).normalize_or_zero() * sign).as_vec3();
     Mesh {

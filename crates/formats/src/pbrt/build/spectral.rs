@@ -6,6 +6,7 @@ use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
 use crate::source::{Fault, nearest};
 use crate::spectra::{self, Beyond, Spectrum};
+use crate::text::number;
 use bidir::spectrum::Rgb;
 
 /// Temperatures beyond which light is all outside of the visible. Unit: K.
@@ -31,9 +32,10 @@ pub(super) fn read<'a>(
         _ => 0.0,
     };
     if !(TEMPERATURES[0]..=TEMPERATURES[1]).contains(&kelvin) {
-        let [low, high] = TEMPERATURES;
+        let [low, high] = TEMPERATURES.map(number);
+        let found = number(kelvin);
         let message =
-            format!("a temperature must be between {low} and {high:e} kelvin, found {kelvin}");
+            format!("a temperature must be between {low} and {high} kelvin, found {found}");
         return Err(Fault::scene(parameter.value_span, message));
     }
     Ok(Some((Spectrum::blackbody(f64::from(kelvin)), parameter)))

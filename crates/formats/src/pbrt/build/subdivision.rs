@@ -44,62 +44,86 @@ impl fmt::Display for SubdivisionError {
     }
 }
 
+/// No half-edge.
+const NONE: u32 = u32::MAX;
+
+/// The directed edges of a mesh: number 3i + k begins at corner k of triangle i.
+///
+/// A step of subdivision gives each of them two, and the neighbours of these follow by arithmetic
+/// \[Vanhoey22\].
+struct HalfEdges {
+    /// The one in the other direction, or [`NONE`] on a border.
+    twins: Vec<u32>,
+    /// One that begins at each vertex, on a border the first one counterclockwise, or [`NONE`].
+    outgoing: Vec<u32>,
+}
+
 /// The neighbours of a vertex, counterclockwise; on a border the first and last lie along it.
+#[derive(Default)]
 struct Ring {
     neighbours: Vec<u32>,
     is_border: bool,
 }
 
-/// Who is next to whom.
-struct Topology {
-    /// The third corner of the triangle that goes along a directed edge.
-    opposite: HashMap<[u32; 2], u32>,
-    rings: Vec<Ring>,
-}
-
 impl ControlMesh {
     /// The mesh after `levels` steps, moved to the limit surface, with its normals.
     pub(super) fn subdivide(mut self, levels: u32) -> Result<(Self, Vec<DVec3>), SubdivisionError> {
-        let mut topology = Topology::new(&self)?;
+        let mut edges = HalfEdges::of(&self)?;
         for _ in 0..levels {
-            self = self.refined(&topology);
-            topology = Topology::new(&self)?;
+            self = self.refined(&edges);
+            edges = edges.refined(&self);
         }
-        let vertices = 0..self.points.len();
-        let normals = vertices.clone().map(|v| self.normal(v, &topology.rings[v]));
-        let normals = normals.collect();
-        let limit = vertices.map(|v| {
-            let ring = &topology.rings[v];
+        let normals = self.at_vertices(&edges, |v, ring| self.normal(v, ring));
+        let points = self.at_vertices(&edges, |v, ring| {
             let n = ring.neighbours.len() as f64;
             self.mixed(v, ring, 1.0 / (n + 3.0 / (8.0 * smoothing(n))), 1.0 / 6.0)
         });
-        let points = limit.collect();
         Ok((Self { points, ..self }, normals))
     }
 
     /// One step.
-    fn refined(&self, topology: &Topology) -> Self {
-        let vertices = 0..self.points.len();
-        let mut points: Vec<_> = vertices
-            .map(|v| {
-                let ring = &topology.rings[v];
-                let n = ring.neighbours.len() as f64;
-                self.mixed(v, ring, smoothing(n), 0.125)
-            })
-            .collect();
-        let mut middles = HashMap::new();
-        let mut middle = |a: u32, b: u32| {
-            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-                points.push(self.middle([a, b], topology));
-                points.len() as u32 - 1
-            })
-        };
-        let mut triangles = Vec::with_capacity(4 * self.triangles.len());
-        for &[a, b, c] in &self.triangles {
-            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
-            triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    fn refined(&self, edges: &HalfEdges) -> Self {
+        let mut points = self.at_vertices(edges, |v, ring| {
+            self.mixed(v, ring, smoothing(ring.neighbours.len() as f64), 0.125)
+        });
+        let mut middles = vec![NONE; edges.twins.len()];
+        for (h, &twin) in edges.twins.iter().enumerate() {
+            middles[h] = match middles.get(twin as usize) {
+                Some(&known) if known != NONE => known,
+                _ => {
+                    points.push(self.middle(h as u32, twin));
+                    points.len() as u32 - 1
+                }
+            };
         }
-        Self { points, triangles }
+        let split = |(&[a, b, c], &[ab, bc, ca]): (&[u32; 3], &[u32; 3])| {
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        let (middles, _) = middles.as_chunks::<3>();
+        let triangles = self.triangles.iter().zip(middles).flat_map(split);
+        Self {
+            points,
+            triangles: triangles.collect(),
+        }
+    }
+
+    /// A value for each vertex by its ring.
+    fn at_vertices(
+        &self,
+        edges: &HalfEdges,
+        mut value: impl FnMut(usize, &Ring) -> DVec3,
+    ) -> Vec<DVec3> {
+        let mut ring = Ring::default();
+        let of_vertex = |v| {
+            ring.walk(self, edges, v);
+            value(v, &ring)
+        };
+        (0..self.points.len()).map(of_vertex).collect()
+    }
+
+    /// The vertex that a half-edge begins at.
+    fn origin(&self, h: u32) -> u32 {
+        self.triangles[h as usize / 3][h as usize % 3]
     }
 
     /// A vertex and its ring: `weight` for each neighbour, or `border` for the two along a border.
@@ -116,13 +140,14 @@ impl ControlMesh {
         }
     }
 
-    fn middle(&self, [a, b]: [u32; 2], topology: &Topology) -> DVec3 {
-        let point = |v: u32| self.points[v as usize];
-        let across = [[a, b], [b, a]].map(|edge| topology.opposite.get(&edge));
-        match across {
-            [Some(&c), Some(&d)] => (point(a) + point(b)) * 0.375 + (point(c) + point(d)) * 0.125,
-            _ => (point(a) + point(b)) * 0.5,
+    /// The middle of an edge, of which `h` and `twin` are the two directions.
+    fn middle(&self, h: u32, twin: u32) -> DVec3 {
+        let point = |h: u32| self.points[self.origin(h) as usize];
+        let ends = point(h) + point(next(h));
+        if twin == NONE {
+            return ends * 0.5;
         }
+        ends * 0.375 + (point(previous(h)) + point(previous(twin))) * 0.125
     }
 
     /// The normal of the limit surface: that of two tangents by the ring \[Biermann00\].
@@ -166,65 +191,107 @@ fn smoothing(n: f64) -> f64 {
     if n < 3.5 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) }
 }
 
-impl Topology {
-    fn new(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
-        let mut opposite = HashMap::with_capacity(3 * mesh.triangles.len());
-        let mut triangles_of = vec![0; mesh.points.len()];
-        // A neighbour of each vertex; on a border the first one.
-        let mut start = vec![None; mesh.points.len()];
+/// The half-edge that follows in its triangle.
+fn next(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The half-edge before in its triangle.
+fn previous(h: u32) -> u32 {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
+impl HalfEdges {
+    /// Those of a mesh. Errors: it is no oriented surface.
+    fn of(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
+        let mut known = HashMap::with_capacity(3 * mesh.triangles.len());
         for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
             if a == b || b == c || c == a {
                 return Err(SubdivisionError::Degenerate(i));
             }
-            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
-                if opposite.insert([a, b], c).is_some() {
-                    return Err(SubdivisionError::Edge([a, b]));
-                }
-                triangles_of[a as usize] += 1;
-                start[a as usize] = Some(b);
-            }
-        }
-        for &[a, b, c] in &mesh.triangles {
-            for [a, b] in [[a, b], [b, c], [c, a]] {
-                if !opposite.contains_key(&[b, a]) {
-                    start[a as usize] = Some(b);
+            for (k, edge) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+                if known.insert(edge, (3 * i + k) as u32).is_some() {
+                    return Err(SubdivisionError::Edge(edge));
                 }
             }
         }
-        let ring = |v: usize| ring(v as u32, start[v], triangles_of[v], &opposite);
-        let rings = (0..mesh.points.len()).map(ring).collect::<Result<_, _>>()?;
-        Ok(Self { opposite, rings })
+        let corners = mesh
+            .triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[b, a], [c, b], [a, c]]);
+        let twins = corners.map(|reversed| known.get(&reversed).copied().unwrap_or(NONE));
+        let edges = Self::with_twins(mesh, twins.collect());
+        edges.check_fans(mesh)?;
+        Ok(edges)
+    }
+
+    fn with_twins(mesh: &ControlMesh, twins: Vec<u32>) -> Self {
+        let mut outgoing = vec![NONE; mesh.points.len()];
+        for h in 0..twins.len() as u32 {
+            outgoing[mesh.origin(h) as usize] = h;
+        }
+        for (h, _) in (0..).zip(&twins).filter(|&(_, &twin)| twin == NONE) {
+            outgoing[mesh.origin(h) as usize] = h;
+        }
+        Self { twins, outgoing }
+    }
+
+    /// Refuses vertices around which the triangles are not one fan.
+    fn check_fans(&self, mesh: &ControlMesh) -> Result<(), SubdivisionError> {
+        let mut triangles = vec![0; mesh.points.len()];
+        for &corner in mesh.triangles.iter().flatten() {
+            triangles[corner as usize] += 1;
+        }
+        let mut ring = Ring::default();
+        for (v, &expected) in triangles.iter().enumerate() {
+            ring.walk(mesh, self, v);
+            if ring.neighbours.len() - usize::from(ring.is_border) != expected {
+                return Err(SubdivisionError::Vertex(v as u32));
+            }
+        }
+        Ok(())
+    }
+
+    /// Those of `mesh`, which is one step further.
+    ///
+    /// Triangle i becomes 4i + k at its corner k, and 4i + 3 in the middle.
+    fn refined(&self, mesh: &ControlMesh) -> Self {
+        let first_half = |h: u32| 3 * (4 * (h / 3) + h % 3) + h % 3;
+        let second_half = |h: u32| 3 * (4 * (h / 3) + (h + 1) % 3) + h % 3;
+        let mut twins = vec![NONE; 4 * self.twins.len()];
+        for (h, &twin) in (0..).zip(&self.twins) {
+            if twin != NONE {
+                twins[first_half(h) as usize] = second_half(twin);
+                twins[second_half(h) as usize] = first_half(twin);
+            }
+            let (triangle, k) = (4 * (h / 3), h % 3);
+            let inner = 3 * (triangle + 3) + k;
+            let outer = 3 * (triangle + (k + 1) % 3) + (k + 2) % 3;
+            twins[inner as usize] = outer;
+            twins[outer as usize] = inner;
+        }
+        Self::with_twins(mesh, twins)
     }
 }
 
-/// The ring of vertex `v`, beginning at `start`, which is a corner of this many triangles.
-fn ring(
-    v: u32,
-    start: Option<u32>,
-    triangles: usize,
-    opposite: &HashMap<[u32; 2], u32>,
-) -> Result<Ring, SubdivisionError> {
-    let mut neighbours: Vec<u32> = start.into_iter().collect();
-    let mut is_border = start.is_some();
-    for _ in 0..triangles {
-        let last = neighbours.last().copied().unwrap_or(v);
-        match opposite.get(&[v, last]) {
-            Some(&next) if Some(next) == start => is_border = false,
-            Some(&next) => neighbours.push(next),
-            None => return Err(SubdivisionError::Vertex(v)),
+impl Ring {
+    /// Becomes the ring of vertex `v`.
+    fn walk(&mut self, mesh: &ControlMesh, edges: &HalfEdges, v: usize) {
+        self.neighbours.clear();
+        self.is_border = false;
+        let start = edges.outgoing[v];
+        let mut h = start;
+        while h != NONE {
+            self.neighbours.push(mesh.origin(next(h)));
+            let incoming = previous(h);
+            h = edges.twins[incoming as usize];
+            if h == NONE {
+                self.is_border = true;
+                self.neighbours.push(mesh.origin(incoming));
+            } else if h == start {
+                break;
+            }
         }
-        if !is_border {
-            break;
-        }
-    }
-    let found = neighbours.len() - usize::from(is_border && start.is_some());
-    if found == triangles {
-        Ok(Ring {
-            neighbours,
-            is_border,
-        })
-    } else {
-        Err(SubdivisionError::Vertex(v))
     }
 }
 

@@ -9,6 +9,7 @@ use super::imagemap::{Files, ImageSettings};
 use super::reader::Reader;
 use super::texture_class::Source;
 use crate::error::ErrorKind;
+use crate::limits::{DEEPEST_TEXTURE, MOST_TEXTURES};
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::scene::{SceneDescription, TextureDescription, TextureKind};
@@ -17,11 +18,6 @@ use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// Textures within textures: how deep.
-const DEEPEST: usize = 32;
-/// The most textures that a texture is made of: what it takes to look up one value.
-const LARGEST: usize = 1024;
 
 /// Built textures, by number; colours are checked for each purpose.
 type Built<T> = BTreeMap<(usize, Purpose), Texture<T>>;
@@ -272,13 +268,13 @@ impl<'a> Textures<'a> {
     ) -> Result<Texture<T>, Fault> {
         let span = self.described[number].entity.span;
         let too = |message| Err(Fault::new(ErrorKind::Limit, span, message));
-        if self.depth > DEEPEST {
-            return too(format!("textures are nested deeper than {DEEPEST}"));
+        if self.depth > DEEPEST_TEXTURE {
+            return too(format!("textures are nested deeper than {DEEPEST_TEXTURE}"));
         }
         let source = Source::read(self, context, number, purpose)?;
         let built = source.build(self, context, purpose)?;
-        if built.size() > LARGEST {
-            return too(format!("the texture is made of more than {LARGEST}"));
+        if built.size() > MOST_TEXTURES {
+            return too(format!("the texture is made of more than {MOST_TEXTURES}"));
         }
         Ok(built)
     }

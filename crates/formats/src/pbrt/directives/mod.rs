@@ -11,13 +11,9 @@ use super::scene::{CameraDescription, ColorSpace, FilmDescription, OptionDescrip
 use super::state::Opener;
 use super::transform::{Active, Transforms};
 use crate::error::ErrorKind;
+use crate::limits::{MOST_DEFAULT_VALUES, MOST_DEFAULTS};
 use crate::source::{Fault, Span};
 use std::sync::Arc;
-
-/// The most parameters that `Attribute` directives give one kind of thing, and the most values of
-/// these: all are copied where another is added.
-const MOST_DEFAULTS: usize = 64;
-const MOST_DEFAULT_VALUES: usize = 4096;
 
 type Done = Result<(), Fault>;
 
@@ -189,16 +185,18 @@ fn attribute(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
             return Err(Fault::scene(span, message).with_nearest(&target, targets));
         }
     };
-    let numbers = |list: &[Parameter]| list.iter().map(|p| p.values.len()).sum::<usize>();
-    if list.len() + parameters.len() > MOST_DEFAULTS
-        || numbers(list) + numbers(&parameters) > MOST_DEFAULT_VALUES
-    {
+    let all = Arc::make_mut(list);
+    // Of two with the same type and name the last counts.
+    let same = |a: &Parameter, b: &Parameter| a.kind == b.kind && a.name == b.name;
+    all.retain(|old| !parameters.iter().any(|new| same(old, new)));
+    all.extend(parameters);
+    let values = all.iter().map(|parameter| parameter.values.len());
+    if all.len() > MOST_DEFAULTS || values.sum::<usize>() > MOST_DEFAULT_VALUES {
         let message = format!(
             "the attributes of `{target}` are more than {MOST_DEFAULTS} parameters or \
              {MOST_DEFAULT_VALUES} values"
         );
         return Err(Fault::new(ErrorKind::Limit, span, message));
     }
-    Arc::make_mut(list).extend(parameters);
     Ok(())
 }

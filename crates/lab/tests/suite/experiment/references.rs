@@ -46,6 +46,30 @@ fn write_changed(
 }
 
 #[test]
+fn what_a_description_names_and_is_not_there_is_told_at_its_place() {
+    let place = Workplace::new();
+    let text = format!("{DESCRIPTION}{BUDGET}");
+    let error = place.refusal(&text.replace("\"room", "\"rom"), "out");
+    let expected = "test.toml:5:8: cannot open `";
+    assert!(error.to_string().contains(expected), "{error}");
+    assert!(
+        error.to_string().ends_with("rom.pbrt`: no such file"),
+        "{error}"
+    );
+    let error = place.refusal(&text.replace(MADE, "reference = \"none.exr\""), "out");
+    let expected = "test.toml:6:13: cannot open `";
+    assert!(error.to_string().contains(expected), "{error}");
+    // What a scene names has its place there.
+    fs::write(
+        place.path("room.pbrt"),
+        format!("{SCENE}Include \"none.pbrt\""),
+    )
+    .unwrap();
+    let error = place.refusal(&text, "out").to_string();
+    assert!(error.contains("room.pbrt:18:9: "), "{error}");
+}
+
+#[test]
 fn an_image_is_its_pixels() {
     let (place, results, given) = place();
     let text = given("image.exr");

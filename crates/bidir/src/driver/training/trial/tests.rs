@@ -1,5 +1,6 @@
 use super::*;
 use crate::camera::{Camera, Perspective, PerspectiveSettings};
+use crate::driver::training::extent::Extent;
 use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
 use crate::light::EmissionSides;
 use crate::material::Material;
@@ -153,6 +154,8 @@ fn two_of_three_samples_share_their_camera_ray() {
         ..Settings::default()
     };
     let probe = Probe {
+        is_late: &|| false,
+        extent: Extent::new(1.0, 1e9),
         scene: &lamp(PixelRect {
             min: [0; 2],
             max: [16; 2],
@@ -162,7 +165,7 @@ fn two_of_three_samples_share_their_camera_ray() {
         first: 77,
         pixels: 4096,
     };
-    let trial = Trial::run(&probe, 0.0);
+    let trial = Trial::run(&probe, 0.0).expect("nothing is late");
     let sum = |of_block: &dyn Fn(usize) -> f64| (0..BLOCKS).map(of_block).sum::<f64>();
     // What is seen depends on the ray alone, and differs from ray to ray along the lamp's edge.
     assert!(sum(&|i| trial.mean(i, &square())) > 1.0);

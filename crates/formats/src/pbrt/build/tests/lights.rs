@@ -1,4 +1,4 @@
-use super::{STRICT, refusal, world};
+use super::{STRICT, load_text, refusal, world};
 use crate::error::ErrorKind;
 use crate::pbrt::load;
 use bidir::light::{Light, LightPoint};
@@ -111,6 +111,22 @@ fn lights_are_grouped_by_name() {
 }
 
 #[test]
+fn any_number_of_lights_names_its_group_in_one_block() {
+    let light = |i: usize| {
+        format!("Attribute \"light\" \"string lightgroup\" \"g{i}\" LightSource \"point\"\n")
+    };
+    let lights: String = (0..100).map(light).collect();
+    let scene = world(&lights);
+    assert_eq!(scene.group_names().len(), 100);
+    assert_eq!((scene.light_group(0), scene.light_group(99)), (0, 99));
+    // Parameters with names of their own are limited.
+    let odd: String = (0..65).map(|i| format!("\"float p{i}\" 1 ")).collect();
+    let text = format!("WorldBegin\nAttribute \"light\" {odd}");
+    let error = crate::pbrt::parse_text("s.pbrt", &text).unwrap_err();
+    assert_eq!((error.line(), error.kind()), (Some(2), ErrorKind::Limit));
+}
+
+#[test]
 fn lights_without_a_group_are_grouped_by_kind() {
     let scene = world("LightSource \"distant\" LightSource \"point\" LightSource \"infinite\"");
     assert_eq!(scene.group_names(), ["environment", "default"]);
@@ -127,4 +143,72 @@ fn a_group_that_cannot_name_a_layer_is_refused() {
             "{name}"
         );
     }
+}
+
+#[test]
+fn lamps_that_give_no_light_are_warned_of() {
+    let emits = "AttributeBegin AreaLightSource \"diffuse\"";
+    let flat =
+        "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1 2 2 2] \"integer indices\" [0 1 2]";
+    for (lamp, warning) in [
+        (
+            "LightSource \"point\" \"rgb I\" [0 0 0]",
+            "point light has no power",
+        ),
+        (
+            "LightSource \"spot\" \"float scale\" 0",
+            "spot light has no power",
+        ),
+        (
+            "LightSource \"distant\" \"rgb L\" [0 0 0]",
+            "distant light has no power",
+        ),
+        (
+            "LightSource \"infinite\" \"float scale\" 0",
+            "infinite light has no power",
+        ),
+        (
+            &format!("{emits} \"rgb L\" [0 0 0]\nShape \"sphere\" AttributeEnd"),
+            "area light has no power",
+        ),
+        (
+            &format!("{emits}\n{flat} AttributeEnd"),
+            "area light has no area",
+        ),
+        (
+            &format!("{emits} \"float power\" 5\n{flat} AttributeEnd"),
+            "area light has no area",
+        ),
+    ] {
+        let light = "LightSource \"point\"";
+        let loaded = load_text(&format!("WorldBegin {light}\n{lamp}"), &STRICT);
+        let line = 1 + lamp.lines().count();
+        let column = if lamp.starts_with("Light") { 13 } else { 7 };
+        let expected =
+            format!("s.pbrt:{line}:{column}: the {warning}: it adds nothing to the image");
+        assert_eq!(loaded.warnings, [expected], "{lamp}");
+    }
+    // Of one that is given by its power only some triangles have no area.
+    let partly = flat
+        .replace("2 2 2]", "2 2 2 0 1 0]")
+        .replace("[0 1 2]", "[0 1 2 0 1 3]");
+    let partly = format!("WorldBegin {emits} \"float power\" 5 {partly} AttributeEnd");
+    assert!(load_text(&partly, &STRICT).warnings.is_empty());
+}
+
+#[test]
+fn lamps_that_no_ray_hits_have_a_place() {
+    let lights = "AttributeBegin AreaLightSource \"diffuse\" Shape \"sphere\" AttributeEnd\n\
+                  LightSource \"infinite\"\n  LightSource \"spot\"\nLightSource \"distant\"\n\
+                  LightSource \"point\"\nLightSource \"point\"";
+    let loaded = load_text(&format!("WorldBegin {lights}"), &STRICT);
+    let lamps: Vec<_> = loaded
+        .lamps
+        .iter()
+        .map(|lamp| (&*lamp.place, lamp.light))
+        .collect();
+    assert_eq!(
+        lamps,
+        [("s.pbrt:3:15", 2), ("s.pbrt:4:13", 3), ("s.pbrt:5:13", 4)]
+    );
 }

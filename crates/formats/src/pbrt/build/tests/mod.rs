@@ -4,6 +4,7 @@ mod digest;
 mod film;
 mod lights;
 mod materials;
+mod places;
 mod refusals;
 mod relief;
 mod robust;
@@ -55,4 +56,18 @@ fn check(text: &str, expected: &str) {
 #[track_caller]
 fn check_world(text: &str, expected: &str) {
     check(&format!("WorldBegin\n{text}"), expected);
+}
+
+#[test]
+fn inputs_are_all_files_that_are_named_but_the_film_s() {
+    let text = "Film \"rgb\" \"string filename\" \"film.exr\" WorldBegin \
+        MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\" \
+        Attribute \"light\" \"string filename\" \"lamp.png\" \
+        AreaLightSource \"diffuse\" Shape \"sphere\"";
+    let loaded = load_text(text, &LENIENT);
+    assert_eq!(
+        loaded.inputs,
+        ["lamp.png", "smoke.nvdb"].map(Into::into) as [std::path::PathBuf; 2]
+    );
+    assert!(loaded.files.is_empty());
 }

@@ -19,6 +19,10 @@ fn wrong_parameters_are_told() {
         "s.pbrt:1:34: `fov` is 190, but must be between 0.001 and 179.999",
     );
     check(
+        "WorldBegin Shape \"sphere\" \"float radius\" -1e-30",
+        "s.pbrt:1:42: `radius` is -1e-30, but must be above 0",
+    );
+    check(
         "Camera \"perspective\" \"float shutterclose\" 0 WorldBegin",
         "s.pbrt:1:8: the shutter closes before it opens",
     );

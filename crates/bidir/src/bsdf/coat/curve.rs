@@ -1,0 +1,108 @@
+//! Smooth functions of a cosine, as polynomials.
+
+use super::mean;
+
+/// The least √μ that a curve is fitted for; it is constant below.
+const LEAST: f32 = 0.1;
+
+/// A function of the cosine μ: a polynomial in √μ, as a series of Chebyshev's polynomials
+/// Σ_k c_k T_k(s) of s, which goes from -1 to 1 as √μ goes from [`LEAST`] to 1.
+///
+/// A vertex keeps several, so coefficients have 16 bits each, in steps of `unit`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::bsdf) struct Curve<const N: usize> {
+    unit: f32,
+    steps: [i16; N],
+}
+
+impl<const N: usize> Curve<N> {
+    pub(super) const NONE: Self = Self {
+        unit: 0.0,
+        steps: [0; N],
+    };
+    pub(super) const ONE: Self = {
+        let mut steps = [0; N];
+        steps[0] = 1;
+        Self { unit: 1.0, steps }
+    };
+
+    /// The cosines that a curve goes through: at the zeros of T_N.
+    pub(super) fn cosines() -> [f32; N] {
+        std::array::from_fn(|i| {
+            let x = LEAST + (1.0 - LEAST) * (libm::cosf(angle::<N>(i)) + 1.0) / 2.0;
+            x * x
+        })
+    }
+
+    /// The curve with `values` at [`cosines`](Self::cosines).
+    pub(super) fn through(values: [f32; N]) -> Self {
+        Self::of_series(std::array::from_fn(|k| {
+            let term = |(i, value)| value * libm::cosf(k as f32 * angle::<N>(i));
+            let sum: f32 = values.into_iter().enumerate().map(term).sum();
+            sum * if k == 0 { 1.0 } else { 2.0 } / N as f32
+        }))
+    }
+
+    fn of_series(series: [f32; N]) -> Self {
+        let largest = series.iter().fold(0.0f32, |most, c| most.max(c.abs()));
+        if largest == 0.0 {
+            return Self::NONE;
+        }
+        let unit = largest / f32::from(i16::MAX);
+        Self {
+            unit,
+            steps: series.map(|c| (c / unit).round() as i16),
+        }
+    }
+
+    fn series(self) -> [f32; N] {
+        self.steps.map(|steps| f32::from(steps) * self.unit)
+    }
+
+    /// The value at `cos`, by Clenshaw's recurrence.
+    #[inline]
+    pub(in crate::bsdf) fn at(self, cos: f32) -> f32 {
+        let s = (cos.sqrt().clamp(LEAST, 1.0) - LEAST) * (2.0 / (1.0 - LEAST)) - 1.0;
+        let (mut last, mut before) = (0.0, 0.0);
+        for &steps in self.steps[1..].iter().rev() {
+            (last, before) = (f32::from(steps) + 2.0 * s * last - before, last);
+        }
+        (f32::from(self.steps[0]) + s * last - before) * self.unit
+    }
+
+    /// ∫ 2μ value dμ over `[0, 1]`.
+    pub(in crate::bsdf) fn mean(self) -> f32 {
+        mean(64, |cos| self.at(cos))
+    }
+
+    /// This `scale` times.
+    #[must_use]
+    pub(super) fn scaled(self, scale: f32) -> Self {
+        Self {
+            unit: self.unit * scale,
+            ..self
+        }
+    }
+
+    /// This and the part `share` of another, value by value.
+    #[must_use]
+    pub(super) fn plus(self, other: Self, share: f32) -> Self {
+        let (a, b) = (self.series(), other.series());
+        Self::of_series(std::array::from_fn(|i| a[i] + share * b[i]))
+    }
+
+    /// Between two curves.
+    #[must_use]
+    pub(super) fn lerp(self, other: Self, t: f32) -> Self {
+        if t > 0.0 {
+            self.scaled(1.0 - t).plus(other, t)
+        } else {
+            self
+        }
+    }
+}
+
+/// θ of the zero number `i` of T_N, which is cosθ.
+fn angle<const N: usize>(i: usize) -> f32 {
+    std::f32::consts::PI * (i as f32 + 0.5) / N as f32
+}

@@ -1,0 +1,47 @@
+//! The order in which a pass takes its samples.
+
+use super::super::spread;
+use crate::film::PixelRect;
+use crate::integrator::Integrator;
+
+/// Which pixel the sample at each place of a pass belongs to.
+///
+/// Samples at places that follow each other share light subpaths where an integrator shares any, and so
+/// part of their error. Errors that neighbours have in common are seen as streaks: they spread over the
+/// film.
+pub(super) enum Order {
+    /// Row order of the crop.
+    Rows,
+    /// For each place the position of its pixel in row order.
+    Spread(Vec<u32>),
+}
+
+impl Order {
+    /// The order of a crop for an integrator. Crops of 2³² pixels or more keep the order of rows.
+    pub(super) fn new(crop: PixelRect, integrator: &dyn Integrator) -> Self {
+        let fits = u32::try_from(crop.area()).is_ok();
+        if fits && integrator.shared_light().is_some() {
+            Self::Spread(spread::permutation(&crop))
+        } else {
+            Self::Rows
+        }
+    }
+
+    /// The position in row order of the pixel at `place`.
+    #[inline]
+    pub(super) fn pixel(&self, place: u64) -> usize {
+        match self {
+            Self::Rows => place as usize,
+            Self::Spread(pixels) => pixels[place as usize] as usize,
+        }
+    }
+
+    /// The place of the pixel at a position in row order. It is searched for.
+    pub(super) fn place(&self, pixel: usize) -> u64 {
+        let place = match self {
+            Self::Rows => Some(pixel),
+            Self::Spread(pixels) => pixels.iter().position(|&other| other as usize == pixel),
+        };
+        place.unwrap_or(pixel) as u64
+    }
+}

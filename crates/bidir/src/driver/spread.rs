@@ -1,0 +1,96 @@
+//! Pixels in an order in which those that follow each other lie far apart on the film.
+
+use crate::film::PixelRect;
+use rayon::prelude::*;
+
+/// Steps of the additive recurrence by 1/ρ and 1/ρ², ρ being the root of ρ³ = ρ + 1 \[Roberts18\], which
+/// spreads evenly over both sides whatever their lengths are, as steps through the pixels row by row do
+/// not. Unit: 2⁻⁶⁴ of a side.
+const STEPS: [u64; 2] = [0xc13f_a9a9_02a6_328f, 0x91e1_0da5_c79e_7b1d];
+
+/// The pixel of point number `i` of the sequence, without end: a film is filled evenly at any time.
+pub(super) fn point(crop: &PixelRect, i: u64) -> [u32; 2] {
+    let along = |step: u64, size: u32| {
+        let part = i.wrapping_mul(step) >> 32;
+        ((part * u64::from(size)) >> 32) as u32
+    };
+    let [x, y] = [
+        along(STEPS[0], crop.width()),
+        along(STEPS[1], crop.height()),
+    ];
+    [crop.min[0] + x, crop.min[1] + y]
+}
+
+/// All pixels of a crop once, by their positions in row order, sorted by the fraction of x/ρ + y/ρ².
+///
+/// A run of one part in n of them lies on the film like the points of a lattice. Pixels no more than
+/// two columns and two rows apart differ by 0.06 or more, so that none of them are in the same run
+/// where n is 17 or more. The crop has at most 2³² - 1 pixels.
+pub(super) fn permutation(crop: &PixelRect) -> Vec<u32> {
+    let fraction = |i: u32| {
+        let [x, y] = crop.pixel(i as usize).map(u64::from);
+        let [x, y] = [x - u64::from(crop.min[0]), y - u64::from(crop.min[1])];
+        x.wrapping_mul(STEPS[0])
+            .wrapping_add(y.wrapping_mul(STEPS[1]))
+    };
+    let mut pixels: Vec<u32> = (0..crop.area() as u32).collect();
+    pixels.par_sort_by_cached_key(|&i| fraction(i));
+    pixels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::group_size;
+
+    const SIZES: [[u32; 2]; 10] = [
+        [2560, 1440],
+        [920, 680],
+        [720, 480],
+        [1920, 1080],
+        [320, 240],
+        [4096, 64],
+        [64, 48],
+        [37, 31],
+        [1024, 5],
+        [3, 2000],
+    ];
+
+    /// The group of each pixel, in row order.
+    fn groups(crop: &PixelRect) -> Vec<u64> {
+        let (pixels, size) = (permutation(crop), group_size(crop.area()));
+        let mut groups = vec![u64::MAX; pixels.len()];
+        for (position, &pixel) in pixels.iter().enumerate() {
+            groups[pixel as usize] = position as u64 / size;
+        }
+        groups
+    }
+
+    #[test]
+    fn neighbours_and_pixels_two_apart_share_no_light_subpath() {
+        let crops = SIZES.map(|max| ([0; 2], max));
+        let moved = SIZES.map(|[w, h]| ([101, 7], [101 + w, 7 + h]));
+        for (min, max) in crops.into_iter().chain(moved) {
+            let crop = PixelRect { min, max };
+            let groups = groups(&crop);
+            assert!(!groups.contains(&u64::MAX), "every pixel has a place");
+            let group = |x: i64, y: i64| crop.index(x, y).map(|i| groups[i]);
+            for i in 0..groups.len() {
+                let [x, y] = crop.pixel(i).map(i64::from);
+                for (dx, dy) in [-2, -1, 0, 1, 2]
+                    .into_iter()
+                    .flat_map(|dx| [(dx, 1), (dx, 2)])
+                {
+                    assert_ne!(
+                        group(x + dx, y + dy),
+                        Some(groups[i]),
+                        "{crop:?} {x} {y} {dx} {dy}"
+                    );
+                }
+                for dx in [1, 2] {
+                    assert_ne!(group(x + dx, y), Some(groups[i]), "{crop:?} {x} {y} {dx}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Light that is seen directly: hits of the light, and its light image.
+
+use crate::common::{builder, emission, metal, sphere};
+use bidir::driver::{Resources, Settings, render};
+use bidir::film::Picture;
+use bidir::integrator::IntegratorKind;
+use bidir::light::{InfiniteLight, Light};
+use bidir::math::Vec3;
+use bidir::path::MisHeuristic;
+use bidir::scene::Scene;
+
+const BIDIRECTIONAL: [IntegratorKind; 2] = [IntegratorKind::Bdpt, IntegratorKind::Lvc];
+
+/// One pass, whose light subpaths are few.
+fn picture(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic, seed: u64) -> Picture {
+    let mut settings = Settings {
+        seed,
+        ..Settings::default()
+    };
+    settings.set_integrator(integrator);
+    settings.path.mis = mis;
+    let film = render(scene, &settings, 1, &Resources::default()).expect("a small film");
+    film.develop()
+}
+
+/// The light image of a sky varies with the number of its light subpaths, hits of it do not.
+#[test]
+fn a_sky_has_no_noise() {
+    let mut builder = builder(8, 0.0);
+    builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
+    let scene = builder.build().expect("the scene is valid");
+    for integrator in BIDIRECTIONAL {
+        for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
+            for radiance in picture(&scene, integrator, mis, 0).pixels.as_flattened() {
+                assert!(
+                    (radiance - 2.0).abs() < 1e-3,
+                    "{integrator:?} {mis:?}: {radiance}"
+                );
+            }
+        }
+    }
+}
+
+/// Hits find a lamp that fills less than a millionth of a pixel in as few samples.
+#[test]
+fn a_small_lamp_is_in_every_picture() {
+    let mut builder = builder(8, 0.0);
+    let black = builder.material(metal(0.5));
+    let lamp = sphere(Vec3::ZERO, 1e-4);
+    builder.shape(lamp, black, emission([1e6; 3]));
+    let scene = builder.build().expect("the scene is valid");
+    for integrator in BIDIRECTIONAL {
+        for seed in 0..4 {
+            let picture = picture(&scene, integrator, MisHeuristic::Balance, seed);
+            let sum: f32 = picture.pixels.as_flattened().iter().sum();
+            assert!(sum > 0.0, "{integrator:?}, seed {seed}");
+        }
+    }
+}

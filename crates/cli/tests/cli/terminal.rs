@@ -1,0 +1,161 @@
+use crate::common::{Ran, SCENE, Workplace};
+use formats::is_obeyed;
+use std::fs;
+
+/// A title, a cleared screen, another direction of writing, and a line that is not ours.
+const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\r\x7f\nerror: forged";
+
+/// Runs a command in the scene's folder, and fails where a terminal would obey what it prints; `@` in a
+/// word is the hostile name.
+#[track_caller]
+fn run(place: &Workplace, words: &str) -> Ran {
+    let words = words.split_whitespace();
+    let words = words.map(|word| word.replace('@', HOSTILE));
+    let ran = Ran::of(place.command("").args(words));
+    for text in [&ran.stdout, &ran.stderr] {
+        let is_raw = |c: char| is_obeyed(c) && c != '\n';
+        assert!(!text.contains(is_raw), "{text:?}");
+        assert!(!text.lines().any(|line| line == "error: forged"), "{text}");
+    }
+    ran
+}
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    fs::rename(
+        place.path("room.pbrt"),
+        place.path(&format!("{HOSTILE}.pbrt")),
+    )
+    .unwrap();
+    place
+}
+
+#[test]
+fn names_of_files_are_shown_and_not_obeyed() {
+    let place = place();
+    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}\nerror: forged";
+    run(
+        &place,
+        "render @.pbrt -o @.exr --size 8x6 --checkpoint @.film",
+    )
+    .expect(0)
+    .says(&format!("wrote {shown}.exr and {shown}.film"));
+    run(&place, "film info @.film")
+        .expect(0)
+        .prints(&format!("scene     {shown}.pbrt"));
+    let json = run(&place, "film info @.film --json").expect(0).json();
+    assert_eq!(json["scene"], format!("{HOSTILE}.pbrt"));
+    run(&place, "film verify @.film").expect(0).says(shown);
+    run(&place, "merge @.film @.film -o all.film")
+        .expect(5)
+        .says(shown);
+    run(&place, "render @.pbrt --checkpoint @.film")
+        .expect(2)
+        .says(shown);
+    run(&place, "render @.pbr")
+        .expect(4)
+        .says("hint: did you mean");
+    run(&place, "render @.pbrt -o @.jpg --progress openjd")
+        .expect(4)
+        .prints("openjd_fail: cannot write");
+    let info = run(&place, "info @.pbrt").expect(0);
+    assert!(
+        info.stdout
+            .contains(&format!("scene        {shown}.pbrt\nfilm "))
+    );
+    let json = run(&place, "info @.pbrt --json").expect(0).json();
+    assert_eq!(json["scene"], format!("{HOSTILE}.pbrt"));
+    run(&place, "render @.pbrt -o b.exr --size 4x3").expect(0);
+    run(&place, "compare @.exr b.exr").expect(4).says(shown);
+    run(&place, "farm shell @.pbrt --parts 2")
+        .expect(2)
+        .says("control characters, which a job file cannot show");
+}
+
+#[test]
+fn texts_of_scenes_are_shown_and_not_obeyed() {
+    let place = Workplace::new();
+    let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}";
+    let broken = SCENE.replace("\"sphere\"", &format!("\"sphere{HOSTILE}\""));
+    place.write("broken.pbrt", &broken);
+    let ran = run(&place, "render broken.pbrt").expect(3);
+    // In the message and in the lines of the file.
+    assert_eq!(ran.stderr.matches(shown).count(), 2, "{}", ran.stderr);
+    let named = SCENE.replace("room.exr", &format!("{HOSTILE}.exr"));
+    place.write("named.pbrt", &named.replace('\n', "\r\n"));
+    run(&place, "info named.pbrt").expect(0).prints(shown);
+    let odd = format!("Option \"string @\" \"{HOSTILE}\"\n{SCENE}").replace('@', HOSTILE);
+    place.write("odd.pbrt", &odd);
+    run(&place, "info odd.pbrt");
+    let gltf = format!(r#"{{"asset": {{"version": "2.0"}}, "{HOSTILE}": 1}}"#);
+    place.write("a.gltf", &gltf);
+    run(&place, "info a.gltf").expect(3);
+}
+
+#[test]
+fn names_of_an_experiment_are_shown_and_not_obeyed() {
+    let place = Workplace::new();
+    let name = r#"name = "a\u001b[2J\u009b\u202e\nerror: forged""#;
+    let description = format!(
+        "title = \"t\"\nseeds = 1\nsize = \"8x6\"\n[[scene]]\nfile = \"room.pbrt\"\n{name}\n\
+         reference-spp = 16\n[[method]]\n{name}\n[[budget]]\nsamples = 2\n"
+    );
+    place.write("test.toml", &description);
+    let ran = run(&place, "experiment test.toml -o out").expect(0);
+    let shown = r"a\u{1b}[2J\u{9b}\u{202e}\nerror: forged";
+    assert!(ran.stdout.contains(shown) && ran.stderr.contains(shown));
+    place.write(
+        "wrong.toml",
+        &description.replace("file = \"room", "file = \"\\u001b"),
+    );
+    run(&place, "experiment wrong.toml -o out")
+        .expect(3)
+        .says(r"\u{1b}.pbrt");
+}
+
+#[test]
+fn arguments_and_variables_are_shown_and_not_obeyed() {
+    let place = Workplace::new();
+    for words in [
+        "render room.pbrt --@",
+        "render room.pbrt @",
+        "render room.pbrt --integrator @",
+        "render room.pbrt --spp @",
+        "reference room.pbrt --estimator @",
+        "completions @",
+        "man @",
+        "@",
+        "@.pbrt",
+    ] {
+        let ran = run(&place, words).expect(2);
+        assert!(ran.stderr.contains(r"\u{1b}]0;t"), "{}", ran.stderr);
+        // With colours, which are our own.
+        let words = words
+            .split_whitespace()
+            .map(|word| word.replace('@', HOSTILE));
+        let mut command = place.command("");
+        let ran = Ran::of(command.args(words).env("CLICOLOR_FORCE", "1"));
+        assert!(!ran.stderr.contains("\x1b]") && !ran.stderr.contains('\u{9b}'));
+    }
+    let mut command = place.command("render room.pbrt");
+    let ran = Ran::of(command.env("BIDIR_SPP", HOSTILE)).expect(2);
+    ran.says(r"BIDIR_SPP: `\u{1b}]0;t");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn text_that_cannot_be_printed_is_an_error() {
+    let place = Workplace::new();
+    for words in [
+        "--help",
+        "render -h",
+        "--version",
+        "man",
+        "completions bash",
+        "info room.pbrt",
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let ran = Ran::of(place.command(words).stdout(full)).expect(4);
+        ran.says("error: cannot write to stdout: ");
+    }
+}

@@ -1,0 +1,177 @@
+//! Where a scene without a camera is seen from, and the light around one that has none.
+//!
+//! The front of an asset is +z. A scene that is flat, or whose surfaces are edge-on from there, is
+//! seen from elsewhere. The light comes from behind the viewer, so that a surface of any colour
+//! differs from the background.
+
+use super::view::looking;
+use bidir::light::InfiniteLight;
+use bidir::math::{Affine3A, Mat3, Vec2, Vec3, square_to_direction};
+use bidir::texture::Image;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// A direction that a scene may be seen from.
+pub(super) struct Viewpoint {
+    /// From the scene, not normalised.
+    to_viewer: DVec3,
+    up: DVec3,
+    /// Where the camera is.
+    pub(super) name: &'static str,
+}
+
+/// The first from which enough is seen is taken; from one of the last three every plane is seen.
+const VIEWPOINTS: [Viewpoint; 4] = [
+    Viewpoint {
+        to_viewer: DVec3::Z,
+        up: DVec3::Y,
+        name: "in front of it",
+    },
+    Viewpoint {
+        to_viewer: DVec3::new(0.5, 0.7, 1.0),
+        up: DVec3::Y,
+        name: "above its front",
+    },
+    Viewpoint {
+        to_viewer: DVec3::Y,
+        up: DVec3::NEG_Z,
+        name: "above it",
+    },
+    Viewpoint {
+        to_viewer: DVec3::X,
+        up: DVec3::Y,
+        name: "beside it",
+    },
+];
+
+/// The part of the largest projected area that has to be seen.
+const ENOUGH: f64 = 0.25;
+/// The part of the view that is left free.
+const MARGIN: f64 = 1.05;
+
+/// What a scene looks like from afar.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    /// The corners of a box around all triangles.
+    corners: [Vec3; 2],
+    /// Σ a n nᵀ over triangles of area a and normal n.
+    areas: DMat3,
+}
+
+impl Extent {
+    /// Of nothing.
+    pub(super) const NONE: Self = Self {
+        corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
+        areas: DMat3::ZERO,
+    };
+
+    /// Of triangles.
+    pub(super) fn of(points: &[Vec3], triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
+        let widened = |[low, high]: [Vec3; 2], &p: &Vec3| [low.min(p), high.max(p)];
+        let mut extent = Self::NONE;
+        extent.corners = points.iter().fold(extent.corners, widened);
+        for [a, b, c] in triangles {
+            let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+            let area = (b - a).cross(c - a) / 2.0;
+            extent.add_areas(outer(area) * area.length_recip().min(f64::MAX));
+        }
+        extent
+    }
+
+    /// Adds what `map` makes of another extent: exact for the box, and where `map` keeps shapes for the
+    /// areas.
+    pub(super) fn include(&mut self, other: &Self, map: &DAffine3) {
+        for i in 0..8_usize {
+            let corner = Vec3::from_array(std::array::from_fn(|axis| {
+                other.corners[i >> axis & 1][axis]
+            }));
+            let corner = map.transform_point3(corner.as_dvec3()).as_vec3();
+            if corner.is_finite() {
+                self.corners = [self.corners[0].min(corner), self.corners[1].max(corner)];
+            }
+        }
+        let m = map.matrix3;
+        let determinant = m.determinant();
+        let cofactors = m.inverse().transpose() * determinant;
+        let scale = determinant.abs().powf(-2.0 / 3.0);
+        self.add_areas(cofactors * other.areas * cofactors.transpose() * scale);
+    }
+
+    fn add_areas(&mut self, areas: DMat3) {
+        if areas.is_finite() {
+            self.areas += areas;
+        }
+    }
+
+    /// The centre of the box, and half its size. None: there is nothing.
+    fn centre_and_half(&self) -> Option<(DVec3, DVec3)> {
+        let [low, high] = self.corners.map(Vec3::as_dvec3);
+        let is_something = low.cmple(high).all();
+        is_something.then(|| ((low + high) / 2.0, (high - low) / 2.0))
+    }
+
+    /// The first of the viewpoints from which enough is seen: of the box, and of the surfaces.
+    pub(super) fn viewpoint(&self) -> &'static Viewpoint {
+        let half = self.centre_and_half().map_or(DVec3::ONE, |(_, half)| half);
+        let sides = DVec3::new(half.y * half.z, half.x * half.z, half.x * half.y);
+        let directions = VIEWPOINTS
+            .each_ref()
+            .map(|point| point.to_viewer.normalize());
+        let box_areas = directions.map(|d| d.abs().dot(sides));
+        // A mean square, as the signs of normals do not matter.
+        let surfaces = directions.map(|d| d.dot(self.areas * d).max(0.0).sqrt());
+        let is_enough =
+            |areas: [f64; 4], i: usize| areas[i] >= ENOUGH * areas.into_iter().fold(0.0, f64::max);
+        let is_seen = |&i: &usize| is_enough(box_areas, i) && is_enough(surfaces, i);
+        let first = (0..VIEWPOINTS.len()).find(is_seen).unwrap_or(1);
+        &VIEWPOINTS[first]
+    }
+}
+
+fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+impl Viewpoint {
+    /// A place in this direction from which the box of `extent` fills a view of half size `half` at
+    /// distance 1.
+    pub(super) fn camera(&self, extent: &Extent, half: DVec3) -> Affine3A {
+        let (centre, size) = extent
+            .centre_and_half()
+            .unwrap_or((DVec3::ZERO, DVec3::ONE));
+        let to_viewer = self.to_viewer.normalize();
+        let right = self.up.cross(to_viewer).normalize();
+        let up = to_viewer.cross(right);
+        let distance_of = |i: usize| {
+            let signs = DVec3::from_array(std::array::from_fn(|axis| [-1.0, 1.0][i >> axis & 1]));
+            let corner = signs * size;
+            let [x, y, z] = [right, up, to_viewer].map(|axis| corner.dot(axis));
+            (x.abs() / half.x).max(y.abs() / half.y) * MARGIN + z
+        };
+        let distance = (0..8).map(distance_of).fold(1e-6, f64::max);
+        looking(centre + to_viewer * distance, -to_viewer, up)
+    }
+}
+
+/// Texels of the surroundings in either direction.
+const TEXELS: usize = 128;
+/// The radiance of the background, which all other directions have besides.
+const BACKGROUND: f32 = 0.25;
+/// Where most light comes from, in the space of the camera: over the viewer's left shoulder.
+const KEY: Vec3 = Vec3::new(-0.4, 0.7, -1.0);
+
+/// Soft light from behind and above the viewer, cos θ + [`BACKGROUND`], before an even background.
+///
+/// A white diffuse surface that faces the light has radiance 0.92.
+pub(super) fn surroundings(world_from_camera: &Affine3A) -> InfiniteLight {
+    let key = world_from_camera
+        .transform_vector3(KEY)
+        .normalize_or(Vec3::Z);
+    let centre = |i: usize| (i as f32 + 0.5) / TEXELS as f32;
+    let texel = |i: usize| {
+        let at = Vec2::new(centre(i % TEXELS), centre(i / TEXELS));
+        [BACKGROUND + square_to_direction(at).dot(key).max(0.0); 3]
+    };
+    let image = Image::new(TEXELS, (0..TEXELS * TEXELS).map(texel).collect());
+    let image = image.expect("it has texels in whole rows");
+    InfiniteLight::image(image, 1.0, Mat3::IDENTITY)
+}

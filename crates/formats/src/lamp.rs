@@ -1,0 +1,58 @@
+//! Lamps: the lights of a scene where its file describes them.
+
+use bidir::light::Light;
+use bidir::scene::Scene;
+use std::ops::Range;
+
+/// So many lamps have their places found: to find one takes as long as the text is.
+const MOST: usize = 3;
+
+/// A lamp of a file that no ray can hit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lamp {
+    /// Where the file describes it, as `file:line:column`.
+    pub place: String,
+    /// The first of its lights, by index.
+    pub light: u32,
+}
+
+/// A lamp in the making: its place, and its lights by index, which are several where triangles emit each for
+/// itself.
+pub(crate) type Placed<P> = (P, Range<u32>);
+
+/// The first of `lamps` that no ray can hit, with the texts of their places.
+pub(crate) fn unhittable<P>(
+    scene: &Scene,
+    lamps: &[Placed<P>],
+    text: impl Fn(&P) -> String,
+) -> Vec<Lamp> {
+    let is_delta = |light: u32| scene.lights()[light as usize].is_delta();
+    let found = lamps
+        .iter()
+        .filter(|(_, lights)| lights.clone().any(is_delta));
+    let lamp = |(place, lights): &Placed<P>| Lamp {
+        place: text(place),
+        light: lights.start,
+    };
+    found.take(MOST).map(lamp).collect()
+}
+
+/// Says that the lamp with these lights gives no light. None: it does.
+pub(crate) fn dark_warning(scene: &Scene, lights: Range<u32>) -> Option<String> {
+    let lights = &scene.lights()[lights.start as usize..lights.end as usize];
+    let context = scene.light_context();
+    let kind = lights.first()?.kind();
+    let is_dark = |light: &Light| light.power(&context) <= 0.0;
+    if !lights.iter().all(is_dark) {
+        return None;
+    }
+    let has_no_area = |light: &Light| matches!(light, Light::Area(light) if !light.has_area());
+    let lacks = if lights.iter().all(has_no_area) {
+        "area"
+    } else {
+        "power"
+    };
+    Some(format!(
+        "the {kind} light has no {lacks}: it adds nothing to the image"
+    ))
+}

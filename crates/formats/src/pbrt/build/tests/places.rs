@@ -1,0 +1,161 @@
+//! Scenes far from the origin of the world, or of another size than it is thought of: where they
+//! are rendered, and what their vertices lose.
+
+use super::{LENIENT, STRICT, load_text, refusal};
+use bidir::camera::Camera;
+use bidir::light::Light;
+use bidir::material::Relief;
+use bidir::math::{DVec3, Vec2, Vec3};
+use bidir::scene::{RenderSpace, Scene};
+use bidir::shape::Shape;
+use bidir::texture::TexturePoint;
+
+/// A quad 2 units wide and a sphere beside it, which a camera looks at, in a world that `place`
+/// moves and `away` moves back, with `more` in it.
+fn scene(away: &str, place: &str, more: &str) -> Scene {
+    let text = format!(
+        "LookAt 0 1 -4 0 1 0 0 1 0 {away} Camera \"perspective\" \"float lensradius\" 0.25
+         WorldBegin {place} {more}
+         Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3]
+         \"point3 P\" [-1 0 0 -1 2 0 1 2 0 1 0 0]
+         Translate 0 0 1 Shape \"sphere\" \"float radius\" 0.5"
+    );
+    load_text(&text, &STRICT).scene
+}
+
+fn moved(by: [f64; 3], more: &str) -> Scene {
+    let text = |[x, y, z]: [f64; 3]| format!("Translate {x} {y} {z}");
+    scene(&text(by.map(|x| -x)), &text(by), more)
+}
+
+fn scaled(by: f64, more: &str) -> Scene {
+    let text = |by: f64| format!("Scale {by} {by} {by}");
+    scene(&text(1.0 / by), &text(by), more)
+}
+
+#[track_caller]
+fn check_near(found: DVec3, expected: [f64; 3], error: f64) {
+    assert!(
+        found.distance(expected.into()) < error,
+        "{found}, not {expected:?}"
+    );
+}
+
+#[test]
+fn a_scene_that_is_far_away_keeps_its_shape() {
+    for by in [[1e7, 0.0, 0.0], [1e4, -3e6, 7e5]] {
+        let scene = moved(by, "");
+        let space = scene.space();
+        assert_eq!(space.unit, 1.0);
+        let of_world = |[x, y, z]: [f64; 3]| [by[0] + x, by[1] + y, by[2] + z];
+        let Shape::Mesh(mesh) = &scene.shapes()[0] else {
+            panic!("the first shape is a mesh");
+        };
+        for (vertex, expected) in [(0, [-1.0, 0.0, 0.0]), (2, [1.0, 2.0, 0.0])] {
+            let world = space.world_point(mesh.positions[vertex]);
+            check_near(world, of_world(expected), 1e-6);
+        }
+        let eye = space.world_point(scene.camera().pose().origin);
+        check_near(eye, of_world([0.0, 1.0, -4.0]), 1e-6);
+        let bounds = scene.bvh().bounds();
+        check_near(
+            space.world_point(bounds.max),
+            of_world([1.0, 2.0, 1.5]),
+            1e-5,
+        );
+        assert!(bounds.max.length() < 4.0, "{bounds:?}");
+    }
+}
+
+#[test]
+fn a_scene_at_the_origin_stays_as_it_is() {
+    assert_eq!(*moved([0.0; 3], "").space(), RenderSpace::WORLD);
+    assert_eq!(*moved([100.0; 3], "").space(), RenderSpace::WORLD);
+    assert_eq!(*scaled(1e3, "").space(), RenderSpace::WORLD);
+}
+
+#[test]
+fn lengths_and_intensities_follow_the_unit() {
+    let more = "LightSource \"point\" \"rgb I\" [3 3 3] \"point3 from\" [0 4 0]
+         Texture \"h\" \"float\" \"constant\" \"float value\" 0.5
+         Material \"diffuse\" \"texture displacement\" \"h\"";
+    for by in [1e-12, 1e10] {
+        let scene = scaled(by, more);
+        let unit = scene.space().unit;
+        assert_ne!(unit, 1.0);
+        assert_eq!(libm::modf(libm::log2(unit)).0, 0.0, "{unit}");
+        let Light::Point(light) = scene.light(0) else {
+            panic!("the light is a point");
+        };
+        let distance2 = f64::from(light.position.y * light.position.y);
+        let irradiance = f64::from(light.intensity[0]) / distance2;
+        let expected = 3.0 / (4.0 * by).powi(2);
+        assert!((irradiance / expected - 1.0).abs() < 1e-5, "{irradiance}");
+        let Some(Relief::Displacement(height)) = scene.materials()[1].relief() else {
+            panic!("the material has heights");
+        };
+        let at = TexturePoint::of_parameters(Vec2::ZERO);
+        assert_eq!(f64::from(height.eval(&at)) * unit, 0.5);
+        let Camera::Perspective(_) = scene.camera() else {
+            panic!("the camera is one of perspective");
+        };
+        let lens = |x| scene.camera().sample_lens(|| Vec2::new(x, 0.5)).point;
+        let radius = scene.space().world_length(lens(1.0).distance(lens(0.5)));
+        assert!(
+            (f64::from(radius) / (0.25 * by) - 1.0).abs() < 1e-4,
+            "{radius}"
+        );
+    }
+}
+
+#[test]
+fn shared_objects_that_are_far_from_their_origin_have_another() {
+    let text = "Camera \"perspective\" WorldBegin ObjectBegin \"o\" Translate 1e6 0 0
+         Shape \"sphere\" ObjectEnd
+         AttributeBegin Translate -1e6 0 3 ObjectInstance \"o\" AttributeEnd
+         AttributeBegin Translate -1000003 0 3 ObjectInstance \"o\" AttributeEnd";
+    let scene = load_text(text, &STRICT).scene;
+    assert_eq!(*scene.space(), RenderSpace::WORLD);
+    let of_object = scene.shapes()[0].primitive(0).bounds();
+    assert!(of_object.max.length() < 3.0, "{of_object:?}");
+    let bounds = scene.bvh().bounds();
+    let expected = [Vec3::new(-4.0, -1.0, 2.0), Vec3::new(1.0, 1.0, 4.0)];
+    assert!(bounds.min.distance(expected[0]) < 1e-4, "{bounds:?}");
+    assert!(bounds.max.distance(expected[1]) < 1e-4, "{bounds:?}");
+}
+
+/// A quad 2 units wide whose coordinates are beyond `at`.
+fn written(at: f64) -> String {
+    format!(
+        "LookAt {at} 1 -4 {at} 1 0 0 1 0 Camera \"perspective\" WorldBegin\n\
+         Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" \
+         [{} 0 0 {} 2 0 {} 2 0 {} 0 0]",
+        at - 1.0,
+        at - 1.0,
+        at + 1.0,
+        at + 1.0
+    )
+}
+
+#[test]
+fn vertices_that_are_written_far_away_are_warned_of() {
+    assert!(load_text(&written(1e5), &STRICT).warnings.is_empty());
+    assert_eq!(
+        load_text(&written(1e6), &STRICT).warnings,
+        [
+            "s.pbrt:2:7: coordinates of 1.00e6 as 32-bit floats are off by up to 3.12e-2, 2 % of \
+             the mesh's size: use small coordinates and a transformation"
+        ]
+    );
+}
+
+#[test]
+fn vertices_that_leave_nothing_of_a_scene_are_refused() {
+    for options in [STRICT, LENIENT] {
+        assert_eq!(
+            refusal(&written(1e8), &options).to_string(),
+            "s.pbrt:2:7: coordinates of 1.00e8 as 32-bit floats are off by up to 4.00e0: the whole \
+             scene is 4.00e0 wide; use small coordinates and a transformation"
+        );
+    }
+}

@@ -1,0 +1,51 @@
+//! The files that a scene names: those that were read, and those of parts that are not used or that a
+//! stand-in replaces.
+
+use super::parameters::Values;
+use super::scene::{Entity, SceneDescription, ShapeDescription};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+impl SceneDescription {
+    /// Every file on the disk that was read, which `read` lists, or that a parameter may name, without
+    /// the film's, whose file is written. Names with a dot in them are taken for those of files.
+    pub(super) fn inputs(&self, read: &[PathBuf]) -> Vec<PathBuf> {
+        let named: BTreeSet<_> = self.entities().flat_map(strings).collect();
+        let named = named.into_iter().map(|name| self.resolve(name));
+        let all: BTreeSet<_> = read.iter().cloned().chain(named).collect();
+        let here = all.into_iter().filter(|path| self.files.is_from_disk(path));
+        here.collect()
+    }
+
+    /// All that can have parameters with names of files in them.
+    fn entities(&self) -> impl Iterator<Item = &Entity> {
+        let camera = self.camera.iter().map(|camera| &camera.entity);
+        let materials = self.materials.iter().filter_map(|m| m.entity.as_ref());
+        let textures = self.textures.iter().map(|texture| &texture.entity);
+        let media = self.media.iter().map(|medium| &medium.entity);
+        let lights = self.lights.iter().map(|light| &light.entity);
+        let of_objects = self.objects.iter().flat_map(|object| &object.shapes);
+        let shapes = self.shapes.iter().chain(of_objects);
+        camera
+            .chain(materials)
+            .chain(textures)
+            .chain(media)
+            .chain(lights)
+            .chain(shapes.flat_map(of_shape))
+    }
+}
+
+fn of_shape(shape: &ShapeDescription) -> impl Iterator<Item = &Entity> {
+    std::iter::once(&shape.entity).chain(shape.area_light.as_deref())
+}
+
+/// The texts of parameters that may be names of files.
+fn strings(entity: &Entity) -> impl Iterator<Item = &str> {
+    let parameters = &entity.parameters;
+    let all = parameters.explicit.iter().chain(&*parameters.defaults);
+    let texts = all.flat_map(|parameter| match &parameter.values {
+        Values::Strings(texts) => texts.as_slice(),
+        _ => &[],
+    });
+    texts.map(String::as_str).filter(|text| text.contains('.'))
+}

@@ -1,0 +1,172 @@
+//! Vertices that a file holds as `f32`: how far off they may be.
+//!
+//! A coordinate is within half a step of `f32` of what its author meant, and steps grow with its
+//! size: no transformation brings back what is lost before it. Coordinates that are small, moved by
+//! a transformation, lose nothing.
+
+use glam::{DMat3, DVec3, Vec3};
+
+/// The largest error that is passed over, as a part of half the longest side of the mesh.
+const NOTICED: f64 = 0.01;
+/// The largest error that is rendered, as a part of [`Survey::reach`](crate::space::Survey::reach).
+const ACCEPTED: f64 = 0.25;
+
+/// The error of the vertices of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VertexError {
+    /// The largest coordinate in the file.
+    coordinate: f32,
+    /// In the world.
+    distance: f64,
+    /// As a part of half the longest side of the mesh.
+    part: f64,
+}
+
+impl VertexError {
+    /// The error of vertices that `linear` takes to the world. None: it is too small to matter, or
+    /// the mesh is a point.
+    pub(crate) fn of(positions: &[[f32; 3]], linear: &DMat3) -> Option<Self> {
+        let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let around =
+            |[low, high]: [Vec3; 2], &p: &[f32; 3]| [low.min(p.into()), high.max(p.into())];
+        let [low, high] = positions.iter().fold(nowhere, around);
+        let size = (high.as_dvec3() - low.as_dvec3()).max_element() / 2.0;
+        let coordinate = low.abs().max(high.abs()).max_element();
+        let error = f64::from(coordinate.next_up() - coordinate) / 2.0;
+        let is_noticed = size > 0.0 && error > NOTICED * size && error.is_finite();
+        is_noticed.then(|| Self {
+            coordinate,
+            distance: error * stretch(linear),
+            part: error / size,
+        })
+    }
+}
+
+/// How much longer a map makes vectors at most.
+fn stretch(linear: &DMat3) -> f64 {
+    let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
+    columns.map(DVec3::length).into_iter().fold(0.0, f64::max)
+}
+
+/// The errors of all meshes of a scene, each with the place `P` in the file that names it.
+#[derive(Clone, Debug)]
+pub(crate) struct VertexErrors<P> {
+    /// How many meshes have one.
+    count: usize,
+    /// That of the largest part of its mesh.
+    worst: Option<(P, VertexError)>,
+    /// The longest.
+    longest: Option<(P, VertexError)>,
+}
+
+impl<P> Default for VertexErrors<P> {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            worst: None,
+            longest: None,
+        }
+    }
+}
+
+impl<P: Clone> VertexErrors<P> {
+    pub(crate) fn add(&mut self, place: &P, error: Option<VertexError>) {
+        let Some(error) = error else { return };
+        self.count += 1;
+        let keep = |known: &mut Option<(P, VertexError)>, size: fn(&VertexError) -> f64| {
+            if known
+                .as_ref()
+                .is_none_or(|(_, known)| size(known) < size(&error))
+            {
+                *known = Some((place.clone(), error));
+            }
+        };
+        keep(&mut self.worst, |error| error.part);
+        keep(&mut self.longest, |error| error.distance);
+    }
+
+    /// The mesh that makes the scene impossible to render, whose box with the camera is `reach` to
+    /// each side, and why. None: there is none.
+    pub(crate) fn refusal(&self, reach: f64) -> Option<(P, String)> {
+        let (place, error) = self.longest.as_ref()?;
+        (error.distance > ACCEPTED * reach).then(|| {
+            let message = format!(
+                "coordinates of {:.2e} as 32-bit floats are off by up to {:.2e}: the whole scene \
+                 is {:.2e} wide",
+                error.coordinate,
+                error.distance,
+                2.0 * reach
+            );
+            (place.clone(), message)
+        })
+    }
+
+    /// What to say of the mesh that lost most. None: none lost enough.
+    pub(crate) fn warning(&self) -> Option<(P, String)> {
+        let (place, error) = self.worst.as_ref()?;
+        let others = match self.count {
+            1 => String::new(),
+            count => format!("; {count} meshes in all"),
+        };
+        let message = format!(
+            "coordinates of {:.2e} as 32-bit floats are off by up to {:.2e}, {:.0} % of the mesh's \
+             size: {HINT}{others}",
+            error.coordinate,
+            error.distance,
+            50.0 * error.part
+        );
+        Some((place.clone(), message))
+    }
+}
+
+/// What to do about it.
+pub(crate) const HINT: &str = "use small coordinates and a transformation";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quad(at: f32) -> [[f32; 3]; 4] {
+        [[-1., 0.], [1., 0.], [1., 2.], [-1., 2.]].map(|[x, y]| [at + x, y, 0.0])
+    }
+
+    #[test]
+    fn errors_that_are_small_for_the_mesh_are_passed_over() {
+        for at in [0.0, 1.0, 1e3, 1e5] {
+            assert_eq!(VertexError::of(&quad(at), &DMat3::IDENTITY), None);
+        }
+        assert_eq!(VertexError::of(&[[1e9; 3]; 3], &DMat3::IDENTITY), None);
+        assert_eq!(VertexError::of(&[], &DMat3::IDENTITY), None);
+    }
+
+    #[test]
+    fn the_error_is_half_a_step_of_the_largest_coordinate() {
+        let scaled = DMat3::from_diagonal(DVec3::new(1.0, 4.0, 2.0));
+        let error = VertexError::of(&quad(1e6), &scaled).unwrap();
+        assert_eq!((error.part, error.distance), (0.03125, 0.125));
+        let mut errors = VertexErrors::default();
+        errors.add(&1, Some(error));
+        errors.add(&2, VertexError::of(&quad(4e6), &DMat3::IDENTITY));
+        let (place, message) = errors.warning().unwrap();
+        assert_eq!(place, 2);
+        assert_eq!(
+            message,
+            "coordinates of 4.00e6 as 32-bit floats are off by up to 1.25e-1, 6 % of the mesh's \
+             size: use small coordinates and a transformation; 2 meshes in all"
+        );
+    }
+
+    #[test]
+    fn a_scene_of_errors_is_refused() {
+        let mut errors = VertexErrors::default();
+        errors.add(&1, VertexError::of(&quad(1e7), &DMat3::IDENTITY));
+        assert_eq!(errors.refusal(4.0), None);
+        let (place, message) = errors.refusal(1.0).unwrap();
+        assert_eq!(place, 1);
+        assert_eq!(
+            message,
+            "coordinates of 1.00e7 as 32-bit floats are off by up to 5.00e-1: the whole scene is \
+             2.00e0 wide"
+        );
+    }
+}

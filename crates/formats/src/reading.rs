@@ -1,0 +1,105 @@
+//! How much was read for a scene, against the limits.
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::{self, ImageData};
+use crate::limits::{self, Allowance};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// What the files of a scene hold, and what was made of them so far.
+#[derive(Clone, Debug)]
+pub(crate) struct Reading {
+    /// Bytes that all files take on the disk, each once.
+    stored: u64,
+    /// By identity.
+    files: BTreeSet<PathBuf>,
+    /// Bytes of files that were read before.
+    again: u64,
+    /// Of all images.
+    numbers: u64,
+}
+
+impl Reading {
+    /// Begins with texts that take `stored` bytes on the disk.
+    pub(crate) fn new(stored: u64) -> Self {
+        Self {
+            stored,
+            files: BTreeSet::new(),
+            again: 0,
+            numbers: 0,
+        }
+    }
+
+    /// Bytes that all files take on the disk, each once.
+    pub(crate) fn stored(&self) -> u64 {
+        self.stored
+    }
+
+    /// Counts a file of `length` bytes that takes `stored` of them on the disk. Errors: files are read
+    /// again and again.
+    pub(crate) fn file(&mut self, identity: PathBuf, stored: u64, length: u64) -> Result<()> {
+        if self.files.insert(identity) {
+            self.stored += stored;
+            return Ok(());
+        }
+        self.again += length;
+        self.check(
+            (self.again, "bytes that are read again"),
+            limits::FILES_AGAIN,
+        )
+    }
+
+    /// Counts an image. Errors: all images are too large for their files.
+    pub(crate) fn image(&mut self, image: ImageData) -> Result<ImageData> {
+        self.numbers += image::numbers(
+            [image.width, image.height].map(|n| n as u64),
+            image.channels as u64,
+        );
+        self.check((self.numbers, "numbers of images"), limits::IMAGES)?;
+        Ok(image)
+    }
+
+    fn check(&self, (count, what): (u64, &str), allowance: Allowance) -> Result<()> {
+        let stored = self.stored;
+        let most = allowance.of(stored);
+        if count <= most {
+            return Ok(());
+        }
+        let message =
+            format!("the scene's {stored} bytes of files stand for more than {most} {what}");
+        Err(Error::new(ErrorKind::Limit, message))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Files pay for what is made of them once, by whatever name they are read.
+    #[test]
+    fn files_that_are_read_again_have_a_limit() {
+        let mut reading = Reading::new(1000);
+        let most = limits::FILES_AGAIN.of(1000 + 50);
+        let mut read = |length| reading.file("a.ply".into(), 50, length);
+        read(u64::MAX).expect("the first time is free");
+        read(most).expect("a file may be read again");
+        let error = read(1).expect_err("but not for ever");
+        assert_eq!(error.kind(), ErrorKind::Limit);
+        assert_eq!(reading.stored(), 1050);
+    }
+
+    #[test]
+    fn images_of_a_scene_have_a_limit_together() {
+        let mut reading = Reading::new(0);
+        let image = || ImageData {
+            width: 1,
+            height: 1,
+            channels: 3,
+            data: vec![0.0; 3],
+        };
+        assert_eq!(reading.image(image()).unwrap(), image());
+        reading.numbers = limits::IMAGES.of(0);
+        let error = reading.image(image()).expect_err("one too many");
+        assert!(error.to_string().contains("numbers of images"), "{error}");
+    }
+}

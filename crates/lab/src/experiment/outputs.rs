@@ -1,0 +1,77 @@
+//! The files that an experiment writes: none of them is one that it reads.
+
+use super::cell::Cell;
+use super::error::ExperimentError;
+use super::run::Setup;
+use super::stage::Stage;
+use super::{Experiment, PAGE, ReferenceSpec, journal, pyramid, reference};
+use formats::outputs::Output;
+use std::path::{Path, PathBuf};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The name of the results in their folder.
+pub(super) const RESULTS: &str = "results.json";
+
+/// Fails where the description `file` is one of the files that its results in `folder` are written to.
+pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
+    check_all([file], &always(folder))
+}
+
+/// Fails where a file of the results would replace one of a scene or of a reference that is there, or
+/// another one.
+pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>], setup: &Setup) -> Result<()> {
+    let mut written = always(&setup.folder);
+    let images = stages.iter().flat_map(|stage| images(experiment, stage));
+    let sheets = pyramid::files(experiment, stages);
+    written.extend(images.chain(sheets).map(|name| setup.folder.join(name)));
+    for stage in stages {
+        written.extend(reference::written(stage, setup));
+    }
+    let given = stages.iter().flat_map(given);
+    let inputs = stages.iter().flat_map(|stage| stage.inputs.iter().cloned());
+    let read: Vec<_> = inputs.chain(given).collect();
+    check_all(read.iter().map(PathBuf::as_path), &written)
+}
+
+fn check_all<'a>(read: impl IntoIterator<Item = &'a Path>, written: &[PathBuf]) -> Result<()> {
+    let outputs = written.iter().map(|path| Output {
+        path,
+        flag: Some("--output"),
+    });
+    let outputs: Vec<_> = outputs.collect();
+    Ok(formats::outputs::check(read, &outputs)?)
+}
+
+/// The files that every experiment has.
+fn always(folder: &Path) -> Vec<PathBuf> {
+    [journal::FILE, RESULTS, PAGE]
+        .map(|name| folder.join(name))
+        .into()
+}
+
+/// The names of the images of a scene, which are those of the first seed.
+fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
+    let budgets = experiment.budgets.iter();
+    let pairs = budgets.flat_map(|budget| experiment.methods.iter().map(move |m| (budget, m)));
+    let images = pairs.map(|(budget, method)| {
+        let seed = experiment.seeds.first;
+        Cell {
+            stage,
+            method,
+            budget,
+            seed,
+        }
+        .image()
+    });
+    images.collect()
+}
+
+/// The files of a reference that is there.
+fn given(stage: &Stage<'_>) -> Vec<PathBuf> {
+    match &stage.spec.reference {
+        ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),
+        ReferenceSpec::There(path) => vec![path.clone()],
+        ReferenceSpec::Make { .. } => Vec::new(),
+    }
+}

@@ -1,0 +1,117 @@
+"""Attacks the program: kills it, lets system calls fail, damages its inputs, and strains it.
+
+    python3 tools/attack                  the whole campaign: some two hours
+    python3 tools/attack --minute         a little of every part
+    python3 tools/attack PART...          some parts, such as kills
+    python3 tools/attack --self-test      tests of this tool, which need no program
+
+A case passes if the program ends by itself within its time and memory, with an exit code of
+docs/reference/cli.md, and if its results are right; an error with a message passes. A table ends the
+campaign. Failures are kept as files in target/attack/SEED/PART, with the command. The same seed makes
+the same cases, but for the moments of kills. The exit code is 1 if a case failed.
+Needs Linux or macOS and a built bidir; standard library only.
+"""
+
+import argparse
+import importlib
+import os
+import shutil
+import sys
+import time
+import traceback
+import unittest
+
+sys.dont_write_bytecode = True
+
+import part
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
+TARGET = os.path.abspath(os.environ.get("CARGO_TARGET_DIR", os.path.join(ROOT, "target")))
+# Parts, with the cases of a night and of a minute. soak counts seconds.
+PARTS = {
+    "kills": (1000, 20),
+    "faults": (3000, 60),
+    "mutations": (1_000_000, 10_000),
+    "files": (6000, 60),
+    "bombs": (1000, 6),
+    "scale": (1000, 6),
+    "extremes": (1000, 12),
+    "soak": (600, 8),
+}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="tools/attack", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    add = parser.add_argument
+    add("parts", nargs="*", metavar="PART", help="which of %s [all]" % ", ".join(PARTS))
+    add("--minute", action="store_true", help="few cases")
+    add("--count", type=int, metavar="N", help="cases of each part, instead")
+    add("--seed", type=int, metavar="N", help="random seed [the time]")
+    add("--bidir", default=os.path.join(TARGET, "release", "bidir"), metavar="PROGRAM",
+        help="the program that is attacked [%(default)s]")
+    add("--mutations", default=os.path.join(TARGET, "release", "examples", "mutations"),
+        metavar="PROGRAM", help="the example `mutations` of bidir-lab [%(default)s]")
+    add("--self-test", action="store_true", help="test this tool")
+    options = parser.parse_args()
+    unknown = [name for name in options.parts if name not in PARTS]
+    if unknown:
+        parser.error("there is no part %s; the parts are %s" % (unknown[0], ", ".join(PARTS)))
+    return complete(options)
+
+
+def complete(options):
+    """What is left out gets its value."""
+    options.parts = options.parts or list(PARTS)
+    options.bidir, options.mutations = map(os.path.abspath, (options.bidir, options.mutations))
+    options.root = ROOT
+    if options.seed is None:
+        options.seed = int(time.time())
+    options.out = os.path.join(TARGET, "attack", str(options.seed))
+    options.counts = {name: options.count or counts[options.minute] for name, counts in PARTS.items()}
+    return options
+
+
+def self_test():
+    result = unittest.TextTestRunner().run(unittest.TestLoader().discover(HERE, "tests.py"))
+    return 0 if result.wasSuccessful() and result.testsRun > 0 else 1
+
+
+def attack(name, options):
+    """Runs a part to its end."""
+    work = part.Part(name, options)
+    shutil.rmtree(work.out, ignore_errors=True)
+    try:
+        importlib.import_module(name).run(work)
+    except Exception:
+        # A fault of this tool must not hide the results of the other parts.
+        work.case("the tool", traceback.format_exc())
+    if work.skipped:
+        work.say("skipped: " + work.skipped)
+    print(work.end(), flush=True)
+    return work
+
+
+def main():
+    options = arguments()
+    if options.self_test:
+        return self_test()
+    if not os.path.exists(options.bidir):
+        print("attack: there is no %s: run `cargo build --release`" % options.bidir, file=sys.stderr)
+        return 2
+    print("seed %d, %s" % (options.seed, options.bidir), flush=True)
+    works = [attack(name, options) for name in options.parts]
+    failures = sum(work.failures for work in works)
+    print("\nSeed %d.\n\n| part | cases | failures | seconds |\n|---|---:|---:|---:|" % options.seed)
+    for work in works:
+        print(work.row)
+    print("| total | %d | %d | %.0f |" % (sum(work.cases for work in works), failures,
+                                       sum(work.seconds for work in works)))
+    if failures:
+        print("\nFailures are in %s." % options.out)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+"""Commands with the files they read and write, for parts that disturb them."""
+
+import json
+import os
+
+import exr
+import part
+import runs
+from worlds import ROOM
+
+LIMITS = runs.Limits(cpu=30, wall=300)
+INFO = """Camera "perspective" WorldBegin LightSource "infinite"
+Texture "t" "spectrum" "imagemap" "string filename" "picture.png"
+Material "diffuse" "texture reflectance" "t"
+Include "more.pbrt"
+"""
+MORE = """Shape "plymesh" "string filename" "mesh.ply"
+LightSource "point" "spectrum I" "lamp.spd"
+"""
+EXPERIMENT = """title = "t"
+size = "8x6"
+seeds = 2
+[[scene]]
+file = "room.pbrt"
+reference-spp = 32
+[[method]]
+name = "a"
+integrator = "bdpt"
+max-depth = 3
+[[method]]
+name = "b"
+integrator = "path"
+max-depth = 3
+[[budget]]
+samples = 2
+"""
+RENDER = ("render", "room.pbrt", "-q", "--threads", "1", "--size", "24x16")
+# By name: arguments, and the files that come out with the same contents every time.
+COMMANDS = {
+    "render": ((*RENDER, "--spp", "8", "-o", "out.exr", "--checkpoint", "a.film", "--resume"),
+               ("out.exr", "out.png")),
+    "share": ((*RENDER, "--passes", "4..6", "--checkpoint", "new.film", "--checkpoint-every", "0.001s",
+               "--resume"), ()),
+    "merge": (("merge", "a.film", "b.film", "-o", "out.film", "--image", "out.exr"), ("out.exr", "out.png")),
+    "develop": (("film", "develop", "a.film", "-o", "out.exr"), ("out.exr", "out.png")),
+    "verify": (("film", "verify", "a.film", "b.film"), ()),
+    "missing": (("missing", "a.film", "b.film", "--spp", "4"), ()),
+    "compare": (("compare", "a.exr", "b.exr", "--error-map", "out.png"), ("out.png",)),
+    "tonemap": (("tonemap", "a.exr", "-o", "out.png"), ("out.png",)),
+    "info": (("info", "info.pbrt"), ()),
+    "gltf": (("info", "all.glb"), ()),
+    "reference": (("reference", "room.pbrt", "-q", "--size", "8x6", "--spp", "32", "--threads", "1",
+                   "-o", "out-reference"), ()),
+    "experiment": (("experiment", "small.toml", "-q", "-o", "out-results", "--threads", "1"), ()),
+}
+
+
+def prepare(work, folder):
+    """The files that the commands read, in an empty folder."""
+    seeds = os.path.join(work.options.root, "fuzz", "seeds")
+    for name, data in (("room.pbrt", ROOM), ("info.pbrt", INFO), ("more.pbrt", MORE), ("small.toml", EXPERIMENT)):
+        part.write(folder, name, data)
+    for name, seed in (("picture.png", "image/rgb8.png"), ("mesh.ply", "ply/little.ply"),
+                       ("lamp.spd", "spectrum/lamp.spd"), ("all.glb", "gltf/triangle.glb")):
+        data = part.read(seeds, seed)
+        # The first byte of the seed of an image is the format.
+        part.write(folder, name, data[1:] if seed.startswith("image/") else data)
+    for name, passes in (("a", "0..2"), ("b", "2..4")):
+        command = work.bidir(*RENDER, "--passes", passes, "--checkpoint", name + ".film", "-o", name + ".exr")
+        ended = runs.run(command, folder, LIMITS)
+        if ended.wrong(0):
+            raise RuntimeError("%s: %s\n%s" % (" ".join(command), ended.wrong(0), ended.said))
+
+
+def figures(path):
+    """The results of an experiment without times, which differ from run to run."""
+    with open(path) as file:
+        found = json.load(file)
+    return [{key: value for key, value in record.items() if "seconds" not in key}
+            for record in found["records"]]
+
+
+def results(folder, outputs):
+    """The contents of outputs by name: pixels of an EXR, whose attributes have times, else bytes."""
+    found = {}
+    for name in outputs:
+        path = os.path.join(folder, name)
+        if not os.path.exists(path):
+            found[name] = None
+        elif name.endswith(".exr"):
+            pixels = exr.read(path)
+            found[name] = {channel: values.tobytes() for channel, values in pixels.items()}
+        else:
+            found[name] = part.read(folder, name)
+    return found

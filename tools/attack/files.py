@@ -1,0 +1,190 @@
+"""Damaged files of all kinds, read by the whole program: a message or a right result, within the means.
+
+Scenes, images, meshes and descriptions get any changes. Films, references and records have checksums: a
+changed byte of one is either found or changes no result.
+"""
+
+import os
+import shutil
+
+import commands
+import part
+import runs
+
+NUMBERS = (b"0", b"-1", b"1", b"255", b"65536", b"2147483647", b"-2147483648", b"18446744073709551615", b"1e38",
+           b"-1e38", b"1e-44", b"nan", b"inf", b"1e9999", b"4294967296")
+LIMITS = runs.Limits(cpu=20, wall=300, memory=runs.GIB)
+# Unit: seconds.
+PATIENCE = 10
+TINY = ("--size", "6x4", "--spp", "1", "-q", "--threads", "1", "--max-depth", "3")
+
+
+def flip(random, data):
+    """One bit is another."""
+    data = bytearray(data)
+    data[random.randrange(len(data))] ^= 1 << random.randrange(8)
+    return bytes(data)
+
+
+def mutate(random, data):
+    """A few places are changed."""
+    for _ in range(random.randint(1, 4)):
+        at = random.randrange(len(data) + 1)
+        end = min(len(data), at + random.choice((1, 2, 4, 8, random.randint(1, 64))))
+        kind = random.randrange(6)
+        if kind == 0 and data:
+            data = flip(random, data)
+        elif kind == 1:
+            data = data[:at] + data[end:]
+        elif kind == 2:
+            data = data[:at] + data[at:end] + data[at:]
+        elif kind == 3:
+            data = data[:at]
+        elif kind == 4:
+            data = data[:at] + bytes([random.choice((0, 0x7f, 0x80, 0xff))]) * (end - at) + data[end:]
+        else:
+            data = number(random, data, at)
+    return data
+
+
+def number(random, data, at):
+    """The first number behind a place is another."""
+    digits = b"0123456789+-."
+    begin = next((i for i in range(at, len(data)) if data[i] in digits), len(data))
+    end = next((i for i in range(begin, len(data)) if data[i] not in digits), len(data))
+    return data[:begin] + random.choice(NUMBERS) + data[end:]
+
+
+class Kinds:
+    """A method for each kind of file. Each returns the title, the fault and the command."""
+
+    def __init__(self, work, prepared):
+        self.work, self.random, self.prepared = work, work.random, prepared
+        self.seeds = os.path.join(work.options.root, "fuzz", "seeds")
+        for name in ("reference", "experiment"):
+            command = work.bidir(*commands.COMMANDS[name][0])
+            ended = runs.run(command, prepared, commands.LIMITS)
+            if ended.wrong(0):
+                raise RuntimeError("%s: %s\n%s" % (command, ended.wrong(0), ended.said))
+        self.right = commands.figures(os.path.join(prepared, "out-results", "results.json"))
+
+    def seed(self, kind):
+        folder = os.path.join(self.seeds, kind)
+        name = self.random.choice(sorted(os.listdir(folder)))
+        return name, part.read(folder, name)
+
+    def ends(self, title, folder, *arguments):
+        command = self.work.bidir(*arguments)
+        ended = runs.run(command, folder, LIMITS)
+        return title, ended.fault(), command
+
+    def scene(self, folder):
+        kind = self.random.choice(("pbrt", "gltf"))
+        name, data = self.seed(kind)
+        part.write(folder, name, mutate(self.random, data))
+        lenient = self.random.choice(([], ["--lenient"]))
+        if self.random.random() < 0.5:
+            return self.ends(name, folder, "info", name, *lenient)
+        return self.ends(name, folder, "render", name, *TINY, "-o", "out.exr", *lenient)
+
+    def mesh(self, folder):
+        name, data = self.seed("ply")
+        part.write(folder, name, mutate(self.random, data))
+        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin LightSource "infinite" '
+                   'Shape "plymesh" "string filename" "%s"' % name)
+        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+
+    def spectrum(self, folder):
+        name, data = self.seed("spectrum")
+        part.write(folder, name, mutate(self.random, data))
+        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin LightSource "infinite" "spectrum L" "%s" '
+                   'Material "conductor" "spectrum eta" "%s" Shape "sphere"' % (name, name))
+        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+
+    def image(self, folder):
+        name, data = self.seed("image")
+        # The first byte of a seed names the format.
+        part.write(folder, name, mutate(self.random, data[1:]))
+        kind = self.random.choice(("tonemap", "compare", "texture", "sky"))
+        if kind == "tonemap":
+            return self.ends(name, folder, "tonemap", name, "-o", "out.png")
+        if kind == "compare":
+            return self.ends(name, folder, "compare", name, name)
+        use = ('LightSource "infinite" "string filename" "%s"' if kind == "sky" else
+               'LightSource "infinite" Texture "t" "spectrum" "imagemap" "string filename" "%s" '
+               'Material "diffuse" "texture reflectance" "t" Shape "sphere"') % name
+        part.write(folder, "s.pbrt", 'Camera "perspective" WorldBegin ' + use)
+        return self.ends(name, folder, "render", "s.pbrt", *TINY, "-o", "out.exr")
+
+    def description(self, folder):
+        self.copy(folder, ("room.pbrt",))
+        text = mutate(self.random, commands.EXPERIMENT.encode())
+        part.write(folder, "small.toml", text)
+        command = self.work.bidir("experiment", "small.toml", "-o", "out", "-q", "--quick", "--threads", "1")
+        ended = runs.run(command, folder, LIMITS, kill_after=PATIENCE)
+        # A description may honestly ask for work without end.
+        return "small.toml", None if ended.code == -9 else ended.fault(), command
+
+    def copy(self, folder, names):
+        for name in names:
+            source = os.path.join(self.prepared, name)
+            if os.path.isdir(source):
+                shutil.copytree(source, os.path.join(folder, name))
+            else:
+                shutil.copy(source, os.path.join(folder, name))
+
+    def damage(self, folder, names):
+        """Damages one of these files: flips a bit, cuts, or removes it. Returns what was done."""
+        name = self.random.choice(names)
+        data = part.read(folder, name)
+        kind = self.random.choice(("flip", "flip", "flip", "cut"))
+        changed = flip(self.random, data) if kind == "flip" else data[:self.random.randrange(len(data) - 1)]
+        part.write(folder, name, changed)
+        return "%s of %s" % (kind, name)
+
+    def film(self, folder):
+        """Damage is found by every command that reads the film."""
+        self.copy(folder, ("a.film", "b.film", "room.pbrt"))
+        title = self.damage(folder, ("a.film",))
+        arguments = self.random.choice((("film", "verify", "a.film"), ("film", "develop", "a.film", "-o", "o.exr"),
+                                        ("merge", "a.film", "b.film", "-o", "o.film")))
+        title, fault, command = self.ends(title, folder, *arguments)
+        if not fault and runs.run(command, folder, LIMITS).code == 0:
+            fault = "the damage is not found"
+        return title, fault, command
+
+    def records(self, folder):
+        """An experiment that goes on has the results that it had, or is refused."""
+        self.copy(folder, ("room.pbrt", "small.toml", "out-results"))
+        os.remove(os.path.join(folder, "out-results", "results.json"))
+        title = self.damage(folder, ("out-results/records.ndjson",))
+        title, fault, command = self.ends(title, folder, *commands.COMMANDS["experiment"][0])
+        results = os.path.join(folder, "out-results", "results.json")
+        if not fault and os.path.exists(results) and commands.figures(results) != self.right:
+            fault = "the damage changes the results"
+        return title, fault, command
+
+    def reference(self, folder):
+        """A reference that is damaged is refused."""
+        self.copy(folder, ("room.pbrt", "small.toml", "out-reference"))
+        title = self.damage(folder, ("out-reference/picture.exr", "out-reference/against.exr",
+                                     "out-reference/provenance.json"))
+        text = commands.EXPERIMENT.replace("reference-spp = 32", 'size = "8x6"\nreference = "out-reference"')
+        part.write(folder, "small.toml", text)
+        title, fault, command = self.ends(title, folder, "experiment", "small.toml", "-o", "out", "-q")
+        if not fault and runs.run(command, folder, LIMITS).code == 0:
+            fault = "the damage is not found"
+        return title, fault, command
+
+
+def run(work):
+    with work.folder() as prepared:
+        commands.prepare(work, prepared)
+        kinds = Kinds(work, prepared)
+        methods = (kinds.scene, kinds.mesh, kinds.spectrum, kinds.image, kinds.description, kinds.film,
+                   kinds.records, kinds.reference)
+        for number in range(work.count()):
+            with work.folder() as folder:
+                method = methods[number % len(methods)]
+                title, fault, command = method(folder)
+                work.case("%s: %s" % (method.__name__, title), fault, folder, command)

@@ -1,0 +1,185 @@
+"""Renders, shares of renders, and merges that are killed go on to the bits of one that was not.
+
+Half of the kills come at a random moment, half at a random system call. The last run of each render ends
+by itself: its image must have all bits, and no file may be left over.
+"""
+
+import os
+
+import commands
+import exr
+import part
+import runs
+import tracer
+from worlds import INTEGRATORS, ROOM
+
+LIMITS = runs.Limits(cpu=60, wall=300)
+# A render is killed so often before it may end.
+KILLS = 4
+# Calls that touch files: between two of them the files do not change.
+FILES = ("openat", "write", "fsync", "fdatasync", "rename", "renameat", "renameat2", "linkat", "link", "unlink",
+         "flock", "ftruncate")
+# Samples of a pixel. A render of them takes a few tenths of a second.
+SPP = 64
+
+
+class Whole:
+    """A render that nothing interrupts, by an integrator."""
+
+    def __init__(self, work, integrator, folder):
+        self.integrator, self.folder = integrator, folder
+        self.flags = ["render", "room.pbrt", "-q", "--threads", 1, "--size", "48x32", "--integrator",
+                      integrator]
+        part.write(folder, "room.pbrt", ROOM)
+        command = work.bidir(*self.flags, "--spp", SPP, "-o", "whole.exr", "--checkpoint", "whole.film")
+        ended = runs.run(command, folder, LIMITS)
+        self.seconds = None if ended.wrong(0) else ended.seconds
+        work.case("%s whole" % integrator, ended.wrong(0), folder, command)
+
+
+class Kills:
+    def __init__(self, work):
+        self.work, self.killed = work, 0
+        self.traced = tracer.absent()
+        if self.traced:
+            work.say("no kills at system calls: %s" % self.traced)
+        # Calls of a command by name, from the last run of its kind that was traced.
+        self.counts = {}
+
+    def kill(self, kind, command, folder, seconds):
+        """Runs a command and kills it on the way. Returns how it ended."""
+        random = self.work.random
+        if self.traced or random.random() < 0.5:
+            ended = runs.run(command, folder, LIMITS, kill_after=seconds * random.uniform(0.02, 1.0))
+        else:
+            counts = self.counts.get(kind)
+            if counts is None:
+                counts = dict.fromkeys(FILES, 3)
+            name = random.choice([name for name in FILES if counts.get(name)])
+            action = tracer.Action(name, random.randint(1, counts[name]), "kill")
+            ended, self.counts[kind] = tracer.trace(command, folder, action, LIMITS)
+        if ended.code == -9:
+            self.killed += 1
+        elif ended.fault():
+            self.work.case("before a kill", ended.fault(), folder, command)
+        return ended
+
+    def insist(self, kind, command, folder, seconds):
+        """Kills a command several times, and lets it end. Returns the fault, or None."""
+        for _ in range(self.work.random.randint(1, KILLS)):
+            if self.kill(kind, command, folder, seconds).code == 0:
+                break
+        return runs.run(command, folder, LIMITS).wrong(0)
+
+
+def left_over(folder, wanted):
+    """The reason why the files of a folder are not those wanted."""
+    surplus = sorted(set(os.listdir(folder)) - set(wanted) - {".said", "room.pbrt"})
+    return "leaves %s behind" % ", ".join(surplus) if surplus else None
+
+
+def same(work, whole, image, folder):
+    command = work.bidir("compare", "--exact", image, os.path.join(whole.folder, "whole.exr"))
+    return runs.run(command, folder, LIMITS).wrong(0)
+
+
+def resumed(kills, whole, folder):
+    """One render with a checkpoint after every pass."""
+    work = kills.work
+    command = work.bidir(*whole.flags, "--spp", SPP, "-o", "a.exr", "--checkpoint", "a.film", "--resume",
+                         "--checkpoint-every", "0.001s")
+    fault = kills.insist("render", command, folder, whole.seconds)
+    fault = fault or same(work, whole, "a.exr", folder)
+    return fault or left_over(folder, ("a.exr", "a.png", "a.film", "a.film.previous")), command
+
+
+def shared(kills, whole, folder):
+    """Ranges of passes by processes that are killed, merged by processes that are killed."""
+    work = kills.work
+    cuts = sorted(work.random.sample(range(1, SPP), work.random.randint(1, 3)))
+    films = []
+    for number, (begin, end) in enumerate(zip([0, *cuts], [*cuts, SPP])):
+        films.append("%d.film" % number)
+        command = work.bidir(*whole.flags, "--passes", "%d..%d" % (begin, end), "--checkpoint", films[-1],
+                             "--resume", "--checkpoint-every", "0.001s")
+        fault = kills.insist("share", command, folder, whole.seconds * (end - begin) / SPP)
+        if fault:
+            return fault, command
+    fault, command = merged(kills, films, folder)
+    fault = fault or same(work, whole, "a.exr", folder)
+    kept = {"a.exr", "a.png", "whole.film"}.union(films, (film + ".previous" for film in films))
+    return fault or left_over(folder, kept | {"whole.film.previous"}), command
+
+
+def merged(kills, films, folder):
+    """Adds one film after the other to `whole.film`: the result is among the inputs. Every merge is
+    killed, and given again after it ended."""
+    for number, film in enumerate(films):
+        inputs = [film] if number == 0 else ["whole.film", film]
+        command = kills.work.bidir("merge", *inputs, "-o", "whole.film", "--image", "a.exr")
+        kills.kill("merge", command, folder, 0.02)
+        for _ in range(2):
+            fault = runs.run(command, folder, LIMITS).wrong(0)
+            if fault:
+                return fault, command
+    return None, command
+
+
+class Tree:
+    """What a command leaves that writes a folder of results, from a run that nothing interrupts."""
+
+    def __init__(self, work, name, folder):
+        self.name = name
+        for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
+            part.write(folder, file, text)
+        self.command = work.bidir(*commands.COMMANDS[name][0])
+        ended = runs.run(self.command, folder, LIMITS)
+        self.seconds = None if ended.wrong(0) else ended.seconds
+        work.case("%s whole" % name, ended.wrong(0), folder, self.command)
+        self.right = self.contents(folder)
+
+    def contents(self, folder):
+        """All files, with the pixels of images and the figures of results."""
+        found = {}
+        for place, _, names in os.walk(folder):
+            for path in (os.path.join(place, name) for name in names):
+                value = exr.read(path) if path.endswith(".exr") else None
+                value = commands.figures(path) if path.endswith("results.json") else value
+                found[os.path.relpath(path, folder)] = value
+        return found
+
+
+def continued(kills, tree, folder):
+    """A reference or an experiment: the same command goes on."""
+    for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
+        part.write(folder, file, text)
+    fault = kills.insist(tree.name, tree.command, folder, tree.seconds)
+    found = {} if fault else tree.contents(folder)
+    names = sorted(set(found) ^ set(tree.right))
+    if not fault and names:
+        fault = "the files differ: %s" % ", ".join(names)
+    if not fault and found != tree.right:
+        fault = "differs: %s" % ", ".join(name for name in found if found[name] != tree.right[name])
+    return fault, tree.command
+
+
+def run(work):
+    kills, wholes = Kills(work), {}
+    with work.folder() as place:
+        # A program that always fails is never killed.
+        while kills.killed < work.count() and work.failures < part.KEPT:
+            name = work.random.choice((*INTEGRATORS, *INTEGRATORS, "reference", "experiment"))
+            if name not in wholes:
+                folder = os.path.join(place, name)
+                os.mkdir(folder)
+                wholes[name] = (Whole if name in INTEGRATORS else Tree)(work, name, folder)
+                if wholes[name].seconds is None:
+                    return
+            scenario = work.random.choice((resumed, shared)) if name in INTEGRATORS else continued
+            with work.folder() as folder:
+                part.write(folder, "room.pbrt", ROOM)
+                before = kills.killed
+                fault, command = scenario(kills, wholes[name], folder)
+                title = "%s %s after %d kills" % (name, scenario.__name__, kills.killed - before)
+                work.case(title, fault, folder, command)
+    work.say("%d kills" % kills.killed)
