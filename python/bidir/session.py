@@ -158,7 +158,9 @@ class Session:
             layers: Extra layers: names of :data:`bidir.LAYERS`, or ``all``.
             light_groups: Keep one layer per light group.
             strategy_layers: Keep one layer per strategy, for paths of up to this many vertices, 2 to 16.
-            threads: Number of threads, 0 is one per processor; does not change the image.
+            threads: Number of threads, 0 is one per processor; does not change the image. More than 4 per
+                processor are not used, with a `RuntimeWarning`; more than 1024 are an error. Where the system
+                starts fewer, the session warns and goes on with those, or with the calling thread alone.
 
         Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """

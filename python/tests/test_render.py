@@ -167,9 +167,21 @@ def test_limits_end_a_render(cornell: bidir.Scene) -> None:
     # One pass would do: from 16 on it is looked at, as by the command.
     assert bidir.render(cornell, noise=1e6).film.spp == 16
     assert bidir.render(cornell, spp=1, time=1e6).film.stopping == "fixed"
-    for wrong in ({"spp": 0}, {"spp": 1, "threads": -1}, {"spp": 1, "seed": -1}):
+    for wrong in (
+        {"spp": 0},
+        {"spp": 1, "threads": -1},
+        {"spp": 1, "threads": 1025},
+        {"spp": 1, "seed": -1},
+    ):
         with pytest.raises(bidir.SettingsError):
             bidir.render(cornell, **wrong)  # type: ignore[arg-type]
+
+
+@pytest.mark.skipif((os.cpu_count() or 1) >= 256, reason="1024 threads are not too many here")
+def test_more_than_four_threads_per_processor_are_not_started(cornell: bidir.Scene) -> None:
+    with pytest.warns(RuntimeWarning, match="threads instead of 1024"):
+        session = bidir.Session(cornell, threads=1024)
+    assert session.threads < 1024
 
 
 def test_other_threads_run_meanwhile(scenes: Path) -> None:

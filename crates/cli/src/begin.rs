@@ -1,7 +1,7 @@
 //! How a render begins: with the session, whose training may take longer than its passes.
 
 use crate::args::RenderArgs;
-use crate::console::{Display, LineFormat, say};
+use crate::console::{Console, Display, LineFormat, say};
 use crate::exit::{Exit, Failure};
 use crate::film_header;
 use crate::progress::tell_openjd;
@@ -9,7 +9,7 @@ use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
 use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
 use std::sync::Arc;
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -60,30 +60,56 @@ pub(crate) fn session(
     settings: &Settings,
     signals: &Signals,
     (training, display): (Training, Display),
+    console: Console,
 ) -> Result<Began, Failure> {
     let (scene, settings) = (Arc::clone(&loaded.scene), settings.clone());
     let resources = resources(args);
-    let (sender, receiver) = mpsc::channel();
-    // What nobody waits for any more ends with the process.
-    thread::spawn(move || {
+    let train = move || {
         let is_late = || matches!(training, Training::By(end) if Instant::now() >= end);
         let effort = match training {
             Training::Whole => Effort::Whole,
             Training::By(_) => Effort::Until(&is_late),
             Training::Short => Effort::Short,
         };
-        let session = Session::with_effort(scene, settings, &resources, effort);
-        sender.send(session.map(Box::new))
-    });
+        Session::with_effort(scene, settings, &resources, effort).map(Box::new)
+    };
+    let (sender, receiver) = mpsc::channel();
+    let in_thread = train.clone();
+    // What nobody waits for any more ends with the process.
+    let thread = thread::Builder::new().name("training".to_owned());
+    let session = match thread.spawn(move || sender.send(in_thread())) {
+        Ok(_) => match wait(&receiver, signals, display)? {
+            Waited::Session(session) => session,
+            Waited::Stopped(exit) => return Ok(Began::Stopped(exit)),
+        },
+        // Without a thread, signals are looked at afterwards.
+        Err(_) => train(),
+    };
+    let session = session.map_err(|error| failure(args, loaded, &error))?;
+    if let Some(shortage) = session.shortage() {
+        console.warning(shortage);
+    }
+    Ok(Began::Session(session))
+}
+
+/// What came first of a session and a signal.
+enum Waited {
+    Session(Result<Box<Session<'static>>, SessionError>),
+    Stopped(Exit),
+}
+
+/// Waits for a session that another thread trains.
+fn wait(
+    receiver: &Receiver<Result<Box<Session<'static>>, SessionError>>,
+    signals: &Signals,
+    display: Display,
+) -> Result<Waited, Failure> {
     let mut waited = 0;
     loop {
         match (receiver.recv_timeout(GAP), signals.exit()) {
-            (Ok(session), _) => {
-                let session = session.map_err(|error| failure(args, loaded, &error))?;
-                return Ok(Began::Session(session));
-            }
+            (Ok(session), _) => return Ok(Waited::Session(session)),
             (Err(RecvTimeoutError::Timeout), None) => waited += 1,
-            (Err(RecvTimeoutError::Timeout), Some(exit)) => return Ok(Began::Stopped(exit)),
+            (Err(RecvTimeoutError::Timeout), Some(exit)) => return Ok(Waited::Stopped(exit)),
             (Err(RecvTimeoutError::Disconnected), _) => {
                 return Err(Failure::new(Exit::RenderFailed, "the training failed"));
             }
@@ -115,9 +141,6 @@ fn resources(args: &RenderArgs) -> Resources {
 
 /// Why there is no session.
 fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Failure {
-    if matches!(error, SessionError::Threads(_)) {
-        return Failure::new(Exit::RenderFailed, error.to_string());
-    }
     if matches!(error, SessionError::NoPath { .. }) {
         return Failure::usage(error.to_string());
     }

@@ -9,6 +9,7 @@ use crate::console::say;
 use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
+use bidir::driver::Threads;
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
 use lab::image::Pixels;
@@ -29,7 +30,11 @@ pub(crate) struct Filter(Denoiser);
 impl Filter {
     /// Finds the library; `threads` is the most that are used, 0 leaves that to the library.
     pub(crate) fn load(threads: ThreadsArgs) -> Result<Self, Failure> {
-        let denoiser = Denoiser::load(threads.count.into());
+        let threads = match usize::from(threads.count) {
+            0 => 0,
+            asked => Threads::new(asked).count(),
+        };
+        let denoiser = Denoiser::load(threads);
         denoiser.map(Self).map_err(|error| failure(&error))
     }
 

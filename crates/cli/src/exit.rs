@@ -39,7 +39,7 @@ impl Exit {
         ),
         (
             Self::Scene,
-            "the scene or the experiment is wrong, or the scene is too large",
+            "the scene or the experiment is wrong, or the scene or film is too large for memory",
         ),
         (
             Self::InputOutput,

@@ -11,9 +11,10 @@ use crate::console::{Console, Display, print, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::reference;
-use crate::render::set_threads;
 use crate::scene_io;
 use crate::signals::Signals;
+use crate::threads;
+use bidir::driver::Threads;
 use lab::beyond;
 use lab::experiment::{
     self, End, Experiment, ExperimentError, Outcome, PAGE, Setup, Start, analysis, write_page,
@@ -41,8 +42,8 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     if let Some(address) = &args.ray {
         return cluster::run(args, address, &signals);
     }
-    set_threads(args.threads)?;
-    let task = task(args)?;
+    threads::start(args.threads.count, console);
+    let task = task(args, console)?;
     let outcome = execute(args, console, &signals, |setup, watch| match &task {
         Task::Paper(options) => paper::run(*options, setup, watch),
         Task::Beyond(options) => beyond::run(options, setup, watch),
@@ -83,14 +84,17 @@ fn check_flags(args: &ExperimentArgs) -> Result<(), Failure> {
 }
 
 /// What the command line asks for.
-fn task(args: &ExperimentArgs) -> Result<Task, Failure> {
+fn task(args: &ExperimentArgs, console: Console) -> Result<Task, Failure> {
+    let threads = |own| threads(args, own, console);
     if args.description == Path::new(builtin::BEYOND) {
-        return Ok(Task::Beyond(builtin::beyond(args, threads(args, 0))));
+        return Ok(Task::Beyond(builtin::beyond(args, threads(0))));
     }
     if args.description == Path::new(builtin::PAPER) {
-        return Ok(Task::Paper(builtin::paper(args, threads(args, 0))));
+        return Ok(Task::Paper(builtin::paper(args, threads(0))));
     }
-    read(args).map(Task::Described)
+    let mut experiment = read(args)?;
+    experiment.threads = threads(experiment.threads);
+    Ok(Task::Described(experiment))
 }
 
 /// Says how to go on, where anything was finished.
@@ -123,7 +127,6 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     if args.quick {
         experiment = experiment.quick();
     }
-    experiment.threads = threads(args, experiment.threads);
     Ok(experiment)
 }
 
@@ -159,12 +162,12 @@ fn other_file(file: &Path) -> String {
     }
 }
 
-/// As many as are asked for, or as there are processors: records tell the number.
-fn threads(args: &ExperimentArgs, own: usize) -> usize {
-    match (args.threads.count, own) {
-        (0, 0) => std::thread::available_parallelism().map_or(1, usize::from),
-        (0, own) => own,
-        (asked, _) => asked.into(),
+/// The threads of each render, which records tell: those that are asked for, else the description's.
+fn threads(args: &ExperimentArgs, own: usize, console: Console) -> usize {
+    match args.threads.count {
+        0 => threads::limited(own, console).count(),
+        // These were warned of when the command began.
+        asked => Threads::new(asked.into()).count(),
     }
 }
 

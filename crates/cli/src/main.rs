@@ -29,6 +29,7 @@ mod settings;
 mod shell;
 mod signals;
 mod stats;
+mod threads;
 mod tonemap;
 mod view;
 
@@ -38,6 +39,7 @@ use exit::{Exit, Failure};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    signals::end_without_memory();
     signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
@@ -64,6 +66,17 @@ fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
 }
 
 fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
+    match command {
+        Command::Denoise(args) => threads::start(args.threads.count, console),
+        Command::Info(_)
+        | Command::Compare(_)
+        | Command::Film(_)
+        | Command::Merge(_)
+        | Command::Missing(_)
+        | Command::Tonemap(_) => threads::start(0_usize, console),
+        // These watch signals first, or compute nothing.
+        _ => {}
+    }
     match command {
         Command::Render(args) => render::run(args, console)
             .inspect_err(|failure| progress::tell_failure(args.output.talk, failure)),

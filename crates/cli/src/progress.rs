@@ -15,6 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Lines are at least this far apart.
@@ -25,6 +26,8 @@ const LONGEST_GAP: Duration = Duration::from_secs(10);
 const STEP: u32 = 10;
 /// What is told where nobody knows how long it takes.
 const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
+/// A bar is drawn anew so often.
+const TICK: Duration = Duration::from_millis(200);
 /// The bar's resolution.
 const BAR_LENGTH: u64 = 1000;
 /// What is beside the bar. Its own estimate of the time would count what was there before.
@@ -210,8 +213,23 @@ pub(crate) fn bar(template: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("━╸ "));
     }
-    bar.enable_steady_tick(Duration::from_millis(200));
+    keep_moving(&bar);
     bar
+}
+
+/// Draws a bar anew now and then, so that its time goes on; without a thread it moves with the samples.
+fn keep_moving(bar: &ProgressBar) {
+    let bar = bar.downgrade();
+    let draw = move || {
+        loop {
+            thread::sleep(TICK);
+            match bar.upgrade() {
+                Some(bar) if !bar.is_finished() => bar.tick(),
+                _ => return,
+            }
+        }
+    };
+    let _ = thread::Builder::new().name("bar".to_owned()).spawn(draw);
 }
 
 /// How far a render is.

@@ -6,10 +6,10 @@ use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::progress::{Clock, Reporter};
-use crate::render;
 use crate::scene_io::{self, LoadedScene};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
+use crate::threads;
 use bidir::driver::{Progress, Resources, SessionError};
 use bidir::film::PixelRect;
 use bidir::integrator::IntegratorKind;
@@ -20,7 +20,7 @@ use std::time::Instant;
 /// Makes a reference, goes on with one, or adds samples to one.
 pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
-    render::set_threads(args.threads)?;
+    threads::start(args.threads.count, console);
     let folder = args.output.clone();
     let folder = folder.unwrap_or_else(|| default_folder(&args.scene.scene));
     let earlier = args.extend.map(|_| Provenance::read(&folder));
@@ -301,7 +301,6 @@ pub(crate) fn failure(error: Error) -> Failure {
             Failure::new(Exit::InputOutput, text).with_hint(hint)
         }
         Error::Session(SessionError::NoPath { .. }) => Failure::usage(text),
-        Error::Session(SessionError::Threads(_)) => Failure::new(Exit::RenderFailed, text),
         Error::Session(_) => {
             let hint = "make it smaller with --size, or render a part of it with --crop";
             Failure::new(Exit::Scene, text).with_hint(hint)

@@ -1,6 +1,6 @@
 //! `bidir render`: a scene becomes an image.
 
-use crate::args::{RenderArgs, ThreadsArgs};
+use crate::args::RenderArgs;
 use crate::begin::{self, Began, Training};
 use crate::checkpoint::{Checkpoint, Keeper};
 use crate::console::{Console, Display, LineFormat, json, say};
@@ -16,6 +16,7 @@ use crate::serve::{self, Show};
 use crate::settings::{self, Budget};
 use crate::signals::Signals;
 use crate::stats::{Course, Report, Summary, listed};
+use crate::threads;
 use bidir::driver::{Session, Settings};
 use bidir::integrator::{IntegratorKind, blind_spots};
 use std::ops::ControlFlow;
@@ -27,7 +28,7 @@ use viewer::{Desk, StageSettings, Status};
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
     // First of all: a signal during loading shall not kill what asks to be told of it.
     let signals = Signals::watch()?;
-    set_threads(args.threads)?;
+    threads::start_for_render(args.threads.count, console);
     // What is wrong without a scene is told before hours may have gone into one.
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
@@ -57,7 +58,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
             display => display,
         };
         let how = (Training::Whole, display);
-        return match begin::session(args, &loaded, &settings, &signals, how)? {
+        return match begin::session(args, &loaded, &settings, &signals, how, console)? {
             Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
             Began::Stopped(exit) => Ok(exit),
         };
@@ -80,17 +81,6 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         signals: &signals,
     }
     .run(checkpoint, load, server)
-}
-
-/// The threads that build the scene; the session has its own.
-pub(crate) fn set_threads(threads: ThreadsArgs) -> Result<(), Failure> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.count.into())
-        .build_global()
-        .map_err(|error| {
-            let message = format!("cannot start {} threads: {error}", threads.count);
-            Failure::new(Exit::RenderFailed, message)
-        })
 }
 
 /// A render that nothing but a signal, a full disk or a bug can keep from an image.
@@ -128,6 +118,7 @@ impl Job<'_> {
             self.settings,
             self.signals,
             (training, self.display()),
+            self.console,
         );
         let mut session = match began? {
             Began::Session(session) => *session,

@@ -337,7 +337,7 @@ fn is_folder(path: &Path, written: &[ImageFormat]) -> Failure {
 
 /// Reads a film file.
 pub(crate) fn read_film(path: &Path) -> Result<FilmFile, Failure> {
-    formats::film::read(path).map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+    formats::film::read(path).map_err(film_failure)
 }
 
 /// Writes a film file, and calls the one before `previous`.
@@ -347,14 +347,22 @@ pub(crate) fn write_film_keeping(
     header: &FilmHeader,
     film: &Film,
 ) -> Result<(), Failure> {
-    formats::film::write_keeping(path, previous, header, film)
-        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+    formats::film::write_keeping(path, previous, header, film).map_err(film_failure)
 }
 
 /// Writes a film file.
 pub(crate) fn write_film(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
-    formats::film::write(path, header, film)
-        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
+    formats::film::write(path, header, film).map_err(film_failure)
+}
+
+/// How the command ends where a film file cannot be read or written.
+#[expect(clippy::needless_pass_by_value, reason = "`map_err` gives the value")]
+fn film_failure(error: formats::Error) -> Failure {
+    let exit = match error.kind() {
+        ErrorKind::Memory => Exit::Scene,
+        _ => Exit::InputOutput,
+    };
+    Failure::new(exit, error.to_string())
 }
 
 /// Replaces a file by a text.

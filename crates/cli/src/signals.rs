@@ -1,7 +1,7 @@
 //! Ctrl-C and SIGTERM: the first asks to stop, the second stops. SIGUSR1 asks to write.
 
 use crate::exit::{Exit, Failure};
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -45,6 +45,14 @@ impl Signals {
         let of = |&&(signal, _): &&(i32, Exit)| signal as usize == received;
         SIGNALS.iter().find(of).map(|&(_, exit)| exit)
     }
+}
+
+/// Makes the command end with its exit code where the system refuses memory: the library of the language
+/// then says how many bytes were asked for, and aborts. Nothing else of this program does.
+pub(crate) fn end_without_memory() {
+    let always = Arc::new(AtomicBool::new(true));
+    // Where it cannot be watched, the abort ends the command.
+    let _ = flag::register_conditional_shutdown(SIGABRT, Exit::Scene.code().into(), always);
 }
 
 /// Has a write beyond the limit on the size of files fail, where the system would end the process.

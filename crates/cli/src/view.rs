@@ -3,11 +3,11 @@
 use crate::args::ViewArgs;
 use crate::console::{Console, say};
 use crate::exit::{Exit, Failure};
-use crate::render::set_threads;
 use crate::scene_io::{self, LoadedScene};
 use crate::serve;
 use crate::settings;
 use crate::signals::Signals;
+use crate::threads;
 use bidir::driver::Settings;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ const GAP: Duration = Duration::from_millis(50);
 /// Renders and serves until a signal comes.
 pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
-    set_threads(args.threads)?;
+    threads::start(args.threads.count, console);
     // What is wrong without a scene is told before one is read.
     let listener = listen(args)?;
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;

@@ -102,7 +102,7 @@ fn plain(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions
 /// Seconds to put recorded passes into an exact film.
 fn exact(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions>]) -> f64 {
     let mut film = Film::new(settings.clone(), u64::MAX).expect("the scene's film");
-    let mut buffer = PassBuffer::new(settings, film.layers());
+    let mut buffer = PassBuffer::new(settings, film.layers()).expect("the memory of a pass");
     let start = Instant::now();
     for (index, pass) in (0..).zip(iter::repeat_n(passes, PLAYED).flatten()) {
         on_all_threads(pool, pass.len(), |i| {

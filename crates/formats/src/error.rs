@@ -55,6 +55,8 @@ pub enum ErrorKind {
     Io,
     /// Larger or deeper than what is allowed.
     Limit,
+    /// The system does not have the memory: ask for less, or give it more.
+    Memory,
 }
 
 impl Error {
@@ -68,6 +70,13 @@ impl Error {
             place: None,
             names_file: false,
         }))
+    }
+
+    /// The system refused this many bytes of memory for `what`.
+    pub(crate) fn memory(what: &str, bytes: u64) -> Self {
+        let message =
+            format!("{what} needs {bytes} bytes of memory, which the system does not have");
+        Self::new(ErrorKind::Memory, message)
     }
 
     /// An error of the system with `file`; a missing file has a kind of its own.

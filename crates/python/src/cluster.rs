@@ -5,7 +5,7 @@ use crate::experiment::{Experiment, Heard, Reporter};
 use crate::film::bytes;
 use crate::image::pixels;
 use crate::scene::{MemoryFile, in_memory};
-use crate::wait::wait;
+use crate::wait::{beside, wait};
 use formats::scene::Files;
 use lab::experiment::{self, Block, Done, PreparedScene};
 use lab::results::Machine;
@@ -85,7 +85,7 @@ impl Prepared {
             })
         };
         let done = done.into_iter().map(read).collect::<PyResult<Vec<_>>>()?;
-        let added = py.detach(|| self.0.add(done));
+        let added = beside(py, || self.0.add(done));
         added.map_err(|error| of_experiment(py, &error))
     }
 }

@@ -63,6 +63,7 @@ pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
         ErrorKind::Data => "DataError",
         ErrorKind::MissingFile => "MissingFileError",
         ErrorKind::Io => "FileError",
+        ErrorKind::Memory => "RenderError",
     };
     let details = Details {
         message: error.message(),

@@ -2,6 +2,7 @@
 
 use crate::cluster::Prepared;
 use crate::error::{of_experiment, raise};
+use crate::settings::threads_of;
 use crate::wait::{Stop, wait};
 use lab::experiment::{self, Event, Observer, Outcome, Setup, Start, analysis};
 use lab::results::{Machine, Results};
@@ -91,11 +92,8 @@ impl Experiment {
         if quick {
             read = read.quick();
         }
-        read.threads = match threads.unwrap_or(read.threads) {
-            // Records tell the number.
-            0 => std::thread::available_parallelism().map_or(1, usize::from),
-            threads => threads,
-        };
+        // Records tell the number.
+        read.threads = threads_of(py, threads.unwrap_or(read.threads))?.count();
         Ok(Self {
             experiment: read,
             file,

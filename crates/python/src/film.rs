@@ -2,6 +2,7 @@
 
 use crate::error::{of_file, raise};
 use crate::scene::Scene;
+use crate::wait::beside;
 use bidir::film::{LayerImage, PassSet, Picture};
 use formats::film::{
     FilmFile, FilmHeader, counts_by_name, decode, encode, is_film, metadata, read, write,
@@ -92,7 +93,7 @@ impl Film {
     /// Reads a film file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let file = py.detach(|| read(&path));
+        let file = beside(py, || read(&path));
         let file = file.map_err(|error| of_file(py, &error))?;
         let inputs = absolute([path]);
         Ok(Self { file, inputs })
@@ -102,29 +103,30 @@ impl Film {
     #[staticmethod]
     #[pyo3(signature = (data, scene=None))]
     fn from_bytes(py: Python<'_>, data: &[u8], scene: Option<&Scene>) -> PyResult<Self> {
-        let file = py.detach(|| decode(data));
+        let file = beside(py, || decode(data));
         let file = file.map_err(|error| of_file(py, &error))?;
         let inputs = scene.map(|scene| scene.inputs.clone()).unwrap_or_default();
         Ok(Self { file, inputs })
     }
 
     /// The bytes of a film file.
-    fn to_bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let encoded = py.detach(|| encode(&self.file.header, &self.file.film));
-        PyBytes::new(py, &encoded)
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let encoded = beside(py, || encode(&self.file.header, &self.file.film));
+        let encoded = encoded.map_err(|error| of_file(py, &error))?;
+        Ok(PyBytes::new(py, &encoded))
     }
 
     /// Writes a film file; it may replace one that it is made of.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let others = self.inputs.iter().filter(|input| !is_film(input));
         Self::check_apart(py, others, &path)?;
-        let written = py.detach(|| write(&path, &self.file.header, &self.file.film));
+        let written = beside(py, || write(&path, &self.file.header, &self.file.film));
         written.map_err(|error| of_file(py, &error))
     }
 
     /// The film of both.
     fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let merged = py.detach(|| {
+        let merged = beside(py, || {
             let (a, b) = (&self.file, &other.file);
             if let Some(difference) = a.header.difference(&b.header) {
                 return Err(format!("films of different renders: {difference}"));
@@ -140,13 +142,13 @@ impl Film {
     /// Whether both have the same passes of the same render, bit for bit.
     fn equals(&self, py: Python<'_>, other: &Self) -> bool {
         let (a, b) = (&self.file, &other.file);
-        a.header.identity == b.header.identity && py.detach(|| a.film == b.film)
+        a.header.identity == b.header.identity && beside(py, || a.film == b.film)
     }
 
     /// The picture and the images beside it.
     fn develop<'py>(&self, py: Python<'py>) -> PyResult<Developed<'py>> {
         let film = &self.file.film;
-        let (picture, layers) = py.detach(|| (film.develop(), film.develop_layers()));
+        let (picture, layers) = beside(py, || (film.develop(), film.develop_layers()));
         let layers = layers.into_iter().map(|layer| {
             let data = bytes(py, &layer.data)?;
             Ok((layer.name, layer.channels.to_vec(), data))
@@ -164,11 +166,11 @@ impl Film {
         Self::check_apart(py, self.inputs.iter(), &path)?;
         let film = &self.file.film;
         let written = match Format::of(&path) {
-            Some(Format::Exr) => py.detach(|| {
+            Some(Format::Exr) => beside(py, || {
                 let (picture, layers) = (film.develop(), film.develop_layers());
                 self.write_exr(&path, &picture, &layers)
             }),
-            Some(Format::Png) => py.detach(|| {
+            Some(Format::Png) => beside(py, || {
                 let picture = film.develop();
                 let size = [picture.width as u32, picture.height as u32];
                 write_png(&path, size, &picture.pixels)
@@ -231,7 +233,7 @@ impl Film {
     /// The relative error of the picture.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
-        py.detach(|| self.file.film.develop().relative_error())
+        beside(py, || self.file.film.develop().relative_error())
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::{of_file, raise};
 use crate::film::bytes;
+use crate::wait::beside;
 use formats::image::{self, ExrImage, ExrLayer, Format, write_exr, write_png};
 use lab::image::{Pair, Pixels};
 use lab::metric::Metric;
@@ -32,7 +33,9 @@ pub(crate) fn encode_png<'py>(
     data: &[u8],
 ) -> PyResult<Bound<'py, PyBytes>> {
     let pixels = pixels(py, size, data)?;
-    let encoded = py.detach(|| image::encode_png(size.map(|side| side as u32), &pixels.data));
+    let encoded = beside(py, || {
+        image::encode_png(size.map(|side| side as u32), &pixels.data)
+    });
     let encoded = encoded.map_err(|error| of_file(py, &error))?;
     Ok(PyBytes::new(py, &encoded))
 }
@@ -47,7 +50,7 @@ pub(crate) fn write_image(
 ) -> PyResult<()> {
     let pixels = pixels(py, size, data)?;
     let written = match Format::of(&path) {
-        Some(Format::Exr) => py.detach(|| {
+        Some(Format::Exr) => beside(py, || {
             let layer = ExrLayer {
                 name: "",
                 channels: &["R", "G", "B"],
@@ -61,9 +64,9 @@ pub(crate) fn write_image(
             };
             write_exr(&path, &image)
         }),
-        Some(Format::Png) => {
-            py.detach(|| write_png(&path, size.map(|side| side as u32), &pixels.data))
-        }
+        Some(Format::Png) => beside(py, || {
+            write_png(&path, size.map(|side| side as u32), &pixels.data)
+        }),
         _ => {
             let message = format!(
                 "cannot write `{}`: output images are .exr or .png",
@@ -81,7 +84,9 @@ pub(crate) fn read_image(
     py: Python<'_>,
     path: PathBuf,
 ) -> PyResult<([usize; 2], Bound<'_, PyBytes>)> {
-    let read = py.detach(|| image::read(&path, None).map(|image| Pixels::from(&image)));
+    let read = beside(py, || {
+        image::read(&path, None).map(|image| Pixels::from(&image))
+    });
     let read = read.map_err(|error| of_file(py, &error))?;
     Ok((read.size, bytes(py, read.data.as_flattened())?))
 }
@@ -92,7 +97,7 @@ type Channels<'py> = Vec<(String, Bound<'py, PyBytes>)>;
 /// Width, height and all channels of an EXR.
 #[pyfunction]
 pub(crate) fn read_layers(py: Python<'_>, path: PathBuf) -> PyResult<([usize; 2], Channels<'_>)> {
-    let layers = py.detach(|| image::read_layers(&path));
+    let layers = beside(py, || image::read_layers(&path));
     let layers = layers.map_err(|error| of_file(py, &error))?;
     let channels = layers.names().map(|name| {
         let data = layers.channel(&name).unwrap_or_default();
@@ -121,7 +126,9 @@ pub(crate) fn metric(
 ) -> PyResult<f64> {
     let metric = named(py, name)?;
     let (a, b) = (pixels(py, size, a)?, pixels(py, size, b)?);
-    Ok(py.detach(|| Pair::new(&a, &b).map_or(f64::NAN, |pair| metric.value(&pair))))
+    Ok(beside(py, || {
+        Pair::new(&a, &b).map_or(f64::NAN, |pair| metric.value(&pair))
+    }))
 }
 
 /// The error of every pixel.
@@ -135,7 +142,7 @@ pub(crate) fn error_map<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let metric = named(py, name)?;
     let (a, b) = (pixels(py, size, a)?, pixels(py, size, b)?);
-    let errors = py.detach(|| {
+    let errors = beside(py, || {
         let pair = Pair::new(&a, &b)?;
         let errors = metric.errors(&pair).data;
         Some(errors.iter().map(|&error| error as f32).collect::<Vec<_>>())

@@ -3,9 +3,10 @@
 use crate::error::raise;
 use crate::film::{Film, Inputs};
 use crate::scene::Scene;
-use crate::settings::{Wanted, resolve};
+use crate::settings::{Wanted, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
 use bidir::driver::{self, Progress, Resources};
+use bidir::film::FilmError;
 use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -81,6 +82,11 @@ impl Session {
     }
 }
 
+/// A film that the system has no memory for.
+fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
+    raise(py, "RenderError", &format!("another film: {error}"))
+}
+
 #[pymethods]
 impl Session {
     /// A session that has rendered nothing; `wanted` is as `bidir.Session` makes it.
@@ -88,7 +94,7 @@ impl Session {
     fn new(py: Python<'_>, scene: &Scene, wanted: Wanted, threads: usize) -> PyResult<Self> {
         let settings = resolve(py, &wanted, &scene.settings)?;
         let resources = Resources {
-            threads,
+            threads: threads_of(py, threads)?.count(),
             ..Resources::default()
         };
         let begin = Instant::now();
@@ -101,6 +107,9 @@ impl Session {
             };
             raise(py, class, &error.to_string())
         })?;
+        if let Some(shortage) = session.shortage() {
+            warn(py, &shortage.to_string())?;
+        }
         let identity = SceneIdentity {
             name: &scene.name,
             digest: &scene.digest,
@@ -157,24 +166,27 @@ impl Session {
     /// A copy of the film, with how its number of passes was decided.
     fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
         let stopping = stopping_of(py, stopping)?;
-        Ok(self.with(py, |state| {
+        let film = self.with(py, |state| {
             let header = FilmHeader {
                 stopping,
                 ..state.header()
             };
-            Film::new(header, state.session.film().clone(), state.inputs.clone())
-        }))
+            let film = state.session.film().try_clone()?;
+            Ok(Film::new(header, film, state.inputs.clone()))
+        });
+        film.map_err(|error| no_memory(py, &error))
     }
 
     /// The film; the session goes on with an empty one.
-    fn take_film(&self, py: Python<'_>) -> Film {
-        self.with(py, |state| {
+    fn take_film(&self, py: Python<'_>) -> PyResult<Film> {
+        let film = self.with(py, |state| {
             let header = state.header();
-            let (film, _) = state.session.take_film();
+            let (film, _) = state.session.take_film()?;
             (state.earlier, state.time) = (None, Duration::ZERO);
             state.is_training_told = true;
-            Film::new(header, film, state.inputs.clone())
-        })
+            Ok(Film::new(header, film, state.inputs.clone()))
+        });
+        film.map_err(|error| no_memory(py, &error))
     }
 
     /// The pass that `step` renders.

@@ -1,12 +1,14 @@
 //! Settings by their names: those of the flags of `bidir render`.
 
 use crate::error::raise;
-use bidir::driver::Settings;
+use bidir::driver::{Settings, Threads};
 use bidir::film::{Aov, Layers};
 use formats::scene::SceneSettings;
 use lab::experiment::Changes;
+use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
+use std::ffi::CString;
 
 /// Settings that differ from the scene's, as texts.
 pub(crate) type Texts = BTreeMap<String, String>;
@@ -62,6 +64,26 @@ pub(crate) fn resolve(py: Python<'_>, wanted: &Wanted, scene: &Settings) -> PyRe
     }
     settings.layers = Layers::new(&aovs, &wanted.light_groups, wanted.strategy_layers);
     Ok(settings)
+}
+
+/// As many threads as are asked for, with a warning where there are fewer.
+///
+/// Errors: more than may be asked for, as `SettingsError`.
+pub(crate) fn threads_of(py: Python<'_>, asked: usize) -> PyResult<Threads> {
+    let most = Threads::MOST;
+    if asked > most {
+        let message = format!("threads: expected a whole number up to {most}, not {asked}");
+        return Err(raise(py, "SettingsError", &message));
+    }
+    let threads = Threads::new(asked);
+    threads.warning().map_or(Ok(()), |text| warn(py, &text))?;
+    Ok(threads)
+}
+
+/// Warns the caller of the package.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = CString::new(text)?;
+    PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)
 }
 
 /// The changes that texts tell.

@@ -172,7 +172,7 @@ mod tests {
     fn deposit(contributions: &[Contribution], splat: Contribution) -> (Film, Stats) {
         let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
         let mut film = Film::with_layers(scene.film().clone(), layers, u64::MAX).unwrap();
-        let buffer = PassBuffer::new(film.settings(), film.layers());
+        let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
         let mut workspace = Workspace::default();
         workspace.contributions.extend(contributions);
         workspace.splats.push(Splat {

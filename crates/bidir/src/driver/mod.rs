@@ -12,11 +12,13 @@ mod features;
 mod replay;
 mod session;
 mod spread;
+mod threads;
 mod training;
 mod variance;
 
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
+pub use threads::{Shortage, Threads, stand_alone, start_pool};
 pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 
@@ -86,7 +88,7 @@ impl Settings {
 /// What a render may use; nothing here changes an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Resources {
-    /// Threads; 0 is one per processor.
+    /// Threads; 0 is one per processor, and [`Threads`] has the most.
     pub threads: usize,
     /// The largest film. Unit: bytes.
     pub film_memory: u64,
@@ -137,9 +139,6 @@ pub enum SessionError {
     /// The film cannot be made.
     #[error(transparent)]
     Film(#[from] FilmError),
-    /// The system starts no thread.
-    #[error("cannot start a thread: {0}")]
-    Threads(String),
     /// The list of strategies makes no path within the limit of length.
     #[error("the list of strategies `{strategies}` {lost}")]
     NoPath {

@@ -12,9 +12,10 @@ use order::Order;
 
 use super::deposit::Deposit;
 use super::features::{Features, Meter};
+use super::threads::{Shortage, Threads, Workers};
 use super::training::prepare;
 use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Training};
-use crate::film::{Film, MergeError, PassBuffer};
+use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
 use crate::path::{Connections, PathContext};
 use crate::sampler::{Dimension, Domain, Purpose, Sampler};
@@ -77,7 +78,7 @@ pub struct Session<'a> {
     buffer: PassBuffer,
     stats: Stats,
     stage_times: StageTimes,
-    pool: rayon::ThreadPool,
+    workers: Workers,
     /// One per thread, kept so that no sample allocates.
     workspaces: Vec<Mutex<Workspace>>,
 }
@@ -85,7 +86,7 @@ pub struct Session<'a> {
 impl<'a> Session<'a> {
     /// A session that has rendered nothing but its training.
     ///
-    /// Errors: the film needs more memory than `resources` allow, or no thread can be started.
+    /// Errors: the film needs more memory than `resources` allow or the system has.
     pub fn new(
         scene: impl Into<SceneHandle<'a>>,
         settings: Settings,
@@ -110,13 +111,13 @@ impl<'a> Session<'a> {
         }
         let layers = settings.layers.clone();
         let film = Film::with_layers(scene.film().clone(), layers, resources.film_memory)?;
-        let buffer = PassBuffer::new(scene.film(), film.layers());
-        let pool = thread_pool(resources.threads)?;
-        let threads = pool.current_num_threads();
-        let (settings, training) = pool.install(|| prepare(&scene, settings, effort));
+        let buffer = PassBuffer::new(scene.film(), film.layers())?;
+        let workers = Workers::start(Threads::new(resources.threads));
+        let threads = workers.count();
+        let (settings, training) = workers.install(|| prepare(&scene, settings, effort));
         let rule = selector(&settings, training.as_ref());
         let integrator = settings.integrator.integrator(rule, &settings.lvc);
-        let order = pool.install(|| Order::new(scene.film().crop, &*integrator));
+        let order = workers.install(|| Order::new(scene.film().crop, &*integrator));
         Ok(Self {
             scene,
             settings,
@@ -128,7 +129,7 @@ impl<'a> Session<'a> {
             buffer,
             stats: Stats::default(),
             stage_times: StageTimes::default(),
-            pool,
+            workers,
             workspaces: std::iter::repeat_with(|| Workspace::timed_by(resources.clock))
                 .map(Mutex::new)
                 .take(threads)
@@ -160,8 +161,8 @@ impl<'a> Session<'a> {
         let next = AtomicU64::new(0);
         let given_up = AtomicBool::new(false);
         let this = &*self;
-        this.pool.broadcast(|thread| {
-            let Some(workspace) = this.workspaces.get(thread.index()) else {
+        this.workers.broadcast(|thread| {
+            let Some(workspace) = this.workspaces.get(thread) else {
                 return;
             };
             // Only this thread locks it; a panic elsewhere does not make its buffers wrong.
@@ -185,7 +186,7 @@ impl<'a> Session<'a> {
             self.stats += &stats;
             self.stage_times += &stage_times;
             let (film, buffer) = (&mut self.film, &self.buffer);
-            self.pool.install(|| film.add_pass(pass, buffer));
+            self.workers.install(|| film.add_pass(pass, buffer));
         }
         self.buffer.clear();
         finished
@@ -363,12 +364,19 @@ impl<'a> Session<'a> {
         self.workspaces.len()
     }
 
+    /// Threads that the system did not start; their part of the work is done by the others.
+    pub fn shortage(&self) -> Option<&Shortage> {
+        self.workers.shortage()
+    }
+
     /// The film with what was counted for it; the session goes on with an empty one, and knows no
     /// longer which passes were rendered.
-    pub fn take_film(&mut self) -> (Film, Stats) {
-        let empty = self.film.emptied();
+    ///
+    /// Errors: the system does not have the memory of another film; the session is as before.
+    pub fn take_film(&mut self) -> Result<(Film, Stats), FilmError> {
+        let empty = self.film.emptied()?;
         let film = std::mem::replace(&mut self.film, empty);
-        (film, std::mem::take(&mut self.stats))
+        Ok((film, std::mem::take(&mut self.stats)))
     }
 
     /// The film, without the session.
@@ -397,12 +405,4 @@ pub(super) fn path_context<'a>(
 fn selector(settings: &Settings, training: Option<&Training>) -> Box<dyn Selector> {
     let mean = training.map_or(0.0, |training| training.mean_luminance);
     settings.shadow_rays.selector(mean)
-}
-
-/// A pool of `threads` threads, or of as many as can be had.
-fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, SessionError> {
-    let build = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    build(threads)
-        .or_else(|_| build(1))
-        .map_err(|error| SessionError::Threads(error.to_string()))
 }

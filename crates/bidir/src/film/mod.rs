@@ -20,6 +20,7 @@ mod develop;
 mod filter;
 pub mod fixed;
 mod layers;
+mod memory;
 mod pass;
 mod passes;
 mod sensor;
@@ -28,6 +29,7 @@ mod settings;
 pub use develop::{LayerImage, Picture};
 pub use filter::{Filter, FilterKind};
 pub use layers::{Aov, AovKind, Channels, Layers, StrategyImages};
+pub use memory::filled;
 pub use pass::PassBuffer;
 pub use passes::{ParsePassSetError, PassSet};
 pub use sensor::Sensor;
@@ -80,7 +82,7 @@ impl Film {
 
     /// An empty film of a picture with `layers`.
     ///
-    /// Errors: the film would need more memory than `memory_limit` bytes.
+    /// Errors: the film would need more memory than `memory_limit` bytes, or than the system has.
     pub fn with_layers(
         settings: FilmSettings,
         layers: Layers,
@@ -93,7 +95,7 @@ impl Film {
                 limit: memory_limit,
             });
         }
-        let sums = vec![0; settings.crop.area() as usize * layers.sums()];
+        let sums = filled(settings.crop.area() as usize * layers.sums(), || 0)?;
         Ok(Self {
             settings,
             layers,
@@ -123,14 +125,21 @@ impl Film {
     }
 
     /// A film without passes, of the same geometry and layers.
-    #[must_use]
-    pub fn emptied(&self) -> Self {
-        Self {
-            settings: self.settings.clone(),
-            layers: self.layers.clone(),
-            passes: PassSet::default(),
-            sums: vec![0; self.sums.len()],
-        }
+    ///
+    /// Errors: the system does not have the memory.
+    pub fn emptied(&self) -> Result<Self, FilmError> {
+        let (settings, layers) = (self.settings.clone(), self.layers.clone());
+        Self::with_layers(settings, layers, u64::MAX)
+    }
+
+    /// A film with the same passes.
+    ///
+    /// Errors: the system does not have the memory.
+    pub fn try_clone(&self) -> Result<Self, FilmError> {
+        let mut copy = self.emptied()?;
+        copy.passes = self.passes.clone();
+        copy.sums.copy_from_slice(&self.sums);
+        Ok(copy)
     }
 
     /// What a film costs, the running pass included. Unit: bytes.
@@ -262,7 +271,7 @@ mod tests {
     fn both_layers_add_up_with_their_own_counts() {
         let mut film = film(2, 2, Filter::default());
         for pass in 0..2u8 {
-            let buffer = PassBuffer::new(film.settings(), film.layers());
+            let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
             buffer.set_camera_sample(3, [1.0, f32::from(pass), 0.0]);
             let place = SplatPlace {
                 raster: Vec2::new(1.5, 1.5),
@@ -294,7 +303,7 @@ mod tests {
         let values = [[1e-7, 3.0, 1e9], [0.1, 1e-9, 5.0], [7e5, 0.3, 2e-5]];
         let add = |order: [usize; 3]| {
             let mut film = film(1, 1, Filter::default());
-            let buffer = PassBuffer::new(film.settings(), film.layers());
+            let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
             let place = SplatPlace {
                 raster: Vec2::splat(0.5),
                 u: Vec2::splat(0.5),

@@ -6,7 +6,8 @@
 
 use super::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
 use super::layers::PART_SUMS;
-use super::{FilmSettings, Layers, SplatPlace};
+use super::memory::filled;
+use super::{FilmError, FilmSettings, Layers, SplatPlace};
 use crate::spectrum::Rgb;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -35,11 +36,6 @@ fn bounded(value: f32) -> f32 {
     } else {
         value.clamp(-LARGEST_CONTRIBUTION, LARGEST_CONTRIBUTION)
     }
-}
-
-/// `count` cells of zero.
-fn zeros<T: Default>(count: usize) -> Vec<T> {
-    std::iter::repeat_with(T::default).take(count).collect()
 }
 
 fn store(cells: &[AtomicU32; 3], value: Rgb) {
@@ -77,17 +73,19 @@ impl PassBuffer {
     }
 
     /// An empty pass of a film.
-    pub fn new(settings: &FilmSettings, layers: &Layers) -> Self {
+    ///
+    /// Errors: the system does not have the memory.
+    pub fn new(settings: &FilmSettings, layers: &Layers) -> Result<Self, FilmError> {
         let pixels = settings.crop.area() as usize;
         let [features, parts] = [layers.features(), layers.parts()];
-        Self {
-            camera: zeros(pixels),
-            light: zeros(pixels),
-            features: zeros(pixels * features),
-            part_camera: zeros(pixels * parts),
-            part_light: zeros(pixels * parts),
+        Ok(Self {
+            camera: filled(pixels, Default::default)?,
+            light: filled(pixels, Default::default)?,
+            features: filled(pixels * features, Default::default)?,
+            part_camera: filled(pixels * parts, Default::default)?,
+            part_light: filled(pixels * parts, Default::default)?,
             layers: [features, parts],
-        }
+        })
     }
 
     /// Empties the buffer for the next pass.

@@ -116,4 +116,10 @@ pub enum FilmError {
         /// Bytes allowed.
         limit: u64,
     },
+    /// The system refused the memory.
+    #[error("the system does not have the {bytes} bytes of memory that it needs")]
+    NoMemory {
+        /// Bytes that were asked for.
+        bytes: u64,
+    },
 }

@@ -162,7 +162,7 @@ fn part(session: &mut Session<'_>, passes: std::ops::Range<u64>) -> Film {
     while session.next_pass() < passes.end {
         session.step(&());
     }
-    session.take_film().0
+    session.take_film().expect("the film is small").0
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn check_replays(integrator: IntegratorKind) {
     let film = scene.film();
     let mut again = Film::new(film.clone(), u64::MAX).expect("the film is small");
     for pass in 0..2 {
-        let buffer = PassBuffer::new(film, again.layers());
+        let buffer = PassBuffer::new(film, again.layers()).expect("the film is small");
         for i in 0..film.crop.area() as usize {
             let replay = session
                 .replay(film.crop.pixel(i), pass)

@@ -1,5 +1,6 @@
 //! How many threads there are.
 
+use bidir::driver::Threads;
 use clap::Args;
 
 /// The flag of all commands that compute for long. What 0 means to some of them, they say
@@ -8,7 +9,9 @@ use clap::Args;
 pub(crate) struct ThreadsArgs {
     /// Threads [default: one per processor].
     ///
-    /// 0 is the default. The number never changes the image. pbrt's spelling --nthreads is accepted.
+    /// 0 is the default. More than 4 per processor are not used; the command warns and goes on. Where the
+    /// system starts fewer, the command warns and goes on with those, or with the calling thread alone. The
+    /// number never changes the image. pbrt's spelling --nthreads is accepted.
     #[arg(
         id = "threads",
         long = "threads",
@@ -17,6 +20,6 @@ pub(crate) struct ThreadsArgs {
         value_name = "N"
     )]
     #[arg(default_value_t = 0, hide_default_value = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(..=1024))]
+    #[arg(value_parser = clap::value_parser!(u16).range(..=Threads::MOST as i64))]
     pub(crate) count: u16,
 }

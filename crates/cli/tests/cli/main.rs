@@ -13,6 +13,7 @@ mod film;
 mod help;
 mod info;
 mod layers;
+mod means;
 mod outputs;
 mod progress;
 #[cfg(unix)]

@@ -58,6 +58,8 @@ const END: &[u8; 8] = b"BIDIREND";
 const VERSION: u32 = 3;
 /// Bytes of a film: what the memory of a render has room for.
 const LARGEST_FILM: u64 = Resources::DEFAULT_FILM_MEMORY;
+/// Blocks that are packed at once: no more of them are in memory twice.
+const AT_ONCE: usize = 64;
 /// Bytes before the header.
 const PREAMBLE: usize = 16;
 
@@ -77,12 +79,12 @@ pub struct FilmFile {
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
-    file::replace(path, &encode(header, film))
+    file::replace(path, &encode(header, film)?)
 }
 
 /// The same, and the file that was there is called `previous` afterwards.
 pub fn write_keeping(path: &Path, previous: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
-    file::replace_keeping(path, previous, &encode(header, film))
+    file::replace_keeping(path, previous, &encode(header, film)?)
 }
 
 /// True where a file begins as film files do, damaged or not.
@@ -101,21 +103,38 @@ pub fn read(path: &Path) -> Result<FilmFile> {
 }
 
 /// The bytes of a film file; see [`write()`].
-pub fn encode(header: &FilmHeader, film: &Film) -> Vec<u8> {
+///
+/// Errors: the system does not have the memory.
+pub fn encode(header: &FilmHeader, film: &Film) -> Result<Vec<u8>> {
     let json = header.of(film).to_json();
     let numbers = film.layers().sums();
-    let mut bytes = Vec::with_capacity(PREAMBLE + json.len() + 7 * film.sums().len());
+    let mut bytes = Vec::new();
+    reserve(&mut bytes, PREAMBLE + json.len() + 7 * film.sums().len())?;
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&VERSION.to_le_bytes());
     bytes.extend_from_slice(&(json.len() as u32).to_le_bytes());
     bytes.extend_from_slice(json.as_bytes());
     let checksum = block::checksum(&bytes);
     bytes.extend_from_slice(&checksum.to_le_bytes());
-    let blocks = film.sums().par_chunks(block::PIXELS * numbers);
-    let blocks: Vec<_> = blocks.map(|sums| block::write(sums, numbers)).collect();
-    bytes.extend(blocks.into_iter().flatten());
+    for sums in film.sums().chunks(block::PIXELS * numbers * AT_ONCE) {
+        let blocks = sums.par_chunks(block::PIXELS * numbers);
+        let blocks: Vec<_> = blocks.map(|sums| block::write(sums, numbers)).collect();
+        for block in blocks {
+            reserve(&mut bytes, block.len())?;
+            bytes.extend(block);
+        }
+    }
+    reserve(&mut bytes, END.len())?;
     bytes.extend_from_slice(END);
-    bytes
+    Ok(bytes)
+}
+
+/// Takes memory for so many more bytes.
+fn reserve(bytes: &mut Vec<u8>, more: usize) -> Result<()> {
+    bytes.try_reserve(more).map_err(|_| {
+        let count = bytes.len().saturating_add(more);
+        Error::memory("the film file", count as u64)
+    })
 }
 
 /// Decodes a film file in memory; see [`read`].
@@ -163,7 +182,10 @@ fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> 
     if blocks.iter().any(|packed| packed.bytes.len() < least) {
         return Err(broken("damaged: it is shorter than any film of its size"));
     }
-    let mut sums = vec![0; count];
+    let mut sums = bidir::film::filled(count, || 0).map_err(|_| {
+        let bytes = count.saturating_mul(size_of::<i128>());
+        Error::memory("the film", bytes as u64)
+    })?;
     let unpacked = sums.par_chunks_mut(block::PIXELS * numbers).zip(&blocks);
     let unpacked = unpacked.map(|(sums, packed)| packed.read(numbers, sums));
     let unpacked: Vec<_> = unpacked.collect();

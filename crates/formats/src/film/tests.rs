@@ -10,7 +10,7 @@ fn film(first_pass: u64) -> Film {
     let layers = Layers::new(&[Aov::Depth], &groups, 2).with_raw();
     let mut film = Film::with_layers(settings, layers, u64::MAX).unwrap();
     for pass in first_pass..first_pass + 2 {
-        let buffer = PassBuffer::new(film.settings(), film.layers());
+        let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
         for i in 0..9000 {
             let value = (i as f32 + pass as f32) * 0.37 - 900.0;
             buffer.set_camera_sample(i, [value, value * 1e-6, value * 1e6]);
@@ -42,7 +42,7 @@ fn header() -> FilmHeader {
 
 fn bytes() -> Vec<u8> {
     let film = film(0);
-    encode(&header(), &film)
+    encode(&header(), &film).unwrap()
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn no_memory_is_taken_for_pixels_that_the_file_has_no_bytes_for() {
     // A film of nothing packs best.
     let settings = FilmSettings::new([640, 480], Filter::default());
     let black = Film::with_layers(settings, Layers::default(), u64::MAX).unwrap();
-    let again = decode(&encode(&header(), &black)).unwrap();
+    let again = decode(&encode(&header(), &black).unwrap()).unwrap();
     assert!(again.film == black);
 }
 

@@ -7,6 +7,7 @@ use super::settings::{Changes, named, no_effect};
 use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
+use bidir::driver::Threads;
 use bidir::integrator::IntegratorKind;
 use formats::film::has_influence;
 use std::path::{Component, Path, PathBuf};
@@ -76,7 +77,7 @@ impl Experiment {
             description: or(text_of(&mut top, "description")?, ""),
             size: size(&mut top)?,
             seeds: seeds(&mut top)?,
-            threads: whole(&mut top, "threads", 1)?.unwrap_or(0).min(1024) as usize,
+            threads: threads(&mut top)?,
             metrics: metrics(&mut top)?,
             scenes: all(&mut top, "scene", scene)?,
             methods: all(&mut top, "method", method)?,
@@ -131,6 +132,18 @@ fn text_of(section: &mut Section<'_>, key: &'static str) -> Result<Option<String
 fn whole(section: &mut Section<'_>, key: &'static str, least: u64) -> Result<Option<u64>> {
     let entry = section.take(key);
     entry.map(|entry| entry.whole(least)).transpose()
+}
+
+/// The threads of each render. 0: nothing is said of them.
+fn threads(top: &mut Section<'_>) -> Result<usize> {
+    let Some(entry) = top.take("threads") else {
+        return Ok(0);
+    };
+    let count = entry.whole(1).map(|count| count as usize).ok();
+    let most = Threads::MOST;
+    count
+        .filter(|count| *count <= most)
+        .ok_or_else(|| entry.fault(format!("expected a whole number from 1 to {most}")))
 }
 
 /// Width and height, written `64x48`.

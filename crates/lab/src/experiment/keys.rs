@@ -46,7 +46,7 @@ const KEYS: &[Key] = &[
     key("", "size", "`\"WIDTHxHEIGHT\"`", "each scene's", "Size of all images. Unit: pixels."),
     key("", "seeds", "whole number from 1", "10", "Number of seeds."),
     key("", "first-seed", "whole number", "0", "The first seed; the others follow it."),
-    key("", "threads", "whole number from 1", "one per processor", "Threads of each render."),
+    key("", "threads", "whole number from 1 to 1024", "one per processor", "Threads of each render, at most 4 per processor."),
     key("", "metrics", "list of [metrics](metrics.md)", "`relmse`, `relmse_trim`", "Metrics in addition to `rmse`."),
     key("", "pyramid", "name of a method", "none", "Renders each strategy (s, t) of this method for the report."),
     key("", "pyramid-spp", "whole number from 2", "64", "Samples per pixel of these images."),

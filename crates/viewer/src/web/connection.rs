@@ -1,28 +1,33 @@
-//! Connections: how many there are at once, and how long a peer may do nothing.
+//! Connections: how they are answered, and how long a peer may do nothing.
 
+use super::places::{Place, Places};
 use super::{Site, routes};
+use axum::http::StatusCode;
+use axum::response::Response;
 use hyper::server::conn::http1;
+use hyper::service::{Service, service_fn};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::future::Future;
-use std::io;
+use std::io::{self, Write};
 use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use tokio::sync::watch;
 use tokio::time::{Sleep, sleep};
 
-/// Connections at once; others wait until one of them is closed.
-const CONNECTIONS: usize = 256;
 /// The time that a peer has for the head of a request, from the end of the one before.
-const HEAD_TIME: Duration = Duration::from_secs(30);
+const HEAD_TIME: Duration = Duration::from_secs(5);
 /// The time that a peer may take nothing of what it is sent.
 const PATIENCE: Duration = Duration::from_secs(10);
 /// The largest head of a request. Unit: bytes.
 const LARGEST_HEAD: usize = 16 << 10;
+/// The answer to a peer that gets no place.
+const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain\r\n\
+    Content-Length: 30\r\nConnection: close\r\n\r\nthere are too many connections";
 /// The time until it is tried again where the system gives no connection, as with too many files.
 const RETRY: Duration = Duration::from_millis(100);
 
@@ -42,44 +47,57 @@ pub(super) async fn serve(
         }
     };
     let router = routes::router(site);
-    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let places = Arc::new(Places::default());
     loop {
         tokio::select! {
-            accepted = accept(&listener, &places) => match accepted {
-                Ok((stream, place)) => {
-                    tokio::spawn(converse(stream, router.clone(), place));
+            accepted = listener.accept() => match accepted {
+                Ok((stream, peer)) => match places.take(peer.ip()) {
+                    Some(place) => drop(tokio::spawn(converse(stream, router.clone(), place))),
+                    None => turn_away(stream),
+                },
+                Err(_) => {
+                    places.free_one();
+                    sleep(RETRY).await;
                 }
-                Err(_) => sleep(RETRY).await,
             },
             _ = stopped.changed() => return,
         }
     }
 }
 
-/// The next connection, when there is a place for it.
-async fn accept(
-    listener: &TcpListener,
-    places: &Arc<Semaphore>,
-) -> io::Result<(TcpStream, OwnedSemaphorePermit)> {
-    let place = Arc::clone(places).acquire_owned().await;
-    let place = place.map_err(io::Error::other)?;
-    let (stream, _) = listener.accept().await?;
-    Ok((stream, place))
+/// Says that there is no place. A new socket takes so little at once; else it is closed without a word.
+fn turn_away(stream: TcpStream) {
+    let _ = stream.into_std().and_then(|mut stream| stream.write(FULL));
 }
 
-/// Answers the requests of a connection.
-async fn converse(stream: TcpStream, router: axum::Router, place: OwnedSemaphorePermit) {
+/// Answers the requests of a connection, until it has to leave.
+async fn converse(stream: TcpStream, router: axum::Router, place: Place) {
     // Without it a small answer may wait; it is no reason to give none.
     let _ = stream.set_nodelay(true);
-    let stream = TokioIo::new(Patient::new(stream, place));
+    let (leave, place) = (place.leave(), Arc::new(place));
+    let router = TowerToHyperService::new(router);
+    let of_requests = Arc::clone(&place);
+    let service = service_fn(move |request| {
+        let (answer, place) = (router.call(request), Arc::clone(&of_requests));
+        async move {
+            place.set_answering(true);
+            let answer = answer.await;
+            let is_upgrade = |answer: &Response| answer.status() == StatusCode::SWITCHING_PROTOCOLS;
+            place.set_answering(answer.as_ref().is_ok_and(is_upgrade));
+            answer
+        }
+    });
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(HEAD_TIME)
         .max_buf_size(LARGEST_HEAD)
-        .serve_connection(stream, TowerToHyperService::new(router))
+        .serve_connection(TokioIo::new(Patient::new(stream, place)), service)
         .with_upgrades();
-    // What fails here is the peer's connection, which is closed by that.
-    let _ = connection.await;
+    tokio::select! {
+        // What fails here is the peer's connection, which is closed by that.
+        _ = connection => {}
+        () = leave.notified() => {}
+    }
 }
 
 /// A stream whose writes fail when the peer takes nothing for a while.
@@ -87,16 +105,16 @@ struct Patient {
     stream: TcpStream,
     /// When the patience ends. None: the peer is not waited for.
     deadline: Option<Pin<Box<Sleep>>>,
-    /// The place is free again when the stream is gone, which may be long after an upgrade.
-    _place: OwnedSemaphorePermit,
+    /// It is free again when the stream is gone, which may be long after an upgrade.
+    place: Arc<Place>,
 }
 
 impl Patient {
-    fn new(stream: TcpStream, place: OwnedSemaphorePermit) -> Self {
+    fn new(stream: TcpStream, place: Arc<Place>) -> Self {
         Self {
             stream,
             deadline: None,
-            _place: place,
+            place,
         }
     }
 
@@ -107,12 +125,15 @@ impl Patient {
         written: Poll<io::Result<T>>,
     ) -> Poll<io::Result<T>> {
         if written.is_ready() {
-            self.deadline = None;
+            if self.deadline.take().is_some() {
+                self.place.set_sending(false);
+            }
             return written;
         }
-        let deadline = self
-            .deadline
-            .get_or_insert_with(|| Box::pin(sleep(PATIENCE)));
+        let deadline = self.deadline.get_or_insert_with(|| {
+            self.place.set_sending(true);
+            Box::pin(sleep(PATIENCE))
+        });
         let late = || Err(io::ErrorKind::TimedOut.into());
         deadline.as_mut().poll(context).map(|()| late())
     }
@@ -172,8 +193,8 @@ mod tests {
             .await
             .unwrap();
         let (stream, _) = listener.accept().await.unwrap();
-        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
-        let mut stream = Patient::new(stream, place);
+        let place = Arc::new(Places::default()).take(peer.peer_addr().unwrap().ip());
+        let mut stream = Patient::new(stream, place.unwrap().into());
         let start = tokio::time::Instant::now();
         let lot = vec![0; 1 << 26];
         let error = stream.write_all(&lot).await.unwrap_err();
@@ -190,8 +211,8 @@ mod tests {
             .await
             .unwrap();
         let (stream, _) = listener.accept().await.unwrap();
-        let place = Arc::new(Semaphore::new(1)).acquire_owned().await.unwrap();
-        let mut stream = Patient::new(stream, place);
+        let place = Arc::new(Places::default()).take(peer.peer_addr().unwrap().ip());
+        let mut stream = Patient::new(stream, place.unwrap().into());
         let writing = tokio::spawn(async move { stream.write_all(&vec![7; 1 << 24]).await });
         let mut taken = Vec::new();
         tokio::io::AsyncReadExt::read_to_end(&mut peer, &mut taken)

@@ -6,7 +6,7 @@ use super::inspect::check_strategies;
 use super::query::{Asked, OfLane};
 use crate::status::LaneId;
 use axum::extract::State;
-use axum::http::header;
+use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use bidir::path::Strategy;
 use formats::film::{Developed, metadata};
@@ -15,7 +15,8 @@ use lab::image::Pixels;
 use lab::pyramid::{self, Kind};
 use serde::Deserialize;
 use std::sync::Arc;
-use tokio::task::spawn_blocking;
+use std::thread;
+use tokio::sync::oneshot;
 
 /// The most that a tile is made brighter or darker. Unit: stops.
 const MOST_STOPS: f32 = 40.0;
@@ -26,7 +27,7 @@ pub(super) async fn png(
     Asked(OfLane { lane }): Asked<OfLane>,
 ) -> Result<Response, Refusal> {
     let shown = site.frame(lane).await?;
-    encode("image/png", move || {
+    encode(&site, "image/png", move || {
         let crop = shown.frame.film.crop;
         encode_png([crop.width(), crop.height()], &shown.frame.pixels)
     })
@@ -57,7 +58,7 @@ pub(super) async fn exr(
     let empty = || Refusal::now("no pass is done yet");
     let (developed, film, header) = developed.await?.ok_or_else(empty)?;
     let name = file_name(&header.scene_name());
-    let mut response = encode("image/x-exr", move || {
+    let mut response = encode(&site, "image/x-exr", move || {
         developed.encode_exr(&film, &metadata(&header))
     })
     .await?;
@@ -134,7 +135,8 @@ pub(super) async fn strategies(
         image.ok_or_else(|| Refusal::query(format!("there is no image of {strategy}")))
     });
     let pixels = pixels.await??;
-    encode("image/png", move || encode_pixels(pixels, asked.exposure)).await
+    let encode_pixels = move || encode_pixels(pixels, asked.exposure);
+    encode(&site, "image/png", encode_pixels).await
 }
 
 /// A picture, so many stops brighter.
@@ -146,12 +148,26 @@ fn encode_pixels(mut pixels: Pixels, stops: f32) -> formats::Result<Vec<u8>> {
     encode_png(pixels.size.map(|side| side as u32), &pixels.data)
 }
 
-/// An answer of this type that takes a while to make.
+/// An answer of this type that takes a while to make, in a thread of its own.
 async fn encode(
+    site: &Site,
     kind: &'static str,
     encode: impl FnOnce() -> formats::Result<Vec<u8>> + Send + 'static,
 ) -> Result<Response, Refusal> {
-    let encoded = spawn_blocking(encode).await;
+    let encoder = Arc::clone(&site.encoders).acquire_owned().await;
+    let encoder = encoder.map_err(|error| Refusal::bug(error.to_string()))?;
+    let (sender, encoded) = oneshot::channel();
+    let encode = move || {
+        // Nobody waits for it where the client has gone.
+        let _ = sender.send(encode());
+        drop(encoder);
+    };
+    let started = thread::Builder::new().name("encoder".into()).spawn(encode);
+    started.map_err(|error| {
+        let message = format!("the system starts no thread for the image: {error}");
+        Refusal::new(StatusCode::SERVICE_UNAVAILABLE, message)
+    })?;
+    let encoded = encoded.await;
     let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
     let encoded = encoded.map_err(|error| Refusal::bug(error.to_string()))?;
     Ok(([(header::CONTENT_TYPE, kind)], encoded).into_response())

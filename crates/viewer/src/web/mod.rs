@@ -12,6 +12,7 @@ mod error;
 mod images;
 mod inspect;
 mod live;
+mod places;
 mod query;
 mod routes;
 
@@ -34,6 +35,8 @@ pub(crate) struct Site {
     live: live::Clients,
     /// Answers at once that take the memory of a film.
     large: Semaphore,
+    /// Images that are encoded at once.
+    encoders: Arc<Semaphore>,
 }
 
 /// A server that runs.
@@ -55,23 +58,18 @@ impl Server {
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
-            .max_blocking_threads(ENCODERS)
-            .thread_name("encoder")
             .build()?;
         let site = Arc::new(Site {
             link,
             access,
             live: live::Clients::default(),
             large: Semaphore::new(ENCODERS),
+            encoders: Arc::new(Semaphore::new(ENCODERS)),
         });
         let (stop, stopped) = watch::channel(false);
         let thread = std::thread::Builder::new()
             .name("server".to_owned())
-            .spawn(move || {
-                runtime.block_on(connection::serve(listener, &site, stopped));
-                // What still encodes is not waited for.
-                runtime.shutdown_background();
-            })?;
+            .spawn(move || runtime.block_on(connection::serve(listener, &site, stopped)))?;
         Ok(Self {
             thread: Some(thread),
             url,

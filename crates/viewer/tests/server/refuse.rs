@@ -1,4 +1,6 @@
 use crate::common::Place;
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
 use tungstenite::Message;
 use tungstenite::protocol::frame::Frame;
 use tungstenite::protocol::frame::coding::{Data, OpCode};
@@ -167,6 +169,29 @@ fn what_is_no_command_closes_the_conversation() {
     // The render took no harm.
     let passes = crate::common::number(&place.json("/status")["lanes"][0]["passes"]);
     place.wait_for_passes(passes + 1);
+    place.close();
+}
+
+/// Whether the server has closed a connection.
+fn is_closed(mut stream: &TcpStream) -> bool {
+    stream.set_nonblocking(true).unwrap();
+    let read = stream.read(&mut [0]);
+    !matches!(read, Err(error) if error.kind() == ErrorKind::WouldBlock)
+}
+
+#[test]
+fn connections_that_only_wait_make_room() {
+    let place = Place::new();
+    let mut watching = place.client();
+    let connect = |_| TcpStream::connect(place.address).unwrap();
+    let idle: Vec<_> = (0..150).map(connect).collect();
+    for mut stream in idle.iter().step_by(2) {
+        stream.write_all(b"GET /status HTTP/1.1\r\n").unwrap();
+    }
+    assert_eq!(place.get("/status").code, 200);
+    // With the one that watches and the one that asked, 24 more than one address may have.
+    assert!(idle[..23].iter().all(is_closed));
+    watching.frame(|frame| frame.passes > 0);
     place.close();
 }
 

@@ -91,7 +91,7 @@ pub(crate) fn replicates_of_each<const N: usize>(
             for _ in 0..passes {
                 session.step(&());
             }
-            let (film, _) = session.take_film();
+            let (film, _) = session.take_film().expect("the film is small");
             for (replicates, pixels) in of_each.iter_mut().zip(develop(&film)) {
                 let picture = pixels.iter().map(|pixel| pixel.map(f64::from));
                 replicates.pictures.push(picture.collect());

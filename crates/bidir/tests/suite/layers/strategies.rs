@@ -78,7 +78,7 @@ fn passes(scene: &Scene, settings: &Settings, count: u64) -> Vec<Film> {
     let pass = |pass| {
         session.start_at(pass);
         assert!(session.step(&()));
-        session.take_film().0
+        session.take_film().expect("the film is small").0
     };
     (0..count).map(pass).collect()
 }

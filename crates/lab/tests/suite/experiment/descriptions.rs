@@ -59,6 +59,20 @@ fn wrong_values_are_refused_with_their_place() {
         ":13:11: expected a whole number of at least 1",
         None,
     );
+    for threads in [
+        "0",
+        "1025",
+        "4294967296",
+        "9223372036854775807",
+        "-1",
+        "2.0",
+    ] {
+        check(
+            &all.replace("threads = 1", &format!("threads = {threads}")),
+            ":3:11: expected a whole number from 1 to 1024",
+            None,
+        );
+    }
     check(
         &all.replace("samples = 2", "samples = 2\nrays = 3"),
         ":14:8: this budget has both `samples` and `rays`",
