@@ -267,11 +267,12 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result
     let stem = Path::new(&file).file_stem().unwrap_or_default();
     let stem = stem.to_string_lossy();
     let name = or(text_of(section, "name")?, &stem);
+    let size = size(section)?;
     let (reference, place) = reference(section, folder, defaults)?;
     Ok(SceneSpec {
         name,
         path: joined(folder, &file),
-        size: size(section)?,
+        size,
         reference,
         file,
         places: [Some(named.at()), place],

@@ -365,6 +365,7 @@ mod tests {
         for (scene, own) in written.scenes.iter_mut().zip(&own.scenes) {
             assert_eq!(scene.path.file_name(), own.path.file_name());
             (scene.path, scene.file) = (own.path.clone(), own.file.clone());
+            scene.places = own.places.clone();
             // It may say more than what decides the expectation.
             if let ReferenceSpec::Make { changes, .. } = &mut scene.reference {
                 assert_eq!(changes.strategies, setting().strategies);
