@@ -111,7 +111,7 @@ fn names_of_an_experiment_are_shown_and_not_obeyed() {
         &description.replace("file = \"room", "file = \"\\u001b"),
     );
     run(&place, "experiment wrong.toml -o out")
-        .expect(3)
+        .expect(4)
         .says(r"\u{1b}.pbrt");
 }
 
