@@ -36,7 +36,7 @@ pub(crate) struct Layout {
 
 impl Layout {
     /// The map from the world to the space that is rendered in.
-    pub(crate) fn from_world(&self) -> DAffine3 {
+    pub(crate) fn render_from_world(&self) -> DAffine3 {
         self.space.from_world()
     }
 
@@ -179,7 +179,9 @@ mod tests {
 
     fn survey(eye: DVec3, points: &[DVec3]) -> Survey {
         let mut survey = Survey::new(Some(eye));
-        points.iter().for_each(|&p| survey.include(p));
+        for &p in points {
+            survey.include(p);
+        }
         survey
     }
 

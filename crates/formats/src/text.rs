@@ -84,7 +84,7 @@ mod tests {
         check("a\r\n\tb", r"a\r\n\tb", "a\\r\n\tb");
         check("a\u{2028}\u{61c}", r"a\u{2028}\u{61c}", r"a\u{2028}\u{61c}");
         for c in (0..=0x9f).filter_map(char::from_u32) {
-            assert_eq!(is_obeyed(c), c < ' ' || c > '~', "{c:?}");
+            assert_eq!(is_obeyed(c), !(' '..='~').contains(&c), "{c:?}");
         }
     }
 }

@@ -16,7 +16,9 @@ pub(crate) enum Seal {
 /// SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digits = Sha256::digest(bytes);
-    digits.iter().map(|byte| format!("{byte:02x}")).collect()
+    let digit = |nibble: u8| char::from_digit(nibble.into(), 16);
+    let pairs = digits.iter().flat_map(|byte| [byte >> 4, byte & 15]);
+    pairs.filter_map(digit).collect()
 }
 
 /// The name of the member, as JSON has it.

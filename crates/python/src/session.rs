@@ -103,7 +103,7 @@ impl Session {
         let session = session.map_err(|error| {
             let class = match error {
                 driver::SessionError::NoPath { .. } => "SettingsError",
-                _ => "RenderError",
+                driver::SessionError::Film(_) => "RenderError",
             };
             raise(py, class, &error.to_string())
         })?;

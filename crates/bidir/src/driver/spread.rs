@@ -75,20 +75,17 @@ mod tests {
             let groups = groups(&crop);
             assert!(!groups.contains(&u64::MAX), "every pixel has a place");
             let group = |x: i64, y: i64| crop.index(x, y).map(|i| groups[i]);
-            for i in 0..groups.len() {
+            for (i, &own) in groups.iter().enumerate() {
                 let [x, y] = crop.pixel(i).map(i64::from);
                 for (dx, dy) in [-2, -1, 0, 1, 2]
                     .into_iter()
                     .flat_map(|dx| [(dx, 1), (dx, 2)])
                 {
-                    assert_ne!(
-                        group(x + dx, y + dy),
-                        Some(groups[i]),
-                        "{crop:?} {x} {y} {dx} {dy}"
-                    );
+                    let other = group(x + dx, y + dy);
+                    assert_ne!(other, Some(own), "{crop:?} {x} {y} {dx} {dy}");
                 }
                 for dx in [1, 2] {
-                    assert_ne!(group(x + dx, y), Some(groups[i]), "{crop:?} {x} {y} {dx}");
+                    assert_ne!(group(x + dx, y), Some(own), "{crop:?} {x} {y} {dx}");
                 }
             }
         }

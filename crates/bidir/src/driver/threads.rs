@@ -204,12 +204,11 @@ impl Workers {
 
     /// Runs `work` with its parallel iterators on these threads.
     pub(super) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => {
-                stand_alone();
-                work()
-            }
+        if let Some(pool) = &self.pool {
+            pool.install(work)
+        } else {
+            stand_alone();
+            work()
         }
     }
 

@@ -68,7 +68,8 @@ mod tests {
         let p = space.from_world().transform_point3(world);
         assert_eq!(p, DVec3::new(8.0, -4.0, 1.0));
         assert_eq!(space.world_point(p.as_vec3()), world);
-        assert_eq!(space.world_length(8.0), 2.0);
-        assert_eq!(space.intensity(1.0) / (8.0 * 8.0), 1.0 / (2.0 * 2.0));
+        assert!((space.world_length(8.0) - 2.0).abs() < 1e-6);
+        let irradiance = space.intensity(1.0) / (8.0 * 8.0);
+        assert!((irradiance - 1.0 / (2.0 * 2.0)).abs() < 1e-6);
     }
 }

@@ -108,7 +108,7 @@ impl<'a> Assembly<'a> {
 
     /// Reads everything and puts it in its place.
     fn gather(context: &mut Context<'_>, document: &'a Document) -> Result<Self, GltfFault> {
-        let nodes = Nodes::of(document, context.layout.from_world())?;
+        let nodes = Nodes::of(document, context.layout.render_from_world())?;
         let view = view::find(context, document, &nodes)?;
         let film = view.film(context)?;
         let resolution = film.resolution;
@@ -221,7 +221,7 @@ impl<'a> Assembly<'a> {
         index: usize,
         place: &Place,
     ) -> Result<Vec<DAffine3>, GltfFault> {
-        let whole = context.layout.from_world();
+        let whole = context.layout.render_from_world();
         let render_from_node = self.nodes.render_from_node[index].unwrap_or(whole);
         let local = mesh::places(self.document, &self.document.root.nodes[index], place)?;
         let mut places: Vec<_> = local
@@ -312,7 +312,7 @@ impl<'a> Assembly<'a> {
         let place = place.key("skin");
         let render_from_node = &self.nodes.render_from_node;
         let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
-        let whole = context.layout.from_world();
+        let whole = context.layout.render_from_world();
         for (surface, material, place) in self.surfaces(context, mesh, weights)? {
             let user = (&material.uv, &mut self.survey);
             let shape = if surface.joints.is_empty() {

@@ -309,16 +309,16 @@ fn reference(
     let strategies = section.take("reference-strategies");
     let cross_check = section.take_renamed("reference-cross-check", "reference-witness")?;
     match (image, spp) {
-        (Some(image), None) => match strategies.or(cross_check) {
-            Some(entry) => Err(entry.fault_with(
-                "an existing reference cannot be changed".to_owned(),
-                "leave this out, or have the reference made with `reference-spp`".to_owned(),
-            )),
-            None => {
-                let there = ReferenceSpec::There(folder.join(image.text()?));
-                Ok((there, Some(image.at())))
+        (Some(image), None) => {
+            if let Some(entry) = strategies.or(cross_check) {
+                return Err(entry.fault_with(
+                    "an existing reference cannot be changed".to_owned(),
+                    "leave this out, or have the reference made with `reference-spp`".to_owned(),
+                ));
             }
-        },
+            let there = ReferenceSpec::There(folder.join(image.text()?));
+            Ok((there, Some(image.at())))
+        }
         (None, Some(spp)) => {
             let made = ReferenceSpec::Make {
                 spp: spp.whole(1)?,

@@ -342,7 +342,7 @@ mod tests {
 
     #[test]
     fn records_of_before_are_read_and_get_checksums() {
-        let unsealed: String = written()
+        let unsealed: Vec<_> = written()
             .lines()
             .map(|line| {
                 let mut line: Value = serde_json::from_str(line).unwrap();
@@ -354,7 +354,7 @@ mod tests {
                 format!("{line}\n")
             })
             .collect();
-        let journal = read(unsealed.as_bytes()).unwrap();
+        let journal = read(unsealed.concat().as_bytes()).unwrap();
         assert!(!journal.is_sealed && journal.records == [record(1), record(2)]);
         let sealed = read(journal.text.as_bytes()).unwrap();
         assert!(sealed.is_sealed && sealed.records == journal.records);

@@ -50,15 +50,14 @@ pub(super) async fn serve(
     let places = Arc::new(Places::default());
     loop {
         tokio::select! {
-            accepted = listener.accept() => match accepted {
-                Ok((stream, peer)) => match places.take(peer.ip()) {
+            accepted = listener.accept() => if let Ok((stream, peer)) = accepted {
+                match places.take(peer.ip()) {
                     Some(place) => drop(tokio::spawn(converse(stream, router.clone(), place))),
                     None => turn_away(stream),
-                },
-                Err(_) => {
-                    places.free_one();
-                    sleep(RETRY).await;
                 }
+            } else {
+                places.free_one();
+                sleep(RETRY).await;
             },
             _ = stopped.changed() => return,
         }

@@ -149,7 +149,7 @@ fn peer(address: IpAddr) -> IpAddr {
             let network = u128::from(address) >> 64 << 64;
             Ipv6Addr::from(network).into()
         }
-        address => address,
+        address @ IpAddr::V4(_) => address,
     }
 }
 
@@ -204,7 +204,9 @@ mod tests {
     fn busy_connections_stay() {
         let places = Arc::new(Places::default());
         let held = fill(&places, A, SHARE);
-        held.iter().for_each(|place| place.set_answering(true));
+        for place in &held {
+            place.set_answering(true);
+        }
         assert!(places.take(A).is_none());
         assert!(places.take(B).is_some());
         places.free_one();

@@ -72,7 +72,7 @@ impl<'a> Context<'a> {
 
     /// The map from the space of something in the world, at the first time, to where it goes.
     pub(super) fn place(&self, world_from_local: &Transforms) -> DAffine3 {
-        self.layout.from_world() * world_from_local.start
+        self.layout.render_from_world() * world_from_local.start
     }
 
     /// Reads a mesh, which `span` names.

@@ -106,7 +106,7 @@ fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, 
     shape::check_point(span, world)?;
     Ok(context
         .layout
-        .from_world()
+        .render_from_world()
         .transform_point3(world)
         .as_vec3())
 }

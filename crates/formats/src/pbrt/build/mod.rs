@@ -250,7 +250,7 @@ impl<'a> Assembly<'a> {
         let mut assembly = Self {
             builder,
             settings,
-            world_from_render: context.layout.from_world().inverse(),
+            world_from_render: context.layout.render_from_world().inverse(),
             survey: Survey::new(Some(lens.eye)),
             objects: Vec::new(),
             vertex_errors: VertexErrors::default(),
@@ -264,7 +264,7 @@ impl<'a> Assembly<'a> {
             summary: Summary::default(),
         };
         assembly.add_materials(context)?;
-        let from_world = [context.layout.from_world()];
+        let from_world = [context.layout.render_from_world()];
         for shape in &description.shapes {
             assembly.add_shape(context, shape, Destination::World(&from_world))?;
         }

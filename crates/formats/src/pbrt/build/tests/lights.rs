@@ -120,7 +120,9 @@ fn any_number_of_lights_names_its_group_in_one_block() {
     assert_eq!(scene.group_names().len(), 100);
     assert_eq!((scene.light_group(0), scene.light_group(99)), (0, 99));
     // Parameters with names of their own are limited.
-    let odd: String = (0..65).map(|i| format!("\"float p{i}\" 1 ")).collect();
+    let odd = (0..65).fold(String::new(), |text, i| {
+        text + &format!("\"float p{i}\" 1 ")
+    });
     let text = format!("WorldBegin\nAttribute \"light\" {odd}");
     let error = crate::pbrt::parse_text("s.pbrt", &text).unwrap_err();
     assert_eq!((error.line(), error.kind()), (Some(2), ErrorKind::Limit));
