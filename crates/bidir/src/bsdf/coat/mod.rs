@@ -10,7 +10,7 @@
 //! belongs to one direction, so f is symmetric.
 //!
 //! T of a rough interface has no closed form. It is (1 - F(μ̂)) q(√μ), where μ̂² = μ² + (1-μ²) g² keeps
-//! Fresnel's equations off the rim as facets do. q and ℓ are polynomials ([`Curve`]) through values that
+//! Fresnel's equations off the rim as facets do. q and ℓ are polynomials (`Curve`) through values that
 //! were integrated when the material was built: over a diffuse base by [`Layer`] and [`Slab`], over metal
 //! by [`Reflections`]. For a smooth interface g = 0 and q = 1.
 
