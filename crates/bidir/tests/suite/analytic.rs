@@ -114,6 +114,25 @@ fn roulette_does_not_change_the_mean() {
     }
 }
 
+/// Much light of such a room comes by more than 64 vertices: of these paths not all pairs are
+/// connected, and few samples train.
+#[test]
+#[ignore = "minutes: just nightly"]
+fn rooms_that_reflect_nearly_all_light_are_as_bright_by_every_estimator() {
+    let scene = closed_sphere_of(builder(8, 0.0), [0.97; 3]);
+    let render = |integrator, passes| {
+        let mut settings = settings(integrator, None);
+        settings.set_integrator(integrator);
+        replicates(&scene, &settings, passes)
+    };
+    let bdpt = render(IntegratorKind::Bdpt, 256);
+    let lvc = render(IntegratorKind::Lvc, 1024);
+    for (name, result) in [("bdpt", &bdpt), ("lvc", &lvc)] {
+        check_agree(name, result, &result.exactly([1.0; 3]), &[WHOLE]);
+    }
+    check_agree("lvc and bdpt", &lvc, &bdpt, &[WHOLE]);
+}
+
 /// Comparisons that need millions of samples.
 mod statistics {
     use super::*;
@@ -138,25 +157,6 @@ mod statistics {
                 check_agree_to(&name, &result, &exact, &[WHOLE], bias);
             }
         }
-    }
-
-    /// Much light of such a room comes by more than 64 vertices: of these paths not all pairs are
-    /// connected, and few samples train.
-    #[test]
-    #[ignore = "statistics: .ci/run statistics"]
-    fn rooms_that_reflect_nearly_all_light_are_as_bright_by_every_estimator() {
-        let scene = closed_sphere_of(builder(8, 0.0), [0.97; 3]);
-        let render = |integrator, passes| {
-            let mut settings = settings(integrator, None);
-            settings.set_integrator(integrator);
-            replicates(&scene, &settings, passes)
-        };
-        let bdpt = render(IntegratorKind::Bdpt, 64);
-        let lvc = render(IntegratorKind::Lvc, 512);
-        for (name, result) in [("bdpt", &bdpt), ("lvc", &lvc)] {
-            check_agree(name, result, &result.exactly([1.0; 3]), &[WHOLE]);
-        }
-        check_agree("lvc and bdpt", &lvc, &bdpt, &[WHOLE]);
     }
 
     #[test]
