@@ -89,11 +89,11 @@ fn far_away_tiny_and_huge() {
     check(&sites, 64);
 }
 
-mod long_statistics {
+mod decades {
     use super::{Site, check};
 
     #[test]
-    #[ignore = "long statistics: .ci/run statistics"]
+    #[ignore = "minutes: just nightly"]
     fn every_decade_of_distance_and_size() {
         let shifts = (1..=9).map(|decade| Site::shifted(libm::pow(10.0, f64::from(decade))));
         let scales = (-12..=10).map(|decade| Site::scaled(libm::pow(10.0, f64::from(decade))));
