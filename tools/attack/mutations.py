@@ -44,7 +44,7 @@ class Reader:
             return self.begin
 
     def used(self):
-        """Seconds of processors; 0 where the system does not tell."""
+        """Seconds of processors; 0 where the system does not count them."""
         try:
             with open("/proc/%d/stat" % self.process.pid) as file:
                 fields = file.read().rsplit(")", 1)[1].split()

@@ -92,7 +92,7 @@ pub(crate) fn session(
     Ok(Began::Session(session))
 }
 
-/// What came first of a session and a signal.
+/// Whichever came first: a session, or a signal.
 enum Waited {
     Session(Result<Box<Session<'static>>, SessionError>),
     Stopped(Exit),

@@ -150,7 +150,7 @@ pub(crate) fn say(line: impl fmt::Display) {
     write_line(&printable(&line.to_string()));
 }
 
-/// Writes a printable line to stderr. Where nobody listens there is nobody to tell.
+/// Writes a printable line to stderr. Errors are ignored: there is no other place for them.
 fn write_line(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
@@ -171,7 +171,7 @@ pub(crate) fn print_usage(error: &clap::Error) -> Result<Exit, Failure> {
     }
 }
 
-/// What it means that stdout was `written`.
+/// How the command ends after stdout was `written`.
 fn printed(written: io::Result<()>) -> Result<Exit, Failure> {
     match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(

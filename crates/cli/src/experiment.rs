@@ -162,7 +162,7 @@ fn other_file(file: &Path) -> String {
     }
 }
 
-/// The threads of each render, which records tell: those that are asked for, else the description's.
+/// The threads of each render, as the records have it: the flag, else the description's.
 fn threads(args: &ExperimentArgs, own: usize, console: Console) -> usize {
     match args.threads.count {
         0 => threads::limited(own, console).count(),

@@ -152,7 +152,7 @@ fn is_old(path: &Path) -> bool {
     age.is_some_and(|age| age > OLD)
 }
 
-/// What names of temporary files of `name` begin with: names that begin alike may share it.
+/// The beginning of the names of temporary files of `name`: names that begin alike may share it.
 fn prefix(name: &OsStr) -> String {
     let name = name.to_string_lossy();
     let mut end = name.len().min(LONGEST_NAME);

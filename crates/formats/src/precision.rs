@@ -101,7 +101,7 @@ impl<P: Clone> VertexErrors<P> {
         })
     }
 
-    /// What to say of the mesh that lost most. None: none lost enough.
+    /// The warning for the mesh that lost most. None: none lost enough.
     pub(crate) fn warning(&self) -> Option<(P, String)> {
         let (place, error) = self.worst.as_ref()?;
         let others = match self.count {
@@ -119,7 +119,7 @@ impl<P: Clone> VertexErrors<P> {
     }
 }
 
-/// What to do about it.
+/// The hint of that error.
 pub(crate) const HINT: &str = "use small coordinates and a transformation";
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::limits::{self, Allowance};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// What the files of a scene hold, and what was made of them so far.
+/// The bytes of the files of a scene, and the amounts that were made of them so far.
 #[derive(Clone, Debug)]
 pub(crate) struct Reading {
     /// Bytes that all files take on the disk, each once.

@@ -6,9 +6,10 @@
 //! there, by transformations composed in `f64`: what is seen is near the origin when it is rounded.
 //!
 //! **Origin.** Points are off by some 10⁻⁶ of their distance from the origin (`position_error` of
-//! `bidir::shape`), so that is moved where it is [`FAR`] times farther away than
-//! - the box around everything is wide: to the middle of the box;
-//! - or else the camera is from the nearest vertex: to the camera.
+//! `bidir::shape`), so that is moved
+//! - to the middle of the box around everything, where it is more than [`FAR`] half widths from there;
+//! - or else to the camera, where it is [`FAR_FROM_VIEW`] times farther from there than the nearest
+//!   vertex.
 //!
 //! **Unit.** Where the farthest point from the origin is not within 2^±[`RANGE`], the unit is the
 //! power of two that brings a large scene to 2^[`RANGE`], and a small one to 1: densities per area
@@ -19,9 +20,12 @@
 use bidir::scene::RenderSpace;
 use glam::{DAffine3, DVec3};
 
-/// How many times farther than its size something is from an origin that is moved: below it points
-/// are off by less than 1 % of the size.
-const FAR: f64 = 1024.0;
+/// How many half widths the middle of everything is from an origin that is moved: below it points are
+/// off by less than 10⁻⁴ of the half width.
+const FAR: f64 = 64.0;
+/// How many distances to the nearest vertex a camera is from an origin that is moved. It is larger, as
+/// that vertex may be a single one.
+const FAR_FROM_VIEW: f64 = 1024.0;
 /// The exponents of two of the sizes that are left as they are.
 const RANGE: i32 = 20;
 
@@ -58,7 +62,7 @@ impl Layout {
     }
 }
 
-/// What is in a space, as far as its layout needs it.
+/// The contents of a space, as far as its layout needs them.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
     /// Of a box around every point; the first is above the second where there is none.
@@ -125,11 +129,11 @@ impl Survey {
             return DVec3::ZERO;
         };
         let (centre, half) = ((low + high) / 2.0, (high - low).max_element() / 2.0);
-        let is_far = |p: DVec3, size: f64| p.abs().max_element() > FAR * size;
+        let is_beyond = |p: DVec3, distance: f64| p.abs().max_element() > distance;
         let near = self.nearest2.sqrt();
         match self.eye {
-            _ if is_far(centre, half) => rounded(centre, half),
-            Some(eye) if is_far(eye, near) => rounded(eye, near),
+            _ if is_beyond(centre, FAR * half) => rounded(centre, half),
+            Some(eye) if is_beyond(eye, FAR_FROM_VIEW * near) => rounded(eye, near),
             _ => DVec3::ZERO,
         }
     }
@@ -198,8 +202,8 @@ mod tests {
     fn what_is_near_the_origin_stays_there() {
         let room = [DVec3::new(-1.0, 0.0, 0.0), DVec3::new(1.0, 2.0, 2.0)];
         check(&survey(DVec3::new(0.0, 1.0, -4.0), &room), [0.0; 3], 1.0);
-        let moved = room.map(|p| p + DVec3::X * 1000.0);
-        check(&survey(DVec3::X * 1000.0, &moved), [0.0; 3], 1.0);
+        let moved = room.map(|p| p + DVec3::X * 60.0);
+        check(&survey(DVec3::X * 60.0, &moved), [0.0; 3], 1.0);
         check(&survey(DVec3::ZERO, &[]), [0.0; 3], 1.0);
     }
 

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-/// What the checksum of an object says.
+/// The verdict of the checksum of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seal {
     /// The text is as it was written.

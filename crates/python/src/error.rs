@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use std::path::Path;
 
 /// An exception of `bidir.errors` with a [`printable`] message, as nothing else is between it and a
-/// terminal, and with attributes that are told by name.
+/// terminal, and with attributes by name.
 fn exception(py: Python<'_>, class: &str, message: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
     let message = printable(message);
     let made = py

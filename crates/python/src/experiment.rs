@@ -92,7 +92,7 @@ impl Experiment {
         if quick {
             read = read.quick();
         }
-        // Records tell the number.
+        // Records have the number.
         read.threads = threads_of(py, threads.unwrap_or(read.threads))?.count();
         Ok(Self {
             experiment: read,

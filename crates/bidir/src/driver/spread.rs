@@ -39,11 +39,12 @@ pub(super) fn permutation(crop: &PixelRect) -> Vec<u32> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::integrator::group_size;
 
-    const SIZES: [[u32; 2]; 10] = [
+    /// Sizes of films; those from the seventh on are small or narrow.
+    pub(in crate::driver) const SIZES: [[u32; 2]; 10] = [
         [2560, 1440],
         [920, 680],
         [720, 480],

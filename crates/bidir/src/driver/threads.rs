@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use rayon::prelude::*;
 
-    /// Those of a system that starts no thread.
+    /// The workers of a system that starts no thread.
     fn refused() -> Workers {
         let (pool, shortage) = Recruits {
             waiting: Vec::new(),

@@ -2,8 +2,8 @@
 
 use super::densities::{PathDensities, VertexDensities};
 
-/// What is left of a share that is cut off: too little to be seen, and enough to find the value without
-/// the weight again.
+/// The part of a share that a cut leaves: too little to be seen, and enough to recover the value
+/// without the weight.
 const LEFT: f64 = 1e-9;
 
 /// How strategies that can make the same path share it.

@@ -37,7 +37,7 @@ fn shown_value(value: ContextValue) -> ContextValue {
         ContextValue::Strings(texts) => {
             ContextValue::Strings(texts.into_iter().map(line).collect())
         }
-        // Advice repeats the argument between colours, which cannot be told from its own.
+        // Advice repeats the argument between colours, which look like its own.
         ContextValue::StyledStrs(texts) => {
             let plain = texts.into_iter().map(|text| line(text.to_string()).into());
             ContextValue::StyledStrs(plain.collect())

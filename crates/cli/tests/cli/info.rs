@@ -116,12 +116,12 @@ fn light_that_is_missed_is_told_when_it_is_rendered() {
         ),
         ("light", "strategies s0 and s1 make these paths"),
     ] {
-        let told = render(&format!("--integrator {integrator}"));
+        let text = render(&format!("--integrator {integrator}"));
         assert!(
-            told.contains(&format!("warning: `{integrator}` misses")),
-            "{told}"
+            text.contains(&format!("warning: `{integrator}` misses")),
+            "{text}"
         );
-        assert!(told.contains(says), "{told}");
+        assert!(text.contains(says), "{text}");
     }
     let strict = "render glass.pbrt --spp 1 --strict --integrator path";
     place

@@ -52,7 +52,7 @@ pub(super) struct Assembly<'a> {
     summary: Summary,
 }
 
-/// What a scene may have.
+/// The most that a scene may have.
 struct Most {
     /// Primitives, and vertices.
     primitives: u64,

@@ -71,7 +71,7 @@ pub(super) struct Context<'a> {
     /// The names of the files that were read.
     pub(super) files: Vec<PathBuf>,
     pub(super) reading: Reading,
-    /// Those of the files that buffers and images name.
+    /// The names of the files that buffers and images are in.
     named: Vec<PathBuf>,
 }
 

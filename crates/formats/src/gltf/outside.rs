@@ -48,7 +48,7 @@ const ENOUGH: f64 = 0.25;
 /// The part of the view that is left free.
 const MARGIN: f64 = 1.05;
 
-/// What a scene looks like from afar.
+/// The look of a scene from afar.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     /// The corners of a box around all triangles.

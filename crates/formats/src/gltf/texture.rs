@@ -267,11 +267,11 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     }
 }
 
-/// What to do about images in other formats.
+/// The hint for images in other formats.
 pub(super) const IMAGES_TO_EXPORT: &str =
     "export its images as png, jpg or webp; `ktx extract` makes png of KTX2";
 
-/// What images in other formats have at some byte.
+/// The marks of other formats, and the bytes where images have them.
 const OTHER_FORMATS: [(usize, &[u8], &str); 5] = [
     (0, b"\xabKTX 20", "a KTX2 file"),
     (0, b"\xabKTX 11", "a KTX file"),

@@ -1,4 +1,4 @@
-//! What the `image` crate decodes: PNG, JPEG, WebP, TGA, HDR.
+//! Images that the `image` crate decodes: PNG, JPEG, WebP, TGA, HDR.
 
 use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;

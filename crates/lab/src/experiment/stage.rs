@@ -21,7 +21,7 @@ pub(super) struct Stage<'a> {
     pub(super) warnings: Vec<String>,
     /// All files that were read.
     pub(super) files: Vec<PathBuf>,
-    /// Those that no output may replace.
+    /// The files that no output may replace.
     pub(super) inputs: Vec<PathBuf>,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Reference {
     pub(super) image: Option<String>,
     /// The mean square error of its own. None: nobody knows.
     pub(super) mse: Option<f64>,
-    /// What is odd about its files.
+    /// Warnings about its files.
     pub(super) warning: Option<String>,
 }
 

@@ -182,7 +182,7 @@ impl Reference {
         })
     }
 
-    /// What is odd about its files: of older ones, damage may go unseen. None: nothing.
+    /// A warning about its files: damage to older ones may go unseen. None: they are fine.
     pub fn warning(&self) -> Option<String> {
         let folder = self.folder.display();
         (self.provenance.format == provenance::UNSEALED).then(|| {

@@ -93,7 +93,7 @@ async fn converse(stream: TcpStream, router: axum::Router, place: Place) {
         .serve_connection(TokioIo::new(Patient::new(stream, place)), service)
         .with_upgrades();
     tokio::select! {
-        // What fails here is the peer's connection, which is closed by that.
+        // An error here closes the peer's connection, and that alone.
         _ = connection => {}
         () = leave.notified() => {}
     }

@@ -13,7 +13,7 @@ use tokio::sync::Notify;
 
 /// Connections at once.
 const PLACES: usize = 256;
-/// Those of one address among them. It is enough for all clients behind one proxy.
+/// The places of one address among them. It is enough for all clients behind one proxy.
 const SHARE: usize = 128;
 
 /// All places.
@@ -130,7 +130,7 @@ impl Place {
         }
     }
 
-    /// What is notified when the connection has to end.
+    /// Notified when the connection has to end.
     pub(super) fn leave(&self) -> Arc<Notify> {
         Arc::clone(&self.leave)
     }
@@ -142,7 +142,7 @@ impl Drop for Place {
     }
 }
 
-/// What counts as one peer: an address, of IPv6 the network that one host usually has to itself.
+/// The network that counts as one peer: an address, of IPv6 the network that one host usually has to itself.
 fn peer(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(address) => {

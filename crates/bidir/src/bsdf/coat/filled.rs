@@ -1,4 +1,4 @@
-//! What a layer with its filling does to light above a black base, and to diffuse light from below.
+//! A layer with its filling: the light that it throws back and lets through to a black base, and diffuse light from below.
 //!
 //! - B(μ) is the part of light from outside that reaches the base;
 //! - E(μ) the part that scatters within the layer and leaves without having reached the base;
@@ -19,7 +19,7 @@ use crate::sampler::{Dimension, Domain, Purpose, SampleStream, Sampler, SamplerK
 const WALKS: u64 = 1 << 13;
 /// The most events of a walk: few have as many.
 const MOST: usize = 256;
-/// Scattering events that are told apart; the last stands for all that are more.
+/// Numbers of scattering events that are counted apart; the last stands for all larger ones.
 const ORDERS: usize = 32;
 /// Points of an integral over the cosine from within, and over facets.
 const POINTS: u32 = 1 << 17;

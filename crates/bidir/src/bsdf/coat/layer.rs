@@ -1,4 +1,4 @@
-//! What an interface does to light, integrated over its facets once for each material.
+//! Transmittance and reflectance of an interface, integrated over its facets once for each material.
 //!
 //! With D_w(m) the density of facets that w sees, F Fresnel's reflectance and G₂/G₁ the part of light
 //! that facets do not shadow on its way out [Walter07, eq. 20 and 21], the part of light from outside
@@ -27,7 +27,7 @@ pub(super) struct Interface {
 /// A direction in which light leaves an interface, and the part that does.
 pub(super) type Ray = (Vec3, f32);
 
-/// What a facet does with light. None: it goes to the wrong side.
+/// The parts of light that a facet reflects and refracts. None: they go to the wrong side.
 pub(super) struct Split {
     pub(super) reflected: Option<Ray>,
     pub(super) refracted: Option<Ray>,

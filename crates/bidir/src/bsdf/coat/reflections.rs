@@ -77,7 +77,7 @@ struct Light {
     cosines: [f32; 3],
 }
 
-/// What leaves of the light from one direction.
+/// The parts of the light from one direction that leave.
 #[derive(Clone, Copy)]
 struct Leaving {
     /// By the number of reflections, from 1.
@@ -238,7 +238,7 @@ impl Surfaces {
         (products / squares).clamp(0.0, 1.0)
     }
 
-    /// What leaves of light with cosine `cos`.
+    /// The part of light with cosine `cos` that leaves.
     fn leaving(&self, cos: f32) -> Leaving {
         let wo = along(cos);
         let sampler = Sampler::new(SamplerKind::Sobol, 0);
@@ -323,7 +323,7 @@ fn crossing(left: f32, depth: f32) -> f32 {
     -libm::logf(left.clamp(1e-9, 1.0)) / (2.0 * depth)
 }
 
-/// What white metal reflects once in closed form.
+/// The light that white metal reflects once, in closed form.
 #[derive(Default)]
 struct Once {
     part: f32,
@@ -339,7 +339,7 @@ impl Once {
     }
 }
 
-/// What of light with cosine `cos` white metal reflects once under `coat`, as `CoatedConductor` has it,
+/// The part of light with cosine `cos` that white metal reflects once under `coat`, as `CoatedConductor` has it,
 /// but for the number of points.
 fn once_in_closed_form(coat: &MetalCoat, metal: Ggx, cos: f32) -> Once {
     let wo = along(cos);

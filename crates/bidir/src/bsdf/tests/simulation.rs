@@ -14,7 +14,7 @@ pub(super) const PBRT_EVENTS: usize = 10;
 /// Events of a walk: roulette ends it long before.
 const MOST: usize = 1000;
 
-/// What lies under the layer.
+/// The base under the layer.
 #[derive(Clone, Copy)]
 pub(super) enum Base {
     /// Lambertian, of this reflectance.

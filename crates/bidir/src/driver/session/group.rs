@@ -14,7 +14,7 @@ impl Session<'_> {
         }
     }
 
-    /// Those of `places`, the range of a group, that bring a light subpath: as many of each group begin
+    /// The members of `places`, the range of a group, that bring a light subpath: as many of each group begin
     /// with one.
     fn bringers(&self, places: Range<u64>) -> impl Iterator<Item = u64> {
         places.step_by(usize::from(self.settings.lvc.samples_per_subpath.get()))

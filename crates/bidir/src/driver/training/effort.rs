@@ -5,7 +5,7 @@ use super::{Settings, Training, plan};
 use crate::integrator::IntegratorKind;
 use crate::scene::Scene;
 
-/// How long training may take. A host that has no time for it renders by what a few samples tell: with more
+/// How long training may take. A host that has no time for it renders with the results of a few samples: with more
 /// noise, but of the same image.
 #[derive(Clone, Copy)]
 pub enum Effort<'a> {

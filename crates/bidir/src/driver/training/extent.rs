@@ -48,7 +48,7 @@ impl Extent {
     }
 }
 
-/// What samples cost. Unit: rays and connections.
+/// The cost of samples. Unit: rays and connections.
 pub(super) fn work(stats: &Stats) -> f64 {
     (stats.rays.total() + stats.candidates) as f64
 }

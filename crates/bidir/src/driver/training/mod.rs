@@ -90,7 +90,7 @@ pub(super) fn prepare(
     train(task).unwrap_or_else(|Late| effort::short(scene, settings))
 }
 
-/// What is trained for.
+/// The scene and the settings that training is for.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     scene: &'a Scene,
@@ -180,7 +180,7 @@ impl Training {
         Ok(training)
     }
 
-    /// What is known before anything is learnt.
+    /// Training that has learnt nothing yet.
     fn of(survey: &Survey) -> Self {
         Self {
             mean_luminance: (survey.luminance / survey.samples()) as f32,

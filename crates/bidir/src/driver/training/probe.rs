@@ -168,15 +168,7 @@ mod tests {
 
     #[test]
     fn samples_are_spread_over_films_of_all_sizes() {
-        let sizes = [
-            [2560, 1440],
-            [920, 680],
-            [720, 480],
-            [1920, 1080],
-            [320, 240],
-            [4096, 64],
-        ];
-        for max in sizes {
+        for &max in &spread::tests::SIZES[..6] {
             let crop = PixelRect { min: [0; 2], max };
             let blocks = Blocks::new(crop);
             let mut counts = [0; BLOCKS];

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::Stats;
 
-/// What a sample seldom costs where the length of paths is limited, or surfaces absorb something. Unit: as
+/// Samples seldom cost so much where the length of paths is limited, or surfaces absorb something. Unit: as
 /// [`work`].
 const USUAL: f64 = 256.0;
 /// The same of samples that learn about connections.

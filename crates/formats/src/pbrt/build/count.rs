@@ -1,4 +1,4 @@
-//! What a scene keeps, against the limits, before it is made.
+//! Counts the shapes and vertices of a scene against the limits, before they are made.
 
 use super::Assembly;
 use super::context::Context;

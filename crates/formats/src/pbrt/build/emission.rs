@@ -23,7 +23,7 @@ pub(super) struct AreaEmission {
     /// What it is multiplied by over the surface's parameters, with the mean luminance.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// What each primitive emits in all, in the space that is rendered in. None: the radiance is as
+    /// The power that each primitive emits, in the space that is rendered in. None: the radiance is as
     /// given.
     power: Option<f32>,
     /// The name of its group of lights.

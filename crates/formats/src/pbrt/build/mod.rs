@@ -219,7 +219,7 @@ struct Assembly<'a> {
     lamps: Vec<Placed<Span>>,
     /// Of all meshes as they are kept.
     vertices: u64,
-    /// What shapes emitted last.
+    /// The emission of the last shape.
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
     summary: Summary,
 }

@@ -202,7 +202,7 @@ fn previous(h: u32) -> u32 {
 }
 
 impl HalfEdges {
-    /// Those of a mesh. Errors: it is no oriented surface.
+    /// The half-edges of a mesh. Errors: it is no oriented surface.
     fn of(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
         let mut known = HashMap::with_capacity(3 * mesh.triangles.len());
         for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
@@ -252,7 +252,7 @@ impl HalfEdges {
         Ok(())
     }
 
-    /// Those of `mesh`, which is one step further.
+    /// The half-edges of `mesh`, which is one step further.
     ///
     /// Triangle i becomes 4i + k at its corner k, and 4i + 3 in the middle.
     fn refined(&self, mesh: &ControlMesh) -> Self {

@@ -59,7 +59,7 @@ fn what_a_description_names_and_is_not_there_is_told_at_its_place() {
     let error = place.refusal(&text.replace(MADE, "reference = \"none.exr\""), "out");
     let expected = "test.toml:6:13: cannot open `";
     assert!(error.to_string().contains(expected), "{error}");
-    // What a scene names has its place there.
+    // The place of a file is where the scene names it.
     fs::write(
         place.path("room.pbrt"),
         format!("{SCENE}Include \"none.pbrt\""),
