@@ -125,7 +125,7 @@ fn rooms_that_reflect_nearly_all_light_are_as_bright_by_every_estimator() {
         settings.set_integrator(integrator);
         replicates(&scene, &settings, passes)
     };
-    let bdpt = render(IntegratorKind::Bdpt, 256);
+    let bdpt = render(IntegratorKind::Bdpt, 512);
     let lvc = render(IntegratorKind::Lvc, 1024);
     for (name, result) in [("bdpt", &bdpt), ("lvc", &lvc)] {
         check_agree(name, result, &result.exactly([1.0; 3]), &[WHOLE]);

@@ -70,7 +70,7 @@ fn a_scene_that_is_far_away_keeps_its_shape() {
 #[test]
 fn a_scene_at_the_origin_stays_as_it_is() {
     assert_eq!(*moved([0.0; 3], "").space(), RenderSpace::WORLD);
-    assert_eq!(*moved([100.0; 3], "").space(), RenderSpace::WORLD);
+    assert_eq!(*moved([50.0; 3], "").space(), RenderSpace::WORLD);
     assert_eq!(*scaled(1e3, "").space(), RenderSpace::WORLD);
 }
 
