@@ -72,7 +72,7 @@ fn reference_files(reference: &Path) -> Vec<PathBuf> {
     vec![reference.to_owned()]
 }
 
-/// Compares every image, and warns of those that share their noise.
+/// Compares every image, and warns where images, or pixels of one, share their noise.
 fn compare_all(
     args: &CompareArgs,
     images: &[PathBuf],
@@ -81,15 +81,22 @@ fn compare_all(
 ) -> Result<Vec<Comparison>, Failure> {
     let reference = Noisy::reference(name, console)?;
     let mut independence = Independence::default();
+    let mut warnings = Vec::new();
     let comparisons = images
         .iter()
         .map(|image| {
             let noisy = Noisy::read(image)?;
             independence.add(image, &noisy.pixels);
-            compare(args, [image, name], noisy, &reference)
+            let correlation = noisy.correlation(image);
+            let comparison = compare(args, [image, name], noisy, &reference)?;
+            // Intervals over several images assume nothing of their pixels.
+            if images.len() == 1 && comparison.significance.is_some() {
+                warnings.extend(correlation.or_else(|| reference.correlation(name)));
+            }
+            Ok(comparison)
         })
         .collect::<Result<_, _>>();
-    for warning in &independence.warnings {
+    for warning in warnings.iter().chain(&independence.warnings) {
         console.warning(warning);
     }
     comparisons

@@ -169,9 +169,10 @@ pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
     Ok(Pixels::from(&image))
 }
 
-/// The seed of the render that an image comes from. None: it does not say.
-pub(crate) fn seed_of(path: &Path) -> Option<String> {
-    formats::image::read_layers(path).ok()?.text("bidir/seed")
+/// A setting, by name, of the render that wrote an image. None: the image does not say.
+pub(crate) fn setting_of(path: &Path, name: &str) -> Option<String> {
+    let layers = formats::image::read_layers(path).ok()?;
+    layers.text(&format!("bidir/{name}"))
 }
 
 /// The layers of an image that tell how sure it is. None: it has no such.

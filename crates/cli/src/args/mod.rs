@@ -153,7 +153,9 @@ pub(crate) enum Command {
     /// z_pixels and z_blocks test for a difference beyond noise, over pixels and over blocks of them.
     /// Each has p, the probability of a difference this large between images of the same expectation,
     /// and the place of the largest difference. A p below 0.001 is hardly noise, but images with few
-    /// samples and fireflies underestimate their variances, and so p.
+    /// samples and fireflies underestimate their variances, and so p. z_blocks adds the variances of
+    /// pixels, so it holds only if the errors of pixels are uncorrelated: pixels of `lvc` and `auto` share
+    /// light subpaths, which makes p too small, and the command warns.
     ///
     /// With several images and --reference, each number is the mean over the images, between the bounds
     /// of its 95 % confidence interval (Student's t). The images must be renders with independent seeds.

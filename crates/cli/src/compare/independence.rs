@@ -25,7 +25,7 @@ impl Independence {
         let image = Replicate {
             path: path.to_owned(),
             pixels: pixels.clone(),
-            seed: scene_io::seed_of(path),
+            seed: scene_io::setting_of(path, "seed"),
         };
         let warning = self.images.iter().find_map(|other| image.likeness(other));
         self.warnings.extend(warning);

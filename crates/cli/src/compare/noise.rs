@@ -18,6 +18,8 @@ const BLOCKS: usize = 16;
 pub(super) struct Noisy {
     pub(super) pixels: Pixels,
     variance: Option<Variance>,
+    /// That of the render. None: the image does not say.
+    integrator: Option<String>,
 }
 
 impl Noisy {
@@ -26,6 +28,7 @@ impl Noisy {
         Ok(Self {
             pixels: scene_io::read_image(path)?,
             variance: scene_io::read_variance(path),
+            integrator: scene_io::setting_of(path, "integrator"),
         })
     }
 
@@ -39,11 +42,28 @@ impl Noisy {
             console.warning(warning);
         }
         let freedom = reference.estimated().freedom;
+        let estimator = &reference.provenance.estimators[0];
+        let integrator = estimator.settings.get("integrator").cloned();
         let pixels = reference.variance;
         Ok(Self {
             pixels: reference.picture,
             variance: Some(Variance { pixels, freedom }),
+            integrator: integrator,
         })
+    }
+
+    /// The warning that pixels of this image, read from `path`, share noise, which the test of blocks
+    /// does not know. None: they are independent, or the image does not say.
+    pub(super) fn correlation(&self, path: &Path) -> Option<String> {
+        let integrator = self.integrator.as_deref()?;
+        if !["lvc", "auto"].contains(&integrator) {
+            return None;
+        }
+        let name = path.display();
+        Some(format!(
+            "z_blocks assumes independent pixels, but those of `{name}` share light subpaths by \
+             `{integrator}`: its p may be too small; compare several seeds with --reference instead"
+        ))
     }
 
     fn estimated(&self) -> Option<Estimated<'_>> {

@@ -84,6 +84,14 @@ fn a_difference_is_tested_where_both_know_their_noise() {
         .expect(0)
         .prints("z_blocks     p ")
         .prints(" standard errors");
+    // The test of blocks is warned about where pixels share light subpaths, and only there.
+    image("e.exr", &format!("{layers} --seed 3 --integrator lvc"));
+    let is_warned = |images: &str| {
+        let run = place.run(&format!("compare {images}")).expect(0);
+        run.stderr.contains("`e.exr` share light subpaths by `lvc`")
+    };
+    assert!(is_warned("e.exr a.exr") && is_warned("a.exr e.exr"));
+    assert!(!is_warned("a.exr b.exr") && !is_warned("e.exr d.exr"));
 }
 
 #[test]
