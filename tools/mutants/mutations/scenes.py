@@ -7,8 +7,8 @@ SCENES = [
     (
         "distant scenes are rendered where they are",
         "crates/formats/src/space.rs",
-        "_ if is_far(centre, half) => rounded(centre, half),",
-        "_ if is_far(centre, half) => DVec3::ZERO,",
+        "_ if is_beyond(centre, FAR * half) => rounded(centre, half),",
+        "_ if is_beyond(centre, FAR * half) => DVec3::ZERO,",
         ("bidir-formats", ESTIMATORS, "places::far_away"),
     ),
     (
