@@ -2,6 +2,7 @@
 //!
 //! A result is thrown away, but its error is told first: messages are made of what was read, too.
 
+use bidir::settings::Request;
 use flate2::{Crc, read::DeflateDecoder};
 use formats::image::{self, Format};
 use formats::pbrt::{self, LoadOptions};
@@ -89,7 +90,7 @@ pub fn film(bytes: &[u8]) {
         match film::decode(bytes) {
             Ok(file) => {
                 let header = &file.header;
-                let _ = film::settings_from_flags(&header.settings);
+                let _ = Request::read(&header.settings);
                 let _ = (film::metadata(header), header.joined(header));
             }
             Err(error) => tell::<()>(Err(error)),

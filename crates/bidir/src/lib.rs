@@ -72,10 +72,12 @@ pub mod integrator;
 pub mod light;
 pub mod material;
 pub mod math;
+pub mod names;
 pub mod path;
 pub mod sampler;
 pub mod scene;
 pub mod select;
+pub mod settings;
 pub mod shape;
 pub mod spectrum;
 pub mod stats;
@@ -89,4 +91,4 @@ pub(crate) mod testing;
 /// Raise it with every change after which the same scene, settings and passes have other bits, be it
 /// in an estimator, in random numbers, in the intersector, or in what readers make of a scene. The
 /// version of the program is not enough: people build what is between two of them.
-pub const ESTIMATOR_VERSION: u32 = 17;
+pub const ESTIMATOR_VERSION: u32 = 18;

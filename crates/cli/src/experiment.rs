@@ -138,7 +138,7 @@ fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
     };
     let failure = Failure::io(file, action, error);
     let name = file.to_str().filter(|_| action == "open");
-    let near = name.and_then(|name| experiment::nearest(name, [builtin::PAPER, builtin::BEYOND]));
+    let near = name.and_then(|name| bidir::names::nearest(name, [builtin::PAPER, builtin::BEYOND]));
     match (near, action) {
         (Some(near), _) => {
             failure.with_hint(format!("did you mean the built-in experiment `{near}`?"))

@@ -4,13 +4,13 @@ use crate::args::{InfoArgs, SceneArgs};
 use crate::console::{Console, print, print_json};
 use crate::exit::{Exit, Failure};
 use crate::scene_io::{self, LoadedScene};
-use crate::settings::SettingsText;
 use bidir::film::{Film, Layers};
 use bidir::integrator::{BlindSpot, IntegratorKind, blind_spots};
 use bidir::light::Light;
 use bidir::material::Material;
 use bidir::scene::Scene;
 use bidir::shape::Shape;
+use formats::film::SettingsText;
 use formats::{number, printable};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -149,10 +149,10 @@ impl Info {
     fn lines(&self) -> [(&'static str, String); 16] {
         let film = &self.film;
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
-        let settings = &self.settings;
-        let depth = match settings.max_depth {
-            None => "no limit".to_owned(),
-            Some(depth) => format!("at most {depth} bounces"),
+        let settings = self.settings.by_flag();
+        let depth = match &*settings["max-depth"] {
+            "0" => "no limit".to_owned(),
+            depth => format!("at most {depth} bounces"),
         };
         [
             ("scene", self.scene.clone()),
@@ -165,12 +165,12 @@ impl Info {
                 film.output.clone().unwrap_or_else(|| "not named".into()),
             ),
             ("camera", self.camera.to_owned()),
-            ("integrator", format!("{}, {depth}", settings.integrator)),
+            ("integrator", format!("{}, {depth}", settings["integrator"])),
             (
                 "sampler",
                 format!(
                     "{}, {} spp, seed {}",
-                    settings.sampler, self.spp, settings.seed
+                    settings["sampler"], self.spp, settings["seed"]
                 ),
             ),
             ("shapes", list(&self.shapes)),
@@ -191,7 +191,8 @@ impl Info {
 
     /// A line for what each estimator does not see, the scene's own first.
     fn tell_blind_spots(&self, text: &mut String) {
-        let own = |name: &str| name == self.settings.integrator;
+        let integrator = self.settings.request.integrator.map(IntegratorKind::name);
+        let own = |name: &str| Some(name) == integrator;
         let mut estimators: Vec<_> = self.blind_spots.iter().collect();
         estimators.sort_by_key(|(name, _)| !own(name));
         for (name, spots) in estimators {

@@ -12,7 +12,6 @@ use crate::signals::Signals;
 use crate::threads;
 use bidir::driver::{Progress, Resources, SessionError};
 use bidir::film::PixelRect;
-use bidir::integrator::IntegratorKind;
 use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -119,7 +118,7 @@ fn plan(
     let flags = [&args.estimator, &args.against];
     for (settings, flags) in plan.estimators.iter_mut().zip(flags) {
         if let Some(flags) = flags {
-            *settings = settings::resolve(&flags.0, settings.clone());
+            *settings = flags.0.apply(settings);
         }
     }
     if plan.is_its_own_witness() {
@@ -139,11 +138,11 @@ fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
         ("--against", &args.against),
     ];
     for (settings, (flag, named)) in plan.estimators.iter().zip(flags) {
-        let integrator = settings::name_of(&IntegratorKind::NAMES, settings.integrator);
+        let integrator = settings.integrator;
         let named = named.iter();
-        for unused in named.flat_map(|named| settings::unused(&named.0, settings)) {
+        for unused in named.flat_map(|named| named.0.ignored(settings)) {
             console.warning(format_args!(
-                "{flag}: {unused} has no effect on the integrator `{integrator}`"
+                "{flag}: --{unused} has no effect on the integrator `{integrator}`"
             ));
         }
     }

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let start = Instant::now();
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let load = start.elapsed();
-    let mut settings = settings::resolve(&args.estimator, loaded.settings.clone());
+    let mut settings = args.estimator.apply(&loaded.settings);
     let own = loaded.settings.layers.aovs();
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);

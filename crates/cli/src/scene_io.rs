@@ -158,7 +158,7 @@ pub(crate) fn nearest_file(path: &Path) -> Option<PathBuf> {
         .filter(|name| Path::new(name).extension() == path.extension())
         .collect();
     names.sort();
-    let near = lab::experiment::nearest(name, names.iter().map(String::as_str))?;
+    let near = bidir::names::nearest(name, names.iter().map(String::as_str))?;
     Some(path.with_file_name(near))
 }
 

@@ -1,89 +1,32 @@
 //! From flags, environment and scene to what is rendered. `clap` puts flags before the environment;
 //! here both come before the scene.
 
-use crate::args::{BudgetArgs, EstimatorArgs, LongArgs, Part, RenderArgs};
+use crate::args::{BudgetArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
 use crate::exit::Failure;
 use crate::scene_io::LoadedScene;
 use bidir::driver::{Session, Settings};
-use bidir::integrator::{BlindSpot, IntegratorKind, LostLight, lost_light, missing_light};
+use bidir::integrator::{BlindSpot, LostLight, lost_light, missing_light};
 use bidir::path::MAX_VERTICES;
 use bidir::scene::Scene;
-use formats::film::has_influence;
 use formats::scene::Lamp;
 use std::ops::Range;
 use std::time::Duration;
 
-pub(crate) use formats::film::{SettingsText, name_of};
-
-/// The settings of a render; `scene` holds what the scene file says, over the defaults.
-pub(crate) fn resolve(args: &EstimatorArgs, scene: Settings) -> Settings {
-    let mut settings = scene;
-    settings.set_integrator(args.integrator.unwrap_or(settings.integrator));
-    let lvc = &mut settings.lvc;
-    lvc.candidates = args.candidates.unwrap_or(lvc.candidates);
-    lvc.next_events = args.next_events.unwrap_or(lvc.next_events);
-    lvc.proposal = args.proposal.unwrap_or(lvc.proposal);
-    lvc.emission = args.light_start.unwrap_or(lvc.emission);
-    lvc.samples_per_subpath = args.samples_per_subpath.unwrap_or(lvc.samples_per_subpath);
-    lvc.mis_count = args.mis_count.unwrap_or(lvc.mis_count);
-    let path = &mut settings.path;
-    path.mis = args.mis.unwrap_or(path.mis);
-    path.light_point = args.light_point.unwrap_or(path.light_point);
-    path.light_choice = args.light_choice.unwrap_or(path.light_choice);
-    path.roulette = args.path_roulette.unwrap_or(path.roulette);
-    if let Some(depth) = args.max_depth {
-        path.max_depth = (depth > 0).then_some(depth);
-    }
-    if let Some(strategies) = &args.strategies {
-        path.strategies = strategies.clone();
-    }
-    settings.shadow_rays = args.shadow_rays.unwrap_or(settings.shadow_rays);
-    settings.sampler = args.sampler.unwrap_or(settings.sampler);
-    settings.seed = args.seed.unwrap_or(settings.seed);
-    settings
-}
-
 /// Tells which flags and variables have no influence on this render. Returns how many there are.
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
-    let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
-    let integrator = format!("on the integrator `{integrator}`");
+    let integrator = format!("on the integrator `{}`", settings.integrator);
     let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
-    let unused = unused(&args.estimator, settings).map(|flag| (flag, &*integrator));
-    let unused = unused.chain(spp.map(|_| ("--spp", "where --passes is given")));
-    unused
+    let ignored = args.estimator.ignored(settings).into_iter();
+    let ignored = ignored.map(|name| (format!("--{name}"), &*integrator));
+    let spp = spp.map(|_| ("--spp".to_owned(), "where --passes is given"));
+    ignored
+        .chain(spp)
         .map(|(flag, on)| {
-            let name = args.estimator.sources.name(flag);
+            let name = args.sources.name(&flag);
             console.warning(format_args!("{name} has no effect {on}"));
         })
         .count()
-}
-
-/// The flags that are given and that an image by `settings` does not depend on.
-pub(crate) fn unused(
-    estimator: &EstimatorArgs,
-    settings: &Settings,
-) -> impl Iterator<Item = &'static str> {
-    let integrator = settings.integrator;
-    let given = [
-        ("--strategies", estimator.strategies.is_some()),
-        ("--light-point", estimator.light_point.is_some()),
-        ("--light-choice", estimator.light_choice.is_some()),
-        ("--candidates", estimator.candidates.is_some()),
-        ("--next-events", estimator.next_events.is_some()),
-        ("--proposal", estimator.proposal.is_some()),
-        ("--light-start", estimator.light_start.is_some()),
-        (
-            "--samples-per-subpath",
-            estimator.samples_per_subpath.is_some(),
-        ),
-        ("--mis-count", estimator.mis_count.is_some()),
-        ("--shadow-rays", estimator.shadow_rays.is_some()),
-        ("--mis", estimator.mis.is_some()),
-    ];
-    let given = given.into_iter().filter(|(_, is_given)| *is_given);
-    let given = given.map(|(flag, _)| flag);
-    given.filter(move |flag| !has_influence(flag.trim_start_matches("--"), integrator))
 }
 
 /// Warns of light that the list of strategies loses; `flag` is what gives the list. Returns the number
@@ -127,7 +70,7 @@ pub(crate) fn check_strategies(
 /// Warns of light that the estimator of `settings` misses with all its strategies, and of which lamps it is.
 /// Returns the number of warnings.
 pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
-    let integrator = name_of(&IntegratorKind::NAMES, settings.integrator);
+    let integrator = settings.integrator;
     let missing = missing_light(&loaded.scene, settings.integrator, &settings.path);
     for &spot in &missing {
         let (paths, remedy) = (spot.description(), spot.remedy());

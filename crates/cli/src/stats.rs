@@ -4,9 +4,10 @@ mod parts;
 mod summary;
 
 use crate::scene_io::Stopping;
-use crate::settings::{Budget, SettingsText};
+use crate::settings::Budget;
 use bidir::driver::Session;
 use bidir::film::Film;
+use formats::film::SettingsText;
 use lab::sample::TrainingReport;
 use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     // What is wrong without a scene is told before one is read.
     let listener = listen(args)?;
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
-    let settings = settings::resolve(&args.estimator, loaded.settings.clone());
+    let settings = args.estimator.apply(&loaded.settings);
     // Every flag may have influence: estimators are switched.
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);

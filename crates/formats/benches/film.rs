@@ -180,10 +180,7 @@ fn main() {
         estimators.filter(|(_, kind)| !matches!(kind, IntegratorKind::Lvc | IntegratorKind::Auto))
     {
         for threads in [1, 2] {
-            let settings = Settings {
-                integrator,
-                ..Settings::default()
-            };
+            let settings = Settings::new(integrator);
             println!("{}", measure(&scene, name, &settings, threads));
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Place};
 use crate::text::{printable, printable_lines};
+use bidir::names::nearest;
 use miette::{MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -92,31 +93,6 @@ impl Fault {
         }
         self
     }
-}
-
-/// A name with more letters has nothing near.
-const LONGEST_NAME: usize = 100;
-
-/// The name that `name` was probably meant to be. None: where nothing is near.
-pub(crate) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // A third of the letters may be wrong; two words of three letters are not each other.
-    let letters = name.chars().count();
-    let allowed = letters.div_ceil(3).min(4);
-    // Comparing takes the product of the lengths.
-    let is_comparable = |known: &&str| {
-        letters <= LONGEST_NAME && known.chars().count().abs_diff(letters) <= allowed
-    };
-    known
-        .into_iter()
-        .filter(is_comparable)
-        .map(|known| (distance(name, known), known))
-        .filter(|&(distance, _)| distance <= allowed)
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, known)| known)
-}
-
-fn distance(a: &str, b: &str) -> usize {
-    strsim::osa_distance(&a.to_ascii_lowercase(), &b.to_ascii_lowercase())
 }
 
 /// The texts that a scene was read from.

@@ -28,12 +28,11 @@ fn scene(world: &str) -> Scene {
 
 fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates {
     let settings = Settings {
-        integrator,
         path: PathSettings {
             max_depth: Some(3),
             ..PathSettings::default()
         },
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     replicates(scene, &settings, passes)
 }

@@ -155,12 +155,11 @@ fn geometry_is_that_of_copies() {
 
 fn settings(integrator: IntegratorKind) -> Settings {
     Settings {
-        integrator,
         path: PathSettings {
             max_depth: Some(3),
             ..PathSettings::default()
         },
-        ..Settings::default()
+        ..Settings::new(integrator)
     }
 }
 

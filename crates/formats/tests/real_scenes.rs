@@ -50,10 +50,9 @@ fn estimate_anew(
         ..PathSettings::default()
     };
     let settings = Settings {
-        integrator,
         path,
         seed,
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     replicates(&loaded.scene, &settings, passes)
 }

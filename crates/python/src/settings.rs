@@ -3,8 +3,9 @@
 use crate::error::raise;
 use bidir::driver::{Settings, Threads};
 use bidir::film::{Aov, Layers};
+use bidir::names::UnknownName;
+use bidir::settings::Request;
 use formats::scene::SceneSettings;
-use lab::experiment::Changes;
 use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -19,10 +20,9 @@ pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
         sampler: scene.sampler,
         seed: scene.seed.unwrap_or_default(),
         layers: Layers::new(&scene.aovs, &[], 0),
-        ..Settings::default()
+        ..Settings::new(scene.integrator)
     };
     settings.path.max_depth = Some(scene.max_depth);
-    settings.set_integrator(scene.integrator);
     settings
 }
 
@@ -54,13 +54,8 @@ pub(crate) fn resolve(py: Python<'_>, wanted: &Wanted, scene: &Settings) -> PyRe
     settings.seed = wanted.seed.unwrap_or(settings.seed);
     let mut aovs = scene.layers.aovs().to_vec();
     for name in &wanted.layers {
-        let known = Aov::NAMES.iter().find(|(known, _)| known == name);
-        let (_, aov) = known.ok_or_else(|| {
-            let names = Aov::NAMES.map(|(name, _)| name).join(", ");
-            let message = format!("there is no layer `{name}`: expected {names}");
-            raise(py, "SettingsError", &message)
-        })?;
-        aovs.push(*aov);
+        let aov: Result<Aov, UnknownName> = name.parse();
+        aovs.push(aov.map_err(|error| raise(py, "SettingsError", &format!("layers: {error}")))?);
     }
     settings.layers = Layers::new(&aovs, &wanted.light_groups, wanted.strategy_layers);
     Ok(settings)
@@ -86,9 +81,9 @@ pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)
 }
 
-/// The changes that texts tell.
-fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Changes> {
-    let mut changes = Changes::default();
+/// The request of texts.
+fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Request> {
+    let mut changes = Request::default();
     for (name, value) in texts {
         changes.set(name, value).map_err(|error| {
             let message = format!("{}: {error}", name.replace('-', "_"));
@@ -102,7 +97,5 @@ fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Changes> {
 #[pyfunction]
 pub(crate) fn check_settings(py: Python<'_>, settings: Texts) -> PyResult<Texts> {
     let changes = changes(py, &settings)?;
-    let mut all = lab::experiment::texts(&changes.apply(&Settings::default()));
-    all.retain(|name, _| settings.contains_key(name));
-    Ok(all)
+    Ok(changes.texts())
 }

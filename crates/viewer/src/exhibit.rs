@@ -5,6 +5,7 @@ use crate::frame::Frame;
 use crate::status::{LaneId, LaneStatus, RayRates};
 use bidir::driver::{Session, Settings};
 use bidir::film::Aov;
+use bidir::settings::Request;
 use bidir::stats::RayCounts;
 use formats::film::SettingsText;
 use std::sync::Arc;
@@ -55,14 +56,20 @@ pub struct Course {
     pub target: Option<u64>,
 }
 
+/// The names of the integrator and of the choice of shadow rays.
+pub(crate) fn method_of(settings: &Settings) -> [String; 2] {
+    let chosen = Request::of(settings).shadow_rays;
+    let rays = chosen.map_or_else(|| settings.shadow_rays.to_string(), |rays| rays.to_string());
+    [settings.integrator.to_string(), rays]
+}
+
 impl Exhibit {
     /// A lane that nothing was rendered of; `settings` are those that were asked for.
     pub fn new(lane: LaneId, course: Course, settings: &Settings) -> Self {
-        let texts = SettingsText::from(settings);
         Self {
             lane,
             course,
-            method: [texts.integrator.to_owned(), texts.shadow_rays],
+            method: method_of(settings),
             rendered: Duration::ZERO,
             last: None,
             curve: Vec::new(),

@@ -16,74 +16,18 @@ mod threads;
 mod training;
 mod variance;
 
+pub use crate::settings::Settings;
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
 pub use threads::{Shortage, Threads, stand_alone, start_pool};
 pub use training::{Effort, Plan, Training};
 pub use variance::StrategyMoments;
 
-use crate::film::{Film, FilmError, Layers};
-use crate::integrator::{
-    Candidates, EmissionKind, IntegratorKind, LostLight, LvcSettings, ProposalKind,
-};
-use crate::path::{MisCount, PathRoulette, PathSettings};
-use crate::sampler::SamplerKind;
+use crate::film::{Film, FilmError};
+use crate::integrator::LostLight;
 use crate::scene::Scene;
-use crate::select::ShadowRays;
 use crate::stats::Clock;
 use thiserror::Error;
-
-/// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
-/// passes.
-#[derive(Clone, Debug, Default)]
-pub struct Settings {
-    /// The estimator.
-    pub integrator: IntegratorKind,
-    /// Which connections are traced.
-    pub shadow_rays: ShadowRays,
-    /// How light subpaths are shared, in [`IntegratorKind::Lvc`].
-    pub lvc: LvcSettings,
-    /// How paths are made and weighted.
-    pub path: PathSettings,
-    /// The random numbers.
-    pub sampler: SamplerKind,
-    /// Other seeds give unrelated images.
-    pub seed: u64,
-    /// What the film keeps beside the picture, whose bits do not depend on it.
-    pub layers: Layers,
-}
-
-impl Settings {
-    /// Takes an estimator, with the path roulette, the choice of shadow rays and the candidates that
-    /// suit it.
-    pub fn set_integrator(&mut self, integrator: IntegratorKind) {
-        self.integrator = integrator;
-        self.path.roulette = integrator.roulette();
-        self.shadow_rays = integrator.shadow_rays();
-        self.lvc.candidates = integrator.candidates();
-    }
-
-    /// Decides what is left to the estimator, as it does itself; `auto` finds it out before the first pass.
-    pub fn decide(&mut self) {
-        if self.path.roulette == PathRoulette::Suited {
-            self.path.roulette = self.integrator.roulette();
-        }
-        if self.shadow_rays == ShadowRays::Suited {
-            self.shadow_rays = self.integrator.shadow_rays();
-        }
-        if self.lvc.candidates == Candidates::Suited {
-            self.lvc.candidates = self.integrator.candidates();
-        }
-    }
-
-    /// True where the estimator learns about connections before the first pass.
-    fn learns(&self) -> bool {
-        let learns = self.lvc.proposal == ProposalKind::Learned
-            || self.lvc.emission == EmissionKind::Learned
-            || self.lvc.mis_count == MisCount::Resampled;
-        self.integrator == IntegratorKind::Lvc && learns
-    }
-}
 
 /// What a render may use; nothing here changes an image.
 #[derive(Clone, Copy, Debug)]

@@ -13,6 +13,7 @@
 //! beyond [`fixed::LARGEST_CONTRIBUTION`](super::fixed::LARGEST_CONTRIBUTION) is left out of the
 //! raw image alone, and counted ([`LayerCounts`](crate::stats::LayerCounts)).
 
+use crate::names::named;
 use crate::path::Strategy;
 
 /// The sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of
@@ -75,21 +76,20 @@ pub struct Channels {
 const RGB: &[&str] = &["R", "G", "B"];
 const XYZ: &[&str] = &["X", "Y", "Z"];
 
-impl Aov {
-    /// Every image with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 10] = [
-        ("albedo", Self::Albedo),
-        ("position", Self::Position),
-        ("normal", Self::Normal),
-        ("shading-normal", Self::ShadingNormal),
-        ("depth", Self::Depth),
-        ("coverage", Self::Coverage),
-        ("samples", Self::Samples),
-        ("variance", Self::Variance),
-        ("time", Self::Time),
-        ("rays", Self::Rays),
-    ];
+named!(Aov {
+    "albedo" => Albedo,
+    "position" => Position,
+    "normal" => Normal,
+    "shading-normal" => ShadingNormal,
+    "depth" => Depth,
+    "coverage" => Coverage,
+    "samples" => Samples,
+    "variance" => Variance,
+    "time" => Time,
+    "rays" => Rays,
+});
 
+impl Aov {
     /// The names in image files: those of pbrt-v4's film `gbuffer` where it has them.
     pub fn channels(self) -> &'static [Channels] {
         const fn of(layer: &'static str, names: &'static [&'static str]) -> Channels {

@@ -21,16 +21,16 @@ pub use blind::{BlindSpot, LostLight, blind_spots, lost_light, missing_light};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
 pub use lvc::{
-    CandidateCount, Candidates, CountError, EmissionKind, Lvc, LvcSettings, ProposalKind,
-    SamplesPerSubpath,
+    CandidateCount, CountError, LightStart, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath,
 };
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub(crate) use workspace::{BroughtLight, camera_ray};
 pub use workspace::{Contribution, Sample, Splat, Workspace};
 
-use crate::path::{Connections, PathContext, PathRoulette};
-use crate::select::{Selector, ShadowRays};
+use crate::names::named;
+use crate::path::{Connections, PathContext};
+use crate::select::Selector;
 
 /// An estimator of the image. Its expectation is the sum over all paths within the limit of length
 /// that its strategies can make.
@@ -75,52 +75,20 @@ pub enum IntegratorKind {
     Auto,
 }
 
-impl IntegratorKind {
-    /// Every estimator with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 5] = [
-        ("path", Self::Path),
-        ("light", Self::Light),
-        ("bdpt", Self::Bdpt),
-        ("lvc", Self::Lvc),
-        ("auto", Self::Auto),
-    ];
+named!(IntegratorKind {
+    "path" => Path,
+    "light" => Light,
+    "bdpt" => Bdpt,
+    "lvc" => Lvc,
+    "auto" => Auto,
+});
 
+impl IntegratorKind {
     /// True where the estimator has connections to choose from.
     pub fn has_candidates(self) -> bool {
         match self {
             Self::Bdpt | Self::Lvc | Self::Auto => true,
             Self::Path | Self::Light => false,
-        }
-    }
-
-    /// The path roulette that suits the estimator: of several scenes the least product of error and
-    /// time (docs/performance.md). Where every vertex is connected with every other, short walks pay.
-    pub fn roulette(self) -> PathRoulette {
-        match self {
-            Self::Bdpt | Self::Lvc => PathRoulette::Albedo { start: 0 },
-            Self::Path => PathRoulette::Albedo { start: 1 },
-            Self::Light => PathRoulette::Albedo { start: 2 },
-            Self::Auto => PathRoulette::Suited,
-        }
-    }
-
-    /// The choice of shadow rays that suits the estimator, likewise. Where many candidates are weighed
-    /// for a few rays, those that matter pay.
-    pub fn shadow_rays(self) -> ShadowRays {
-        match self {
-            Self::Path | Self::Light | Self::Bdpt => ShadowRays::All,
-            Self::Lvc => ShadowRays::Budget(6),
-            Self::Auto => ShadowRays::Suited,
-        }
-    }
-
-    /// The number of candidates that suits the estimator, where light subpaths are shared, likewise.
-    pub fn candidates(self) -> Candidates {
-        match self {
-            Self::Path | Self::Light | Self::Bdpt | Self::Lvc => {
-                Candidates::Of(CandidateCount::FEW)
-            }
-            Self::Auto => Candidates::Suited,
         }
     }
 
@@ -134,7 +102,7 @@ impl IntegratorKind {
             // What is open is decided before; this is what it would most often be.
             Self::Lvc | Self::Auto => Box::new(Lvc {
                 selector,
-                candidates: lvc.candidates.count(),
+                candidates: lvc.candidates,
                 next_events: lvc.next_events,
             }),
         }

@@ -15,6 +15,7 @@
 //!   with which connections of the two cells are chosen \[Nabata20\].
 
 use super::{Connections, JoinedPath, LightProposals, PathContext, PathDensities, Vertex};
+use crate::names::named;
 
 /// What weights take for the number of samples of a strategy whose light subpaths are shared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,14 +29,13 @@ pub enum MisCount {
     Resampled,
 }
 
-impl MisCount {
-    /// Every kind with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("expected", Self::Expected),
-        ("correlated", Self::Correlated),
-        ("resampled", Self::Resampled),
-    ];
+named!(MisCount {
+    "expected" => Expected,
+    "correlated" => Correlated,
+    "resampled" => Resampled,
+});
 
+impl MisCount {
     /// True where n_j depends on the vertices that strategy j links alone, so that sums along
     /// subpaths can hold it.
     #[inline]

@@ -1,6 +1,7 @@
 //! Multiple importance sampling: the weight of a strategy as a pure function of its whole path.
 
 use super::densities::{PathDensities, VertexDensities};
+use crate::names::named;
 
 /// The part of a share that a cut leaves: too little to be seen, and enough to recover the value
 /// without the weight.
@@ -19,14 +20,13 @@ pub enum MisHeuristic {
     Uniform,
 }
 
-impl MisHeuristic {
-    /// Every heuristic with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 3] = [
-        ("balance", Self::Balance),
-        ("power", Self::Power),
-        ("uniform", Self::Uniform),
-    ];
+named!(MisHeuristic {
+    "balance" => Balance,
+    "power" => Power,
+    "uniform" => Uniform,
+});
 
+impl MisHeuristic {
     /// What a strategy with n_j p_j = `density`, relative to another, counts.
     #[inline]
     pub(super) fn share(self, density: f64) -> f64 {

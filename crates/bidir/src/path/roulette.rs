@@ -2,6 +2,7 @@
 //! choice is only one of variance and cost. Shadow rays have a roulette of their own
 //! ([`crate::select`]).
 
+use crate::names::as_text;
 use std::fmt;
 use std::str::FromStr;
 
@@ -24,8 +25,6 @@ pub enum PathRoulette {
     },
     /// Walks end by the limit of path length, or by escaping.
     Off,
-    /// What suits the estimator: decided before the first pass. A walk takes it for `albedo:0`.
-    Suited,
 }
 
 impl Default for PathRoulette {
@@ -40,7 +39,7 @@ impl PathRoulette {
     #[inline]
     pub fn survival_prob(self, bounce: usize, albedo: f32, throughput: f32) -> f32 {
         match self {
-            Self::Albedo { .. } | Self::Suited => self.density_factor(bounce, || albedo),
+            Self::Albedo { .. } => self.density_factor(bounce, || albedo),
             Self::Throughput { start } if bounce >= start as usize => throughput.clamp(0.0, 1.0),
             Self::Throughput { .. } | Self::Off => 1.0,
         }
@@ -52,7 +51,7 @@ impl PathRoulette {
     pub fn density_factor(self, bounce: usize, albedo: impl FnOnce() -> f32) -> f32 {
         match self {
             Self::Albedo { start } if bounce < start as usize => 1.0,
-            Self::Albedo { .. } | Self::Suited => albedo().clamp(0.0, 1.0),
+            Self::Albedo { .. } => albedo().clamp(0.0, 1.0),
             Self::Throughput { .. } | Self::Off => 1.0,
         }
     }
@@ -62,7 +61,6 @@ impl PathRoulette {
     pub(super) fn density_start(self) -> Option<usize> {
         match self {
             Self::Albedo { start } => Some(start as usize),
-            Self::Suited => Some(0),
             Self::Throughput { .. } | Self::Off => None,
         }
     }
@@ -70,7 +68,7 @@ impl PathRoulette {
 
 /// Why a roulette cannot be read.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]`, `off` or `auto`")]
+#[error("`{0}` is no roulette: expected `albedo[:START]`, `throughput[:START]`, `off`")]
 pub struct PathRouletteError(String);
 
 impl FromStr for PathRoulette {
@@ -90,12 +88,12 @@ impl FromStr for PathRoulette {
                 start: start.unwrap_or(0),
             }),
             ("off", None) => Ok(Self::Off),
-            // The older name.
-            ("auto" | "suited", None) => Ok(Self::Suited),
             _ => Err(error()),
         }
     }
 }
+
+as_text!(PathRoulette);
 
 impl fmt::Display for PathRoulette {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -103,7 +101,6 @@ impl fmt::Display for PathRoulette {
             Self::Albedo { start } => write!(f, "albedo:{start}"),
             Self::Throughput { start } => write!(f, "throughput:{start}"),
             Self::Off => write!(f, "off"),
-            Self::Suited => write!(f, "auto"),
         }
     }
 }
@@ -114,11 +111,10 @@ mod tests {
 
     #[test]
     fn names_are_read_and_written() {
-        for text in ["albedo:0", "albedo:3", "throughput:2", "off", "auto"] {
+        for text in ["albedo:0", "albedo:3", "throughput:2", "off"] {
             assert_eq!(text.parse::<PathRoulette>().unwrap().to_string(), text);
         }
         assert_eq!("albedo".parse(), Ok(PathRoulette::Albedo { start: 0 }));
-        assert_eq!("suited".parse(), Ok(PathRoulette::Suited));
         for text in ["", "albedo:", "off:2", "throughput:x"] {
             assert!(text.parse::<PathRoulette>().is_err(), "{text}");
         }

@@ -1,5 +1,6 @@
 //! Strategies (s, t) by name: which way a path is made, and which ways take part.
 
+use crate::names::{as_text, named};
 use std::fmt;
 use std::str::FromStr;
 
@@ -39,10 +40,12 @@ pub enum LightPointChoice {
     Shared,
 }
 
-impl LightPointChoice {
-    /// Every choice with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 2] = [("fresh", Self::Fresh), ("shared", Self::Shared)];
+named!(LightPointChoice {
+    "fresh" => Fresh,
+    "shared" => Shared,
+});
 
+impl LightPointChoice {
     /// The fewest light vertices of connections that use a light subpath.
     #[inline]
     pub fn first_walked(self) -> usize {
@@ -63,10 +66,10 @@ pub enum LightChoiceKind {
     Tree,
 }
 
-impl LightChoiceKind {
-    /// Every choice with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 2] = [("power", Self::Power), ("tree", Self::Tree)];
-}
+named!(LightChoiceKind {
+    "power" => Power,
+    "tree" => Tree,
+});
 
 /// Adds or removes the strategies that match it; a missing number matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,6 +191,8 @@ fn parse_rule(item: &str) -> Option<Rule> {
     };
     Some(Rule { enable, s, t })
 }
+
+as_text!(Strategies);
 
 impl fmt::Display for Strategies {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

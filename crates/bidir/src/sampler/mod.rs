@@ -18,6 +18,7 @@ mod sobol;
 pub use dimension::{Dimension, Purpose};
 
 use crate::math::{ONE_MINUS_EPSILON, Vec2};
+use crate::names::named;
 use hash::mix;
 use sobol::Digits;
 
@@ -32,11 +33,10 @@ pub enum SamplerKind {
     Sobol,
 }
 
-impl SamplerKind {
-    /// Every kind with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 2] =
-        [("independent", Self::Independent), ("sobol", Self::Sobol)];
-}
+named!(SamplerKind {
+    "independent" => Independent,
+    "sobol" => Sobol,
+});
 
 /// What a stream is drawn for; streams of different domains are unrelated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

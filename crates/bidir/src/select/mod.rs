@@ -21,6 +21,7 @@ pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 
 use crate::integrator::Contribution;
+use crate::names::as_text;
 use crate::path::Strategy;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::spectrum::Spectrum;
@@ -124,10 +125,8 @@ pub trait Selector: Sync + Send {
 /// The rules by name, with their settings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ShadowRays {
-    /// What suits the estimator: decided before the first pass. A selector takes it for `all`.
-    #[default]
-    Suited,
     /// Every candidate.
+    #[default]
     All,
     /// One for each light vertex: optimisation 1 of \[Lafortune95\]. Vertices of a light cache are
     /// seldom drawn twice in a sample, so that nearly all of their candidates are traced.
@@ -150,7 +149,7 @@ impl ShadowRays {
     /// The rule, given the image's mean luminance where [`needs_mean`](Self::needs_mean).
     pub fn selector(self, mean_luminance: f32) -> Box<dyn Selector> {
         match self {
-            Self::All | Self::Suited => Box::new(All),
+            Self::All => Box::new(All),
             Self::PerLightVertex => Box::new(OnePerGroup {
                 group: Group::LightVertex,
             }),
@@ -178,10 +177,11 @@ impl ShadowRays {
     }
 }
 
+as_text!(ShadowRays);
+
 impl fmt::Display for ShadowRays {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Suited => write!(f, "auto"),
             Self::All => write!(f, "all"),
             Self::PerLightVertex => write!(f, "per-light-vertex"),
             Self::PerCameraVertex => write!(f, "per-camera-vertex"),
@@ -199,7 +199,7 @@ pub enum ShadowRaysError {
     #[error(
         "there is no rule `{0}`: expected `all`, `per-light-vertex`, `per-camera-vertex`, \
          `per-pair`, `ray-roulette[:T]` (T above 0, relative to the image's mean), `budget:K` \
-         (K rays, at least 1) or `auto`"
+         (K rays, at least 1)"
     )]
     Unknown(String),
     /// The rule has a number.
@@ -219,8 +219,6 @@ impl FromStr for ShadowRays {
             return Err(ShadowRaysError::NoBudget);
         }
         let rule = match (name, value) {
-            // The older name.
-            ("auto" | "suited", None) => Some(Self::Suited),
             ("all", None) => Some(Self::All),
             ("per-light-vertex", None) => Some(Self::PerLightVertex),
             ("per-camera-vertex", None) => Some(Self::PerCameraVertex),

@@ -123,7 +123,7 @@ fn no_rule_traces_more_rays_than_it_says() {
         ShadowRays::PerCameraVertex => 3,
         ShadowRays::PerPair => 1,
         ShadowRays::Budget(rays) => rays as usize,
-        ShadowRays::All | ShadowRays::Suited | ShadowRays::RayRoulette(_) => 6,
+        ShadowRays::All | ShadowRays::RayRoulette(_) => 6,
     };
     for rule in RULES {
         frequencies(rule, &candidates(), 2000, |chosen| {

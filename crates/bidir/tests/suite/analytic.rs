@@ -6,7 +6,7 @@ use crate::common::{
 };
 use bidir::driver::Settings;
 use bidir::film::{Filter, FilterKind};
-use bidir::integrator::{CandidateCount, Candidates, IntegratorKind};
+use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{MisCount, PathRoulette, PathSettings};
@@ -17,12 +17,11 @@ use bidir::spectrum::Rgb;
 
 fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
     Settings {
-        integrator,
         path: PathSettings {
             max_depth,
             ..PathSettings::default()
         },
-        ..Settings::default()
+        ..Settings::new(integrator)
     }
 }
 
@@ -281,7 +280,7 @@ fn counts_of_weights_keep_the_closed_sphere() {
     for (name, mis_count) in MisCount::NAMES {
         let mut settings = settings(IntegratorKind::Lvc, Some(8));
         settings.shadow_rays = ShadowRays::Budget(2);
-        settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
+        settings.lvc.candidates = CandidateCount::of(8);
         settings.lvc.mis_count = mis_count;
         let result = replicates(&scene, &settings, 512);
         check_expectation(name, &result, 1.0 - halved(9));
@@ -310,7 +309,7 @@ fn one_ray_for_each_vertex_of_a_light_cache_keeps_the_closed_sphere() {
     let scene = closed_sphere();
     let mut settings = settings(IntegratorKind::Lvc, Some(8));
     settings.shadow_rays = ShadowRays::PerLightVertex;
-    settings.lvc.candidates = Candidates::Of(CandidateCount::new(8, 2));
+    settings.lvc.candidates = CandidateCount::new(8, 2);
     let result = replicates(&scene, &settings, 1024);
     check_expectation("per-light-vertex", &result, 1.0 - halved(9));
 }

@@ -40,10 +40,7 @@ fn room_with_a_broken_texture() -> Scene {
 fn nan_in_a_texture_is_dropped_and_counted() {
     let scene = room_with_a_broken_texture();
     for (name, integrator) in IntegratorKind::NAMES {
-        let settings = Settings {
-            integrator,
-            ..Settings::default()
-        };
+        let settings = Settings::new(integrator);
         let resources = Resources::default();
         let mut session = Session::new(&scene, settings, &resources).expect("the film is small");
         (0..16).for_each(|_| assert!(session.step(&())));

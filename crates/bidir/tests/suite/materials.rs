@@ -42,9 +42,8 @@ fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Repli
         ..PathSettings::default()
     };
     let settings = Settings {
-        integrator,
         path,
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     let passes = match integrator {
         IntegratorKind::Path => 12288,

@@ -111,9 +111,8 @@ fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates 
         ..PathSettings::default()
     };
     let settings = Settings {
-        integrator,
         path,
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     replicates(scene, &settings, passes)
 }

@@ -13,9 +13,8 @@ use std::time::Instant;
 fn settings(integrator: IntegratorKind, shadow_rays: &str) -> Settings {
     let shadow_rays = shadow_rays.parse::<ShadowRays>().expect("a rule");
     Settings {
-        integrator,
         shadow_rays,
-        ..Settings::default()
+        ..Settings::new(integrator)
     }
 }
 

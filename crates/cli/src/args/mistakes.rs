@@ -1,11 +1,12 @@
 //! Errors of the command line that clap words for programmers: numbers out of range, values of
 //! variables, and flags under the names that other programs give them.
 
+use bidir::names::nearest;
 use clap::builder::PossibleValue;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
 use formats::printable;
-use lab::experiment::nearest;
+
 use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
 use std::path::Path;

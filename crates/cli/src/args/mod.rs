@@ -27,7 +27,7 @@ pub(crate) use film::{FilmCommand, MergeArgs, MissingArgs};
 pub(crate) use help::{View, command};
 pub(crate) use long::{LongArgs, Part};
 pub(crate) use reference::ReferenceArgs;
-pub(crate) use render::{BudgetArgs, EstimatorArgs, FilmArgs, RenderArgs, TalkArgs};
+pub(crate) use render::{BudgetArgs, FilmArgs, RenderArgs, TalkArgs};
 pub(crate) use threads::ThreadsArgs;
 pub(crate) use tonemap::TonemapArgs;
 pub(crate) use values::{Duration, PixelBounds, ReplayTarget, Size};
@@ -79,7 +79,7 @@ impl Cli {
             && let Some((name, matches)) = matches.subcommand()
             && let Some(command) = command.find_subcommand(name)
         {
-            args.estimator.sources = Sources::new(command, matches);
+            args.sources = Sources::new(command, matches);
         }
         Ok(cli)
     }

@@ -1,7 +1,8 @@
 //! The flags of `bidir reference`.
 
-use super::render::{EstimatorArgs, FilmArgs, TalkArgs};
+use super::render::{FilmArgs, TalkArgs};
 use super::{SceneArgs, ThreadsArgs, mistakes};
+use bidir::settings::Request;
 use clap::{Args, FromArgMatches, ValueHint};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -73,7 +74,7 @@ const MOST_SAMPLES: u64 = 1 << 40;
 
 /// An estimator in one word of the command line, such as `bdpt --strategies s1,-t1`.
 #[derive(Clone, Debug)]
-pub(crate) struct EstimatorFlags(pub(crate) EstimatorArgs);
+pub(crate) struct EstimatorFlags(pub(crate) Request);
 
 impl FromStr for EstimatorFlags {
     type Err = String;
@@ -82,14 +83,14 @@ impl FromStr for EstimatorFlags {
         let command = clap::Command::new("").no_binary_name(true);
         let command = command.disable_help_flag(true);
         // The environment is of the whole command.
-        let command = EstimatorArgs::augment_args(command)
+        let command = Request::augment_args(command)
             .mut_args(|flag| flag.env(clap::builder::Resettable::Reset));
         let mut words: Vec<_> = text.split_whitespace().collect();
         if words.first().is_some_and(|word| !word.starts_with('-')) {
             words.insert(0, "--integrator");
         }
         let matches = command.clone().try_get_matches_from(words);
-        let flags = matches.and_then(|matches| EstimatorArgs::from_arg_matches(&matches));
+        let flags = matches.and_then(|matches| Request::from_arg_matches(&matches));
         flags
             .map(Self)
             .map_err(|error| first_line(&mistakes::reworded(error, &command, &[])))

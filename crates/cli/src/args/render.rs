@@ -7,14 +7,7 @@ use super::values::{CropFractions, Duration, PixelBounds, ReplayTarget, Size, na
 use super::view::ServeAddress;
 use super::{SceneArgs, ThreadsArgs, values};
 use crate::console::Display;
-use bidir::integrator::{
-    CandidateCount, Candidates, EmissionKind, IntegratorKind, ProposalKind, SamplesPerSubpath,
-};
-use bidir::path::{
-    LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
-};
-use bidir::sampler::SamplerKind;
-use bidir::select::ShadowRays;
+use bidir::settings::Request;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use viewer::tev::TevAddress;
@@ -76,7 +69,10 @@ pub(crate) struct RenderArgs {
     pub(crate) budget: BudgetArgs,
     /// How light is estimated.
     #[command(flatten)]
-    pub(crate) estimator: EstimatorArgs,
+    pub(crate) estimator: Request,
+    /// The environment variables among the sources of flags.
+    #[arg(skip)]
+    pub(crate) sources: Sources,
     /// Images beside the main one.
     #[command(flatten)]
     pub(crate) layers: LayerArgs,
@@ -155,120 +151,6 @@ pub(crate) struct TalkArgs {
     pub(crate) progress: Option<Display>,
 }
 
-/// How light is estimated.
-#[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Integrator")]
-pub(crate) struct EstimatorArgs {
-    /// path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
-    ///
-    /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
-    /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
-    /// few samples and takes the one with the least variance × cost, counted in rays. A glTF file names no integrator
-    /// and is rendered with auto.
-    #[arg(long, env = "BIDIR_INTEGRATOR", value_name = "NAME")]
-    #[arg(value_parser = named(IntegratorKind::NAMES))]
-    pub(crate) integrator: Option<IntegratorKind>,
-    /// Maximum number of bounces; 0 is unlimited [default: the scene's].
-    #[arg(long, value_name = "N")]
-    pub(crate) max_depth: Option<u32>,
-    /// MIS heuristic: balance, power or uniform [default: balance].
-    ///
-    /// Strategies that make the same path are weighted by their densities, by the squares of these, or
-    /// equally.
-    #[arg(long, env = "BIDIR_MIS", value_name = "HEURISTIC")]
-    #[arg(value_parser = named(MisHeuristic::NAMES))]
-    pub(crate) mis: Option<MisHeuristic>,
-    /// Strategies (s, t) in use, such as all,-s0 or s2t3 (bdpt, lvc, auto) [default: all].
-    ///
-    /// s counts vertices from the light, t from the camera. The list has rules such as all, -s0
-    /// (without s = 0), -t1 and s2t3; the last rule that matches a strategy wins. A list that begins
-    /// with a removal begins with all strategies, any other with none.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub(crate) strategies: Option<Strategies>,
-    /// Russian roulette of subpaths: albedo[:START], throughput[:START], off, auto [default: the
-    /// integrator's].
-    ///
-    /// albedo, throughput: subpaths survive with the albedo that they meet, or with their throughput.
-    /// START is the first bounce that it applies to (0). off: subpaths end by --max-depth or by leaving
-    /// the scene. auto: the integrator's default. Defaults: albedo:1 for path, albedo:2 for light,
-    /// albedo:0 for bdpt, albedo:0 for lvc, auto for auto.
-    #[arg(long, value_name = "RULE")]
-    pub(crate) path_roulette: Option<PathRoulette>,
-    /// How next-event estimation picks a light: tree or power (path, bdpt, lvc, auto) [default: tree].
-    ///
-    /// tree: a hierarchy of the lights estimates the light that arrives from each. power: by power
-    /// alone.
-    #[arg(long, value_name = "RULE", value_parser = named(LightChoiceKind::NAMES))]
-    pub(crate) light_choice: Option<LightChoiceKind>,
-    /// Light point of next-event estimation (bdpt, lvc, auto) [default: fresh].
-    ///
-    /// fresh: one per camera vertex. shared: the start of the light subpath.
-    #[arg(long, value_name = "RULE", value_parser = named(LightPointChoice::NAMES))]
-    pub(crate) light_point: Option<LightPointChoice>,
-    /// Sampler: sobol or independent [default: the scene's].
-    ///
-    /// sobol: Owen-scrambled Sobol' points, stratified over the samples of a pixel. independent:
-    /// independent uniform numbers.
-    #[arg(long, env = "BIDIR_SAMPLER", value_name = "NAME")]
-    #[arg(value_parser = named(SamplerKind::NAMES))]
-    pub(crate) sampler: Option<SamplerKind>,
-    /// Random seed [default: the scene's, or 0].
-    ///
-    /// Images of different seeds have independent noise.
-    #[arg(long, env = "BIDIR_SEED", value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Which connections are traced (bdpt, lvc, auto) [default: the integrator's].
-    ///
-    /// all: all that can carry light. per-light-vertex, per-camera-vertex, per-pair: one for each light
-    /// vertex, camera vertex or pair of subpaths, drawn by unoccluded contribution (optimisations 1, 2
-    /// and 3 of Lafortune and Willems, 1995). ray-roulette[:T]: Russian roulette below the fraction T
-    /// (0.1) of the image's mean. budget:K: at most K per sample, the largest for certain. auto: the
-    /// integrator's default. No rule is biased. Defaults: all for bdpt, budget:6 for lvc, auto for auto.
-    #[arg(long, env = "BIDIR_SHADOW_RAYS", value_name = "RULE")]
-    #[arg(help_heading = "Shadow rays")]
-    pub(crate) shadow_rays: Option<ShadowRays>,
-    /// Light vertices considered per camera vertex: M at the first, N at later ones (lvc, auto)
-    /// [default: the integrator's].
-    ///
-    /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
-    /// 12,1 for lvc, auto for auto, which tries several numbers together with budgets of shadow rays.
-    #[arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")]
-    pub(crate) candidates: Option<Candidates>,
-    /// Light samples per camera vertex: M at the first, N at later ones (lvc, auto) [default: 2,1].
-    ///
-    /// Each from 1 to 4096; one number is for all vertices.
-    #[arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")]
-    pub(crate) next_events: Option<CandidateCount>,
-    /// How candidates are drawn: learned in training, or uniform (lvc, auto) [default: learned].
-    ///
-    /// Training is a short render before the first pass.
-    #[arg(long, value_name = "RULE", value_parser = named(ProposalKind::NAMES))]
-    #[arg(help_heading = "Shared light subpaths")]
-    pub(crate) proposal: Option<ProposalKind>,
-    /// How light subpaths pick their light: learned, or by power (lvc, auto) [default: learned].
-    ///
-    /// learned: by the light of each that reached visible surfaces in training.
-    #[arg(long, alias = "emission", value_name = "RULE")]
-    #[arg(value_parser = named(EmissionKind::NAMES), help_heading = "Shared light subpaths")]
-    pub(crate) light_start: Option<EmissionKind>,
-    /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
-    ///
-    /// auto tries 1, 2 and 4. Where light subpaths are so long that those of a group would fill more than
-    /// about 30 MB, there are fewer.
-    #[arg(long, value_name = "K", help_heading = "Shared light subpaths")]
-    pub(crate) samples_per_subpath: Option<SamplesPerSubpath>,
-    /// Sample counts in the MIS weights of shared light subpaths (lvc, auto) [default: expected].
-    ///
-    /// expected: connections per path. correlated: fewer where connections share a camera subpath that
-    /// the camera rarely samples. resampled: traced shadow rays.
-    #[arg(long, value_name = "RULE", value_parser = named(MisCount::NAMES))]
-    #[arg(help_heading = "Shared light subpaths")]
-    pub(crate) mis_count: Option<MisCount>,
-    /// The environment variables among the sources of these values.
-    #[arg(skip)]
-    pub(crate) sources: Sources,
-}
-
 /// When it is enough: the limit that is reached first ends the render.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Stopping")]
@@ -319,13 +201,10 @@ pub(crate) struct FilmArgs {
 
 #[cfg(test)]
 mod tests {
-    use super::{
-        EmissionKind, IntegratorKind, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic,
-        ProposalKind,
-    };
     use crate::args::Cli;
-    use crate::settings::name_of;
     use bidir::driver::Settings;
+    use bidir::integrator::IntegratorKind;
+    use bidir::settings::Request;
     use clap::CommandFactory;
 
     /// The help text of a flag of `bidir render`.
@@ -351,49 +230,30 @@ mod tests {
 
     #[test]
     fn the_help_has_the_true_defaults() {
-        let settings = Settings::default();
-        let path = &settings.path;
-        check_default("next-events", settings.lvc.next_events);
-        check_default("samples-per-subpath", settings.lvc.samples_per_subpath);
-        check_default(
+        let of = |integrator| Request::of(&Settings::new(integrator)).texts();
+        let of_lvc = of(IntegratorKind::Lvc);
+        let same = [
+            "next-events",
+            "samples-per-subpath",
             "proposal",
-            name_of(&ProposalKind::NAMES, settings.lvc.proposal),
-        );
-        check_default(
             "light-start",
-            name_of(&EmissionKind::NAMES, settings.lvc.emission),
-        );
-        check_default(
             "mis-count",
-            name_of(&MisCount::NAMES, settings.lvc.mis_count),
-        );
-        check_default("strategies", &path.strategies);
-        let help = help_of("path-roulette");
-        for (name, integrator) in IntegratorKind::NAMES {
-            let roulette = integrator.roulette();
-            assert!(help.contains(&format!("{roulette} for {name}")), "{help}");
+        ];
+        for name in same
+            .into_iter()
+            .chain(["strategies", "mis", "light-point", "light-choice"])
+        {
+            check_default(name, &of_lvc[name]);
         }
-        let help = help_of("candidates");
-        for integrator in [IntegratorKind::Lvc, IntegratorKind::Auto] {
-            let name = name_of(&IntegratorKind::NAMES, integrator);
-            let candidates = integrator.candidates();
-            assert!(help.contains(&format!("{candidates} for {name}")), "{help}");
+        for name in ["path-roulette", "candidates", "shadow-rays"] {
+            let help = help_of(name);
+            for (integrator, kind) in IntegratorKind::NAMES {
+                let default = of(kind).remove(name);
+                let part = default.map(|default| format!("{default} for {integrator}"));
+                assert!(part.is_none_or(|part| help.contains(&part)), "{help}");
+            }
         }
-        let help = help_of("shadow-rays");
-        let names = IntegratorKind::NAMES.into_iter();
-        for (name, integrator) in names.filter(|(_, integrator)| integrator.has_candidates()) {
-            let rays = integrator.shadow_rays();
-            assert!(help.contains(&format!("{rays} for {name}")), "{help}");
-        }
-        check_default("mis", name_of(&MisHeuristic::NAMES, path.mis));
-        check_default(
-            "light-point",
-            name_of(&LightPointChoice::NAMES, path.light_point),
-        );
-        check_default(
-            "light-choice",
-            name_of(&LightChoiceKind::NAMES, path.light_choice),
-        );
+        let settings = Settings::default();
         check_default("seed", format_args!("the scene's, or {}", settings.seed));
     }
 

@@ -1,7 +1,8 @@
 //! The flags of `bidir view`.
 
-use super::render::{EstimatorArgs, FilmArgs};
+use super::render::FilmArgs;
 use super::{SceneArgs, ThreadsArgs};
+use bidir::settings::Request;
 use clap::Args;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::str::FromStr;
@@ -40,7 +41,7 @@ pub(crate) struct ViewArgs {
     pub(crate) spp: Option<u64>,
     /// How light is estimated.
     #[command(flatten)]
-    pub(crate) estimator: EstimatorArgs,
+    pub(crate) estimator: Request,
     /// The scene.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

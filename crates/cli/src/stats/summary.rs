@@ -1,7 +1,7 @@
 //! The lines that a render ends with.
 
 use super::Course;
-use crate::settings::{Budget, name_of};
+use crate::settings::Budget;
 use bidir::driver::{Plan, Session};
 use bidir::integrator::IntegratorKind;
 use std::time::Duration;
@@ -96,7 +96,7 @@ impl Summary {
 
 /// The flags that render as `auto` does.
 fn describe(plan: &Plan) -> String {
-    let name = name_of(&IntegratorKind::NAMES, plan.integrator);
+    let name = plan.integrator;
     let is_lvc = plan.integrator == IntegratorKind::Lvc;
     let (candidates, rays) = (plan.candidates, plan.shadow_rays);
     let samples = plan.samples_per_subpath.get();

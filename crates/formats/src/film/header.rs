@@ -2,7 +2,6 @@
 
 use super::broken;
 use super::layers::LayerNames;
-use super::settings::renamed;
 use crate::error::Result;
 use bidir::film::{Film, FilmSettings, Filter, Layers, PassSet, PixelRect};
 use serde::{Deserialize, Serialize};
@@ -141,20 +140,10 @@ impl FilmHeader {
         let [width, height] = header.resolution;
         let fits = left < right && top < bottom && right <= width && bottom <= height;
         if fits && header.exposure.is_finite() {
-            Ok(header.renamed())
+            Ok(header)
         } else {
             Err(broken("damaged: the crop or the exposure is invalid"))
         }
-    }
-
-    /// The same by today's names of settings, whose identity is another.
-    fn renamed(mut self) -> Self {
-        let settings = renamed(self.settings.clone());
-        if settings != self.settings {
-            let today = Self::new(&self.program, self.scene.clone(), settings);
-            (self.settings, self.identity) = (today.settings, today.identity);
-        }
-        self
     }
 
     /// What is kept beside the picture.

@@ -40,7 +40,7 @@ pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
 pub use identity::{SceneIdentity, counts_by_name, is_short, metadata, of_run, program, untrained};
 pub use layers::{LayerNames, StrategyImagesName};
-pub use settings::{SettingsText, has_influence, name_of, renamed, settings_from_flags};
+pub use settings::SettingsText;
 
 use crate::bytes;
 use crate::error::{Error, ErrorKind, Result};

@@ -1,7 +1,8 @@
 //! Places in the JSON, told as `meshes[3].primitives[0]`, and what is wrong there.
 
 use crate::error::{Error, ErrorKind};
-use crate::source::{Fault, FileId, SourceMap, Span, nearest};
+use crate::source::{Fault, FileId, SourceMap, Span};
+use bidir::names::nearest;
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 use std::fmt;

@@ -85,10 +85,9 @@ impl<'a> Case<'a> {
             ..PathSettings::default()
         };
         let mut settings = Settings {
-            integrator,
             path,
             seed: self.seed,
-            ..Settings::default()
+            ..Settings::new(integrator)
         };
         change(&mut settings);
         let passes = match integrator {

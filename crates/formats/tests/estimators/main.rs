@@ -13,7 +13,7 @@ mod plans;
 #[path = "../../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
 
-use bidir::integrator::{CandidateCount, Candidates, EmissionKind, IntegratorKind};
+use bidir::integrator::{CandidateCount, IntegratorKind, LightStart};
 use bidir::path::{LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette};
 use bidir::select::ShadowRays;
 use bidir_formats::pbrt::Crop;
@@ -258,9 +258,9 @@ fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
         let loaded = open(&format!("{name}.pbrt"));
         let case = Case::new(&loaded, passes);
         let reference = case.with_effort(effort).path();
-        for (kind, emission) in EmissionKind::NAMES {
+        for (kind, emission) in LightStart::NAMES {
             let result = case.render(IntegratorKind::Lvc, |settings| {
-                settings.lvc.emission = emission;
+                settings.lvc.light_start = emission;
             });
             // So few splats land in a pixel that sees the sky alone that their mean is skewed.
             let name = format!("{name}, emission {kind}");
@@ -276,7 +276,7 @@ fn check_counts(name: &str, world: &World, effort: u64) {
         let case = world.case().with_effort(effort);
         let result = case.render(IntegratorKind::Lvc, |settings| {
             settings.shadow_rays = ShadowRays::Budget(2);
-            settings.lvc.candidates = Candidates::Of(CandidateCount::of(8));
+            settings.lvc.candidates = CandidateCount::of(8);
             settings.lvc.mis_count = mis_count;
         });
         let name = format!("{name}, {count_name}");

@@ -3,9 +3,7 @@
 
 use crate::case::{Case, PIXELS, QUARTERS, open};
 use crate::statistics::{BIAS, Comparison, Replicates};
-use bidir::integrator::{
-    CandidateCount, Candidates, IntegratorKind, LvcSettings, SamplesPerSubpath,
-};
+use bidir::integrator::{CandidateCount, IntegratorKind, LvcSettings, SamplesPerSubpath};
 use bidir::select::ShadowRays;
 
 /// The rules of `--shadow-rays` but `all`.
@@ -100,7 +98,8 @@ const OTHERS: [World; 13] = [
 struct Entrant {
     name: String,
     integrator: IntegratorKind,
-    rays: ShadowRays,
+    /// None: the estimator's own.
+    rays: Option<ShadowRays>,
     lvc: LvcSettings,
     /// It takes this many times the passes.
     effort: u64,
@@ -113,7 +112,7 @@ impl Entrant {
         Self {
             name: format!("{integrator:?}, {rays}"),
             integrator,
-            rays,
+            rays: Some(rays),
             lvc: LvcSettings::default(),
             effort: 1,
             blocks: QUARTERS,
@@ -123,7 +122,7 @@ impl Entrant {
     fn render(&self, case: Case<'_>) -> Replicates {
         let case = case.with_effort(self.effort);
         case.render(self.integrator, |settings| {
-            settings.shadow_rays = self.rays;
+            settings.shadow_rays = self.rays.unwrap_or(settings.shadow_rays);
             settings.lvc = self.lvc;
         })
     }
@@ -218,13 +217,17 @@ fn planned() -> Vec<Entrant> {
     let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
         name: format!("{first},{deeper} candidates, budget:{rays}"),
         lvc: LvcSettings {
-            candidates: Candidates::Of(CandidateCount::new(first, deeper)),
+            candidates: CandidateCount::new(first, deeper),
             samples_per_subpath: SamplesPerSubpath::power_of_two(exponent),
             ..LvcSettings::default()
         },
         ..Entrant::new(IntegratorKind::Lvc, ShadowRays::Budget(rays))
     });
-    let auto = Entrant::new(IntegratorKind::Auto, ShadowRays::Suited);
+    let auto = Entrant {
+        name: "auto".to_owned(),
+        rays: None,
+        ..Entrant::new(IntegratorKind::Auto, ShadowRays::All)
+    };
     plans.into_iter().chain([auto]).collect()
 }
 

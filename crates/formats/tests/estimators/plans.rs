@@ -3,8 +3,10 @@
 
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
-use bidir::integrator::{CandidateCount, Candidates, IntegratorKind};
+use bidir::integrator::{CandidateCount, IntegratorKind};
+use bidir::scene::Scene;
 use bidir::select::ShadowRays;
+use bidir::settings::{Choice, Request};
 
 #[test]
 fn under_a_sky_paths_begin_at_the_camera() {
@@ -27,21 +29,25 @@ fn candidates_are_those_that_suit_the_estimator() {
     let scene = open("narrow-spot.pbrt").scene;
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |candidates| {
-            let mut settings = Settings::default();
-            settings.set_integrator(integrator);
-            settings.lvc.candidates = candidates;
-            Session::new(&scene, settings, &Resources::default()).expect("the film is small")
+            let request = Request {
+                candidates,
+                ..Request::default()
+            };
+            session(&scene, integrator, &request)
         };
-        let named = Candidates::Of(CandidateCount::new(5, 2));
-        assert_eq!(choose(named).settings().lvc.candidates, named, "{name}");
-        let session = choose(Candidates::Suited);
+        let named = CandidateCount::new(5, 2);
+        let session = choose(Some(Choice::Fixed(named)));
+        assert_eq!(session.settings().lvc.candidates, named, "{name}");
+        let session = choose(None);
         let plan = session.training().and_then(|training| training.plan);
-        let suited = plan.map_or(integrator.candidates(), |plan| {
-            Candidates::Of(plan.candidates)
-        });
-        assert_ne!(suited, Candidates::Suited, "{name}");
-        assert_eq!(session.settings().lvc.candidates, suited, "{name}");
+        let own = plan.map_or(CandidateCount::DEFAULT, |plan| plan.candidates);
+        assert_eq!(session.settings().lvc.candidates, own, "{name}");
     }
+}
+
+fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, request: &Request) -> Session<'a> {
+    let settings = request.apply(&Settings::new(integrator));
+    Session::new(scene, settings, &Resources::default()).expect("the film is small")
 }
 
 /// A choice of shadow rays that nobody named is the estimator's, and one that was named stays.
@@ -50,25 +56,24 @@ fn shadow_rays_are_those_that_suit_the_estimator() {
     let scene = open("narrow-spot.pbrt").scene;
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |shadow_rays| {
-            let settings = Settings {
-                integrator,
+            let request = Request {
                 shadow_rays,
-                ..Settings::default()
+                ..Request::default()
             };
-            let resources = Resources::default();
-            Session::new(&scene, settings, &resources).expect("the film is small")
+            session(&scene, integrator, &request)
         };
         assert_eq!(
-            choose(ShadowRays::PerPair).settings().shadow_rays,
+            choose(Some(Choice::Fixed(ShadowRays::PerPair)))
+                .settings()
+                .shadow_rays,
             ShadowRays::PerPair,
             "{name}"
         );
-        let mut session = choose(ShadowRays::Suited);
+        let mut session = choose(Some(Choice::Automatic));
         let plan = session.training().and_then(|training| training.plan);
-        let suited = plan.map_or(integrator.shadow_rays(), |plan| plan.shadow_rays);
-        assert_ne!(suited, ShadowRays::Suited, "{name}");
-        assert_eq!(session.settings().shadow_rays, suited, "{name}");
-        if let ShadowRays::Budget(rays) = suited {
+        let own = plan.map_or(integrator.shadow_rays(), |plan| plan.shadow_rays);
+        assert_eq!(session.settings().shadow_rays, own, "{name}");
+        if let ShadowRays::Budget(rays) = own {
             assert!(session.step(&()), "nobody stops it");
             let stats = session.stats();
             assert!(stats.rays.connection <= u64::from(rays) * stats.samples);
@@ -85,9 +90,8 @@ fn check(name: &str, expected: IntegratorKind) {
     let scene = open(name).scene;
     for seed in 0..2 {
         let settings = Settings {
-            integrator: IntegratorKind::Auto,
             seed,
-            ..Settings::default()
+            ..Settings::new(IntegratorKind::Auto)
         };
         let session = Session::new(&scene, settings, &Resources::default()).expect("a small film");
         let plan = session.training().and_then(|training| training.plan);

@@ -2,13 +2,12 @@
 
 use super::variants::{self, Role};
 use super::{Absent, Options};
-use crate::experiment::{
-    BudgetSpec, Changes, Experiment, MethodSpec, ReferenceSpec, SceneSpec, Seeds,
-};
+use crate::experiment::{BudgetSpec, Experiment, MethodSpec, ReferenceSpec, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use crate::scenes;
 use bidir::integrator::IntegratorKind;
+use bidir::settings::Request;
 use std::path::{Path, PathBuf};
 
 /// How much is rendered.
@@ -203,7 +202,7 @@ pub(super) fn experiment(options: &Options, place: &Place) -> Experiment {
     let size = place.scene.size.map(|side| side * amounts.scale);
     let reference = ReferenceSpec::Make {
         spp: amounts.reference_spp,
-        changes: Box::new(Changes::default()),
+        changes: Box::new(Request::default()),
         witness: place.scene.witness,
     };
     Experiment {

@@ -3,10 +3,11 @@
 use super::plan::{LightTracing, SCENES};
 use super::variants::{AUTO, BASELINE, PATH, SHARED};
 use super::*;
-use crate::experiment::{Changes, Start, texts};
+use crate::experiment::{Start, texts};
 use crate::results::{Cell, Claim, Machine, Table, Verdict};
 use bidir::driver::Settings;
 use bidir::integrator::{BlindSpot, IntegratorKind, blind_spots};
+use bidir::settings::Request;
 use formats::pbrt::{LoadOptions, load};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -48,7 +49,7 @@ fn every_variant_is_of_one_that_is_rendered_and_has_settings_of_its_own() {
         for (variant, of) in variants::of_idea(idea) {
             assert!(rendered.contains(&of), "{} of {of}", variant.name);
             assert!(rendered.contains(&variant.rendered().name));
-            assert_ne!(variant.changes(), Changes::default(), "{}", variant.name);
+            assert_ne!(variant.changes(), Request::default(), "{}", variant.name);
         }
     }
     // The defaults stand for what they are.

@@ -1,8 +1,9 @@
 //! The estimators, and what stands for each idea: a line adds one.
 
 use super::plan::LightTracing;
-use crate::experiment::{Changes, texts};
+use crate::experiment::texts;
 use bidir::driver::Settings;
+use bidir::settings::Request;
 
 /// Every connection of a pair of subpaths is traced: what gains are over.
 pub(super) const BASELINE: &str = "bdpt all";
@@ -127,8 +128,8 @@ const VARIANTS: &[Variant] = &[
 
 impl Variant {
     /// What it wants otherwise than the scene.
-    pub(super) fn changes(&self) -> Changes {
-        let mut changes = Changes::default();
+    pub(super) fn changes(&self) -> Request {
+        let mut changes = Request::default();
         for (name, value) in self.settings {
             let set = changes.set(name, value);
             debug_assert!(set.is_ok(), "{name} {value}: {set:?}");

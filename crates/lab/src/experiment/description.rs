@@ -1,15 +1,16 @@
 //! From TOML to an [`Experiment`].
 
 use super::error::{ExperimentError, Place};
-use super::names::{file_name, nearest};
+use super::names::file_name;
 use super::reader::{Entry, Section, Source};
-use super::settings::{Changes, named, no_effect};
+use super::settings::{names, no_effect};
 use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
-use bidir::driver::Threads;
+use bidir::driver::{Settings, Threads};
 use bidir::integrator::IntegratorKind;
-use formats::film::has_influence;
+use bidir::names::{UnknownName, nearest};
+use bidir::settings::Request;
 use std::path::{Component, Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -60,12 +61,12 @@ impl Experiment {
     pub fn read(text: &str, file: &Path) -> Result<Self> {
         let mut top = Source { file, text }.parse()?;
         top.only(&TOP, &[])?;
-        let mut defaults = Changes::default();
+        let mut defaults = Request::default();
         for (i, mut section) in top.sections("settings")?.into_iter().enumerate() {
             if i > 0 {
                 return Err(section.fault("there is a second [settings]"));
             }
-            section.only(&Changes::NAMES, &OLD_SETTINGS)?;
+            section.only(&borrowed(&names()), &OLD_SETTINGS)?;
             defaults = changes(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
@@ -172,12 +173,22 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
     };
     let mut metrics = Vec::new();
     for entry in entry.texts()? {
-        let metric = entry.read(|name| named(&Metric::NAMES, name))?;
+        let metric = entry.read(metric)?;
         if metric != Metric::Rmse && !metrics.contains(&metric) {
             metrics.push(metric);
         }
     }
     Ok(metrics)
+}
+
+/// The metric of a name.
+fn metric(given: &str) -> std::result::Result<Metric, UnknownName> {
+    let mut names = Metric::NAMES.iter();
+    let found = names.find(|(name, _)| *name == given);
+    let known = Metric::NAMES.map(|(name, _)| name);
+    found
+        .map(|(_, metric)| *metric)
+        .ok_or_else(|| UnknownName::new(given, &known))
 }
 
 /// What all tables `[[key]]` say, of which there is one at least; names differ also in files.
@@ -231,36 +242,44 @@ impl Named for BudgetSpec {
 /// The settings of a table, under the names of flags; `inherited` is the integrator of `[settings]`.
 ///
 /// Errors: a setting without effect on the integrator.
-fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Changes> {
-    let mut changes = Changes::default();
+fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
+    let mut changes = Request::default();
     // The integrator is the first.
-    for name in Changes::NAMES {
-        let entry = match name {
-            "light-start" => section.take_renamed(name, "emission")?,
-            _ => section.take(name),
+    for name in names() {
+        let entry = match &*name {
+            "light-start" => section.take_renamed(&name, "emission")?,
+            _ => section.take(&name),
         };
         if let Some(entry) = entry {
-            entry.read(|value| changes.set(name, value))?;
+            entry.read(|value| changes.set(&name, value).map_err(|error| error.to_string()))?;
             let integrator = changes.integrator.or(inherited);
-            if let Some(deaf) = integrator.filter(|integrator| !has_influence(name, *integrator)) {
+            let is_ignored = |integrator: &IntegratorKind| {
+                changes.ignored(&Settings::new(*integrator)).contains(&name)
+            };
+            if let Some(deaf) = integrator.filter(is_ignored) {
                 let hint = changes.integrator.is_none().then_some(INHERITED);
-                return Err(entry.fault_hinted(no_effect(name, deaf), hint));
+                return Err(entry.fault_hinted(no_effect(&name, deaf), hint));
             }
         }
     }
     Ok(changes)
 }
 
-fn method(section: &mut Section<'_>, defaults: &Changes) -> Result<MethodSpec> {
-    let known = ["name"].into_iter().chain(Changes::NAMES);
+fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
+    let names = names();
+    let known = ["name"].into_iter().chain(borrowed(&names));
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
-        changes: changes(section, defaults.integrator)?.or(defaults),
+        changes: changes(section, defaults.integrator)?.over(defaults),
     })
 }
 
-fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Changes) -> Result<SceneSpec> {
+fn borrowed(names: &[String]) -> Vec<&str> {
+    names.iter().map(String::as_str).collect()
+}
+
+fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result<SceneSpec> {
     section.only(&SCENE, &OLD_SCENE)?;
     let named = section.need("file")?;
     let file = named.text()?.to_owned();
@@ -302,7 +321,7 @@ fn joined(folder: &Path, file: &str) -> PathBuf {
 fn reference(
     section: &mut Section<'_>,
     folder: &Path,
-    defaults: &Changes,
+    defaults: &Request,
 ) -> Result<(ReferenceSpec, Option<Place>)> {
     let image = section.take("reference");
     let spp = section.take("reference-spp");
@@ -335,22 +354,30 @@ fn reference(
 }
 
 /// What decides the expectation of the images is that of all methods.
-fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Changes) -> Result<Changes> {
-    let mut changes = Changes {
+fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
+    let mut changes = Request {
         strategies: defaults.strategies.clone(),
         max_depth: defaults.max_depth,
-        ..Changes::default()
+        ..Request::default()
     };
     if let Some(entry) = strategies {
-        entry.read(|value| changes.set("strategies", value))?;
+        entry.read(|value| {
+            changes
+                .set("strategies", value)
+                .map_err(|error| error.to_string())
+        })?;
     }
     Ok(changes)
 }
 
 /// An estimator that can contradict that of the picture.
 fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
-    let mut changes = Changes::default();
-    entry.read(|value| changes.set("integrator", value))?;
+    let mut changes = Request::default();
+    entry.read(|value| {
+        changes
+            .set("integrator", value)
+            .map_err(|error| error.to_string())
+    })?;
     match changes.integrator {
         Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
             "an estimator cannot cross-check itself".to_owned(),

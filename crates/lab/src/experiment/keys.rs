@@ -1,7 +1,7 @@
 //! Every key of a description, as docs/reference/experiments.md lists them. Tests compare the list with the
 //! reader and with the page.
 
-use super::{Changes, Experiment, ExperimentError};
+use super::{Experiment, ExperimentError, names as settings};
 use crate::metric::Metric;
 use std::fmt::Write;
 use std::path::Path;
@@ -94,18 +94,18 @@ fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
 
 /// The names of the keys of a table, in alphabetical order.
 fn names(table: &str) -> Vec<String> {
-    let mut names: Vec<&str> = Vec::new();
+    let mut names: Vec<String> = Vec::new();
     for key in KEYS.iter().filter(|key| key.table == table) {
         match key.name {
-            "" => names.extend(Changes::NAMES),
-            name => names.push(name),
+            "" => names.extend(settings()),
+            name => names.push(name.to_owned()),
         }
     }
     if table.is_empty() {
-        names.extend(TABLES);
+        names.extend(TABLES.map(str::to_owned));
     }
     names.sort_unstable();
-    names.into_iter().map(str::to_owned).collect()
+    names
 }
 
 #[test]
@@ -151,7 +151,11 @@ fn list() -> String {
         text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
         for key in KEYS.iter().filter(|key| key.table == table) {
             let name = match key.name {
-                "" => Changes::NAMES.map(|name| format!("`{name}`")).join(", "),
+                "" => settings()
+                    .iter()
+                    .map(|name| format!("`{name}`"))
+                    .collect::<Vec<_>>()
+                    .join(", "),
                 name => format!("`{name}`"),
             };
             let [value, default] = match key.name {

@@ -48,7 +48,6 @@ mod journal;
 mod keys;
 mod names;
 mod outputs;
-pub use names::nearest;
 mod page;
 mod pyramid;
 mod reader;
@@ -63,11 +62,12 @@ pub(crate) use journal::claim;
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
-pub use settings::{Changes, texts};
+pub use settings::{names, texts};
 
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use bidir::integrator::IntegratorKind;
+use bidir::settings::Request;
 use std::path::PathBuf;
 
 /// What is compared.
@@ -142,7 +142,7 @@ pub enum ReferenceSpec {
         /// Samples per pixel.
         spp: u64,
         /// Settings on which the expectation depends, such as the strategies that take part.
-        changes: Box<Changes>,
+        changes: Box<Request>,
         /// The estimator of the witness. None: path tracing, which shares least with the other, but for
         /// references without some strategies.
         witness: Option<IntegratorKind>,
@@ -155,7 +155,7 @@ pub struct MethodSpec {
     /// Its name, unlike all others.
     pub name: String,
     /// What it wants otherwise than the scene.
-    pub changes: Changes,
+    pub changes: Request,
 }
 
 /// The amounts that are equal for all methods.

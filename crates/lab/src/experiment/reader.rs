@@ -4,7 +4,8 @@
 //! one that is missing for it.
 
 use super::error::{ExperimentError, Fault, Place};
-use super::names::nearest;
+use bidir::names::nearest;
+use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -75,7 +76,7 @@ pub(super) struct Entry<'a> {
 impl<'a> Section<'a> {
     /// Refuses keys that are not in `known`, with the nearest of them. Those in `old` are accepted, but
     /// not suggested.
-    pub(super) fn only(&self, known: &[&'static str], old: &[&'static str]) -> Result<()> {
+    pub(super) fn only(&self, known: &[&str], old: &[&str]) -> Result<()> {
         let is_known = |name: &str| known.iter().chain(old).any(|known| *known == name);
         let unknown = self.table.keys().filter(|key| !is_known(key.get_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else {
@@ -90,7 +91,7 @@ impl<'a> Section<'a> {
     }
 
     /// The value of a key.
-    pub(super) fn take(&mut self, key: &'static str) -> Option<Entry<'a>> {
+    pub(super) fn take(&mut self, key: &str) -> Option<Entry<'a>> {
         self.table
             .remove(key)
             .map(|value| Entry::new(self.source, value))
@@ -99,11 +100,7 @@ impl<'a> Section<'a> {
     /// The value of a key, which may go by its older name.
     ///
     /// Errors: both names.
-    pub(super) fn take_renamed(
-        &mut self,
-        key: &'static str,
-        older: &'static str,
-    ) -> Result<Option<Entry<'a>>> {
+    pub(super) fn take_renamed(&mut self, key: &str, older: &str) -> Result<Option<Entry<'a>>> {
         match [self.take(key), self.take(older)] {
             [Some(_), Some(old)] => {
                 let message = format!("`{older}` is the older name of `{key}`: write one of them");
@@ -234,10 +231,10 @@ impl<'a> Entry<'a> {
     }
 
     /// What a text says, or an error at its place.
-    pub(super) fn read<T>(
+    pub(super) fn read<T, E: Display>(
         &self,
-        read: impl FnOnce(&str) -> std::result::Result<T, String>,
+        read: impl FnOnce(&str) -> std::result::Result<T, E>,
     ) -> Result<T> {
-        read(self.written()?).map_err(|message| self.fault(message))
+        read(self.written()?).map_err(|error| self.fault(error.to_string()))
     }
 }

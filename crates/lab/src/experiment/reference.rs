@@ -5,7 +5,7 @@ use super::cell::write_image;
 use super::error::{ExperimentError, Place};
 use super::names::file_name;
 use super::run::{Event, Observer, Setup};
-use super::settings::{Changes, texts};
+use super::settings::texts;
 use super::stage::{Reference, Stage};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Made, Plan, Subject};
@@ -14,6 +14,7 @@ use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
+use bidir::settings::Request;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -185,7 +186,7 @@ fn stored_mse(path: &Path) -> Option<f64> {
 /// strategies under other weights. Those of the power heuristic have light tails; uniform ones would be
 /// more different, but have infinite variance near edges, and a witness whose mean is skewed is refused
 /// more often than the level says.
-fn plan(stage: &Stage<'_>, spp: u64, changes: &Changes, named: Option<IntegratorKind>) -> Plan {
+fn plan(stage: &Stage<'_>, spp: u64, changes: &Request, named: Option<IntegratorKind>) -> Plan {
     let mut plan = Plan::usual(&stage.settings, spp);
     let of_picture = changes.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();

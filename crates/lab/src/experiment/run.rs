@@ -230,7 +230,7 @@ fn check_strategies(
 fn check_effect(method: &MethodSpec, stage: &Stage<'_>) -> Result<()> {
     let changes = &method.changes;
     let integrator = stage.settings.integrator;
-    match changes.without_effect(integrator) {
+    match changes.ignored(&stage.settings).first() {
         Some(name) if changes.integrator.is_none() => Err(ExperimentError::NoEffect {
             scene: stage.spec.name.clone(),
             method: method.name.clone(),

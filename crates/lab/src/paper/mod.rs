@@ -37,11 +37,12 @@ mod room;
 mod tests;
 
 use crate::experiment::{
-    Changes, End, Experiment, ExperimentError, Observer, Outcome, Setup, write_results,
+    End, Experiment, ExperimentError, Observer, Outcome, Setup, write_results,
 };
 use crate::results::{Claim, Results};
 use crate::{parts, scenes};
 use bidir::driver::Settings;
+use bidir::settings::Request;
 use contributions::Contributions;
 use depths::Depths;
 use formats::pbrt::LoadOptions;
@@ -71,8 +72,8 @@ pub struct Options {
 }
 
 /// The setting of the paper, but for weights and rules.
-pub(crate) fn setting() -> Changes {
-    let mut changes = Changes::default();
+pub(crate) fn setting() -> Request {
+    let mut changes = Request::default();
     let values = [
         ("integrator", "bdpt"),
         ("strategies", "all,-s0,-t1"),

@@ -3,12 +3,13 @@
 use super::room::{Lamp, Room};
 use super::{Effort, Result, setting};
 use crate::experiment::{
-    BudgetSpec, Changes, Experiment, ExperimentError, MethodSpec, PyramidSpec, ReferenceSpec,
-    SceneSpec, Seeds,
+    BudgetSpec, Experiment, ExperimentError, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec,
+    Seeds,
 };
 use crate::metric::Metric;
 use crate::results::{BudgetKind, Results};
 use crate::scenes;
+use bidir::settings::Request;
 use std::path::{Path, PathBuf};
 
 /// Weights that need no densities.
@@ -149,16 +150,16 @@ fn scene(name: &str, path: PathBuf, spp: u64) -> SceneSpec {
 }
 
 /// What decides the expectation, and no more: references may be rendered in a better way.
-fn reference_changes() -> Changes {
-    let Changes {
+fn reference_changes() -> Request {
+    let Request {
         strategies,
         max_depth,
         ..
     } = setting();
-    Changes {
+    Request {
         strategies,
         max_depth,
-        ..Changes::default()
+        ..Request::default()
     }
 }
 

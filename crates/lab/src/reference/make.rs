@@ -13,7 +13,8 @@ use bidir::film::{Aov, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
-use formats::film::{FilmHeader, SceneIdentity, SettingsText, settings_from_flags};
+use bidir::settings::Request;
+use formats::film::{FilmHeader, SceneIdentity, SettingsText};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -79,9 +80,8 @@ impl Plan {
             let mut settings = Settings {
                 sampler: SamplerKind::Independent,
                 seed: scene.seed,
-                ..Settings::default()
+                ..Settings::new(integrator)
             };
-            settings.set_integrator(integrator);
             settings.path.max_depth = scene.path.max_depth;
             settings
         };
@@ -95,9 +95,9 @@ impl Plan {
     /// program does not know.
     pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
         let [first, second] = provenance.estimators.each_ref().map(|record| {
-            let mut flags = record.settings.clone();
-            flags.insert("seed".to_owned(), record.seed.to_string());
-            settings_from_flags(&flags)
+            let mut request = Request::read(&record.settings)?;
+            request.seed = Some(record.seed);
+            Some(request.apply(&Settings::default()))
         });
         Some(Self {
             estimators: [first?, second?],

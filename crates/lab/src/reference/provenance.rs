@@ -7,8 +7,7 @@ use crate::seal::{self, Seal, sha256};
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::Settings;
 use bidir::film::FilmSettings;
-use bidir::integrator::IntegratorKind;
-use formats::film::{SettingsText, renamed};
+use formats::film::SettingsText;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -86,12 +85,9 @@ impl EstimatorRecord {
 
     /// What its integrator does where nothing else is said.
     fn usual(&self) -> BTreeMap<String, String> {
-        let mut settings = Settings::default();
-        let name = self.settings.get("integrator").map(String::as_str);
-        let mut known = IntegratorKind::NAMES.iter();
-        if let Some((_, kind)) = known.find(|(known, _)| Some(*known) == name) {
-            settings.set_integrator(*kind);
-        }
+        let integrator = self.settings.get("integrator");
+        let integrator = integrator.and_then(|name| name.parse().ok());
+        let settings = Settings::new(integrator.unwrap_or_default());
         SettingsText::from(&settings).by_flag()
     }
 }
@@ -129,11 +125,7 @@ impl Provenance {
         if format != UNSEALED && seal::check(&text) == Seal::Missing {
             return Err(Error::damaged(&path, "it has no checksum"));
         }
-        let mut provenance: Self = serde_json::from_str(&text).map_err(damaged)?;
-        for record in &mut provenance.estimators {
-            record.settings = renamed(std::mem::take(&mut record.settings));
-        }
-        Ok(provenance)
+        serde_json::from_str(&text).map_err(damaged)
     }
 
     /// Writes it to the reference in `folder`.

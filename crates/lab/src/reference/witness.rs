@@ -3,8 +3,7 @@
 use super::Plan;
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use formats::film::{SettingsText, has_influence};
-use std::collections::BTreeMap;
+use bidir::settings::Request;
 
 impl Plan {
     /// True where the witness is, or by `auto` may be, the estimator of the picture but for its seed: it
@@ -21,11 +20,10 @@ fn may_become(auto: &Settings, other: &Settings) -> bool {
     auto.integrator == IntegratorKind::Auto && other.integrator != IntegratorKind::Light
 }
 
-/// The settings that an estimator depends on but its seed, by name, with what is left to it decided.
-fn in_effect(settings: &Settings) -> BTreeMap<String, String> {
-    let mut settings = settings.clone();
-    settings.decide();
-    let mut texts = SettingsText::from(&settings).by_flag();
-    texts.retain(|name, _| name != "seed" && has_influence(name, settings.integrator));
-    texts
+/// The settings that an estimator depends on, but its seed.
+fn in_effect(settings: &Settings) -> Request {
+    Request {
+        seed: None,
+        ..Request::of(settings)
+    }
 }

@@ -47,9 +47,8 @@ pub(super) fn load(text: &str) -> Scene {
 
 pub(super) fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &str) -> Session<'a> {
     let settings = Settings {
-        integrator,
         shadow_rays: rule.parse().expect("a rule"),
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     let resources = Resources {
         threads: 1,

@@ -3,6 +3,7 @@
 use super::SampleReport;
 use super::subpath::{SubpathReport, VertexReport};
 use super::term::{CandidateReport, SplatReport, TermReport};
+use bidir::integrator::IntegratorKind;
 use std::fmt::{self, Display, Formatter};
 
 /// A point or direction, in columns.
@@ -41,16 +42,8 @@ impl Display for SampleReport {
 
 impl SampleReport {
     fn write_settings(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let settings = &self.settings;
-        writeln!(
-            f,
-            "integrator {}, shadow rays {}, mis {}, strategies {}, seed {}",
-            settings.integrator,
-            settings.shadow_rays,
-            settings.mis,
-            settings.strategies,
-            settings.seed
-        )?;
+        let names = ["integrator", "shadow-rays", "mis", "strategies", "seed"];
+        writeln!(f, "{}", self.settings.line(&names))?;
         let Some(training) = &self.training else {
             return Ok(());
         };
@@ -91,7 +84,7 @@ impl SampleReport {
             writeln!(
                 f,
                 "  g, by which candidates are chosen, is the luminance of w C{}",
-                if self.settings.integrator == "lvc" {
+                if self.settings.request.integrator == Some(IntegratorKind::Lvc) {
                     ", times √V̂ where visibility is learnt"
                 } else {
                     ""

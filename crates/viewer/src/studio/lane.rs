@@ -5,6 +5,7 @@ use crate::exhibit::Exhibit;
 use bidir::driver::{Progress, Session, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathRoulette;
+use bidir::settings::{Choice, Request};
 use formats::film::{FilmHeader, Stopping, of_run};
 use std::time::{Duration, Instant};
 
@@ -93,14 +94,21 @@ impl Lane {
 
 /// What a preview is rendered with: no camera would stand still for as long as `auto` tries estimators.
 /// Bidirectional path tracing finds whatever the others do. `roulette` is the one that was asked for.
-pub(super) fn without_training(wanted: &Settings, roulette: Option<PathRoulette>) -> Settings {
+pub(super) fn without_training(
+    wanted: &Settings,
+    roulette: Option<Choice<PathRoulette>>,
+) -> Settings {
     let mut settings = wanted.clone();
     if matches!(
         settings.integrator,
         IntegratorKind::Auto | IntegratorKind::Lvc
     ) {
-        settings.set_integrator(IntegratorKind::Bdpt);
-        settings.path.roulette = roulette.unwrap_or(settings.path.roulette);
+        let request = Request {
+            integrator: Some(IntegratorKind::Bdpt),
+            path_roulette: roulette,
+            ..Request::default()
+        };
+        settings = request.apply(&settings);
     }
     if settings.shadow_rays.needs_mean() {
         settings.shadow_rays = settings.integrator.shadow_rays();
@@ -129,8 +137,13 @@ mod tests {
         {
             let mut wanted = Settings::default();
             wanted.set_integrator(integrator);
-            wanted.shadow_rays = rule.parse().expect("a rule");
-            let preview = without_training(&wanted, Some(PathRoulette::Off));
+            let rule: Choice<_> = rule.parse().expect("a rule");
+            let request = Request {
+                shadow_rays: Some(rule),
+                ..Request::default()
+            };
+            let wanted = request.apply(&wanted);
+            let preview = without_training(&wanted, Some(Choice::Fixed(PathRoulette::Off)));
             assert_eq!(preview.integrator, expected);
             assert!(!preview.shadow_rays.needs_mean());
             let is_other = preview.integrator != wanted.integrator;

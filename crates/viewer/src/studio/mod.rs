@@ -15,6 +15,7 @@ use crate::board::{Desk, Link};
 use bidir::driver::Settings;
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
+use bidir::settings::Choice;
 use painter::Painter;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -32,7 +33,7 @@ pub struct StudioSettings {
     /// How it is rendered.
     pub settings: Settings,
     /// How subpaths end by chance, whichever the estimator. None: as it suits it.
-    pub roulette: Option<PathRoulette>,
+    pub roulette: Option<Choice<PathRoulette>>,
     /// Threads; 0 is one per processor.
     pub threads: usize,
     /// The passes after which it is enough. None: there is no end.

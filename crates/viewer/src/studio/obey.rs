@@ -3,12 +3,12 @@
 use super::painter::Painter;
 use super::view::View;
 use crate::command::Command;
+use crate::exhibit::method_of;
 use crate::status::{LaneId, State};
 use bidir::driver::Settings;
 use bidir::film::Layers;
-use bidir::integrator::IntegratorKind;
-use bidir::select::{ShadowRays, ShadowRaysError};
-use formats::film::{Developed, SettingsText, metadata};
+use bidir::settings::Request;
+use formats::film::{Developed, metadata};
 
 impl Painter {
     /// Does what `command` says; what is refused is told why.
@@ -102,9 +102,9 @@ impl Painter {
             return Ok(());
         }
         let first = self.wanted(LaneId::A)?;
-        let names = SettingsText::from(first);
-        let integrator = integrator.unwrap_or(names.integrator);
-        let rays = rays.unwrap_or(&names.shadow_rays);
+        let [own_integrator, own_rays] = method_of(first);
+        let integrator = integrator.unwrap_or(&own_integrator);
+        let rays = rays.unwrap_or(&own_rays);
         let second = self.method(first, integrator, rays)?;
         self.wanted.truncate(1);
         self.wanted.push(second);
@@ -160,21 +160,14 @@ impl Painter {
         integrator: &str,
         rays: &str,
     ) -> Result<Settings, String> {
-        let names = IntegratorKind::NAMES.iter();
-        let known = names.clone().find(|(name, _)| *name == integrator);
-        let (_, integrator) = known.ok_or_else(|| {
-            let names: Vec<_> = names.map(|(name, _)| *name).collect();
-            let integrator = integrator.escape_debug();
-            format!(
-                "there is no integrator `{integrator}`: expected {}",
-                names.join(", ")
-            )
-        })?;
-        let mut settings = settings.clone();
-        settings.set_integrator(*integrator);
-        let rays: Result<ShadowRays, ShadowRaysError> = rays.parse();
-        settings.shadow_rays = rays.map_err(|error| error.to_string())?;
-        settings.path.roulette = self.roulette.unwrap_or(settings.path.roulette);
-        Ok(settings)
+        let mut request = Request {
+            path_roulette: self.roulette,
+            ..Request::default()
+        };
+        for (name, value) in [("integrator", integrator), ("shadow-rays", rays)] {
+            let set = request.set(name, value);
+            set.map_err(|error| error.to_string())?;
+        }
+        Ok(request.apply(settings))
     }
 }

@@ -11,6 +11,7 @@ use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
+use bidir::settings::Choice;
 use formats::film::{FilmHeader, SceneIdentity, program};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -28,7 +29,7 @@ pub(super) struct Painter {
     scene: Arc<Scene>,
     resources: Resources,
     target: Option<u64>,
-    pub(super) roulette: Option<PathRoulette>,
+    pub(super) roulette: Option<Choice<PathRoulette>>,
     pub(super) view: View,
     /// How each lane is to be rendered.
     pub(super) wanted: Vec<Settings>,

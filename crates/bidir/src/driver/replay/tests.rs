@@ -47,9 +47,8 @@ fn scene() -> Scene {
 
 fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &str) -> Session<'a> {
     let settings = Settings {
-        integrator,
         shadow_rays: rule.parse::<ShadowRays>().expect("a rule"),
-        ..Settings::default()
+        ..Settings::new(integrator)
     };
     let resources = Resources {
         threads: 1,

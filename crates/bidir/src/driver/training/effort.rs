@@ -33,7 +33,6 @@ pub(super) fn short(scene: &Scene, settings: Settings) -> (Settings, Option<Trai
     if let Some(plan) = plan {
         settings = plan.apply(&settings);
     }
-    settings.decide();
     if plan.is_none() && !settings.needs_training() {
         return (settings, None);
     }

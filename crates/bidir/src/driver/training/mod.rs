@@ -22,7 +22,7 @@ pub use plan::Plan;
 use super::Settings;
 use super::session::path_context;
 use crate::integrator::{
-    EmissionKind, IntegratorKind, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
+    IntegratorKind, LightStart, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
 };
 use crate::light::LightChoice;
 use crate::path::{Cells, Connections, LightProposals, MisCount};
@@ -104,7 +104,6 @@ fn train(task: Task<'_>) -> Result<(Settings, Option<Training>), Late> {
         let (plan, training) = Training::plan(task)?;
         return Ok((plan.apply(&settings), Some(training)));
     }
-    settings.decide();
     if !settings.needs_training() {
         return Ok((settings, None));
     }
@@ -224,7 +223,6 @@ impl Training {
                 next_events,
                 per_vertex: settings
                     .candidates
-                    .count()
                     .get()
                     .map(|count| f64::from(count) / vertices),
                 proposals: self.proposals.as_ref(),
@@ -240,7 +238,7 @@ impl Training {
     fn learn(&mut self, task: Task<'_>, survey: &Survey) -> Result<(), Late> {
         let (scene, lvc, cells) = (task.scene, &task.settings.lvc, survey.cells());
         let found = self.explore(task, survey, &cells)?;
-        if lvc.emission == EmissionKind::Learned {
+        if lvc.light_start == LightStart::Learned {
             let (power, subpaths) = (scene.light_choice(), self.learning.samples());
             self.emission = emission::learnt(power, &found.connections, subpaths);
         }
@@ -273,9 +271,11 @@ impl Training {
     /// Connections with light vertices that are chosen by nothing, where somebody learns from them.
     fn explore(&mut self, task: Task<'_>, survey: &Survey, cells: &Cells) -> Result<Found, Late> {
         let LvcSettings {
-            proposal, emission, ..
+            proposal,
+            light_start,
+            ..
         } = task.settings.lvc;
-        if proposal == ProposalKind::Uniform && emission == EmissionKind::Power {
+        if proposal == ProposalKind::Uniform && light_start == LightStart::Power {
             return Ok(Found::default());
         }
         let uniform = LightProposals::uniform(cells.clone(), &survey.pair_sums(cells, |_| 1.0));

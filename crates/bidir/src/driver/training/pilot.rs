@@ -3,9 +3,7 @@
 
 use super::effort::Late;
 use super::probe::{Probe, Witness, groups, keep};
-use crate::integrator::{
-    CandidateCount, Candidates, IntegratorKind, LvcSettings, Sample, Workspace,
-};
+use crate::integrator::{CandidateCount, IntegratorKind, LvcSettings, Sample, Workspace};
 use crate::path::{Cell, Cells, PathContext};
 use crate::select::{LightVertex, ShadowRays};
 use crate::stats::RayCounts;
@@ -85,7 +83,7 @@ pub(super) fn run(probe: &Probe<'_>) -> Result<(Found, RayCounts), Late> {
         let mut found = Found::default();
         let selector = ShadowRays::All.selector(0.0);
         let lvc = LvcSettings {
-            candidates: Candidates::Of(CandidateCount::of(CANDIDATES)),
+            candidates: CandidateCount::of(CANDIDATES),
             ..probe.settings.lvc
         };
         let integrator = IntegratorKind::Lvc.integrator(selector, &lvc);

@@ -5,7 +5,7 @@ use super::probe::Probe;
 use super::trial::{self, Trial};
 use super::{Settings, Task, Training};
 use crate::integrator::{
-    BlindSpot, CandidateCount, Candidates, IntegratorKind, SamplesPerSubpath, blind_spots,
+    BlindSpot, CandidateCount, IntegratorKind, SamplesPerSubpath, blind_spots,
 };
 use crate::path::{Connections, LightPointChoice, PathRoulette};
 use crate::scene::Scene;
@@ -35,7 +35,7 @@ pub(super) const fn path(start: u32) -> Plan {
         integrator: IntegratorKind::Path,
         roulette: PathRoulette::Albedo { start },
         samples_per_subpath: SamplesPerSubpath::power_of_two(0),
-        candidates: CandidateCount::FEW,
+        candidates: CandidateCount::DEFAULT,
         shadow_rays: ShadowRays::All,
     }
 }
@@ -58,7 +58,7 @@ const fn lvc(exponent: u32, candidates: CandidateCount, rays: u32) -> Plan {
 }
 
 /// What [`IntegratorKind::Lvc`] does where nothing else is said.
-pub(super) const LVC: Plan = lvc(1, CandidateCount::FEW, 6);
+pub(super) const LVC: Plan = lvc(1, CandidateCount::DEFAULT, 6);
 /// More connections, where the light is found by many bounces or through gaps.
 pub(super) const MANY: Plan = lvc(1, CandidateCount::new(20, 3), 8);
 /// The most of them, of as many light subpaths as there are samples.
@@ -70,7 +70,7 @@ pub(super) const PLANS: [Plan; 8] = [
     path(1),
     path(2),
     BDPT,
-    lvc(2, CandidateCount::FEW, 6),
+    lvc(2, CandidateCount::DEFAULT, 6),
     LVC,
     MANY,
     MOST,
@@ -84,16 +84,16 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// The same where `settings` name a roulette, candidates or a choice of shadow rays.
+    /// The same but for the settings that are not left open.
     pub(super) fn keeping(mut self, settings: &Settings) -> Self {
-        if settings.path.roulette != PathRoulette::Suited {
+        if !settings.open.roulette {
             self.roulette = settings.path.roulette;
         }
-        if settings.shadow_rays != ShadowRays::Suited {
+        if !settings.open.shadow_rays {
             self.shadow_rays = settings.shadow_rays;
         }
-        if let Candidates::Of(count) = settings.lvc.candidates {
-            self.candidates = count;
+        if !settings.open.candidates {
+            self.candidates = settings.lvc.candidates;
         }
         self
     }
@@ -101,11 +101,11 @@ impl Plan {
     /// `settings` with this plan.
     pub(super) fn apply(&self, settings: &Settings) -> Settings {
         let mut settings = settings.clone();
-        settings.integrator = self.integrator;
+        settings.set_integrator(self.integrator);
         settings.path.roulette = self.roulette;
         settings.shadow_rays = self.shadow_rays;
         settings.lvc.samples_per_subpath = self.samples_per_subpath;
-        settings.lvc.candidates = Candidates::Of(self.candidates);
+        settings.lvc.candidates = self.candidates;
         settings
     }
 
@@ -151,14 +151,7 @@ impl Plan {
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut names = IntegratorKind::NAMES.iter();
-        let name = names.find(|(_, kind)| *kind == self.integrator);
-        write!(
-            f,
-            "{}, {}",
-            name.map_or("", |(name, _)| name),
-            self.roulette
-        )?;
+        write!(f, "{}, {}", self.integrator, self.roulette)?;
         if !self.is_shared() {
             return Ok(());
         }

@@ -19,8 +19,7 @@ mod tests;
 
 pub(crate) use cache::{LightCache, connectable};
 pub use settings::{
-    CandidateCount, Candidates, CountError, EmissionKind, LvcSettings, ProposalKind,
-    SamplesPerSubpath,
+    CandidateCount, CountError, LightStart, LvcSettings, ProposalKind, SamplesPerSubpath,
 };
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};

@@ -1,5 +1,6 @@
 //! How a light vertex cache is made and used.
 
+use crate::names::{as_text, named};
 use crate::path::MisCount;
 use std::fmt;
 use std::str::FromStr;
@@ -8,13 +9,13 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LvcSettings {
     /// M: how many vertices of the cache are candidates for each camera vertex.
-    pub candidates: Candidates,
+    pub candidates: CandidateCount,
     /// How many light points next-event estimation draws for each camera vertex.
     pub next_events: CandidateCount,
     /// How vertices of the cache are chosen.
     pub proposal: ProposalKind,
     /// How light subpaths choose the light that they begin on.
-    pub emission: EmissionKind,
+    pub light_start: LightStart,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: SamplesPerSubpath,
     /// What weights take for the number of samples of a strategy.
@@ -24,10 +25,10 @@ pub struct LvcSettings {
 impl Default for LvcSettings {
     fn default() -> Self {
         Self {
-            candidates: Candidates::default(),
+            candidates: CandidateCount::DEFAULT,
             next_events: CandidateCount::new(2, 1),
             proposal: ProposalKind::default(),
-            emission: EmissionKind::default(),
+            light_start: LightStart::default(),
             samples_per_subpath: SamplesPerSubpath::default(),
             mis_count: MisCount::default(),
         }
@@ -44,15 +45,14 @@ pub enum ProposalKind {
     Learned,
 }
 
-impl ProposalKind {
-    /// Every kind with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 2] =
-        [("uniform", Self::Uniform), ("learned", Self::Learned)];
-}
+named!(ProposalKind {
+    "uniform" => Uniform,
+    "learned" => Learned,
+});
 
 /// How light subpaths choose the light that they begin on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum EmissionKind {
+pub enum LightStart {
     /// By power.
     Power,
     /// By what training found subpaths to contribute.
@@ -60,33 +60,10 @@ pub enum EmissionKind {
     Learned,
 }
 
-impl EmissionKind {
-    /// Every kind with its name on the command line.
-    pub const NAMES: [(&'static str, Self); 2] =
-        [("power", Self::Power), ("learned", Self::Learned)];
-}
-
-/// How many candidates the vertices of camera subpaths have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Candidates {
-    /// So many.
-    Of(CandidateCount),
-    /// What suits the estimator: decided before the first pass. A sample takes it for
-    /// [`CandidateCount::FEW`].
-    #[default]
-    Suited,
-}
-
-impl Candidates {
-    /// M.
-    #[inline]
-    pub fn count(self) -> CandidateCount {
-        match self {
-            Self::Of(count) => count,
-            Self::Suited => CandidateCount::FEW,
-        }
-    }
-}
+named!(LightStart {
+    "power" => Power,
+    "learned" => Learned,
+});
 
 /// How many candidates or light points the vertices of camera subpaths have, from 1 to [`CandidateCount::MAX`]: the
 /// first vertex of a subpath, which the pixel's noise depends on most, and those behind it.
@@ -99,8 +76,8 @@ pub struct CandidateCount {
 impl CandidateCount {
     /// The most: candidates of a sample are in memory together, M for each of its camera vertices.
     pub const MAX: u16 = 4096;
-    /// What suits most scenes.
-    pub const FEW: Self = Self::new(12, 1);
+    /// The number that suits most scenes.
+    pub const DEFAULT: Self = Self::new(12, 1);
 
     /// `first` and `deeper`, brought into the range.
     pub const fn new(first: u16, deeper: u16) -> Self {
@@ -200,21 +177,6 @@ impl FromStr for CandidateCount {
     }
 }
 
-impl FromStr for Candidates {
-    type Err = CountError;
-
-    fn from_str(text: &str) -> Result<Self, CountError> {
-        // The latter is the older name.
-        if ["auto", "suited"].contains(&text) {
-            return Ok(Self::Suited);
-        }
-        text.parse().map(Self::Of).map_err(|error| CountError {
-            expected: "a whole number from 1 to 4096, two of them as in `8,1`, or `auto`",
-            ..error
-        })
-    }
-}
-
 impl FromStr for SamplesPerSubpath {
     type Err = CountError;
 
@@ -237,14 +199,8 @@ impl fmt::Display for CandidateCount {
     }
 }
 
-impl fmt::Display for Candidates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Of(count) => count.fmt(f),
-            Self::Suited => write!(f, "auto"),
-        }
-    }
-}
+as_text!(CandidateCount);
+as_text!(SamplesPerSubpath);
 
 impl fmt::Display for SamplesPerSubpath {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -291,9 +247,6 @@ mod tests {
         ];
         let good = ["1", "3", "4096", "8,1", "1,4096"];
         check::<CandidateCount>(&good, &bad, "from 1 to 4096");
-        check::<Candidates>(&good, &bad, "`auto`");
-        check::<Candidates>(&["auto"], &["Auto"], "from 1 to 4096");
-        assert_eq!("suited".parse(), Ok(Candidates::Suited));
         let bad = ["", "0", "-2", "3", "512", "65536", "x"];
         check::<SamplesPerSubpath>(&["1", "8", "256"], &bad, "from 1 to 256");
     }

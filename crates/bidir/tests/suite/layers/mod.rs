@@ -27,9 +27,8 @@ pub(crate) const FEATURES: [Aov; 9] = [
 
 pub(crate) fn settings(integrator: IntegratorKind, layers: Layers) -> Settings {
     Settings {
-        integrator,
         layers,
-        ..Settings::default()
+        ..Settings::new(integrator)
     }
 }
 

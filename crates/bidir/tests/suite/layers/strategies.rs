@@ -5,9 +5,7 @@ use super::{film, settings};
 use crate::common::statistics::{WHOLE, check_agree, replicates, replicates_of};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Film, Layers};
-use bidir::integrator::{
-    CandidateCount, Candidates, IntegratorKind, LvcSettings, SamplesPerSubpath,
-};
+use bidir::integrator::{CandidateCount, IntegratorKind, LvcSettings, SamplesPerSubpath};
 use bidir::path::Strategy;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
@@ -143,7 +141,7 @@ fn strategies_of_shared_subpaths_vary_as_their_images_do() {
     let mut settings = with_raw("all");
     settings.integrator = IntegratorKind::Lvc;
     settings.lvc = LvcSettings {
-        candidates: Candidates::Of(CandidateCount::new(12, 3)),
+        candidates: CandidateCount::new(12, 3),
         samples_per_subpath: SamplesPerSubpath::power_of_two(1),
         ..LvcSettings::default()
     };

@@ -4,9 +4,10 @@ use super::context::Context;
 use super::reader::{Reader, single};
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{Parameter, ParameterType, Values};
-use crate::source::{Fault, nearest};
+use crate::source::Fault;
 use crate::spectra::{self, Beyond, Spectrum};
 use crate::text::number;
+use bidir::names::nearest;
 use bidir::spectrum::Rgb;
 
 /// Temperatures beyond which light is all outside of the visible. Unit: K.

@@ -101,11 +101,9 @@ impl SampleReport {
 
     /// What the picture is of.
     fn head(&self, name: &str) -> [Element; 2] {
-        let settings = &self.settings;
-        let about = format!(
-            "{name}: integrator {}, shadow rays {}, mis {}, seed {}; {} rays",
-            settings.integrator, settings.shadow_rays, settings.mis, settings.seed, self.rays
-        );
+        let names = ["integrator", "shadow-rays", "mis", "seed"];
+        let settings = self.settings.line(&names);
+        let about = format!("{name}: {settings}; {} rays", self.rays);
         [
             text(Vec2::new(MARGIN, 36.0), self.title()).class("title"),
             text(Vec2::new(MARGIN, 56.0), about).class("muted"),

@@ -1,10 +1,9 @@
 use super::*;
+use crate::settings::{Choice, Request};
 
 /// Settings of `auto` that name nothing.
 fn open() -> Settings {
-    let mut settings = Settings::default();
-    settings.set_integrator(IntegratorKind::Auto);
-    settings
+    Settings::new(IntegratorKind::Auto)
 }
 
 #[test]
@@ -19,10 +18,13 @@ fn every_plan_is_open_where_nothing_is_named() {
 
 #[test]
 fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
-    let mut settings = open();
-    settings.path.roulette = PathRoulette::Off;
-    settings.shadow_rays = ShadowRays::PerPair;
-    settings.lvc.candidates = Candidates::Of(CandidateCount::of(5));
+    let request = Request {
+        path_roulette: Some(Choice::Fixed(PathRoulette::Off)),
+        shadow_rays: Some(Choice::Fixed(ShadowRays::PerPair)),
+        candidates: Some(Choice::Fixed(CandidateCount::of(5))),
+        ..Request::default()
+    };
+    let settings = request.apply(&open());
     let plans = open_plans(&settings);
     // Path tracing, bidirectional path tracing, and three numbers of samples for a light subpath.
     assert_eq!(plans.len(), 5, "{plans:?}");

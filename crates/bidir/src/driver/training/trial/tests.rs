@@ -149,10 +149,7 @@ pub(in crate::driver::training) fn sphere(
 
 #[test]
 fn two_of_three_samples_share_their_camera_ray() {
-    let settings = Settings {
-        integrator: IntegratorKind::Path,
-        ..Settings::default()
-    };
+    let settings = Settings::new(IntegratorKind::Path);
     let probe = Probe {
         is_late: &|| false,
         extent: Extent::new(1.0, 1e9),

@@ -1,0 +1,83 @@
+//! A setting that may be left to the integrator.
+
+use std::fmt::{self, Display};
+use std::str::FromStr;
+
+/// A value, or what suits the integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice<T> {
+    /// The integrator's own, written `auto`; `suited` is the older spelling.
+    Automatic,
+    /// This one.
+    Fixed(T),
+}
+
+/// A text is neither a value nor `auto`.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error("{0}, or `auto`")]
+pub struct ChoiceError<E: Display>(E);
+
+impl<T> Choice<T> {
+    /// A value, or that it is open.
+    pub(super) fn new(is_open: bool, value: T) -> Self {
+        if is_open {
+            Self::Automatic
+        } else {
+            Self::Fixed(value)
+        }
+    }
+
+    /// The value, or the integrator's own.
+    pub(super) fn or(self, own: T) -> T {
+        match self {
+            Self::Automatic => own,
+            Self::Fixed(value) => value,
+        }
+    }
+
+    /// True where it is left to an integrator that makes its own choice if `makes_it`.
+    pub(super) fn is_open(&self, makes_it: bool) -> bool {
+        matches!(self, Self::Automatic) && makes_it
+    }
+}
+
+impl<T: FromStr<Err: Display>> FromStr for Choice<T> {
+    type Err = ChoiceError<T::Err>;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "auto" | "suited" => Ok(Self::Automatic),
+            text => text.parse().map(Self::Fixed).map_err(ChoiceError),
+        }
+    }
+}
+
+impl<T: Display> Display for Choice<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Automatic => f.write_str("auto"),
+            Self::Fixed(value) => value.fmt(f),
+        }
+    }
+}
+
+crate::names::as_text!(Choice<T>);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_the_integrators_own_are_read_and_written() {
+        for (text, choice) in [("auto", Choice::Automatic), ("3", Choice::Fixed(3))] {
+            assert_eq!(text.parse(), Ok(choice));
+            assert_eq!(choice.to_string(), text);
+        }
+        assert_eq!("suited".parse::<Choice<u8>>(), Ok(Choice::Automatic));
+        let error = "x".parse::<Choice<u8>>().unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "invalid digit found in string, or `auto`"
+        );
+    }
+}
