@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import typing
 
 import pytest
 
 import bidir
+from bidir import _bidir
 
 
 def test_settings_are_those_of_the_flags() -> None:
@@ -43,6 +45,23 @@ def test_settings_are_those_of_the_flags() -> None:
         "max-depth": "0",
         "sampler": "independent",
     }
+
+
+@pytest.mark.parametrize("kind", [bidir.Path, bidir.Light, bidir.Bdpt, bidir.Lvc, bidir.Auto])
+def test_classes_have_the_settings_of_the_command(kind: type[bidir.Integrator]) -> None:
+    own = {field.name.replace("_", "-") for field in dataclasses.fields(kind)}
+    if kind is bidir.Auto:
+        # It is a kind of Lvc, and ignores this one.
+        own.remove("samples-per-subpath")
+    assert {"integrator", *own} == set(_bidir.settings_of(kind.__name__.lower()))
+
+
+@pytest.mark.parametrize("name", ["mis", "light_choice", "light_point", "proposal", "light_start", "mis_count"])
+def test_the_names_of_values_are_those_of_the_command(name: str) -> None:
+    values = typing.get_args(typing.get_args(typing.get_type_hints(bidir.Lvc)[name])[0])
+    with pytest.raises(bidir.SettingsError) as refused:
+        bidir.Lvc(**{name: "zzzzzz"})  # type: ignore[arg-type]
+    assert set(values) == set(str(refused.value).split("expected ")[1].split(", "))
 
 
 def test_candidates_may_be_left_to_the_estimator() -> None:
@@ -105,5 +124,5 @@ def test_estimators_are_values() -> None:
 
 
 def test_layers_that_are_not_known(cornell: bidir.Scene) -> None:
-    with pytest.raises(bidir.SettingsError, match="there is no layer `albeda`"):
+    with pytest.raises(bidir.SettingsError, match="layers: there is no `albeda`: did you mean `albedo`"):
         bidir.render(cornell, spp=1, layers=["albeda"])

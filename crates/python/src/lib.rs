@@ -41,7 +41,7 @@ mod _bidir {
     #[pymodule_export]
     use super::session::Session;
     #[pymodule_export]
-    use super::settings::check_settings;
+    use super::settings::{check_settings, settings_of};
     use pyo3::prelude::*;
 
     #[pymodule_init]

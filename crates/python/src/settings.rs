@@ -3,6 +3,7 @@
 use crate::error::raise;
 use bidir::driver::{Settings, Threads};
 use bidir::film::{Aov, Layers};
+use bidir::integrator::IntegratorKind;
 use bidir::names::UnknownName;
 use bidir::settings::Request;
 use formats::scene::SceneSettings;
@@ -91,6 +92,17 @@ fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Request> {
         })?;
     }
     Ok(changes)
+}
+
+/// The names of the settings that images by an integrator depend on, as flags are spelt.
+///
+/// Errors: there is no such integrator, as `SettingsError`.
+#[pyfunction]
+pub(crate) fn settings_of(py: Python<'_>, integrator: &str) -> PyResult<Vec<String>> {
+    let kind: Result<IntegratorKind, UnknownName> = integrator.parse();
+    let kind = kind.map_err(|error| raise(py, "SettingsError", &error.to_string()))?;
+    let texts = lab::experiment::texts(&Settings::new(kind));
+    Ok(texts.into_keys().collect())
 }
 
 /// Fails where a setting has a value that is not known; returns all of them as they are understood.

@@ -4,14 +4,16 @@ use super::{Choice, Settings};
 use crate::integrator::{
     CandidateCount, IntegratorKind, LightStart, ProposalKind, SamplesPerSubpath,
 };
+use crate::names::Parse;
 use crate::path::{
     LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
 };
 use crate::sampler::SamplerKind;
 use crate::select::ShadowRays;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 /// Settings that are asked for; None leaves one to what lies below, or to its default. The comments are the help
 /// of the command.
@@ -39,6 +41,7 @@ pub struct Request {
     )]
     pub integrator: Option<IntegratorKind>,
     /// Maximum number of bounces; 0 is unlimited [default: the scene's].
+    #[serde(deserialize_with = "whole")]
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub max_depth: Option<u32>,
     /// MIS heuristic: balance, power or uniform [default: balance].
@@ -92,6 +95,7 @@ pub struct Request {
     /// Random seed [default: the scene's, or 0].
     ///
     /// Images of different seeds have independent noise.
+    #[serde(deserialize_with = "whole")]
     #[cfg_attr(feature = "clap", arg(long, env = "BIDIR_SEED", value_name = "N"))]
     pub seed: Option<u64>,
     /// Which connections are traced (bdpt, lvc, auto) [default: the integrator's].
@@ -341,6 +345,23 @@ impl Request {
     }
 }
 
+/// Reads a whole number, or its text.
+fn whole<'de, D: Deserializer<'de>, T: FromStr>(from: D) -> Result<Option<T>, D::Error> {
+    let number = from.deserialize_any(Parse::<Whole<T>>::default());
+    number.map(|Whole(number)| Some(number))
+}
+
+struct Whole<T>(T);
+
+impl<T: FromStr> FromStr for Whole<T> {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let number = text.parse().map(Self);
+        number.map_err(|_| "expected a whole number")
+    }
+}
+
 fn put<T>(setting: &mut T, value: Option<T>) {
     if let Some(value) = value {
         *setting = value;
@@ -361,4 +382,131 @@ fn from_map(map: Map<String, Value>) -> Result<Request, serde_json::Error> {
 /// The name of a field as flags are spelt.
 fn flag(field: &str) -> String {
     field.replace('_', "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Open;
+    use super::*;
+
+    const VALUES: [(&str, &str); 16] = [
+        ("integrator", "lvc"),
+        ("max-depth", "7"),
+        ("mis", "uniform"),
+        ("strategies", "all,-s0"),
+        ("path-roulette", "off"),
+        ("light-choice", "power"),
+        ("light-point", "shared"),
+        ("sampler", "independent"),
+        ("seed", "18446744073709551615"),
+        ("shadow-rays", "per-pair"),
+        ("candidates", "9,2"),
+        ("next-events", "3"),
+        ("proposal", "uniform"),
+        ("light-start", "power"),
+        ("samples-per-subpath", "4"),
+        ("mis-count", "correlated"),
+    ];
+
+    fn request(values: &[(&str, &str)]) -> Request {
+        let mut request = Request::default();
+        for (name, value) in values {
+            request.set(name, value).unwrap();
+        }
+        request
+    }
+
+    #[test]
+    fn settings_are_read_as_they_are_written() {
+        let names: Vec<_> = Request::names().collect();
+        assert_eq!(names.len(), VALUES.len());
+        let request = request(&VALUES);
+        let texts = request.texts();
+        for (name, value) in VALUES {
+            assert_eq!(texts[name], value);
+        }
+        assert_eq!(Request::read(&texts), Some(request.clone()));
+        assert_eq!(Request::of(&request.apply(&Settings::default())), request);
+        let texts = BTreeMap::from([("mis".to_owned(), "best".to_owned())]);
+        assert_eq!(Request::read(&texts), None);
+    }
+
+    #[test]
+    fn a_request_lies_over_another() {
+        let below = request(&[("mis", "power"), ("seed", "1")]);
+        let above = request(&[("mis", "uniform"), ("max-depth", "2")]);
+        let expected = request(&[("mis", "uniform"), ("seed", "1"), ("max-depth", "2")]);
+        assert_eq!(above.over(&below), expected);
+    }
+
+    /// The integrator's own choice is for every integrator but `auto`, which keeps it open.
+    #[test]
+    fn choices_are_made_or_left_open() {
+        let fixed = [
+            ("shadow-rays", "per-pair"),
+            ("candidates", "5"),
+            ("path-roulette", "off"),
+        ];
+        let open = fixed.map(|(name, _)| (name, "auto"));
+        for (name, integrator) in IntegratorKind::NAMES {
+            let own = Settings::new(integrator);
+            let settings = request(&fixed).apply(&own);
+            assert_eq!(settings.open, Open::default(), "{name}");
+            assert_eq!(settings.lvc.candidates, CandidateCount::of(5), "{name}");
+            let again = request(&open).apply(&settings);
+            assert_eq!(Request::of(&again), Request::of(&own), "{name}");
+        }
+        let texts = Request::of(&Settings::new(IntegratorKind::Auto)).texts();
+        assert!(
+            open.iter().all(|(name, text)| texts[*name] == *text),
+            "{texts:?}"
+        );
+    }
+
+    #[test]
+    fn settings_without_influence_are_named() {
+        let request = request(&VALUES);
+        let ignored = |kind| request.ignored(&Settings::new(kind));
+        let of_light = [
+            "light-choice",
+            "light-point",
+            "mis",
+            "shadow-rays",
+            "strategies",
+        ];
+        let of_lvc = [
+            "candidates",
+            "light-start",
+            "mis-count",
+            "next-events",
+            "proposal",
+        ];
+        let alone = "samples-per-subpath";
+        assert_eq!(ignored(IntegratorKind::Lvc), [""; 0]);
+        assert_eq!(ignored(IntegratorKind::Auto), [alone]);
+        assert_eq!(ignored(IntegratorKind::Bdpt).len(), of_lvc.len() + 1);
+        let of_light = ignored(IntegratorKind::Light)
+            .iter()
+            .filter(|name| of_light.contains(&&***name))
+            .count();
+        assert_eq!(of_light, 5);
+    }
+
+    #[test]
+    fn wrong_names_and_values_are_refused_in_words() {
+        let error = |name, value| Request::default().set(name, value).unwrap_err().to_string();
+        assert_eq!(
+            error("mis", "balence"),
+            "there is no `balence`: did you mean `balance`?"
+        );
+        assert_eq!(
+            error("light-point", "x"),
+            "there is no `x`: expected fresh, shared"
+        );
+        assert!(error("strategies", "s").contains("is not a strategy"));
+        assert_eq!(error("max-depth", "-1"), "expected a whole number");
+        assert!(error("candidates", "0").contains("from 1 to 4096"));
+        assert!(error("mis", "5").contains("there is no `5`"));
+        assert!(error("sharpness", "1").contains("sharpness"));
+    }
 }
