@@ -73,7 +73,10 @@ impl Owner {
             [owner.program.clone(), processor, threads, isa, system]
         };
         let pairs = parts(self).into_iter().zip(parts(here));
-        let different = pairs.filter(|(there, here)| there != here);
+        // A processor whose name could not be read may be any.
+        let is_known = |name: &str| name != Machine::UNKNOWN;
+        let different =
+            pairs.filter(|(there, here)| there != here && is_known(there) && is_known(here));
         let words: Vec<_> = different
             .map(|(there, here)| format!("{there}, here {here}"))
             .collect();

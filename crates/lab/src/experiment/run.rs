@@ -241,6 +241,9 @@ fn check_effect(method: &MethodSpec, stage: &Stage<'_>) -> Result<()> {
 }
 
 impl Machine {
+    /// The name of a processor that the system does not name.
+    pub const UNKNOWN: &'static str = "unknown";
+
     /// This one; the number of threads is filled in by [`run`].
     pub fn here() -> Self {
         let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -249,7 +252,7 @@ impl Machine {
             (name.trim() == "model name").then(|| value.trim().to_owned())
         });
         Self {
-            processor: model.unwrap_or_else(|| "unknown".to_owned()),
+            processor: model.unwrap_or_else(|| Self::UNKNOWN.to_owned()),
             isa: Isa::detect().name().to_owned(),
             system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             threads: 0,

@@ -116,6 +116,12 @@ fn times_are_of_one_machine() {
     let message = error.to_string();
     assert!(message.contains("here another one"), "{message}");
     assert!(error.hint().unwrap().contains("--restart"));
+    let unnamed = Machine {
+        processor: Machine::UNKNOWN.to_owned(),
+        ..Machine::default()
+    };
+    let mut watch = Watch::until(1);
+    assert!(place.run_on(&unnamed, &text, "out", &mut watch).is_ok());
     let error = place.refusal(&text.replace("threads = 1", "threads = 2"), "out");
     let message = error.to_string();
     assert!(message.ends_with("1 threads, here 2 threads"), "{message}");
