@@ -168,25 +168,6 @@ fn a_difference_is_named() {
 }
 
 #[test]
-fn a_header_with_older_names_is_one_of_todays() {
-    let with = |emission: &str, value: &str| {
-        let settings = [
-            (emission, "power"),
-            ("candidates", value),
-            ("integrator", "auto"),
-        ];
-        let settings = settings.map(|(name, value)| (name.to_owned(), value.to_owned()));
-        FilmHeader::new("bidir", "room.pbrt".to_owned(), settings.into())
-    };
-    let (old, today) = (with("emission", "suited"), with("light-start", "auto"));
-    assert_ne!(old.identity, today.identity);
-    assert_eq!(
-        FilmHeader::from_json(old.to_json().as_bytes()).unwrap(),
-        today
-    );
-}
-
-#[test]
 fn headers_add_up() {
     let joined = header().joined(&header());
     assert_eq!(joined.counts, json!({"rays": {"camera": 24}, "dropped": 0}));

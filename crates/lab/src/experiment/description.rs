@@ -244,25 +244,28 @@ impl Named for BudgetSpec {
 /// Errors: a setting without effect on the integrator.
 fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
     let mut changes = Request::default();
-    // The integrator is the first.
+    let mut entries = Vec::new();
     for name in names() {
         let entry = match &*name {
             "light-start" => section.take_renamed(&name, "emission")?,
             _ => section.take(&name),
         };
         if let Some(entry) = entry {
-            entry.read(|value| changes.set(&name, value).map_err(|error| error.to_string()))?;
-            let integrator = changes.integrator.or(inherited);
-            let is_ignored = |integrator: &IntegratorKind| {
-                changes.ignored(&Settings::new(*integrator)).contains(&name)
-            };
-            if let Some(deaf) = integrator.filter(is_ignored) {
-                let hint = changes.integrator.is_none().then_some(INHERITED);
-                return Err(entry.fault_hinted(no_effect(&name, deaf), hint));
-            }
+            entry.read(|value| changes.set(&name, value))?;
+            entries.push((name, entry));
         }
     }
-    Ok(changes)
+    let Some(integrator) = changes.integrator.or(inherited) else {
+        return Ok(changes);
+    };
+    let ignored = changes.ignored(&Settings::new(integrator));
+    match entries.iter().find(|(name, _)| ignored.contains(name)) {
+        None => Ok(changes),
+        Some((name, entry)) => {
+            let hint = changes.integrator.is_none().then_some(INHERITED);
+            Err(entry.fault_hinted(no_effect(name, integrator), hint))
+        }
+    }
 }
 
 fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
