@@ -48,7 +48,7 @@ impl Noisy {
         Ok(Self {
             pixels: reference.picture,
             variance: Some(Variance { pixels, freedom }),
-            integrator: integrator,
+            integrator,
         })
     }
 
