@@ -20,9 +20,8 @@ pub(crate) use blind::no_path;
 pub use blind::{BlindSpot, LostLight, blind_spots, lost_light, missing_light};
 pub use journal::{Entry, Fate, Journal, Link, Term};
 pub use light::LightTracer;
-pub use lvc::{
-    CandidateCount, CountError, LightStart, Lvc, LvcSettings, ProposalKind, SamplesPerSubpath,
-};
+pub use lvc::Lvc;
+pub use lvc::settings::*;
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub(crate) use workspace::{BroughtLight, camera_ray};

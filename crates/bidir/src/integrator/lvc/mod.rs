@@ -13,17 +13,14 @@
 //! light points.
 
 mod cache;
-mod settings;
+pub(super) mod settings;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use cache::{LightCache, connectable};
-pub use settings::{
-    CandidateCount, CountError, LightStart, LvcSettings, ProposalKind, SamplesPerSubpath,
-};
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};
-use super::{Integrator, Link, Sample, SharedLight, Term, Workspace};
+use super::{CandidateCount, Integrator, Link, Sample, SharedLight, Term, Workspace};
 use crate::path::{Connections, JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
 use crate::scene::SegmentEnd;
