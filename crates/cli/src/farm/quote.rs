@@ -1,6 +1,6 @@
 //! Words for shells and for YAML.
 
-/// A word that any POSIX shell takes as it is.
+/// Returns a word that any POSIX shell takes as it is.
 pub(super) fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -9,9 +9,26 @@ pub(super) fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// A string of YAML, in double quotes: those of JSON are such strings.
+/// Returns more words of a shell's command, each after a space.
+pub(super) fn arguments(words: &[String]) -> String {
+    words
+        .iter()
+        .map(|word| " ".to_owned() + &quote(word))
+        .collect()
+}
+
+/// Returns a text as it stands between the double quotes of YAML, which reads the escapes of JSON.
+///
+/// `$$` is a dollar for Kubernetes, so that `$(…)` in a name stays as it is.
 pub(super) fn yaml(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
+    let string = serde_json::Value::from(text.replace('$', "$$")).to_string();
+    string[1..string.len() - 1].to_owned()
+}
+
+/// Returns more items of the list that is the command of a container.
+pub(super) fn items(words: &[String]) -> String {
+    let item = |word: &String| format!("\n            - \"{}\"", yaml(word));
+    words.iter().map(item).collect()
 }
 
 #[cfg(test)]
@@ -20,18 +37,17 @@ mod tests {
 
     #[test]
     fn plain_words_stay_and_others_are_quoted() {
-        assert_eq!(quote("out/room-1.exr"), "out/room-1.exr");
-        assert_eq!(quote("all,-s0"), "all,-s0");
-        assert_eq!(quote("my room"), "'my room'");
+        for word in ["out/room-1.exr", "all,-s0"] {
+            assert_eq!(quote(word), word);
+        }
+        for word in ["my room", "$(rm)", "~", "*", "a;b", ""] {
+            assert_eq!(quote(word), format!("'{word}'"));
+        }
         assert_eq!(quote("it's"), r"'it'\''s'");
-        assert_eq!(quote("$(rm)"), "'$(rm)'");
-        assert_eq!(quote("~"), "'~'");
-        assert_eq!(quote("*"), "'*'");
-        assert_eq!(quote(""), "''");
     }
 
     #[test]
     fn strings_of_yaml_have_their_escapes() {
-        assert_eq!(yaml("a: \"b\"\n"), r#""a: \"b\"\n""#);
+        assert_eq!(yaml("$(HOME): \"b\"\n"), r#"$$(HOME): \"b\"\n"#);
     }
 }

@@ -6,9 +6,9 @@ mod started;
 
 use crate::common::{Ran, Workplace};
 
-/// A scene whose name has everything that shells and YAML take for something else.
+/// A scene whose name has what shells and YAML take for something else.
 const SCENE: &str = "it's \"my\" $(HOME) room.pbrt";
-/// What the film files of it begin with.
+/// The beginning of its film files.
 const NAME: &str = "it's \"my\" $(HOME) room";
 
 /// Prints a job file for that scene, and keeps it in `job`.

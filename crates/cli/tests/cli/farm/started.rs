@@ -19,29 +19,27 @@ fn install(place: &Workplace, name: &str, script: &str) {
 
 /// A shell that finds the programs of `bin`, then the true `bidir`.
 fn shell(place: &Workplace, arguments: &[&str]) -> Command {
-    let bidir = Path::new(env!("CARGO_BIN_EXE_bidir"))
-        .parent()
-        .unwrap()
-        .to_owned();
+    let bidir = Path::new(env!("CARGO_BIN_EXE_bidir")).parent().unwrap();
     let path = std::env::var_os("PATH").unwrap();
-    let folders = [place.path("bin"), bidir]
-        .into_iter()
-        .chain(std::env::split_paths(&path));
+    let folders = [place.path("bin"), bidir.to_owned()].into_iter();
+    let folders = folders.chain(std::env::split_paths(&path));
     let mut command = Command::new("sh");
-    command
-        .args(arguments)
-        .current_dir(place.path(""))
-        .env("PATH", std::env::join_paths(folders).unwrap());
+    command.args(arguments).current_dir(place.path(""));
+    command.env("PATH", std::env::join_paths(folders).unwrap());
+    let foreign = ["BIDIR_", "SLURM_", "HQ_", "JOB_"];
     for (name, _) in std::env::vars_os() {
-        let name = name.to_string_lossy().into_owned();
-        if ["BIDIR_", "SLURM_", "HQ_", "JOB_"]
-            .iter()
-            .any(|start| name.starts_with(start))
-        {
-            command.env_remove(name);
+        let text = name.to_string_lossy();
+        if foreign.iter().any(|start| text.starts_with(start)) {
+            command.env_remove(&name);
         }
     }
     command
+}
+
+/// Writes a job of three parts whose syntax a shell accepts.
+fn job_of_three(place: &Workplace, farm: &str) {
+    job(place, farm, "--parts 3 --spp 8");
+    Ran::of(&mut shell(place, &["-n", "job"])).expect(0);
 }
 
 /// Checks that the image has the bits of a render in one piece.
@@ -57,8 +55,7 @@ fn check_image(place: &Workplace) {
 #[test]
 fn a_shell_makes_the_image() {
     let place = Workplace::new();
-    job(&place, "shell", "--parts 3 --spp 8");
-    Ran::of(&mut shell(&place, &["-n", "job"])).expect(0);
+    job_of_three(&place, "shell");
     Ran::of(&mut shell(&place, &["job"]))
         .expect(0)
         .says("passes 0..8 of 3 files");
@@ -68,7 +65,7 @@ fn a_shell_makes_the_image() {
 #[test]
 fn several_machines_share_by_number() {
     let place = Workplace::new();
-    job(&place, "shell", "--parts 3 --spp 8");
+    job_of_three(&place, "shell");
     Ran::of(&mut shell(&place, &["job", "2", "0"])).expect(0);
     assert!(!place.path(&format!("{NAME}.part-1-of-3.film")).exists());
     // Film files of other jobs, or of other shares, whose names begin alike.
@@ -101,8 +98,7 @@ fi
 #[test]
 fn slurm_makes_the_image() {
     let place = Workplace::new();
-    job(&place, "slurm", "--parts 3 --spp 8");
-    Ran::of(&mut shell(&place, &["-n", "job"])).expect(0);
+    job_of_three(&place, "slurm");
     install(&place, "sbatch", SBATCH);
     Ran::of(&mut shell(&place, &["job"])).expect(0);
     check_lines(&place.read("second"), &["--dependency=afterok:42"]);
@@ -133,10 +129,7 @@ fn start_share(place: &Workplace) -> Child {
     let child = share.stderr(Stdio::null()).spawn().unwrap();
     let begin = Instant::now();
     while !place.path("started").exists() {
-        assert!(
-            begin.elapsed() < Duration::from_secs(20),
-            "nothing is started"
-        );
+        assert!(begin.elapsed() < Duration::from_secs(20), "no start");
         std::thread::sleep(Duration::from_millis(20));
     }
     // The shell sets its traps after that.
@@ -145,13 +138,7 @@ fn start_share(place: &Workplace) -> Child {
 }
 
 fn send(signal: &str, id: &str) {
-    assert!(
-        Command::new("kill")
-            .args(["-s", signal, id])
-            .status()
-            .unwrap()
-            .success()
-    );
+    Ran::of(Command::new("kill").args(["-s", signal, id])).expect(0);
 }
 
 #[test]
@@ -168,7 +155,7 @@ fn a_share_of_slurm_goes_back_to_the_queue_when_its_time_is_over() {
 fn a_share_of_slurm_that_is_cancelled_does_not_come_back() {
     let place = Workplace::new();
     let mut share = start_share(&place);
-    // Slurm tells every process.
+    // Slurm signals every process.
     send("TERM", &share.id().to_string());
     send("TERM", place.read("started").trim());
     assert_eq!(share.wait().unwrap().code(), Some(75));
@@ -197,8 +184,7 @@ esac
 #[test]
 fn hyperqueue_makes_the_image() {
     let place = Workplace::new();
-    job(&place, "hyperqueue", "--parts 3 --spp 8");
-    Ran::of(&mut shell(&place, &["-n", "job"])).expect(0);
+    job_of_three(&place, "hyperqueue");
     install(&place, "hq", HQ);
     Ran::of(&mut shell(&place, &["job"])).expect(0);
     check_image(&place);
@@ -207,7 +193,7 @@ fn hyperqueue_makes_the_image() {
 #[test]
 fn hyperqueue_makes_no_image_without_all_shares() {
     let place = Workplace::new();
-    job(&place, "hyperqueue", "--parts 3 --spp 8");
+    job_of_three(&place, "hyperqueue");
     install(&place, "hq", HQ);
     place.write(&format!("{NAME}.part-1-of-3.film"), "this is no film");
     let ran = Ran::of(&mut shell(&place, &["job"])).expect(1);
@@ -215,7 +201,7 @@ fn hyperqueue_makes_no_image_without_all_shares() {
     assert!(!place.path(&format!("{NAME}.exr")).exists());
 }
 
-/// What Kubernetes makes of a string in a command.
+/// A string of a command as Kubernetes expands it.
 fn expanded(line: &str, index: &str) -> String {
     let text: String = serde_json::from_str(line).unwrap();
     let parts = text

@@ -1,29 +1,12 @@
-//! A job array of Slurm.
-
-use super::quote::quote;
-use super::{Plan, shell_command};
-
-/// The script is three things: what `sbatch` reads, a share, and what submits both steps.
-///
-/// Two minutes before its time is over Slurm sends USR1 to the shell alone, which asks the render to
-/// stop with TERM, and then gives the share back to the queue. TERM of Slurm's own, at the end of the
-/// time, before preemption and for scancel, reaches every process: the shell only has to wait, and a
-/// cancelled share must not come back.
-pub(super) fn script(plan: &Plan<'_>) -> String {
-    let (parts, job) = (plan.parts, plan.job());
-    let last = parts - 1;
-    let render = shell_command(&plan.render_env(), "part");
-    let last_step = quote(&plan.last_step().join(" && "));
-    format!(
-        r#"#!/bin/sh
-# {title}. Written by `bidir farm slurm`.
+#!/bin/sh
+# {{title}}. Written by `bidir farm slurm`.
 #
 #   sh FILE       submits the parts, and a last job that makes the image when all are done
 #   sbatch FILE   submits the parts alone
 #
 # A stopped part continues when it is submitted again; finished parts return at once.
-#SBATCH --job-name={job}
-#SBATCH --array=0-{last}
+#SBATCH --job-name={{job}}
+#SBATCH --array=0-{{last}}
 #SBATCH --requeue
 #SBATCH --open-mode=append
 # The notice before the time is over, in seconds: longer than a pass takes.
@@ -34,21 +17,21 @@ pub(super) fn script(plan: &Plan<'_>) -> String {
 ##SBATCH --mem=8G
 ##SBATCH --partition=NAME
 
-if [ -z "${{SLURM_ARRAY_TASK_ID:-}}" ]; then
+if [ -z "${SLURM_ARRAY_TASK_ID:-}" ]; then
   shares=$(sbatch --parsable "$0") || exit
-  sbatch --job-name={job}-image --dependency=afterok:"${{shares%%;*}}" \
-    --wrap={last_step}
+  sbatch --job-name={{job}}-image --dependency=afterok:"${shares%%;*}" \
+    --wrap={{wrap}}
   exit
 fi
 
 # Parts are counted from the array's first task, so a section of the array would be other parts.
-if [ "${{SLURM_ARRAY_TASK_COUNT:-{parts}}}" -ne {parts} ]; then
+if [ "${SLURM_ARRAY_TASK_COUNT:-{{parts}}}" -ne {{parts}} ]; then
   echo "submit the whole array: finished parts return at once" >&2
   exit 2
 fi
-part=$((SLURM_ARRAY_TASK_ID - ${{SLURM_ARRAY_TASK_MIN:-0}}))
+part=$((SLURM_ARRAY_TASK_ID - ${SLURM_ARRAY_TASK_MIN:-0}))
 
-{render} &
+bidir render {{scene}} --part env/{{parts}}{{spp}} --checkpoint {{share}}"$part"-of-{{parts}}.film --resume{{flags}} &
 render=$!
 
 # Only this shell gets the notice; TERM goes to all processes, and the shell waits for their end.
@@ -67,7 +50,3 @@ if [ "$code" -eq 75 ] && [ -n "$noticed" ]; then
   scontrol requeue "$SLURM_JOB_ID"
 fi
 exit "$code"
-"#,
-        title = plan.title(),
-    )
-}
