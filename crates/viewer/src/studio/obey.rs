@@ -54,6 +54,7 @@ impl Painter {
     }
 
     fn pause(&mut self) -> Result<(), String> {
+        self.catch_up();
         self.check_runs()?;
         self.state = State::Paused;
         self.log("paused");
@@ -77,7 +78,15 @@ impl Painter {
         }
     }
 
+    /// Begins lanes that are to begin anew: they would render, whatever the state was before.
+    fn catch_up(&mut self) {
+        if self.is_stale {
+            self.begin();
+        }
+    }
+
     fn stop(&mut self) {
+        self.catch_up();
         self.state = State::Done;
         self.log("stopped");
     }

@@ -167,7 +167,7 @@ impl Painter {
     }
 
     /// Begins all lanes anew.
-    fn begin(&mut self) {
+    pub(super) fn begin(&mut self) {
         self.is_stale = false;
         self.generation += 1;
         // They share the scene, which is to be changed.

@@ -1,4 +1,4 @@
-use crate::common::{Place, SIZE, number};
+use crate::common::{Client, Place, SIZE, number};
 use serde_json::Value;
 
 fn lane(status: &Value, number: usize) -> &Value {
@@ -157,12 +157,28 @@ fn the_error_falls_along_a_curve() {
     place.close();
 }
 
+/// Waits until the lanes of this generation are paused.
+fn wait_for_pause(client: &mut Client, generation: u64) {
+    loop {
+        let status = client.status();
+        if status["state"] == "paused" && lane(&status, 0)["generation"] == generation {
+            return;
+        }
+    }
+}
+
 #[test]
 fn a_client_hears_of_changes() {
     let place = Place::new();
     let mut client = place.client();
     client.status();
     client.send(r#"{"command":"pause"}"#);
-    while client.status()["state"] != "paused" {}
+    wait_for_pause(&mut client, 1);
+    // A command that comes before new lanes have begun is for these.
+    for generation in 2..20 {
+        client.send(r#"{"command":"restart"}"#);
+        client.send(r#"{"command":"pause"}"#);
+        wait_for_pause(&mut client, generation);
+    }
     place.close();
 }
