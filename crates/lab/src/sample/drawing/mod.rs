@@ -1,185 +1,153 @@
-//! The picture of a sample, as SVG: from above and from the side, both subpaths, the connections that
-//! were candidates, those that were chosen, and what was in their way; with a table of all.
+//! The picture of a sample, as SVG, in plan and elevation: both subpaths, the candidates, the traced
+//! shadow rays with the blocked ones among them, and the splats of the light image.
 //!
 //! The scene is in it as outlines that rays find. The picture loads nothing, has no scripts, can be
 //! read on light and dark pages, and is the same bytes for the same sample.
 
 mod figure;
-mod frame;
-mod labels;
-mod lines;
 mod outline;
-mod panel;
-mod table;
+mod shapes;
 mod view;
 
 #[cfg(test)]
 mod tests;
 
 use super::SampleReport;
+use super::subpath::Place;
 use crate::markup::{Element, element};
+use crate::report::number::number;
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
-use figure::{Figure, light};
-use frame::{Frame, px, rectangle, text};
-use panel::panel;
-use table::Column;
-use view::{Extent, View};
+use bidir::spectrum::luminance;
+use figure::{Ray, Walk};
+use shapes::{circle, polyline, px, rectangle, text};
+use view::{LARGEST, View};
 
 /// The width of the picture. Unit: pixels, as of all lengths here.
 const WIDTH: f32 = 1000.0;
 /// Around everything.
 const MARGIN: f32 = 24.0;
-/// The widest view, and the highest.
-const VIEW: Vec2 = Vec2::new(520.0, 480.0);
-/// Where the table begins.
-const TABLE: f32 = MARGIN + VIEW.x + 28.0;
-/// The first baseline of what is below the title.
-const TOP: f32 = 92.0;
-/// Between the two views.
-const GAP: f32 = 36.0;
+/// The upper left corner of the plan.
+const PLAN: Vec2 = Vec2::new(MARGIN, 108.0);
+/// The left end of the first row of the legend.
+const LEGEND: Vec2 = Vec2::new(PLAN.x + LARGEST.x + 28.0, PLAN.y + 8.0);
+/// Between rows of the legend.
+const ROW: f32 = 20.0;
+
+/// The class of each kind of line, and its meaning. Later kinds are drawn over earlier ones.
+const KINDS: [[&str; 2]; 5] = [
+    ["untraced", "candidates, not traced"],
+    ["splat", "splats of the light image"],
+    ["splat hidden", "splats, blocked"],
+    ["arrives", "shadow rays that arrive"],
+    ["blocked", "shadow rays, blocked"],
+];
+
+/// The lines of a sample.
+struct Figure {
+    rays: Vec<Ray>,
+    /// Of the light and of the camera.
+    walks: [Walk; 2],
+}
+
+impl Figure {
+    fn new(report: &SampleReport, scene: &Scene) -> Self {
+        let mut camera = Walk::new("camera", 'y', &report.camera);
+        if camera.places.is_empty() {
+            camera.places.push(Place::eye(scene.camera()));
+        }
+        Self {
+            rays: Ray::all(report, camera.places[0]),
+            walks: [Walk::new("light", 'z', &report.light), camera],
+        }
+    }
+
+    /// All points that are not at infinity.
+    fn points(&self) -> Vec<Vec3> {
+        let vertices = self.walks.iter().flat_map(|walk| &walk.places);
+        let places = vertices.chain(self.rays.iter().map(|ray| &ray.light_end));
+        let finite = places.filter(|place| !place.is_infinite);
+        finite.map(Place::point).collect()
+    }
+
+    fn of_class(&self, class: &str) -> impl Iterator<Item = &Ray> {
+        self.rays.iter().filter(move |ray| ray.class == class)
+    }
+
+    fn draw(&self, title: &str, view: &View<'_>) -> Element {
+        let weights = self.rays.iter().map(|ray| ray.weight);
+        let largest = weights.fold(f32::MIN_POSITIVE, f32::max);
+        let rays = KINDS.iter().flat_map(|[class, _]| self.of_class(class));
+        view.panel(title)
+            .child(view.outline())
+            .children(rays.filter_map(|ray| ray.draw(view, largest)))
+            .children(self.walks.iter().map(|walk| walk.draw(view)))
+            .children(self.walks.iter().map(|walk| walk.names(view)))
+    }
+
+    /// The meaning of lines and marks, and how many there are, beside the panels.
+    fn legend(&self) -> Element {
+        let line = |class| polyline(&[Vec2::ZERO, Vec2::X * 26.0]).class(class);
+        let dot = circle(Vec2::X * 13.0, 2.8).class("light hollow");
+        let [z, y] = self.walks.each_ref().map(|walk| walk.places.len());
+        let foreign = self.rays.iter().filter(|ray| ray.is_foreign).count();
+        let mut rows = vec![
+            (line("camera track"), format!("camera vertices y: {y}")),
+            (line("light track"), format!("light vertices z: {z}")),
+            (dot, format!("light points off this subpath: {foreign}")),
+        ];
+        rows.extend(KINDS.iter().rev().map(|[class, meaning]| {
+            let count = self.of_class(class).count();
+            (line(class), format!("{meaning}: {count}"))
+        }));
+        let note = |note: &str| (element("g"), note.to_owned());
+        rows.push(note("width: w C times probability of candidates"));
+        rows.push(note("an arrow leaves the scene"));
+        let rows = rows.into_iter().enumerate().map(|(i, (sample, meaning))| {
+            let place = format!("translate({} {})", LEGEND.x, LEGEND.y + ROW * i as f32);
+            let row = element("g").with("transform", place).child(sample);
+            row.child(text(Vec2::new(36.0, 4.0), meaning))
+        });
+        element("g").with("stroke-width", 2.2).children(rows)
+    }
+}
 
 impl SampleReport {
     /// The sample as a picture in the format SVG; `scene` is the one that it was taken in, and `name`
     /// what it is called.
     pub fn drawing(&self, scene: &Scene, name: &str) -> String {
         let figure = Figure::new(self, scene);
-        let extent = shown(&figure, scene);
-        let frames = frames(
-            View::both(&scene.camera().pose(), &extent.paths),
-            &extent.all,
-        );
-        let (column, bottom) = column(&figure);
-        let last = &frames[1];
-        let height = (last.corner.y + last.size().y).max(bottom) + MARGIN;
-        let panels = frames.iter().map(|frame| {
-            let near = nearest(frame, &extent);
-            panel(&figure, scene, frame, near)
-        });
-        let style = element("style").code(include_str!("style.css"));
+        let views = View::both(scene, &figure.points(), PLAN);
+        let below = views[1].corner + views[1].size();
+        let height = below.y.max(LEGEND.y + 10.0 * ROW) + MARGIN;
         let picture = element("svg")
             .with("xmlns", "http://www.w3.org/2000/svg")
             .with("viewBox", format!("0 0 {WIDTH} {}", px(height)))
-            .with("width", WIDTH)
-            .with("height", px(height))
             .child(element("title").text(format!("{} of {name}", self.title())))
-            .child(element("desc").text(self.description()))
-            .child(style)
+            .child(element("style").code(include_str!("style.css")))
             .child(rectangle(Vec2::ZERO, Vec2::new(WIDTH, height)).class("page"))
             .children(self.head(name))
-            .children(panels)
-            .child(column);
+            .child(figure.draw("Plan", &views[0]))
+            .child(figure.draw("Elevation", &views[1]))
+            .child(figure.legend());
         format!("{}\n", picture.to_string().trim_start())
     }
-}
 
-impl SampleReport {
     fn title(&self) -> String {
         let [x, y] = self.pixel;
         format!("Sample of pixel {x},{y} in pass {}", self.pass)
     }
 
-    /// The picture in words.
-    fn description(&self) -> String {
-        let traced = self.candidates.iter().filter(|c| c.is_chosen);
-        let arrived = traced
-            .clone()
-            .filter(|c| c.is_visible && !c.term.is_dropped);
-        format!(
-            "Plan and elevation of a camera subpath of {} vertices and a light subpath of {}. \
-             Candidates for shadow rays: {}; traced: {}; arrived: {}. Lights that the camera walk \
-             found: {}. Splats of the light image: {}.",
-            self.camera.vertices.len(),
-            self.light.vertices.len(),
-            self.candidates.len(),
-            traced.count(),
-            arrived.count(),
-            self.hits.len(),
-            self.light_image.len()
-        )
+    /// The heading, with settings and results below it.
+    fn head(&self, name: &str) -> [Element; 3] {
+        let settings = ["integrator", "shadow-rays", "mis", "seed"];
+        let settings = format!("{name}: {}", self.settings.line(&settings));
+        let value = number(f64::from(luminance(self.value)));
+        let (rays, hits) = (self.rays, self.hits.len());
+        let results = format!("{rays} rays, {hits} hits of lights, luminance {value}");
+        let line = |i: f32, content| text(Vec2::new(MARGIN, 36.0 + 18.0 * i), content);
+        let title = line(0.0, self.title()).class("title");
+        let settings = line(1.0, settings).class("muted");
+        [title, settings, line(2.0, results).class("muted")]
     }
-
-    /// What the picture is of.
-    fn head(&self, name: &str) -> [Element; 2] {
-        let names = ["integrator", "shadow-rays", "mis", "seed"];
-        let settings = self.settings.line(&names);
-        let about = format!("{name}: {settings}; {} rays", self.rays);
-        [
-            text(Vec2::new(MARGIN, 36.0), self.title()).class("title"),
-            text(Vec2::new(MARGIN, 56.0), about).class("muted"),
-        ]
-    }
-
-    /// The parts of what the sample added.
-    fn sums(&self) -> [(&'static str, String); 4] {
-        [
-            ("added to the pixel", light(self.value)),
-            ("by lights that were found", light(self.value_of_hits)),
-            ("by candidates", light(self.value_of_candidates)),
-            ("had all been traced", light(self.value_of_all_candidates)),
-        ]
-    }
-}
-
-/// What of the world is shown.
-struct Shown {
-    /// The box around the sample.
-    paths: Extent,
-    /// With what of the scene is near.
-    all: Extent,
-    /// The longest side of the sample, or where it has none, of the scene.
-    size: f32,
-}
-
-fn shown(figure: &Figure<'_>, scene: &Scene) -> Shown {
-    let bounds = scene.bvh().bounds();
-    let around = Extent::of(&[bounds.min, bounds.max]);
-    let nothing = Extent {
-        min: Vec3::ZERO,
-        max: Vec3::ZERO,
-    };
-    let paths = figure.extent().or(around).unwrap_or(nothing);
-    let sizes = [Some(paths), around].into_iter().flatten();
-    let mut sizes = sizes.map(|extent| extent.size().max_element());
-    let size = sizes.find(|size| *size > 0.0).unwrap_or(1.0);
-    let near = around.map_or(paths, |around| paths.grown_into(&around, 0.6 * size));
-    Shown {
-        paths,
-        all: near.widened(0.05 * size),
-        size,
-    }
-}
-
-/// Both views below each other, of one scale.
-fn frames(views: [View; 2], extent: &Extent) -> [Frame; 2] {
-    let sizes = views.map(|view| {
-        let [min, max] = view.window(extent);
-        max - min
-    });
-    let scale = sizes.map(|size| (VIEW / size).min_element());
-    let scale = scale[0].min(scale[1]);
-    let below = TOP + sizes[0].y * scale + GAP;
-    let [above, side] = views;
-    [
-        Frame::new(above, extent, scale, Vec2::new(MARGIN, TOP)),
-        Frame::new(side, extent, scale, Vec2::new(MARGIN, below)),
-    ]
-}
-
-/// The depth behind which a view is drawn: just behind the nearest point of the sample, so that a
-/// ceiling or wall that it came to is cut away too.
-fn nearest(frame: &Frame, shown: &Shown) -> f32 {
-    let away = frame.view.away;
-    let corners = [shown.paths.min, shown.paths.max].map(|corner| away.dot(corner));
-    corners[0].min(corners[1]) + 1e-3 * shown.size
-}
-
-/// Legend, tables and sums; and where they end.
-fn column(figure: &Figure<'_>) -> (Element, f32) {
-    let mut column = Column::new(Vec2::new(TABLE, TOP - 8.0));
-    column.legend(figure);
-    column.tables(figure);
-    column.sums(&figure.report.sums());
-    let bottom = column.y;
-    (column.draw(), bottom)
 }

@@ -1,156 +1,91 @@
-//! Where the surface that is seen ends, or bends: what rays of a parallel view find, as lines.
+//! Edges of the surfaces that a view sees, found by a grid of rays.
 //!
-//! A grid of rays looks at the scene; between two neighbours that see different surfaces more rays
-//! find the place, and in each cell these places are joined (marching squares). What lies in front of
-//! a plane is cut away, so that one looks into rooms.
+//! In each cell of the grid a line joins the places where two neighbouring rays part (marching
+//! squares). The near plane cuts away nearer surfaces, so that a reader looks into rooms.
 
-use super::lines::{joined, simplified};
+use super::shapes::px;
 use super::view::View;
+use crate::markup::{Element, element};
 use bidir::math::{Vec2, Vec3};
-use bidir::sampler::{Domain, SampleStream, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::sampler::{Domain, Sampler, SamplerKind};
+use bidir::scene::Chances;
 
-/// Rays of the grid from left to right.
-const COLUMNS: usize = 240;
-/// How often the distance between two rays is halved.
-const HALVINGS: usize = 6;
+/// The distance between rays. Unit: pixels of the page.
+const CELL: f32 = 3.0;
+/// How often bisection halves the distance between two rays.
+const HALVINGS: usize = 5;
 /// The least cosine between the normals of one surface.
 const LEAST_COSINE: f32 = 0.8;
-/// How far a line may be from what was found. Unit: cells of the grid.
-const TOLERANCE: f32 = 0.3;
 
-/// What a ray found.
+/// The place of a ray on the page, with point and normal of the first surface behind the near plane.
 #[derive(Clone, Copy)]
-struct Seen {
-    point: Vec3,
-    normal: Vec3,
+struct Sight {
+    at: Vec2,
+    hit: Option<[Vec3; 2]>,
 }
 
-/// A view into a scene, from a plane.
-struct Grid<'a> {
-    scene: &'a Scene,
-    stream: SampleStream,
-    view: &'a View,
-    /// The depth of the plane from which rays start.
-    near: f32,
-    origin: Vec2,
-    /// The distance between rays.
-    cell: f32,
-    columns: usize,
-    rows: usize,
-}
-
-/// The outlines of what `view` sees of a scene behind the plane at depth `near`, within a window, as
-/// lines in the units of the view.
-pub(super) fn outlines(
-    scene: &Scene,
-    view: &View,
-    [min, max]: [Vec2; 2],
-    near: f32,
-) -> Vec<Vec<Vec2>> {
-    let cell = (max.x - min.x) / COLUMNS as f32;
-    let rows = ((max.y - min.y) / cell).clamp(1.0, 4.0 * COLUMNS as f32) as usize;
-    let sampler = Sampler::new(SamplerKind::Independent, 0);
-    let grid = Grid {
-        scene,
-        stream: sampler.stream(Domain::Camera, 0, 0),
-        view,
-        near,
-        origin: min,
-        cell,
-        columns: COLUMNS,
-        rows,
-    };
-    let lines = joined(&grid.links());
-    let simple = lines.iter().map(|line| simplified(line, TOLERANCE * cell));
-    simple.collect()
-}
-
-impl Grid<'_> {
-    fn at(&self, column: usize, row: usize) -> Vec2 {
-        self.origin + Vec2::new(column as f32, row as f32) * self.cell
+impl View<'_> {
+    /// All edges in the panel.
+    pub(super) fn outline(&self) -> Element {
+        let [columns, rows] = (self.size() / CELL).to_array().map(|count| count as usize);
+        let at = |x, y| self.corner + Vec2::new(x as f32, y as f32) * CELL;
+        let row = |y: usize| (0..=columns).map(|x| self.look(at(x, y))).collect();
+        let sights: Vec<Vec<_>> = (0..=rows).map(row).collect();
+        let mut edges = String::new();
+        for rows in sights.windows(2) {
+            for (above, below) in rows[0].windows(2).zip(rows[1].windows(2)) {
+                edges += &self.edges([above[0], above[1], below[1], below[0]]);
+            }
+        }
+        element("path").class("outline").with("d", edges)
     }
 
-    fn look(&self, at: Vec2) -> Option<Seen> {
-        let origin = self.view.place(at, self.near);
-        let chances = Chances::new(&self.stream, 1);
-        let hit = self.scene.intersect(origin, self.view.away, chances)?;
-        Some(Seen {
-            point: hit.surface.point,
-            normal: hit.surface.n_g,
-        })
+    fn look(&self, at: Vec2) -> Sight {
+        // The chances of surfaces that are there only in part are the same for all rays.
+        let stream = Sampler::new(SamplerKind::Independent, 0).stream(Domain::Camera, 0, 0);
+        let (origin, chances) = (self.near_point(at), Chances::new(&stream, 1));
+        let hit = self.scene.intersect(origin, self.away(), chances);
+        let hit = hit.map(|hit| [hit.surface.point, hit.surface.n_g]);
+        Sight { at, hit }
     }
 
-    /// True where two rays may have found one surface.
-    fn is_same(&self, a: Option<Seen>, b: Option<Seen>) -> bool {
-        let (Some(a), Some(b)) = (a, b) else {
-            return a.is_none() && b.is_none();
-        };
-        let across = b.point - a.point;
-        let off = across.dot(a.normal).abs().max(across.dot(b.normal).abs());
-        a.normal.dot(b.normal).abs() >= LEAST_COSINE && off <= 0.5 * self.cell
+    /// The edges in the cell between four rays, as steps of a path.
+    fn edges(&self, cell: [Sight; 4]) -> String {
+        let places = (0..4).filter_map(|i| self.parting(cell[i], cell[(i + 1) % 4]));
+        let places: Vec<_> = places.collect();
+        let middle = places.iter().sum::<Vec2>() / places.len() as f32;
+        match places[..] {
+            [a, b] => step(a, b),
+            _ => places.iter().map(|place| step(*place, middle)).collect(),
+        }
     }
 
-    /// Where the surface ends between two rays. None: both found the same.
-    fn crossing(&self, a: (Vec2, Option<Seen>), b: (Vec2, Option<Seen>)) -> Option<Vec2> {
-        if self.is_same(a.1, b.1) {
+    /// The place between two rays where the surface of the first ends. None: both see one surface.
+    fn parting(&self, a: Sight, b: Sight) -> Option<Vec2> {
+        if self.is_one_surface(a, b) {
             return None;
         }
-        let [mut inside, mut outside] = [a.0, b.0];
+        let (mut at, mut along) = (a.at, b.at - a.at);
         for _ in 0..HALVINGS {
-            let middle = inside.midpoint(outside);
-            if self.is_same(a.1, self.look(middle)) {
-                inside = middle;
-            } else {
-                outside = middle;
+            along *= 0.5;
+            if self.is_one_surface(a, self.look(at + along)) {
+                at += along;
             }
         }
-        Some(inside.midpoint(outside))
+        Some(at + 0.5 * along)
     }
 
-    /// What the rays of a row found.
-    fn row(&self, row: usize) -> Vec<(Vec2, Option<Seen>)> {
-        let at = (0..=self.columns).map(|column| self.at(column, row));
-        at.map(|at| (at, self.look(at))).collect()
-    }
-
-    /// The pieces of lines in all cells.
-    fn links(&self) -> Vec<[Vec2; 2]> {
-        let mut links = Vec::new();
-        let mut below = self.row(0);
-        let mut below_crossings = self.crossings_along(&below);
-        for row in 1..=self.rows {
-            let above = self.row(row);
-            let above_crossings = self.crossings_along(&above);
-            let pairs = below.iter().zip(&above);
-            let between: Vec<_> = pairs.map(|(a, b)| self.crossing(*a, *b)).collect();
-            for i in 0..self.columns {
-                let sides = [
-                    below_crossings[i],
-                    between[i + 1],
-                    above_crossings[i],
-                    between[i],
-                ];
-                link(sides, &mut links);
-            }
-            (below, below_crossings) = (above, above_crossings);
-        }
-        links
-    }
-
-    fn crossings_along(&self, row: &[(Vec2, Option<Seen>)]) -> Vec<Option<Vec2>> {
-        let pairs = row.windows(2);
-        pairs.map(|pair| self.crossing(pair[0], pair[1])).collect()
+    fn is_one_surface(&self, a: Sight, b: Sight) -> bool {
+        let (Some([p, n]), Some([q, m])) = (a.hit, b.hit) else {
+            return a.hit.is_none() && b.hit.is_none();
+        };
+        let off = (q - p).dot(n).abs().max((q - p).dot(m).abs());
+        n.dot(m).abs() >= LEAST_COSINE && off * self.scale <= 0.5 * CELL
     }
 }
 
-/// Joins the places on the sides of a cell: two with each other, more in their middle.
-fn link(sides: [Option<Vec2>; 4], links: &mut Vec<[Vec2; 2]>) {
-    let places: Vec<_> = sides.into_iter().flatten().collect();
-    if let [a, b] = places[..] {
-        links.push([a, b]);
-    } else if places.len() > 2 {
-        let middle = places.iter().sum::<Vec2>() / places.len() as f32;
-        links.extend(places.iter().map(|place| [*place, middle]));
-    }
+fn step(from: Vec2, to: Vec2) -> String {
+    let along = to - from;
+    let [x, y, dx, dy] = [from.x, from.y, along.x, along.y].map(px);
+    format!("M{x} {y}l{dx} {dy}")
 }

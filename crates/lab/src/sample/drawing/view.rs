@@ -1,198 +1,206 @@
-//! From where a drawing looks: from above and from the side, along axes of the world.
+//! Plan and elevation: parallel projections along axes of the world, each onto a panel of the page.
 
+use super::super::subpath::Place;
+use super::shapes::{rectangle, text};
+use crate::markup::{Element, element};
+use crate::report::number::number;
 use bidir::camera::Pose;
 use bidir::math::{Vec2, Vec3};
+use bidir::scene::Scene;
 
-/// A box in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Extent {
-    pub(super) min: Vec3,
-    pub(super) max: Vec3,
+/// The largest size of a panel. Unit: pixels of the page, as of all lengths on it.
+pub(super) const LARGEST: Vec2 = Vec2::new(640.0, 480.0);
+/// Between the panels, where the lower one has its heading.
+const GAP: f32 = 36.0;
+
+/// A box in the world: the smallest and the largest coordinates.
+type Bounds = [Vec3; 2];
+
+/// A parallel projection onto a panel.
+pub(super) struct View<'a> {
+    pub(super) scene: &'a Scene,
+    right: Vec3,
+    up: Vec3,
+    /// The depth of the plane before which the scene is cut away.
+    near: f32,
+    /// The upper left corner in units of the world.
+    min: Vec2,
+    /// Width and height in units of the world.
+    extent: Vec2,
+    /// The upper left corner on the page.
+    pub(super) corner: Vec2,
+    /// Pixels per unit of the world.
+    pub(super) scale: f32,
 }
 
-impl Extent {
-    /// The smallest box around `points`. None: there are none that are finite.
-    pub(super) fn of(points: &[Vec3]) -> Option<Self> {
-        let finite = points.iter().filter(|point| point.is_finite());
-        let boxes = finite.map(|&point| Self {
-            min: point,
-            max: point,
-        });
-        boxes.reduce(|a, b| Self {
-            min: a.min.min(b.min),
-            max: a.max.max(b.max),
-        })
+impl<'a> View<'a> {
+    /// Plan and elevation, one below the other from `corner`, around the points of a sample.
+    pub(super) fn both(scene: &'a Scene, points: &[Vec3], mut corner: Vec2) -> [Self; 2] {
+        let bounds = scene.bvh().bounds();
+        let whole = around(&[bounds.min, bounds.max]);
+        let sample = around(points).or(whole).unwrap_or_default();
+        let shown = with_surroundings(sample, whole.unwrap_or(sample));
+        let [right, up, depth] = axes(&scene.camera().pose(), sample[1] - sample[0]);
+        let mut views = [depth, up].map(|up| Self::new(scene, [right, up], [sample, shown]));
+        let scales = views.each_ref().map(|v| (LARGEST / v.extent).min_element());
+        for view in &mut views {
+            view.scale = scales[0].min(scales[1]);
+            view.corner = corner;
+            corner.y += view.size().y + GAP;
+        }
+        views
     }
 
-    pub(super) fn size(&self) -> Vec3 {
-        self.max - self.min
-    }
-
-    /// What it grows to when it takes in what is near of `other`: at most `margin` on each side.
-    pub(super) fn grown_into(&self, other: &Self, margin: f32) -> Self {
-        let margin = Vec3::splat(margin);
+    /// A view that is not yet placed on the page.
+    fn new(scene: &'a Scene, [right, up]: [Vec3; 2], [sample, shown]: [Bounds; 2]) -> Self {
+        let flat = |v: Vec3| Vec2::new(right.dot(v), -up.dot(v));
+        let [a, b] = shown.map(flat);
+        let depths = sample.map(|corner| up.cross(right).dot(corner));
         Self {
-            min: other.min.max(self.min - margin).min(self.min),
-            max: other.max.min(self.max + margin).max(self.max),
+            scene,
+            right,
+            up,
+            // Behind the first point of the sample: a ceiling on which it lies is cut away too.
+            near: depths[0].min(depths[1]) + 1e-3 * (b - a).abs().max_element(),
+            min: a.min(b),
+            extent: (b - a).abs(),
+            corner: Vec2::ZERO,
+            scale: 1.0,
         }
     }
 
-    /// The same, wider by `margin` on each side.
-    pub(super) fn widened(&self, margin: f32) -> Self {
-        Self {
-            min: self.min - margin,
-            max: self.max + margin,
+    pub(super) fn size(&self) -> Vec2 {
+        self.extent * self.scale
+    }
+
+    /// The direction in which the view looks.
+    pub(super) fn away(&self) -> Vec3 {
+        self.up.cross(self.right)
+    }
+
+    /// A point or direction without its depth, to the right and down as on the page.
+    fn flat(&self, v: Vec3) -> Vec2 {
+        Vec2::new(self.right.dot(v), -self.up.dot(v))
+    }
+
+    /// The place of a point on the page.
+    fn at(&self, point: Vec3) -> Vec2 {
+        self.corner + (self.flat(point) - self.min) * self.scale
+    }
+
+    /// The point of the near plane that is seen at a place of the page.
+    pub(super) fn near_point(&self, at: Vec2) -> Vec3 {
+        let flat = (at - self.corner) / self.scale + self.min;
+        self.right * flat.x - self.up * flat.y + self.away() * self.near
+    }
+
+    /// The place of `place`; where it is infinite, its direction from `from`.
+    pub(super) fn seen_from(&self, place: &Place, from: Vec3) -> Vec2 {
+        if place.is_infinite {
+            self.border(from, place.point())
+        } else {
+            self.at(place.point())
         }
     }
-}
 
-/// An axis of the world, in one of its two directions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Axis {
-    index: usize,
-    is_reversed: bool,
-}
-
-impl Axis {
-    /// Axis number `index`, as `direction` goes along it.
-    fn along(index: usize, direction: Vec3) -> Self {
-        Self {
-            index,
-            is_reversed: direction[index] < -1e-6,
-        }
+    /// The place where a line from `point` along `direction` leaves the panel; that of the point where
+    /// the line goes along the view.
+    pub(super) fn border(&self, point: Vec3, direction: Vec3) -> Vec2 {
+        let (from, along) = (self.at(point), self.flat(direction));
+        let ends = [self.corner, self.corner + self.size()];
+        let axes = (0..2).filter(|&axis| along[axis].abs() > 1e-3);
+        let end = |axis: usize| ends[usize::from(along[axis] > 0.0)][axis];
+        let lengths = axes.map(|axis| (end(axis) - from[axis]) / along[axis]);
+        from + along * lengths.reduce(f32::min).unwrap_or(0.0)
     }
 
-    /// The one that is nearest to `direction`.
-    fn nearest(direction: Vec3) -> Self {
-        let lengths = direction.abs();
-        let longest = (0..3).max_by(|&a, &b| lengths[a].total_cmp(&lengths[b]));
-        Self::along(longest.unwrap_or(2), direction)
-    }
-
-    pub(super) fn direction(self) -> Vec3 {
-        let unit = Vec3::AXES[self.index];
-        if self.is_reversed { -unit } else { unit }
-    }
-
-    /// Its letter with an arrow to where its numbers grow, given the arrows along it and against it.
-    pub(super) fn label(self, [along, against]: [&str; 2]) -> String {
-        let letter = ["x", "y", "z"][self.index];
-        let arrow = if self.is_reversed { against } else { along };
-        format!("{letter} {arrow}")
+    /// The empty panel, with a heading above it: the size, and which way the axes go.
+    pub(super) fn panel(&self, title: &str) -> Element {
+        let [width, height] = self.extent.to_array().map(|x| number(f64::from(x)));
+        let [right, up] = [self.right, self.up].map(axis_name);
+        let title = format!("{title}: {width} \u{d7} {height}, {right} to the right, {up} up");
+        element("g")
+            .child(text(self.corner - Vec2::Y * 8.0, title).class("heading"))
+            .child(rectangle(self.corner, self.size()).class("paper"))
     }
 }
 
-/// A parallel view along an axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View {
-    pub(super) title: &'static str,
-    pub(super) right: Axis,
-    pub(super) up: Axis,
-    /// The direction in which it looks.
-    pub(super) away: Vec3,
+/// The smallest box around the points that are finite. None: there are none.
+fn around(points: &[Vec3]) -> Option<Bounds> {
+    let finite = points.iter().filter(|point| point.is_finite());
+    let boxes = finite.map(|point| [*point; 2]);
+    boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }
 
-impl View {
-    /// From above, and from the side that shows `extent` widest, as far as possible in the direction
-    /// in which the camera looks. Both have the same axis to the right.
-    ///
-    /// Above is where the axis of the world points that is nearest to the camera's up.
-    pub(super) fn both(pose: &Pose, extent: &Extent) -> [Self; 2] {
-        let up = Axis::nearest(pose.up);
-        let [a, b] = [(up.index + 1) % 3, (up.index + 2) % 3];
-        let size = extent.size();
-        let depth = if size[a] < size[b] { a } else { b };
-        let depth = Axis::along(depth, pose.forward);
-        let right = Axis::nearest(depth.direction().cross(up.direction()));
-        [
-            Self {
-                title: "From above",
-                right,
-                up: depth,
-                away: -up.direction(),
-            },
-            Self {
-                title: "From the side",
-                right,
-                up,
-                away: depth.direction(),
-            },
-        ]
-    }
+/// The box of a sample with the scene as far as it is near: a large ground would leave no room for the
+/// sample.
+fn with_surroundings(sample: Bounds, scene: Bounds) -> Bounds {
+    let sizes = [sample, scene].map(|[min, max]| (max - min).max_element());
+    let size = sizes.into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
+    let (reach, margin) = (0.5 * size, 0.05 * size);
+    [
+        scene[0].max(sample[0] - reach).min(sample[0]) - margin,
+        scene[1].min(sample[1] + reach).max(sample[1]) + margin,
+    ]
+}
 
-    /// A point, or a direction, as it is seen: to the right and up.
-    pub(super) fn project(&self, point: Vec3) -> Vec2 {
-        Vec2::new(
-            self.right.direction().dot(point),
-            self.up.direction().dot(point),
-        )
-    }
+/// The axes of the world that point right in both views, up, and away in the elevation, which shows the
+/// wider side of a sample of this size, as far as possible in the direction of the camera.
+fn axes(pose: &Pose, size: Vec3) -> [Vec3; 3] {
+    let up = pose.up.abs().max_position();
+    let [a, b] = [(up + 1) % 3, (up + 2) % 3];
+    let depth = if size[a] < size[b] { a } else { b };
+    // Errors of rounding do not turn an axis.
+    let towards = |axis: usize, v: Vec3| Vec3::AXES[axis] * (v[axis] + 1e-6).signum();
+    let (up, depth) = (towards(up, pose.up), towards(depth, pose.forward));
+    [depth.cross(up), up, depth]
+}
 
-    /// Lower left and upper right corner of a box.
-    pub(super) fn window(&self, extent: &Extent) -> [Vec2; 2] {
-        let corners = [extent.min, extent.max].map(|corner| self.project(corner));
-        [corners[0].min(corners[1]), corners[0].max(corners[1])]
-    }
-
-    /// The point of the world that is seen at `seen`, at `depth`.
-    pub(super) fn place(&self, seen: Vec2, depth: f32) -> Vec3 {
-        self.right.direction() * seen.x + self.up.direction() * seen.y + self.away * depth
-    }
+fn axis_name(axis: Vec3) -> String {
+    let signs = ["", "\u{2212}"];
+    let letter = ["x", "y", "z"][axis.abs().max_position()];
+    format!("{}{letter}", signs[usize::from(axis.element_sum() < 0.0)])
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::tests::{CAMERAS, scene};
     use super::*;
+    use bidir::camera::{Camera, Spherical, SphericalMapping};
+    use bidir::math::{Affine3A, Mat3};
 
     fn pose(up: Vec3, forward: Vec3) -> Pose {
-        let camera = bidir::math::Affine3A::from_mat3(bidir::math::Mat3::from_cols(
-            up.cross(forward),
-            up,
-            forward,
-        ));
-        let mapping = bidir::camera::SphericalMapping::EqualArea;
-        let camera = bidir::camera::Spherical::new(&camera, Vec2::ONE, mapping);
-        bidir::camera::Camera::Spherical(camera.unwrap()).pose()
+        let camera = Mat3::from_cols(up.cross(forward), up, forward);
+        let mapping = SphericalMapping::EqualArea;
+        let camera = Spherical::new(&Affine3A::from_mat3(camera), Vec2::ONE, mapping);
+        Camera::Spherical(camera.unwrap()).pose()
     }
 
     #[test]
     fn views_look_along_the_camera_from_where_paths_are_widest() {
-        let extent = Extent {
-            min: Vec3::ZERO,
-            max: Vec3::new(5.0, 2.0, 1.0),
-        };
-        let [plan, elevation] = View::both(&pose(Vec3::Y, -Vec3::Z), &extent);
-        assert_eq!(elevation.away, -Vec3::Z);
-        assert_eq!(elevation.right.direction(), Vec3::X);
-        assert_eq!(plan.away, -Vec3::Y);
-        assert_eq!(plan.up.direction(), -Vec3::Z);
-        assert_eq!(plan.up.label(["↑", "↓"]), "z ↓");
-        for view in [plan, elevation] {
-            let [right, up] = [view.right, view.up].map(Axis::direction);
-            assert_eq!(
-                up.cross(right),
-                view.away,
-                "what is right is seen at the right"
-            );
-        }
+        let [right, up, depth] = axes(&pose(Vec3::Y, -Vec3::Z), Vec3::new(5.0, 2.0, 1.0));
+        assert_eq!([right, up, depth], [Vec3::X, Vec3::Y, -Vec3::Z]);
+        assert_eq!(axis_name(depth), "\u{2212}z");
+        let scene = scene(CAMERAS[0]);
+        let boxes = [[Vec3::ZERO, Vec3::ONE]; 2];
+        let [plan, elevation] = [depth, up].map(|up| View::new(&scene, [right, up], boxes));
+        assert_eq!((plan.away(), elevation.away()), (-up, depth));
     }
 
     #[test]
     fn a_tilted_camera_does_not_tilt_the_drawing() {
         let up = Vec3::new(0.1, -0.5, 0.8).normalize();
         let forward = up.any_orthonormal_vector();
-        let extent = Extent::of(&[Vec3::ZERO, Vec3::new(1.0, 2.0, 1.0)]).unwrap();
-        let [plan, elevation] = View::both(&pose(up, forward), &extent);
-        assert_eq!(elevation.up.direction(), Vec3::Z);
-        assert_eq!(plan.right.direction().abs(), Vec3::Y);
+        let [right, up, _] = axes(&pose(up, forward), Vec3::new(1.0, 2.0, 1.0));
+        assert_eq!((right.abs(), up), (Vec3::Y, Vec3::Z));
     }
 
     #[test]
     fn what_is_far_of_a_scene_is_left_out() {
-        let paths = Extent::of(&[Vec3::ZERO, Vec3::ONE]).unwrap();
-        let scene = Extent::of(&[Vec3::new(-0.2, -50.0, 0.5), Vec3::splat(1.1)]).unwrap();
-        let grown = paths.grown_into(&scene, 0.5);
-        assert_eq!(grown.min, Vec3::new(-0.2, -0.5, 0.0));
-        assert_eq!(grown.max, Vec3::splat(1.1));
+        let paths = around(&[Vec3::ZERO, Vec3::ONE, Vec3::NAN]).unwrap();
+        let scene = [Vec3::new(-0.2, -50.0, 0.5), Vec3::splat(1.1)];
+        let [min, max] = with_surroundings(paths, scene);
+        assert_eq!(min, Vec3::new(-0.2, -0.5, 0.0) - 0.05);
+        assert_eq!(max, Vec3::splat(1.1) + 0.05);
     }
 }
