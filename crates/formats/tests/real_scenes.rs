@@ -88,7 +88,7 @@ mod long_statistics {
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
     fn coffee() {
-        check("pbrt-v4/coffee/coffee.pbrt", 160, 8);
+        check("pbrt-v4/coffee/coffee.pbrt", 320, 8);
     }
 
     #[test]

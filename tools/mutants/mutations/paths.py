@@ -400,8 +400,8 @@ PATHS = [
     (
         "candidates that are named and not taken",
         "crates/bidir/src/driver/training/plan.rs",
-        "if let Candidates::Of(count) = settings.lvc.candidates {",
-        "if let (Candidates::Of(count), false) = (settings.lvc.candidates, true) {",
+        "if !settings.open.candidates {",
+        "if !settings.open.candidates && settings.open.roulette {",
         unit("what_is_named_stays"),
     ),
     (
