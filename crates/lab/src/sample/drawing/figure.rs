@@ -132,7 +132,7 @@ impl Walk {
     /// The names of its vertices, inside the panel. Those of the two subpaths are on different sides,
     /// those of successive vertices at different heights, as these may be close to each other.
     pub(super) fn names(&self, view: &View<'_>) -> Element {
-        let [min, max] = [view.corner + 18.0, view.corner + view.size() - 18.0];
+        let [min, max] = [view.corner + 12.0, view.corner + view.size() - 12.0];
         let side = if self.letter == 'z' { -14.0 } else { 14.0 };
         let points = self.points(view).into_iter().enumerate();
         let names = points.map(|(i, at)| {
