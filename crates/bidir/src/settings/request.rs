@@ -26,6 +26,7 @@ use std::str::FromStr;
 )]
 #[allow(
     clippy::doc_markdown,
+    rustdoc::broken_intra_doc_links,
     reason = "the comments are the help of the command"
 )]
 pub struct Request {
