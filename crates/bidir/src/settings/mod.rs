@@ -1,4 +1,4 @@
-//! Settings: what a person asks for ([`Request`]), and what is rendered ([`Settings`]).
+//! A [`Request`] has the settings that a person asks for; [`Settings`] has those that a render uses.
 //!
 //! A request has an option for each setting; requests of the command line, the environment, a file and a
 //! scene lie over each other ([`Request::over`]). Settings have a value for each, which
@@ -21,8 +21,7 @@ use crate::path::{MisCount, PathRoulette, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::select::ShadowRays;
 
-/// What is rendered, and how: everything that an image's bits depend on, beside the scene and the
-/// passes.
+/// The settings of a render: with the scene and the passes, they decide every bit of the image.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The estimator.
@@ -39,7 +38,7 @@ pub struct Settings {
     pub sampler: SamplerKind,
     /// Other seeds give unrelated images.
     pub seed: u64,
-    /// What the film keeps beside the picture, whose bits do not depend on it.
+    /// The images that the film keeps beside the picture; they change no bit of it.
     pub layers: Layers,
 }
 
@@ -55,7 +54,7 @@ pub struct Open {
 }
 
 impl Default for Settings {
-    /// Those of bidirectional path tracing.
+    /// The settings of bidirectional path tracing.
     fn default() -> Self {
         Self::new(IntegratorKind::default())
     }

@@ -1,4 +1,4 @@
-//! What a person asks for.
+//! A [`Request`]: the settings that a person asks for.
 
 use super::{Choice, Settings};
 use crate::integrator::{
@@ -14,6 +14,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::str::FromStr;
+
+#[cfg(test)]
+mod tests;
 
 /// Settings that are asked for; None leaves one to what lies below, or to its default. The comments are the help
 /// of the command.
@@ -311,7 +314,7 @@ impl Request {
         Some(request)
     }
 
-    /// What is asked for as texts, by the names of flags.
+    /// The settings that are asked for, as texts by the names of flags.
     pub fn texts(&self) -> BTreeMap<String, String> {
         let text = |value| match value {
             Value::String(text) => text,
@@ -383,131 +386,4 @@ fn from_map(map: Map<String, Value>) -> Result<Request, serde_json::Error> {
 /// The name of a field as flags are spelt.
 fn flag(field: &str) -> String {
     field.replace('_', "-")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::Open;
-    use super::*;
-
-    const VALUES: [(&str, &str); 16] = [
-        ("integrator", "lvc"),
-        ("max-depth", "7"),
-        ("mis", "uniform"),
-        ("strategies", "all,-s0"),
-        ("path-roulette", "off"),
-        ("light-choice", "power"),
-        ("light-point", "shared"),
-        ("sampler", "independent"),
-        ("seed", "18446744073709551615"),
-        ("shadow-rays", "per-pair"),
-        ("candidates", "9,2"),
-        ("next-events", "3"),
-        ("proposal", "uniform"),
-        ("light-start", "power"),
-        ("samples-per-subpath", "4"),
-        ("mis-count", "correlated"),
-    ];
-
-    fn request(values: &[(&str, &str)]) -> Request {
-        let mut request = Request::default();
-        for (name, value) in values {
-            request.set(name, value).unwrap();
-        }
-        request
-    }
-
-    #[test]
-    fn settings_are_read_as_they_are_written() {
-        let names: Vec<_> = Request::names().collect();
-        assert_eq!(names.len(), VALUES.len());
-        let request = request(&VALUES);
-        let texts = request.texts();
-        for (name, value) in VALUES {
-            assert_eq!(texts[name], value);
-        }
-        assert_eq!(Request::read(&texts), Some(request.clone()));
-        assert_eq!(Request::of(&request.apply(&Settings::default())), request);
-        let texts = BTreeMap::from([("mis".to_owned(), "best".to_owned())]);
-        assert_eq!(Request::read(&texts), None);
-    }
-
-    #[test]
-    fn a_request_lies_over_another() {
-        let below = request(&[("mis", "power"), ("seed", "1")]);
-        let above = request(&[("mis", "uniform"), ("max-depth", "2")]);
-        let expected = request(&[("mis", "uniform"), ("seed", "1"), ("max-depth", "2")]);
-        assert_eq!(above.over(&below), expected);
-    }
-
-    /// The integrator's own choice is for every integrator but `auto`, which keeps it open.
-    #[test]
-    fn choices_are_made_or_left_open() {
-        let fixed = [
-            ("shadow-rays", "per-pair"),
-            ("candidates", "5"),
-            ("path-roulette", "off"),
-        ];
-        let open = fixed.map(|(name, _)| (name, "auto"));
-        for (name, integrator) in IntegratorKind::NAMES {
-            let own = Settings::new(integrator);
-            let settings = request(&fixed).apply(&own);
-            assert_eq!(settings.open, Open::default(), "{name}");
-            assert_eq!(settings.lvc.candidates, CandidateCount::of(5), "{name}");
-            let again = request(&open).apply(&settings);
-            assert_eq!(Request::of(&again), Request::of(&own), "{name}");
-        }
-        let texts = Request::of(&Settings::new(IntegratorKind::Auto)).texts();
-        assert!(
-            open.iter().all(|(name, text)| texts[*name] == *text),
-            "{texts:?}"
-        );
-    }
-
-    #[test]
-    fn settings_without_influence_are_named() {
-        let request = request(&VALUES);
-        let ignored = |kind| request.ignored(&Settings::new(kind));
-        let of_light = [
-            "light-choice",
-            "light-point",
-            "mis",
-            "shadow-rays",
-            "strategies",
-        ];
-        let of_lvc = [
-            "candidates",
-            "light-start",
-            "mis-count",
-            "next-events",
-            "proposal",
-        ];
-        let alone = "samples-per-subpath";
-        assert_eq!(ignored(IntegratorKind::Lvc), [""; 0]);
-        assert_eq!(ignored(IntegratorKind::Auto), [alone]);
-        assert_eq!(ignored(IntegratorKind::Bdpt).len(), of_lvc.len() + 1);
-        let of_light = ignored(IntegratorKind::Light)
-            .iter()
-            .filter(|name| of_light.contains(&&***name))
-            .count();
-        assert_eq!(of_light, 5);
-    }
-
-    #[test]
-    fn wrong_names_and_values_are_refused_in_words() {
-        let error = |name, value| Request::default().set(name, value).unwrap_err().to_string();
-        assert_eq!(
-            error("mis", "balence"),
-            "there is no `balence`: did you mean `balance`?"
-        );
-        assert_eq!(
-            error("light-point", "x"),
-            "there is no `x`: expected fresh, shared"
-        );
-        assert!(error("strategies", "s").contains("is not a strategy"));
-        assert_eq!(error("max-depth", "-1"), "expected a whole number");
-        assert!(error("candidates", "0").contains("from 1 to 4096"));
-        assert!(error("mis", "5").contains("there is no `5`"));
-        assert!(error("sharpness", "1").contains("sharpness"));
-    }
 }
