@@ -1,6 +1,5 @@
 //! `bidir experiment`: methods are compared, from a description to a report.
 
-mod builtin;
 mod claims;
 mod cluster;
 mod watch;
@@ -15,50 +14,32 @@ use crate::scene_io;
 use crate::signals::Signals;
 use crate::threads;
 use bidir::driver::Threads;
-use lab::beyond;
 use lab::experiment::{
-    self, End, Experiment, ExperimentError, Outcome, PAGE, Setup, Start, analysis, write_page,
+    self, BUILTIN, Builtin, End, Experiment, ExperimentError, Outcome, PAGE, Setup, Start,
+    write_page,
 };
-use lab::paper;
 use lab::report::table_text;
 use lab::results::Machine;
 use std::path::Path;
 use watch::Watch;
 
-/// What is run.
-enum Task {
-    /// The experiment of 1995.
-    Paper(paper::Options),
-    /// All estimators.
-    Beyond(beyond::Options),
-    /// That of a file.
-    Described(Experiment),
-}
-
 /// Runs an experiment, and tells what it found.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
-    check_flags(args)?;
     let signals = Signals::watch()?;
     if let Some(address) = &args.ray {
         return cluster::run(args, address, &signals);
     }
     threads::start(args.threads.count, console);
-    let task = task(args, console)?;
-    let outcome = execute(args, console, &signals, |setup, watch| match &task {
-        Task::Paper(options) => paper::run(*options, setup, watch),
-        Task::Beyond(options) => beyond::run(options, setup, watch),
-        Task::Described(experiment) => experiment::run(experiment, setup, watch),
+    let mut experiment = read(args)?;
+    experiment.threads = threads(args, experiment.threads, console);
+    let outcome = execute(args, console, &signals, |setup, watch| {
+        experiment::run(&experiment, setup, watch)
     })?;
     let Some(results) = &outcome.results else {
         return Ok(stopped(args, &signals));
     };
-    let sections = match task {
-        // The claims of the paper have all its tables.
-        Task::Paper(_) => Vec::new(),
-        Task::Beyond(options) => beyond::sections(results, &options.amounts),
-        Task::Described(_) => analysis::sections(results),
-    };
-    write_page(&args.output, results, &sections, &builtin::command(args)).map_err(failure)?;
+    let sections = experiment.sections(results);
+    write_page(&args.output, results, &sections, &command(args)).map_err(failure)?;
     let mut found: Vec<_> = results.claims.iter().map(claims::text).collect();
     let of_sections = sections.iter().flat_map(|section| &section.tables);
     found.extend(of_sections.map(table_text));
@@ -73,28 +54,14 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     Ok(Exit::Done)
 }
 
-/// Refuses flags that are of another experiment, wherever it runs.
-fn check_flags(args: &ExperimentArgs) -> Result<(), Failure> {
-    let given = args.beyond.given();
-    let other = given.filter(|_| args.description != Path::new(builtin::BEYOND));
-    other.map_or(Ok(()), |flag| {
-        let text = format!("{flag} applies to `{}` alone", builtin::BEYOND);
-        Err(Failure::usage(text).with_hint("write it into the description"))
-    })
-}
-
-/// What the command line asks for.
-fn task(args: &ExperimentArgs, console: Console) -> Result<Task, Failure> {
-    let threads = |own| threads(args, own, console);
-    if args.description == Path::new(builtin::BEYOND) {
-        return Ok(Task::Beyond(builtin::beyond(args, threads(0))));
-    }
-    if args.description == Path::new(builtin::PAPER) {
-        return Ok(Task::Paper(builtin::paper(args, threads(0))));
-    }
-    let mut experiment = read(args)?;
-    experiment.threads = threads(experiment.threads);
-    Ok(Task::Described(experiment))
+/// The command that runs the same experiment.
+fn command(args: &ExperimentArgs) -> String {
+    let begin = format!("bidir experiment {} -o FOLDER", args.description.display());
+    let quick = args.quick.then(|| "--quick".to_owned());
+    let words = std::iter::once(begin)
+        .chain(quick)
+        .chain(args.extent.words());
+    words.collect::<Vec<_>>().join(" ")
 }
 
 /// Says how to go on, where anything was finished.
@@ -117,17 +84,25 @@ fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
     exit
 }
 
-/// Reads a description.
+/// Reads a description, or takes the built-in one, with the extent that flags give it.
 fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let file = &args.description;
-    let text = std::fs::read_to_string(file);
-    let text = text.map_err(|error| unreadable(file, &error))?;
-    let mut experiment = Experiment::read(&text, file).map_err(failure)?;
-    experiment::check_description(file, &args.output).map_err(failure)?;
+    let mut experiment = match Builtin::named(file) {
+        Some(builtin) => builtin.experiment().map_err(failure)?,
+        None => {
+            let text = std::fs::read_to_string(file);
+            let text = text.map_err(|error| unreadable(file, &error))?;
+            let experiment = Experiment::read(&text, file).map_err(failure)?;
+            experiment::check_description(file, &args.output).map_err(failure)?;
+            experiment
+        }
+    };
     if args.quick {
         experiment = experiment.quick();
     }
-    Ok(experiment)
+    let extent = args.extent.extent();
+    let within = experiment.within(&extent);
+    within.map_err(|error| Failure::usage(format!("--scenes: {error}")))
 }
 
 /// Why a description cannot be read; a name near a built-in experiment's is probably that.
@@ -138,7 +113,8 @@ fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
     };
     let failure = Failure::io(file, action, error);
     let name = file.to_str().filter(|_| action == "open");
-    let near = name.and_then(|name| bidir::names::nearest(name, [builtin::PAPER, builtin::BEYOND]));
+    let near =
+        name.and_then(|name| bidir::names::nearest(name, BUILTIN.map(|builtin| builtin.name)));
     match (near, action) {
         (Some(near), _) => {
             failure.with_hint(format!("did you mean the built-in experiment `{near}`?"))
@@ -154,11 +130,7 @@ fn other_file(file: &Path) -> String {
     let listed = Some(listed).filter(|listed| listed.is_file());
     match listed.or_else(|| scene_io::nearest_file(file)) {
         Some(near) => format!("did you mean `{}`?", near.display()),
-        None => format!(
-            "name `{}`, `{}` or a .toml file",
-            builtin::PAPER,
-            builtin::BEYOND
-        ),
+        None => "name `paper`, `beyond` or a .toml file".to_owned(),
     }
 }
 
@@ -207,6 +179,8 @@ fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_)
         | ExperimentError::Pyramid { .. }
+        | ExperimentError::Contributions { .. }
+        | ExperimentError::NoReference(_)
         | ExperimentError::Strategies { .. }
         | ExperimentError::NoEffect { .. } => Exit::Scene,
         ExperimentError::Mismatch(_) | ExperimentError::Elsewhere { .. } => Exit::FilmMismatch,

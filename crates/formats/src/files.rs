@@ -27,7 +27,7 @@ pub type InMemory = BTreeMap<PathBuf, Arc<[u8]>>;
 /// assert_eq!(loaded.files, [PathBuf::from("sky.pbrt")]);
 /// # Ok::<(), bidir_formats::Error>(())
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Files {
     memory: Arc<InMemory>,
     others: Others,
@@ -56,6 +56,11 @@ impl Files {
             memory: Arc::new(memory),
             others: Others::OnDisk,
         }
+    }
+
+    /// True where every name is looked for on the disk.
+    pub fn are_on_disk(&self) -> bool {
+        self.memory.is_empty() && self.others == Others::OnDisk
     }
 
     /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.

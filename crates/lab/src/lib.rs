@@ -1,10 +1,8 @@
 //! Experiments: images become numbers, and numbers get confidence.
 //!
-//! - [`beyond`]: what all estimators gain, and each idea behind them.
 //! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
-//! - [`paper`]: the experiment of 1995, claim by claim.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
 //! - [`pyramid`]: what each strategy does, as contact sheets and figures.
 //! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
@@ -17,15 +15,12 @@
 //! All but [`experiment`], [`reference`](mod@reference) and [`sample`] read no file and know no scene: who has
 //! images can ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
 
-pub mod beyond;
 mod blocks;
 pub mod experiment;
 pub mod flip;
 pub mod image;
 mod markup;
 pub mod metric;
-pub mod paper;
-mod parts;
 pub mod pyramid;
 pub mod reference;
 pub mod report;

@@ -34,6 +34,9 @@ pub struct Results {
     /// What strategies do, one for each scene where it was asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pyramids: Vec<Pyramid>,
+    /// Contributions before visibility, of the methods and scenes that the description names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contributions: Vec<Contributions>,
     /// What was concluded.
     pub claims: Vec<Claim>,
 }
@@ -163,6 +166,23 @@ pub struct Record {
     pub efficiency_seconds: f64,
     /// The image, relative to the folder of the results, where it was kept.
     pub image: Option<String>,
+}
+
+/// How large the contributions of a method's connections are in a scene, before visibility.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contributions {
+    /// The name of the scene.
+    pub scene: String,
+    /// The name of the method.
+    pub method: String,
+    /// For each pass its numbers, by the names of
+    /// [`FIGURES`](crate::experiment::contributions::FIGURES).
+    pub passes: Vec<BTreeMap<String, f64>>,
+    /// The distribution of weighted contributions: the left edge of each bin of log10, and the part of
+    /// all contributions in it.
+    pub weighted: Vec<[f64; 2]>,
+    /// The distribution of contributions without weights.
+    pub unweighted: Vec<[f64; 2]>,
 }
 
 /// What each strategy (s, t) of a method does in a scene.

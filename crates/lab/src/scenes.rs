@@ -1,10 +1,8 @@
-//! Where the scenes of built-in experiments are.
-//!
-//! Those of the project are kept in the program, so that it alone is enough: [`unpack`] writes them
-//! into a folder. Those made by others lie in `pbrt-v4/` of a folder that somebody has.
+//! The project's scenes of built-in experiments, in memory: the program needs no file for them.
 
-use crate::experiment::{ReferenceSpec, SceneSpec};
+use formats::scene::{Files, InMemory};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A file of `scenes/` with its bytes.
 type File = (&'static str, &'static [u8]);
@@ -98,68 +96,45 @@ const FILES: &[File] = files![
     "meshes/worktop-slab.ply"
 ];
 
-/// Writes the scenes into a folder, which is made where there is none.
-pub(crate) fn unpack(folder: &Path) -> std::io::Result<()> {
-    for (name, bytes) in FILES {
-        let path = folder.join(name);
-        std::fs::create_dir_all(path.parent().unwrap_or(folder))?;
-        // What another run wrote is the same.
-        if std::fs::read(&path).is_ok_and(|there| there == *bytes) {
-            continue;
-        }
-        std::fs::write(&path, bytes)?;
-    }
-    Ok(())
+/// The folder that their names begin with.
+const FOLDER: &str = "scenes";
+
+/// The scenes, and nothing else.
+pub(crate) fn files() -> Files {
+    let files = FILES.iter();
+    let files = files.map(|(name, bytes)| (path(name), Arc::from(*bytes)));
+    Files::only(files.collect::<InMemory>())
 }
 
-/// Where a scene is after [`unpack`].
-pub(crate) fn path(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.pbrt"))
+/// True for the name of one of [`files`].
+pub(crate) fn has(name: &Path) -> bool {
+    FILES.iter().any(|(file, _)| path(file) == name)
 }
 
-/// Where a scene made by others is, in the folder that has them.
-pub(crate) fn path_of_others(folder: &Path, name: &str) -> PathBuf {
-    path(&folder.join("pbrt-v4").join(name), name)
-}
-
-/// A scene of an experiment, whose images have the experiment's size.
-pub(crate) fn spec(name: &str, path: PathBuf, reference: ReferenceSpec) -> SceneSpec {
-    let file = path.file_name().unwrap_or_default();
-    SceneSpec {
-        name: name.to_owned(),
-        file: file.to_string_lossy().into_owned(),
-        path,
-        size: None,
-        reference,
-        places: [None, None],
-    }
+fn path(name: &str) -> PathBuf {
+    Path::new(FOLDER).join(name)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use formats::pbrt::{LoadOptions, load};
+    use formats::scene::load_from;
 
     #[test]
     fn the_scenes_need_no_other_files() {
-        let folder = tempfile::tempdir().unwrap();
-        unpack(folder.path()).unwrap();
-        unpack(folder.path()).unwrap();
-        for name in [
-            "room-direct",
-            "room-indirect",
-            "apartment",
-            "apartment-dark",
-        ] {
-            let options = LoadOptions {
-                resolution: Some([4, 3]),
-                ..LoadOptions::default()
-            };
-            let loaded = load(&path(folder.path(), name), &options).unwrap();
+        let options = LoadOptions {
+            resolution: Some([4, 3]),
+            ..LoadOptions::default()
+        };
+        let top = FILES.iter().filter(|(name, _)| name.ends_with(".pbrt"));
+        for (name, _) in top.filter(|(name, _)| !name.contains('/')) {
+            assert!(has(&path(name)));
+            let loaded = load_from(&path(name), &options, &files()).unwrap();
             assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
-            let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
-            let here = load(&path(&own, name), &options).unwrap();
-            assert_eq!(loaded.digest.to_string(), here.digest.to_string());
+            let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+            let there = load(&root.join(path(name)), &options).unwrap();
+            assert_eq!(loaded.digest.to_string(), there.digest.to_string());
         }
     }
 }

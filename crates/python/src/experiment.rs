@@ -4,7 +4,7 @@ use crate::cluster::Prepared;
 use crate::error::{of_experiment, raise};
 use crate::settings::threads_of;
 use crate::wait::{Stop, wait};
-use lab::experiment::{self, Event, Observer, Outcome, Setup, Start, analysis};
+use lab::experiment::{self, Event, Observer, Outcome, Setup, Start};
 use lab::results::{Machine, Results};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -129,7 +129,9 @@ impl Experiment {
             experiment::run(&self.experiment, &setup, &mut reporter)
         })?;
         let Outcome { results, .. } = outcome.map_err(|error| of_experiment(py, &error))?;
-        let sections = results.as_ref().map(analysis::sections).unwrap_or_default();
+        let sections = results.as_ref();
+        let sections = sections.map(|results| self.experiment.sections(results));
+        let sections = sections.unwrap_or_default();
         if let Some(results) = &results {
             let command = format!("bidir experiment {} -o FOLDER", self.file.display());
             let written = experiment::write_page(&setup.folder, results, &sections, &command);

@@ -2,10 +2,10 @@
 
 use super::ThreadsArgs;
 use super::values::{Size, positive_number};
-use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, ValueHint};
+use lab::experiment::Extent;
 use std::path::PathBuf;
 
 /// What is compared, and where the results go.
@@ -73,8 +73,9 @@ pub(crate) struct ExperimentArgs {
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references.
     ///
-    /// paper: all claims with wider intervals, in five minutes on two cores instead of forty. beyond: 3
-    /// seeds of small images and 2 seconds, in half an hour instead of a day.
+    /// A description's [quick] can say otherwise. paper: all claims with wider intervals, in six minutes
+    /// on two cores instead of forty. beyond: 3 seeds of small images and 2 seconds, in half an hour
+    /// instead of a day.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Run on the nodes of a Ray cluster: auto, local, or HOST:PORT.
@@ -90,66 +91,88 @@ pub(crate) struct ExperimentArgs {
     /// Print only warnings and errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
-    /// The extent of `beyond`; last, as its heading holds for all that follow.
+    /// Last, as its heading holds for all that follow.
     #[command(flatten)]
-    pub(crate) beyond: BeyondArgs,
+    pub(crate) extent: ExtentArgs,
 }
 
 impl ExperimentArgs {
-    /// Refuses --threads beside --ray, whose nodes decide that. A conflict of clap's would refuse the
-    /// variable, too, which is there for all commands.
+    /// Refuses --threads beside --ray, whose nodes decide that, and an extent, which these do not know.
+    /// A conflict of clap's would refuse variables, too, which are there for all commands.
     pub(super) fn check(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
         let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
         if is_given("ray") && is_given("threads") {
             let message = "--ray cannot be used with --threads: each node uses all of its threads";
             return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
-        Ok(())
+        let extent = [
+            "scenes",
+            "size",
+            "seconds",
+            "rays",
+            "seeds",
+            "reference_spp",
+        ];
+        let given = extent.into_iter().find(|name| is_given(name));
+        let Some(name) = given.filter(|_| is_given("ray")) else {
+            return Ok(());
+        };
+        let flag = name.replace('_', "-");
+        let message = format!("--ray cannot be used with --{flag}: write it into the description");
+        Err(command.error(ErrorKind::ArgumentConflict, message))
     }
 }
 
-/// How much is rendered of `beyond`, instead of what `--quick` or its absence says.
+/// Parts of the extent, in place of the description's and of --quick's.
 #[derive(Args, Debug)]
-#[command(next_help_heading = "Only for `beyond`")]
-pub(crate) struct BeyondArgs {
-    /// Comma-separated scenes [default: all].
+#[command(next_help_heading = "Extent, in place of the description's")]
+pub(crate) struct ExtentArgs {
+    /// Comma-separated names of scenes [default: all].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    #[arg(value_parser = PossibleValuesParser::new(lab::beyond::scene_names()))]
-    pub(crate) scenes: Vec<String>,
-    /// Size of all images [default: 320x240, or 160x120 with --quick, at the scene's aspect ratio].
+    scenes: Vec<String>,
+    /// Size of all images.
     #[arg(long, value_name = "WxH")]
-    pub(crate) size: Option<Size>,
-    /// Equal time: seconds of training and rendering per integrator [default: 60, or 2 with --quick].
-    ///
-    /// --quick weighs training as in 60 seconds.
+    size: Option<Size>,
+    /// Amount of budgets in seconds of training and rendering.
     #[arg(long, value_name = "S", value_parser = positive_number)]
-    pub(crate) seconds: Option<f64>,
-    /// Equal rays: rays per pixel, training included [default: 500, or 100 with --quick].
-    ///
-    /// --quick weighs training as in 2000 rays per pixel, because a full run has four times the pixels.
+    seconds: Option<f64>,
+    /// Amount of budgets in rays per pixel, training included.
     #[arg(long, value_name = "N", value_parser = positive_number)]
-    pub(crate) rays: Option<f64>,
-    /// Number of seeds; intervals need 2 or more [default: 10, or 3 with --quick].
+    rays: Option<f64>,
+    /// Number of seeds; intervals need 2 or more.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
-    pub(crate) seeds: Option<u64>,
-    /// Samples per pixel of each estimator of a reference [default: 4096, or 1024 with --quick].
+    seeds: Option<u64>,
+    /// Samples per pixel of each integrator of a rendered reference.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 32))]
-    pub(crate) reference_spp: Option<u64>,
+    reference_spp: Option<u64>,
 }
 
-impl BeyondArgs {
-    /// The name of a flag that is given. None: none is.
-    pub(crate) fn given(&self) -> Option<&'static str> {
+impl ExtentArgs {
+    /// The extent that these flags give.
+    pub(crate) fn extent(&self) -> Extent {
+        Extent {
+            scenes: self.scenes.clone(),
+            size: self.size.map(|size| size.0),
+            seeds: self.seeds,
+            seconds: self.seconds,
+            rays: self.rays,
+            reference_spp: self.reference_spp,
+        }
+    }
+
+    /// The flags that are given, as they are written.
+    pub(crate) fn words(&self) -> impl Iterator<Item = String> {
+        let size = self.size.map(|size| size.0);
+        let number = |flag: &str, number: Option<f64>| number.map(|n| format!("{flag} {n}"));
+        let whole = |flag: &str, number: Option<u64>| number.map(|n| format!("{flag} {n}"));
         let flags = [
-            ("--scenes", !self.scenes.is_empty()),
-            ("--size", self.size.is_some()),
-            ("--seconds", self.seconds.is_some()),
-            ("--rays", self.rays.is_some()),
-            ("--seeds", self.seeds.is_some()),
-            ("--reference-spp", self.reference_spp.is_some()),
+            (!self.scenes.is_empty()).then(|| format!("--scenes {}", self.scenes.join(","))),
+            size.map(|[width, height]| format!("--size {width}x{height}")),
+            number("--seconds", self.seconds),
+            number("--rays", self.rays),
+            whole("--seeds", self.seeds),
+            whole("--reference-spp", self.reference_spp),
         ];
-        flags
-            .into_iter()
-            .find_map(|(name, is_given)| is_given.then_some(name))
+        flags.into_iter().flatten()
     }
 }

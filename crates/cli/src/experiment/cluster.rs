@@ -1,10 +1,9 @@
 //! `bidir experiment --ray`: the Python package runs the experiment on a cluster.
 
-use super::builtin;
 use crate::args::ExperimentArgs;
 use crate::exit::{Exit, Failure};
 use crate::signals::Signals;
-use std::path::Path;
+use lab::experiment::Builtin;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
@@ -17,11 +16,9 @@ pub(super) fn run(
     address: &str,
     signals: &Signals,
 ) -> Result<Exit, Failure> {
-    for name in [builtin::PAPER, builtin::BEYOND] {
-        if args.description == Path::new(name) {
-            let message = format!("`{name}` runs on one machine: --ray takes a description");
-            return Err(Failure::usage(message));
-        }
+    if let Some(Builtin { name, .. }) = Builtin::named(&args.description) {
+        let message = format!("`{name}` runs on one machine: --ray takes a description");
+        return Err(Failure::usage(message));
     }
     let python = std::env::var("BIDIR_PYTHON").unwrap_or_else(|_| "python3".into());
     check(&python)?;

@@ -8,7 +8,7 @@
 use super::cell::{Cell, write_image};
 use super::error::ExperimentError;
 use super::journal::{Journal, Owner};
-use super::run::{End, Observer, Setup, Work, begin};
+use super::run::{End, Observer, Ready, Setup, Work, begin};
 use super::stage::{Reference, Stage};
 use super::{Experiment, pyramid, reference};
 use crate::image::Pixels;
@@ -74,10 +74,12 @@ pub fn prepare(
 ) -> Result<Option<Prepared>> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
     let mut journal = Journal::start(setup, &owner, observer)?;
-    let threads = experiment.threads;
-    let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
+    let Some(scenes) = reference::obtain_all(experiment, stages, given, setup, observer)? else {
         return Ok(None);
     };
+    let Ready {
+        stages, references, ..
+    } = scenes;
     if pyramid::complete(experiment, &stages, setup, &mut journal, observer)? == End::Stopped {
         return Ok(None);
     }
@@ -92,7 +94,7 @@ pub fn prepare(
     let scenes = scenes.map(|(stage, reference)| PreparedScene {
         name: stage.spec.name.clone(),
         path: stage.spec.path.clone(),
-        files: stage.files.clone(),
+        files: stage.shared_files(),
         reference: reference.pixels,
     });
     Ok(Some(Prepared {

@@ -1,24 +1,29 @@
 //! From TOML to an [`Experiment`].
 
-use super::error::{ExperimentError, Place};
-use super::names::file_name;
+mod claims;
+mod scene;
+
+use super::error::ExperimentError;
+use super::names::{file_name, value_of};
 use super::reader::{Entry, Section, Source};
 use super::settings::{names, no_effect};
-use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, ReferenceSpec, SceneSpec, Seeds};
+use super::contributions::ContributionsSpec;
+use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, Quick, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use bidir::driver::{Settings, Threads};
 use bidir::integrator::IntegratorKind;
-use bidir::names::{UnknownName, nearest};
+use bidir::names::nearest;
 use bidir::settings::Request;
-use std::path::{Component, Path, PathBuf};
+use claims::Names;
+use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// Where no number of seeds is given.
 const SEEDS: u64 = 10;
 /// The keys of the whole description.
-const TOP: [&str; 13] = [
+const TOP: [&str; 18] = [
     "title",
     "description",
     "seeds",
@@ -28,31 +33,31 @@ const TOP: [&str; 13] = [
     "metrics",
     "pyramid",
     "pyramid-spp",
+    "pyramid-scenes",
+    "contributions",
+    "quick",
     "settings",
     "scene",
     "method",
     "budget",
+    "claim",
+    "table",
 ];
-/// The keys of `[[scene]]`, and those that are accepted for old descriptions.
-const SCENE: [&str; 7] = [
-    "file",
-    "name",
-    "size",
-    "reference",
-    "reference-spp",
-    "reference-strategies",
-    "reference-cross-check",
-];
-const OLD_SCENE: [&str; 1] = ["reference-witness"];
 /// How to mend a setting without effect on an integrator that another table sets.
 const INHERITED: &str =
     "[settings] sets this integrator: give the method its own, or leave the setting out";
 /// The keys of `[[budget]]`.
-const BUDGET: [&str; 4] = ["name", "samples", "rays", "seconds"];
+const BUDGET: [&str; 6] = ["name", "samples", "rays", "seconds", "methods", "scenes"];
+/// The keys of `[contributions]`.
+const CONTRIBUTIONS: [&str; 3] = ["methods", "scenes", "spp"];
+/// The keys of `[quick]`.
+const QUICK: [&str; 6] = ["seeds", "size", "samples", "rays", "seconds", "references"];
 /// Settings that are accepted for old descriptions.
 const OLD_SETTINGS: [&str; 1] = ["emission"];
 /// Samples per pixel of images of strategies, where no number is given.
 const PYRAMID_SPP: u64 = 64;
+/// Samples per pixel whose contributions are measured, where no number is given.
+const CONTRIBUTIONS_SPP: u64 = 16;
 
 impl Experiment {
     /// Reads a description; `file` is what messages call it, and its scenes are relative to its folder.
@@ -70,7 +75,7 @@ impl Experiment {
             defaults = changes(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
-        let scene = |section: &mut Section<'_>| scene(section, folder, &defaults);
+        let (scenes, absent) = scene::all(&mut top, folder, &defaults)?;
         let method = |section: &mut Section<'_>| method(section, &defaults);
         let shown = [top.take("pyramid"), top.take("pyramid-spp")];
         let mut experiment = Self {
@@ -80,14 +85,69 @@ impl Experiment {
             seeds: seeds(&mut top)?,
             threads: threads(&mut top)?,
             metrics: metrics(&mut top)?,
-            scenes: all(&mut top, "scene", scene)?,
+            scenes,
+            absent,
             methods: all(&mut top, "method", method)?,
             budgets: all(&mut top, "budget", budget)?,
             pyramid: None,
+            contributions: contributions(&mut top)?,
+            claims: Vec::new(),
+            tables: Vec::new(),
+            quick: quick(&mut top)?,
         };
         experiment.pyramid = pyramid(shown, &experiment.methods)?;
+        if let (Some(pyramid), scenes) = (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?) {
+            pyramid.scenes = scenes;
+        }
+        let names = Names::of(&experiment);
+        experiment.claims = claims::claims(&mut top, &names)?;
+        experiment.tables = claims::tables(&mut top, &names, &experiment.claims)?;
         Ok(experiment)
     }
+}
+
+/// A list of names; empty where there is none.
+fn list(section: &mut Section<'_>, key: &str) -> Result<Vec<String>> {
+    let Some(entry) = section.take(key) else {
+        return Ok(Vec::new());
+    };
+    let names = entry.list("a list of names")?;
+    names.iter().map(|name| Ok(name.text()?.to_owned())).collect()
+}
+
+fn contributions(top: &mut Section<'_>) -> Result<Option<ContributionsSpec>> {
+    let Some(entry) = top.take("contributions") else {
+        return Ok(None);
+    };
+    let mut section = entry.section()?;
+    section.only(&CONTRIBUTIONS, &[])?;
+    Ok(Some(ContributionsSpec {
+        methods: list(&mut section, "methods")?,
+        scenes: list(&mut section, "scenes")?,
+        spp: whole(&mut section, "spp", 2)?.unwrap_or(CONTRIBUTIONS_SPP),
+    }))
+}
+
+fn quick(top: &mut Section<'_>) -> Result<Quick> {
+    let mut quick = Quick::default();
+    let Some(entry) = top.take("quick") else {
+        return Ok(quick);
+    };
+    let mut section = entry.section()?;
+    section.only(&QUICK, &[])?;
+    quick.seeds = whole(&mut section, "seeds", 1)?.unwrap_or(quick.seeds);
+    quick.size = section.take("size").map(|entry| entry.positive()).transpose()?;
+    for (key, factor) in [
+        ("samples", &mut quick.samples),
+        ("rays", &mut quick.rays),
+        ("seconds", &mut quick.seconds),
+        ("references", &mut quick.references),
+    ] {
+        if let Some(entry) = section.take(key) {
+            *factor = entry.positive()?;
+        }
+    }
+    Ok(quick)
 }
 
 /// The method whose strategies are shown, and with how many samples.
@@ -117,6 +177,7 @@ fn pyramid(
     Ok(Some(PyramidSpec {
         method: name.to_owned(),
         spp: spp.map_or(Ok(PYRAMID_SPP), |spp| spp.whole(2))?,
+        scenes: Vec::new(),
     }))
 }
 
@@ -172,23 +233,13 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
         return Ok(vec![Metric::Relmse, Metric::RelmseTrimmed]);
     };
     let mut metrics = Vec::new();
-    for entry in entry.texts()? {
-        let metric = entry.read(metric)?;
+    for entry in entry.list("a list of texts")? {
+        let metric = entry.read(|name| value_of(&Metric::NAMES, name))?;
         if metric != Metric::Rmse && !metrics.contains(&metric) {
             metrics.push(metric);
         }
     }
     Ok(metrics)
-}
-
-/// The metric of a name.
-fn metric(given: &str) -> std::result::Result<Metric, UnknownName> {
-    let mut names = Metric::NAMES.iter();
-    let found = names.find(|(name, _)| *name == given);
-    let known = Metric::NAMES.map(|(name, _)| name);
-    found
-        .map(|(_, metric)| *metric)
-        .ok_or_else(|| UnknownName::new(given, &known))
 }
 
 /// What all tables `[[key]]` say, of which there is one at least; names differ also in files.
@@ -270,124 +321,17 @@ fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Resu
 
 fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
     let names = names();
-    let known = ["name"].into_iter().chain(borrowed(&names));
+    let known = ["name", "scenes"].into_iter().chain(borrowed(&names));
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
         changes: changes(section, defaults.integrator)?.over(defaults),
+        scenes: list(section, "scenes")?,
     })
 }
 
 fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
-}
-
-fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result<SceneSpec> {
-    section.only(&SCENE, &OLD_SCENE)?;
-    let named = section.need("file")?;
-    let file = named.text()?.to_owned();
-    let stem = Path::new(&file).file_stem().unwrap_or_default();
-    let stem = stem.to_string_lossy();
-    let name = or(text_of(section, "name")?, &stem);
-    let size = size(section)?;
-    let (reference, place) = reference(section, folder, defaults)?;
-    Ok(SceneSpec {
-        name,
-        path: joined(folder, &file),
-        size,
-        reference,
-        file,
-        places: [Some(named.at()), place],
-    })
-}
-
-/// A file relative to `folder`, without detours such as `out/..`.
-fn joined(folder: &Path, file: &str) -> PathBuf {
-    let mut path = PathBuf::new();
-    for part in folder.join(file).components() {
-        let is_detour = part == Component::ParentDir
-            && matches!(path.components().next_back(), Some(Component::Normal(_)))
-            // The folder above the target of a link is another one.
-            && !path.is_symlink();
-        match part {
-            _ if is_detour => {
-                path.pop();
-            }
-            Component::CurDir => {}
-            part => path.push(part),
-        }
-    }
-    path
-}
-
-/// A reference that is there, with the place of its name, or how many samples the one that is made has.
-fn reference(
-    section: &mut Section<'_>,
-    folder: &Path,
-    defaults: &Request,
-) -> Result<(ReferenceSpec, Option<Place>)> {
-    let image = section.take("reference");
-    let spp = section.take("reference-spp");
-    let strategies = section.take("reference-strategies");
-    let cross_check = section.take_renamed("reference-cross-check", "reference-witness")?;
-    match (image, spp) {
-        (Some(image), None) => {
-            if let Some(entry) = strategies.or(cross_check) {
-                return Err(entry.fault_with(
-                    "an existing reference cannot be changed".to_owned(),
-                    "leave this out, or have the reference made with `reference-spp`".to_owned(),
-                ));
-            }
-            let there = ReferenceSpec::There(folder.join(image.text()?));
-            Ok((there, Some(image.at())))
-        }
-        (None, Some(spp)) => {
-            let made = ReferenceSpec::Make {
-                spp: spp.whole(1)?,
-                changes: Box::new(reference_changes(strategies, defaults)?),
-                witness: cross_check.as_ref().map(cross_check_of).transpose()?,
-            };
-            Ok((made, None))
-        }
-        (Some(_), Some(spp)) => {
-            Err(spp.fault("`reference` and `reference-spp` exclude each other"))
-        }
-        (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
-    }
-}
-
-/// What decides the expectation of the images is that of all methods.
-fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
-    let mut changes = Request {
-        strategies: defaults.strategies.clone(),
-        max_depth: defaults.max_depth,
-        ..Request::default()
-    };
-    if let Some(entry) = strategies {
-        entry.read(|value| {
-            changes
-                .set("strategies", value)
-                .map_err(|error| error.to_string())
-        })?;
-    }
-    Ok(changes)
-}
-
-/// An estimator that can contradict that of the picture.
-fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
-    let mut changes = Request::default();
-    entry.read(|value| {
-        changes
-            .set("integrator", value)
-            .map_err(|error| error.to_string())
-    })?;
-    match changes.integrator {
-        Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
-            "an estimator cannot cross-check itself".to_owned(),
-            "references are made by `bdpt`: use path, light or lvc".to_owned(),
-        )),
-        Some(witness) => Ok(witness),
-    }
 }
 
 fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
@@ -416,6 +360,8 @@ fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
     let budget = BudgetSpec::new(kind, amount);
     Ok(BudgetSpec {
         name: name.unwrap_or_else(|| budget.name.clone()),
+        methods: list(section, "methods")?,
+        scenes: list(section, "scenes")?,
         ..budget
     })
 }

@@ -115,6 +115,20 @@ pub enum ExperimentError {
         /// The setting and the integrator.
         text: String,
     },
+    /// Contributions are to be measured of a method that has no connections in a scene.
+    #[error(
+        "scene `{scene}`: the contributions of method `{method}` cannot be measured, as it is not \
+         bidirectional there"
+    )]
+    Contributions {
+        /// The scene.
+        scene: String,
+        /// The method.
+        method: String,
+    },
+    /// A scene shares the reference of a scene that has none, or whose images have another size.
+    #[error("scene `{0}`: `reference-of` names no scene before it that has images of its size")]
+    NoReference(String),
     /// None of the scenes that an experiment has is there.
     #[error("there is no scene to render: {0}")]
     NoScenes(String),
@@ -154,7 +168,7 @@ impl ExperimentError {
                  another estimator (`reference-cross-check`), or name a `reference` made by \
                  `bidir reference --estimator … --against …`",
             ),
-            Self::Pyramid { .. } => Some("give the method integrator = \"bdpt\""),
+            Self::Pyramid { .. } | Self::Contributions { .. } => Some("give the method integrator = \"bdpt\""),
             Self::NoEffect { .. } => Some("set `integrator` in [settings] or in the method"),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
             Self::Size { .. } => Some("give the scene the size of its reference"),

@@ -30,7 +30,7 @@ pub(super) fn identity(
             stage.digest,
             stage.size(),
         );
-        for method in &experiment.methods {
+        for method in experiment.methods_in(&stage.spec.name) {
             let settings = texts(&method.changes.apply(&stage.settings));
             let _ = writeln!(text, "method {:?} {settings:?}", method.name);
         }

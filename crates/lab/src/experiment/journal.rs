@@ -1,8 +1,7 @@
 //! The records so far, on the disk.
 //!
 //! The first line says whose they are, and of which machine; every other line is a record, or
-//! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Where experiments
-//! have parts, it has that line alone in the folder of all. Each line has its checksum.
+//! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Each line has its checksum.
 
 use super::error::ExperimentError;
 use super::run::{Event, Observer, Setup, Start};
@@ -17,27 +16,6 @@ pub(super) const FILE: &str = "records.ndjson";
 const FORMAT: u32 = 3;
 /// The version before, whose lines have no checksums.
 const UNSEALED: u32 = 2;
-
-/// Makes the folder that of the experiment `name`, whose parts have folders and records of their own
-/// below it: it then has a journal without records.
-///
-/// Errors: the folder is that of another experiment, and is not begun anew.
-pub(crate) fn claim(name: &str, setup: &Setup) -> Result<(), ExperimentError> {
-    let owner = Owner {
-        experiment: name.to_owned(),
-        program: setup.program.clone(),
-        machine: setup.machine.clone(),
-    };
-    if setup.start == Start::Anew {
-        return Journal::begin(&setup.folder, &owner).map(drop);
-    }
-    match Journal::open(&setup.folder, &owner) {
-        Ok(journal) => journal.write(),
-        // Parts say themselves what was made elsewhere.
-        Err(ExperimentError::Elsewhere { .. }) => Ok(()),
-        Err(error) => Err(error),
-    }
-}
 
 /// The first line.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]

@@ -2,7 +2,9 @@
 //!
 //! - [`Experiment`]: the description, from TOML by [`Experiment::read`] or made by hand.
 //! - [`run()`]: renders what no record has yet, and gives [`Results`](crate::results::Results).
-//! - [`analysis`]: what the records say, as tables and plots.
+//! - [`claims`]: statements about the records with their verdicts, and tables.
+//! - [`analysis`]: the usual tables and plots of records.
+//! - [`BUILTIN`]: descriptions that the program contains.
 //!
 //! # The folder of the results
 //!
@@ -39,9 +41,14 @@
 
 pub mod analysis;
 mod block;
+mod builtin;
 mod cell;
+pub mod claims;
+pub mod contributions;
 mod description;
 mod error;
+mod expand;
+mod extent;
 mod identity;
 mod journal;
 #[cfg(test)]
@@ -52,22 +59,28 @@ mod page;
 mod pyramid;
 mod reader;
 mod reference;
+mod room;
 mod run;
 mod settings;
 mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
+pub use builtin::{BUILTIN, Builtin};
 pub use error::{ExperimentError, Fault, Place};
-pub(crate) use journal::claim;
+pub use extent::{Extent, Quick};
+pub use room::{Lamp, Room};
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
-pub use run::{End, Event, Observer, Outcome, Setup, Start, run, write_results};
+pub use run::{End, Event, Observer, Outcome, Setup, Start, run};
 pub use settings::{names, texts};
 
 use crate::metric::Metric;
 use crate::results::BudgetKind;
+use claims::{ClaimSpec, TableSpec};
+use contributions::ContributionsSpec;
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
+use formats::scene::Files;
 use std::path::PathBuf;
 
 /// What is compared.
@@ -83,25 +96,46 @@ pub struct Experiment {
     pub seeds: Seeds,
     /// Threads of each render; 0 is one per processor.
     pub threads: usize,
-    /// What is computed of each image beside the root mean square error.
+    /// Metrics of each image beside the root mean square error.
     pub metrics: Vec<Metric>,
-    /// The scenes; there is at least one.
+    /// The scenes.
     pub scenes: Vec<SceneSpec>,
+    /// Optional scenes that are not there.
+    pub absent: Vec<Absent>,
     /// The methods, of which ratios are relative to the first; there is at least one.
     pub methods: Vec<MethodSpec>,
     /// The budgets; there is at least one.
     pub budgets: Vec<BudgetSpec>,
-    /// What is shown of strategies. None: nothing.
+    /// The method whose strategies are shown. None: none.
     pub pyramid: Option<PyramidSpec>,
+    /// The methods whose contributions are measured. None: none.
+    pub contributions: Option<ContributionsSpec>,
+    /// Statements about the records; records do not depend on them.
+    pub claims: Vec<ClaimSpec>,
+    /// Tables of the records, instead of the usual ones if there are any.
+    pub tables: Vec<TableSpec>,
+    /// The extent of a quick run.
+    pub quick: Quick,
 }
 
-/// Of which method each strategy is shown, in every scene.
+/// An optional scene that is left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Absent {
+    /// Its name.
+    pub name: String,
+    /// The reason, in words.
+    pub reason: String,
+}
+
+/// The method each of whose strategies is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PyramidSpec {
     /// The name of the method, which is bidirectional.
     pub method: String,
     /// Samples per pixel, under the first seed. Range: from 2 on, so that there is a variance.
     pub spp: u64,
+    /// The names of the scenes; empty: all.
+    pub scenes: Vec<String>,
 }
 
 /// Successive seeds.
@@ -122,12 +156,25 @@ pub struct SceneSpec {
     pub file: String,
     /// Where the file is.
     pub path: PathBuf,
+    /// Where files are looked for: on the disk, or in memory.
+    pub files: Files,
     /// Width and height of its images, instead of those of the experiment or of the scene.
     pub size: Option<[u32; 2]>,
     /// What its images are compared with.
     pub reference: ReferenceSpec,
+    /// Whether it may be left out.
+    pub presence: Presence,
     /// Where a description names the file, and the reference that is there. None: it does not.
     pub places: [Option<Place>; 2],
+}
+
+/// Whether a scene may be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// Without it there is an error.
+    Required,
+    /// It is left out, with a warning, where its file is not there or its reference is contradicted.
+    Optional,
 }
 
 /// What images are compared with.
@@ -136,6 +183,8 @@ pub enum ReferenceSpec {
     /// The folder of a [reference](mod@crate::reference) that is there, or an image; its pixels are finite.
     /// It is what its pixels are: another folder with the same ones makes no other experiment.
     There(PathBuf),
+    /// The reference of the scene of this name, which has the same light.
+    Of(String),
     /// A reference that is made first, and kept in the folder of the results: by `bdpt` that traces
     /// every connection, with a witness; where they disagree, nothing is compared with it.
     Make {
@@ -154,8 +203,10 @@ pub enum ReferenceSpec {
 pub struct MethodSpec {
     /// Its name, unlike all others.
     pub name: String,
-    /// What it wants otherwise than the scene.
+    /// Its settings, over those of the scene.
     pub changes: Request,
+    /// The names of the scenes in which it is rendered; empty: all.
+    pub scenes: Vec<String>,
 }
 
 /// The amounts that are equal for all methods.
@@ -167,12 +218,16 @@ pub struct BudgetSpec {
     pub kind: BudgetKind,
     /// How much of it: samples per pixel, rays per pixel, or seconds. Range: above 0.
     pub amount: f64,
-    /// The names of the methods that are rendered under it; empty: of all.
+    /// The amount that training is weighed by: that of a run which is not quick.
+    pub full: f64,
+    /// The names of the methods that are rendered under it; empty: all.
     pub methods: Vec<String>,
+    /// The names of the scenes that are rendered under it; empty: all.
+    pub scenes: Vec<String>,
 }
 
 impl BudgetSpec {
-    /// A budget of all methods, with the name that tells it, such as `64 spp`.
+    /// A budget of all methods and scenes, whose name is its amount, such as `64 spp`.
     pub fn new(kind: BudgetKind, amount: f64) -> Self {
         let unit = match kind {
             BudgetKind::Samples => "spp",
@@ -183,69 +238,50 @@ impl BudgetSpec {
             name: format!("{amount} {unit}"),
             kind,
             amount,
+            full: amount,
             methods: Vec::new(),
+            scenes: Vec::new(),
         }
     }
+}
 
-    /// True where the method is rendered under it.
-    pub fn is_of(&self, method: &MethodSpec) -> bool {
-        self.methods.is_empty() || self.methods.contains(&method.name)
-    }
+/// True where a list of names has this one, or is empty.
+fn is_in(names: &[String], name: &str) -> bool {
+    names.is_empty() || names.iter().any(|known| known == name)
 }
 
 impl Experiment {
-    /// How many renders there are, but those of references.
-    pub fn cells(&self) -> usize {
-        let methods = |budget: &BudgetSpec| {
-            let methods = self.methods.iter();
-            methods.filter(|method| budget.is_of(method)).count()
+    /// What is rendered in a scene: each budget with its methods.
+    pub fn renders<'a>(
+        &'a self,
+        scene: &'a str,
+    ) -> impl Iterator<Item = (&'a BudgetSpec, &'a MethodSpec)> {
+        let budgets = self.budgets.iter();
+        let budgets = budgets.filter(move |budget| is_in(&budget.scenes, scene));
+        budgets.flat_map(move |budget| {
+            let methods = self.methods.iter().filter(move |method| {
+                is_in(&method.scenes, scene) && is_in(&budget.methods, &method.name)
+            });
+            methods.map(move |method| (budget, method))
+        })
+    }
+
+    /// The methods that are rendered in a scene.
+    pub(crate) fn methods_in<'a>(
+        &'a self,
+        scene: &'a str,
+    ) -> impl Iterator<Item = &'a MethodSpec> {
+        let is_used = move |method: &&MethodSpec| {
+            let mut renders = self.renders(scene);
+            renders.any(|(_, other)| other.name == method.name)
         };
-        let pairs: usize = self.budgets.iter().map(methods).sum();
-        self.seeds.count as usize * self.scenes.len() * pairs
+        self.methods.iter().filter(is_used)
     }
 
-    /// The same in little time, to see whether it works: at most three seeds, sizes of at most 64
-    /// pixels, an eighth of the samples of budgets, references and pyramids.
-    #[must_use]
-    pub fn quick(mut self) -> Self {
-        self.seeds.count = self.seeds.count.min(3);
-        for scene in &mut self.scenes {
-            let size = scene.size.or(self.size);
-            match &mut scene.reference {
-                // An image that is there has the size that it has.
-                ReferenceSpec::There(_) => scene.size = size,
-                ReferenceSpec::Make { spp, .. } => {
-                    scene.size = Some(small(size.unwrap_or([64, 48])));
-                    *spp = spp.div_ceil(8);
-                }
-            }
-        }
-        self.size = None;
-        let budgets = self.budgets.iter().map(|budget| {
-            let amount = budget.amount / 8.0;
-            let is_whole = budget.kind == BudgetKind::Samples;
-            let amount = if is_whole { amount.ceil() } else { amount };
-            BudgetSpec {
-                methods: budget.methods.clone(),
-                ..BudgetSpec::new(budget.kind, amount)
-            }
-        });
-        let mut all: Vec<BudgetSpec> = Vec::new();
-        for budget in budgets {
-            if !all.contains(&budget) {
-                all.push(budget);
-            }
-        }
-        self.budgets = all;
-        if let Some(pyramid) = &mut self.pyramid {
-            pyramid.spp = pyramid.spp.div_ceil(8).max(2);
-        }
-        self
+    /// The number of renders, without those of references.
+    pub fn cells(&self) -> usize {
+        let scenes = self.scenes.iter();
+        let renders: usize = scenes.map(|scene| self.renders(&scene.name).count()).sum();
+        self.seeds.count as usize * renders
     }
-}
-
-/// A size of the same shape, of at most 64 pixels.
-fn small(size: [u32; 2]) -> [u32; 2] {
-    let shrink = size[0].max(size[1]).div_ceil(64).max(1);
-    size.map(|side| (side / shrink).max(1))
 }

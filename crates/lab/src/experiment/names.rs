@@ -1,4 +1,14 @@
-//! Names that files can have.
+//! Names of values and of files.
+
+use bidir::names::UnknownName;
+
+/// The value of a name.
+pub(super) fn value_of<T: Copy>(names: &[(&str, T)], given: &str) -> Result<T, UnknownName> {
+    let found = names.iter().find(|(name, _)| *name == given);
+    let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
+    let value = found.map(|(_, value)| *value);
+    value.ok_or_else(|| UnknownName::new(given, &known))
+}
 
 /// A name as part of a file's name: lower case, with `-` for everything but letters and digits.
 pub(super) fn file_name(name: &str) -> String {

@@ -52,9 +52,8 @@ fn always(folder: &Path) -> Vec<PathBuf> {
 
 /// The names of the images of a scene, which are those of the first seed.
 fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
-    let budgets = experiment.budgets.iter();
-    let pairs = budgets.flat_map(|budget| experiment.methods.iter().map(move |m| (budget, m)));
-    let images = pairs.map(|(budget, method)| {
+    let renders = experiment.renders(&stage.spec.name);
+    let images = renders.map(|(budget, method)| {
         let seed = experiment.seeds.first;
         Cell {
             stage,
@@ -72,6 +71,6 @@ fn given(stage: &Stage<'_>) -> Vec<PathBuf> {
     match &stage.spec.reference {
         ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),
         ReferenceSpec::There(path) => vec![path.clone()],
-        ReferenceSpec::Make { .. } => Vec::new(),
+        ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Vec::new(),
     }
 }

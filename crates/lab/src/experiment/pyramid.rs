@@ -14,7 +14,6 @@ use crate::results::{Pyramid, StrategyInfo};
 use bidir::driver::Session;
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
-use formats::scene::Files;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -52,7 +51,10 @@ pub(super) fn found(
 
 /// The names of the files of all contact sheets, relative to the folder of the results.
 pub(super) fn files(experiment: &Experiment, stages: &[Stage<'_>]) -> Vec<String> {
-    let shown = stages.iter().filter(|_| wanted(experiment).is_some());
+    let Some((spec, _)) = wanted(experiment) else {
+        return Vec::new();
+    };
+    let shown = stages.iter().filter(|stage| is_shown(spec, stage));
     let files = shown.flat_map(|stage| ["weighted", "raw"].map(|word| file(stage, word)));
     files.collect()
 }
@@ -68,13 +70,14 @@ fn file(stage: &Stage<'_>, word: &str) -> String {
 
 /// Refuses a method that is not bidirectional in one of the scenes.
 pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>]) -> Result<()> {
-    let Some((_, method)) = wanted(experiment) else {
+    let Some((spec, method)) = wanted(experiment) else {
         return Ok(());
     };
     let is_other = |stage: &&Stage<'_>| {
         method.changes.apply(&stage.settings).integrator != IntegratorKind::Bdpt
     };
-    match stages.iter().find(is_other) {
+    let mut shown = stages.iter().filter(|stage| is_shown(spec, stage));
+    match shown.find(is_other) {
         None => Ok(()),
         Some(stage) => Err(ExperimentError::Pyramid {
             scene: stage.spec.name.clone(),
@@ -90,6 +93,11 @@ fn wanted(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
     Some((spec, methods.find(|method| method.name == spec.method)?))
 }
 
+/// True for a scene whose strategies are shown.
+fn is_shown(spec: &PyramidSpec, stage: &Stage<'_>) -> bool {
+    spec.scenes.is_empty() || spec.scenes.contains(&stage.spec.name)
+}
+
 fn works<'a>(
     experiment: &'a Experiment,
     stages: &'a [Stage<'a>],
@@ -97,7 +105,8 @@ fn works<'a>(
 ) -> impl Iterator<Item = Work<'a>> {
     let wanted = wanted(experiment);
     let works = wanted.map(move |(spec, method)| {
-        stages.iter().map(move |stage| Work {
+        let stages = stages.iter().filter(move |stage| is_shown(spec, stage));
+        stages.map(move |stage| Work {
             experiment,
             setup,
             stage,
@@ -139,7 +148,7 @@ impl Work<'_> {
             size: Some(resolution.map(|side| small(side) as u32)),
             ..self.stage.spec.clone()
         };
-        let stage = Stage::load(self.experiment, &spec, &Files::default())?;
+        let stage = Stage::load(self.experiment, &spec, &spec.files)?;
         Work {
             stage: &stage,
             ..*self

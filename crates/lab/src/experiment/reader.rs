@@ -56,13 +56,13 @@ impl<'a> Source<'a> {
 }
 
 /// A table.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Section<'a> {
     source: Source<'a>,
     /// Its head.
     place: Range<usize>,
-    /// What was not asked for yet.
-    table: DeTable<'a>,
+    /// The entries that nobody has taken.
+    pub(super) table: DeTable<'a>,
 }
 
 /// A value with its place.
@@ -70,7 +70,7 @@ pub(super) struct Section<'a> {
 pub(super) struct Entry<'a> {
     source: Source<'a>,
     place: Range<usize>,
-    value: DeValue<'a>,
+    pub(super) value: DeValue<'a>,
 }
 
 impl<'a> Section<'a> {
@@ -97,6 +97,16 @@ impl<'a> Section<'a> {
             .map(|value| Entry::new(self.source, value))
     }
 
+    /// Takes over the values of keys that are not here.
+    pub(super) fn fill(&mut self, other: &Self, keys: &[&str]) {
+        for (key, value) in &other.table {
+            let name = key.get_ref();
+            if keys.contains(&&**name) && !self.table.contains_key(&**name) {
+                self.table.insert(key.clone(), value.clone());
+            }
+        }
+    }
+
     /// The value of a key, which may go by its older name.
     ///
     /// Errors: both names.
@@ -116,20 +126,28 @@ impl<'a> Section<'a> {
             .ok_or_else(|| self.fault(format!("`{key}` is missing")))
     }
 
-    /// All tables `[[key]]`, or the one `[key]`.
+    /// All tables `[[key]]`, or the one `[key]`, each repeated for what its `for` lists.
     pub(super) fn sections(&mut self, key: &'static str) -> Result<Vec<Self>> {
         let Some(entry) = self.take(key) else {
             return Ok(Vec::new());
         };
-        match entry.value {
-            DeValue::Array(array) => {
-                let entries = array
-                    .into_iter()
-                    .map(|value| Entry::new(entry.source, value));
-                entries.map(Entry::section).collect()
-            }
-            _ => Ok(vec![entry.section()?]),
-        }
+        let sections = match entry.value {
+            DeValue::Array(_) => entry.list("a list of tables")?,
+            _ => vec![entry],
+        };
+        let sections = sections.into_iter().map(Entry::section);
+        let expanded = sections.map(|section| section?.expanded());
+        Ok(expanded.collect::<Result<Vec<_>>>()?.concat())
+    }
+
+    /// The keys with their values, in the order of the file.
+    pub(super) fn ordered(self) -> Vec<(String, Entry<'a>)> {
+        let mut pairs: Vec<_> = self.table.into_iter().collect();
+        pairs.sort_by_key(|(key, _)| key.span().start);
+        let entry = |value| Entry::new(self.source, value);
+        let pairs = pairs.into_iter();
+        let pairs = pairs.map(|(key, value)| (key.into_inner().into_owned(), entry(value)));
+        pairs.collect()
     }
 
     /// An error of the whole table.
@@ -198,14 +216,29 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Texts.
-    pub(super) fn texts(self) -> Result<Vec<Self>> {
-        let fault = self.fault("expected a list of texts");
+    /// The elements of a list; `kind` is its name in the error.
+    pub(super) fn list(self, kind: &str) -> Result<Vec<Self>> {
+        let fault = self.fault(format!("expected {kind}"));
         let DeValue::Array(array) = self.value else {
             return Err(fault);
         };
         let entries = array.into_iter().map(|value| Self::new(self.source, value));
         Ok(entries.collect())
+    }
+
+    /// A finite number.
+    pub(super) fn number(&self) -> Result<f64> {
+        let number = self.written()?.parse().ok();
+        let number = number.filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| self.fault("expected a number"))
+    }
+
+    /// True or false.
+    pub(super) fn truth(&self) -> Result<bool> {
+        match self.value {
+            DeValue::Boolean(truth) => Ok(truth),
+            _ => Err(self.fault("expected true or false")),
+        }
     }
 
     /// A whole number from `least` on.

@@ -1,10 +1,10 @@
 //! What images are compared with: a picture that is there, or one that is made once and kept.
 
-use super::ReferenceSpec;
+use super::{Absent, Experiment, Presence, ReferenceSpec};
 use super::cell::write_image;
 use super::error::{ExperimentError, Place};
 use super::names::file_name;
-use super::run::{Event, Observer, Setup};
+use super::run::{Event, Observer, Ready, Setup};
 use super::settings::texts;
 use super::stage::{Reference, Stage};
 use crate::image::Pixels;
@@ -35,23 +35,69 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
             mse: stored_mse(path),
             warning: None,
         })),
-        ReferenceSpec::Make { .. } => Ok(None),
+        ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Ok(None),
     }
 }
 
-/// The references of all stages; `given` are those that lie elsewhere. None: the observer stopped it.
+/// The scenes with their references; `given` are those that lie elsewhere. An optional scene whose
+/// reference is contradicted is left out, with a warning. None: the observer stopped it.
 ///
-/// Errors: as [`obtain`].
-pub(super) fn obtain_all(
-    stages: &[Stage<'_>],
+/// Errors: as [`obtain`]; no scene is left.
+pub(super) fn obtain_all<'a>(
+    experiment: &Experiment,
+    stages: Vec<Stage<'a>>,
     given: Vec<Option<Reference>>,
     setup: &Setup,
-    threads: usize,
     observer: &mut dyn Observer,
-) -> Result<Option<Vec<Reference>>> {
-    let stages = stages.iter().zip(given);
-    let references = stages.map(|(stage, given)| obtain(stage, given, setup, threads, observer));
-    references.collect()
+) -> Result<Option<Ready<'a>>> {
+    let mut ready = Ready {
+        stages: Vec::new(),
+        references: Vec::new(),
+        absent: experiment.absent.clone(),
+    };
+    for (stage, given) in stages.into_iter().zip(given) {
+        let given = given.or_else(|| shared(&ready, &stage));
+        let threads = experiment.threads;
+        match obtain(&stage, given, setup, threads, observer) {
+            Err(error) if stage.spec.presence == Presence::Optional && is_contradicted(&error) => {
+                let scene = Absent {
+                    name: stage.spec.name.clone(),
+                    reason: error.to_string(),
+                };
+                scene.warn(observer);
+                ready.absent.push(scene);
+            }
+            found => {
+                let Some(reference) = found? else {
+                    return Ok(None);
+                };
+                ready.stages.push(stage);
+                ready.references.push(reference);
+            }
+        }
+    }
+    match (&ready.stages[..], ready.absent.last()) {
+        ([], Some(absent)) => Err(ExperimentError::NoScenes(absent.reason.clone())),
+        _ => Ok(Some(ready)),
+    }
+}
+
+/// The reference of the scene that this one names, as its light is the same.
+fn shared(ready: &Ready<'_>, stage: &Stage<'_>) -> Option<Reference> {
+    let ReferenceSpec::Of(name) = &stage.spec.reference else {
+        return None;
+    };
+    let mut stages = ready.stages.iter().zip(&ready.references);
+    let found = stages.find(|(other, _)| other.spec.name == *name && other.size() == stage.size());
+    found.map(|(_, reference)| reference.clone())
+}
+
+/// True where the two estimators of a reference disagree: nothing is compared with it.
+fn is_contradicted(error: &ExperimentError) -> bool {
+    let ExperimentError::Reference { error, .. } = error else {
+        return false;
+    };
+    matches!(error, references::Error::Disagree { .. })
 }
 
 /// The reference of a scene: the [`given`] one, whose picture is copied into the folder of the results,
@@ -66,17 +112,24 @@ fn obtain(
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    let ReferenceSpec::Make {
-        spp,
-        changes,
-        witness,
-    } = &stage.spec.reference
-    else {
-        let copied = given.map(|reference| copied(stage, reference, setup));
-        return copied.transpose();
-    };
-    let plan = plan(stage, *spp, changes, *witness);
-    make(stage, &plan, setup, threads, observer)
+    match (&stage.spec.reference, given) {
+        (
+            ReferenceSpec::Make {
+                spp,
+                changes,
+                witness,
+            },
+            _,
+        ) => {
+            let plan = plan(stage, *spp, changes, *witness);
+            make(stage, &plan, setup, threads, observer)
+        }
+        (ReferenceSpec::There(_), Some(reference)) => copied(stage, reference, setup).map(Some),
+        (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
+        (ReferenceSpec::There(_) | ReferenceSpec::Of(_), None) => {
+            Err(ExperimentError::NoReference(stage.spec.name.clone()))
+        }
+    }
 }
 
 /// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
@@ -99,6 +152,7 @@ fn copy(stage: &Stage<'_>) -> String {
 pub(super) fn written(stage: &Stage<'_>, setup: &Setup) -> Vec<PathBuf> {
     match &stage.spec.reference {
         ReferenceSpec::There(_) => vec![setup.folder.join(copy(stage))],
+        ReferenceSpec::Of(_) => Vec::new(),
         ReferenceSpec::Make {
             spp,
             changes,

@@ -10,13 +10,12 @@ use super::pyramid;
 use super::reference;
 use super::settings::{no_effect, texts};
 use super::stage::{Reference, Stage};
-use super::{Experiment, MethodSpec};
-
+use super::{Absent, Experiment, MethodSpec, contributions};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
 use bidir::integrator::{LostLight, lost_light};
 use bidir::scene::Isa;
-use formats::scene::Files;
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -122,13 +121,17 @@ pub struct Outcome {
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let (stages, given, owner) = begin(experiment, setup, observer)?;
     let mut journal = Journal::start(setup, &owner, observer)?;
-    let threads = experiment.threads;
-    let Some(references) = reference::obtain_all(&stages, given, setup, threads, observer)? else {
+    let Some(scenes) = reference::obtain_all(experiment, stages, given, setup, observer)? else {
         return Ok(Outcome {
             end: End::Stopped,
             results: None,
         });
     };
+    let Ready {
+        stages,
+        references,
+        absent,
+    } = scenes;
     let work = Work {
         experiment,
         setup,
@@ -142,6 +145,11 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     };
     let mut results = work.results(journal.records());
     results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
+    results.contributions = contributions::measure(experiment, &stages)?;
+    for Absent { name, reason } in absent {
+        let _ = write!(results.description, "\n\nThe scene {name} is left out: {reason}.");
+    }
+    results.claims = experiment.judge(&results);
     for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
         observer.tell(Event::Warning(&noise.words()));
     }
@@ -159,6 +167,14 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
 /// there, and whose records are made.
 pub(super) type Begun<'a> = (Vec<Stage<'a>>, Vec<Option<Reference>>, Owner);
 
+/// The scenes that have their references, and those that are left out.
+pub(super) struct Ready<'a> {
+    pub(super) stages: Vec<Stage<'a>>,
+    /// One for each stage.
+    pub(super) references: Vec<Reference>,
+    pub(super) absent: Vec<Absent>,
+}
+
 /// Makes the folders, reads the scenes and the references that are there.
 pub(super) fn begin<'a>(
     experiment: &'a Experiment,
@@ -169,10 +185,16 @@ pub(super) fn begin<'a>(
         let path = setup.folder.join(folder);
         std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
     }
+    for scene in &experiment.absent {
+        scene.warn(observer);
+    }
+    if let ([], Some(absent)) = (&experiment.scenes[..], experiment.absent.last()) {
+        return Err(ExperimentError::NoScenes(absent.reason.clone()));
+    }
     let stages = experiment
         .scenes
         .iter()
-        .map(|spec| Stage::load(experiment, spec, &Files::default()));
+        .map(|spec| Stage::load(experiment, spec, &spec.files));
     let stages = stages.collect::<Result<Vec<_>>>()?;
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));
@@ -201,7 +223,7 @@ fn check_strategies(
 ) -> Result<()> {
     for method in &experiment.methods {
         let mut warned = Vec::new();
-        for stage in stages {
+        for stage in stages.iter().filter(|stage| stage.has(experiment, method)) {
             let settings = method.changes.apply(&stage.settings);
             check_effect(method, stage)?;
             let path = &settings.path;
@@ -240,6 +262,14 @@ fn check_effect(method: &MethodSpec, stage: &Stage<'_>) -> Result<()> {
     }
 }
 
+impl Absent {
+    /// Says that it is left out.
+    pub(super) fn warn(&self, observer: &mut dyn Observer) {
+        let Self { name, reason } = self;
+        observer.tell(Event::Warning(&format!("scene `{name}` is left out: {reason}")));
+    }
+}
+
 impl Machine {
     /// The name of a processor that the system does not name.
     pub const UNKNOWN: &'static str = "unknown";
@@ -269,7 +299,7 @@ fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
 }
 
 /// Writes `results.json` into the folder of the results.
-pub fn write_results(folder: &Path, results: &Results) -> Result<()> {
+fn write_results(folder: &Path, results: &Results) -> Result<()> {
     formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
     Ok(())
 }
@@ -305,21 +335,18 @@ impl Work<'_> {
                 .zip(references)
                 .map(move |scene| (seed, scene))
         };
-        let methods = &experiment.methods;
         seeds
             .flat_map(scenes)
             .flat_map(move |(seed, (stage, reference))| {
-                experiment.budgets.iter().flat_map(move |budget| {
-                    let methods = methods.iter().filter(|method| budget.is_of(method));
-                    methods.map(move |method| {
-                        let cell = Cell {
-                            stage,
-                            method,
-                            budget,
-                            seed,
-                        };
-                        (cell, reference)
-                    })
+                let renders = experiment.renders(&stage.spec.name);
+                renders.map(move |(budget, method)| {
+                    let cell = Cell {
+                        stage,
+                        method,
+                        budget,
+                        seed,
+                    };
+                    (cell, reference)
                 })
             })
     }
@@ -328,7 +355,7 @@ impl Work<'_> {
     fn render(&self, journal: &mut Journal, observer: &mut dyn Observer) -> Result<End> {
         observer.tell(Event::Begin {
             done: journal.records().len(),
-            of: self.experiment.cells(),
+            of: self.cells().count(),
         });
         for (cell, reference) in self.cells() {
             if journal.has(&cell) {
@@ -375,6 +402,7 @@ impl Work<'_> {
             budgets: budgets.collect(),
             records: self.ordered(records),
             pyramids: Vec::new(),
+            contributions: Vec::new(),
             claims: Vec::new(),
         }
     }
@@ -392,7 +420,9 @@ impl Work<'_> {
     fn methods(&self) -> Vec<MethodInfo> {
         let methods = self.experiment.methods.iter().map(|method| {
             let mut settings: BTreeMap<String, String> = BTreeMap::new();
-            for (number, stage) in self.stages.iter().enumerate() {
+            let stages = self.stages.iter();
+            let stages = stages.filter(|stage| stage.has(self.experiment, method));
+            for (number, stage) in stages.enumerate() {
                 for (name, value) in texts(&method.changes.apply(&stage.settings)) {
                     let known = settings.entry(name).or_insert_with(|| value.clone());
                     if number > 0 && *known != value {

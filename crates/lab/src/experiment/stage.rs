@@ -2,7 +2,7 @@
 
 use super::error::{ExperimentError, Place};
 use super::run::{Event, Observer};
-use super::{Experiment, SceneSpec};
+use super::{Experiment, MethodSpec, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
@@ -26,6 +26,7 @@ pub(super) struct Stage<'a> {
 }
 
 /// What the images of a scene are compared with.
+#[derive(Clone)]
 pub(super) struct Reference {
     pub(super) pixels: Pixels,
     /// How it was made.
@@ -54,6 +55,8 @@ impl<'a> Stage<'a> {
         spec: &'a SceneSpec,
         files: &Files,
     ) -> Result<Self, ExperimentError> {
+        // Files in memory are the same on every machine.
+        let files = if spec.files.are_on_disk() { files } else { &spec.files };
         let options = LoadOptions {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
@@ -75,6 +78,20 @@ impl<'a> Stage<'a> {
             files: loaded.files,
             inputs: loaded.inputs,
         })
+    }
+
+    /// The files that another machine needs to be given: none of those in memory.
+    pub(super) fn shared_files(&self) -> Vec<PathBuf> {
+        match self.spec.files.are_on_disk() {
+            true => self.files.clone(),
+            false => Vec::new(),
+        }
+    }
+
+    /// True where the method is rendered in this scene.
+    pub(super) fn has(&self, experiment: &Experiment, method: &MethodSpec) -> bool {
+        let mut methods = experiment.methods_in(&self.spec.name);
+        methods.any(|other| other.name == method.name)
     }
 
     /// A session of this scene.

@@ -76,6 +76,23 @@ impl Metric {
         ("flip_hdr", Self::FlipHdr),
     ];
 
+    /// The name.
+    pub fn name(self) -> &'static str {
+        let mut names = Self::NAMES.iter();
+        let found = names.find(|(_, metric)| *metric == self);
+        found.map_or("", |(name, _)| name)
+    }
+
+    /// The power of the number of samples that the number of an unbiased estimate falls with. None: of
+    /// FLIP, which has no such law.
+    pub fn order(self) -> Option<f64> {
+        match self {
+            Self::Rmse | Self::RmseTrimmed | Self::Mape => Some(0.5),
+            Self::Relmse | Self::RelmseTrimmed | Self::RelmseBlock => Some(1.0),
+            Self::Flip | Self::FlipHdr => None,
+        }
+    }
+
     /// True where it is a matter of moments: all but FLIP, which filters images.
     pub fn is_fast(self) -> bool {
         !matches!(self, Self::Flip | Self::FlipHdr)

@@ -31,7 +31,7 @@ use std::collections::BTreeSet;
 pub const CONFIDENCE: f64 = 0.95;
 
 /// What is said of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
     /// The scene, or what else it is about.
     pub title: String,

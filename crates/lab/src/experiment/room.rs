@@ -7,24 +7,26 @@
 //! flat faces are the kindest way to have many triangles, since a ray meets few of their boxes. Where
 //! optimisations begin to pay is therefore an upper bound, in triangles.
 
+use formats::scene::Files;
 use std::fmt::Write;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Where the light is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Lamp {
-    /// A panel below the ceiling, as in scene A.
+pub enum Lamp {
+    /// A panel below the ceiling.
     Panel,
-    /// Deep in an opaque bowl, as in scene B.
+    /// Deep in an opaque bowl, which lets its light reach the ceiling alone.
     Bowl,
 }
 
 impl Lamp {
-    pub(super) const ALL: [Self; 2] = [Self::Panel, Self::Bowl];
+    /// Every kind with its name.
+    pub const NAMES: [(&'static str, Self); 2] = [("direct", Self::Panel), ("indirect", Self::Bowl)];
 
-    /// The word in names of scenes.
-    pub(super) fn name(self) -> &'static str {
+    /// The name.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Panel => "direct",
             Self::Bowl => "indirect",
@@ -41,13 +43,14 @@ impl Lamp {
 }
 
 /// A room.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Room {
-    pub(super) lamp: Lamp,
-    /// What every surface reflects.
-    pub(super) albedo: f32,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// Where its light is.
+    pub light: Lamp,
+    /// What every surface reflects. Range: (0, 1).
+    pub albedo: f32,
     /// About how many triangles there are.
-    pub(super) triangles: usize,
+    pub triangles: usize,
 }
 
 /// A parallelogram: a corner and two edges.
@@ -61,26 +64,26 @@ impl Room {
     }
 
     /// How many triangles there are, but those of the light.
-    pub(super) fn count(self) -> usize {
+    fn count(self) -> usize {
         2 * faces().len() * self.division() * self.division()
     }
 
-    /// Writes the room into a folder, as a scene file with its mesh, and returns the scene file.
-    pub(super) fn write(self, folder: &Path, name: &str) -> io::Result<PathBuf> {
+    /// The name of its scene file.
+    pub(super) fn name(self) -> PathBuf {
+        let (light, triangles) = (self.light.name(), self.count());
+        format!("room-{light}-{triangles}-{}.pbrt", self.albedo).into()
+    }
+
+    /// The scene file and its mesh.
+    pub(super) fn files(self) -> Files {
         let mesh = format!("room-{}.ply", self.count());
-        if !folder.join(&mesh).exists() {
-            // As a whole: what a killed process wrote of it would be taken for the mesh.
-            let bytes = ply(&faces(), self.division());
-            let written = formats::file::replace(&folder.join(&mesh), &bytes);
-            written.map_err(io::Error::other)?;
-        }
-        let path = folder.join(format!("{name}.pbrt"));
-        std::fs::write(&path, self.text(&mesh))?;
-        Ok(path)
+        let scene = Arc::from(self.text(&mesh).as_bytes());
+        let bytes = Arc::from(ply(&faces(), self.division()));
+        Files::only([(self.name(), scene), (mesh.into(), bytes)].into())
     }
 
     fn text(self, mesh: &str) -> String {
-        let (radiance, [x, y, z], half, indices) = self.lamp.emitter();
+        let (radiance, [x, y, z], half, indices) = self.light.emitter();
         let albedo = self.albedo;
         format!(
             "LookAt 3.6 1.5 0.3  1.62 0.86 4  0 1 0\n\
@@ -193,17 +196,17 @@ fn ply(faces: &[Face], k: usize) -> Vec<u8> {
 mod tests {
     use super::*;
     use bidir::driver::{Resources, Settings, render};
-    use formats::pbrt::{LoadOptions, load};
+    use bidir::integrator::IntegratorKind;
+    use formats::scene::{LoadOptions, load_from};
 
-    fn image(room: Room, folder: &Path) -> (u64, Vec<[f32; 3]>) {
-        let path = room.write(folder, room.lamp.name()).unwrap();
+    fn image(room: Room) -> (u64, Vec<[f32; 3]>) {
         let options = LoadOptions {
             resolution: Some([8, 6]),
             ..LoadOptions::default()
         };
-        let loaded = load(&path, &options).unwrap();
+        let loaded = load_from(&room.name(), &options, &room.files()).unwrap();
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
-        let settings = super::super::setting().apply(&Settings::default());
+        let settings = Settings::new(IntegratorKind::Bdpt);
         let film = render(&loaded.scene, &settings, 256, &Resources::default()).unwrap();
         (loaded.summary.primitives, film.develop().pixels)
     }
@@ -211,15 +214,14 @@ mod tests {
     /// The same random numbers make the same paths, to rounding, which now and then turns one elsewhere.
     #[test]
     fn dividing_faces_changes_no_light() {
-        let folder = tempfile::tempdir().unwrap();
-        for lamp in Lamp::ALL {
+        for (_, light) in Lamp::NAMES {
             let room = |triangles| Room {
-                lamp,
+                light,
                 albedo: 0.7,
                 triangles,
             };
-            let (few, coarse) = image(room(100), folder.path());
-            let (many, fine) = image(room(4000), folder.path());
+            let (few, coarse) = image(room(100));
+            let (many, fine) = image(room(4000));
             assert_eq!(few, room(100).count() as u64 + 2);
             assert_eq!(many, room(4000).count() as u64 + 2);
             assert!(many > 3000 && many < 5000, "{many}");

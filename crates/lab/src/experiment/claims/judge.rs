@@ -1,0 +1,207 @@
+//! From records to intervals and verdicts.
+
+use super::measure::{Clock, Measured};
+use super::{ClaimKind, ClaimSpec, Cost, Expected, Measure, Over, Quantity};
+use crate::experiment::Experiment;
+use crate::experiment::analysis::CONFIDENCE;
+use crate::results::{BudgetKind, Claim, Record, Results, Verdict};
+use crate::statistics::{Interval, RATIOS, ratio_interval};
+use std::collections::BTreeMap;
+
+/// Numbers by seed, or by the pass of contributions.
+type BySeed = BTreeMap<u64, f64>;
+
+/// The records of an experiment, and what else its numbers depend on.
+pub struct Findings<'a> {
+    pub(super) experiment: &'a Experiment,
+    pub(super) results: &'a Results,
+    clock: Clock,
+}
+
+impl<'a> Findings<'a> {
+    /// Numbers of these results.
+    pub fn new(experiment: &'a Experiment, results: &'a Results) -> Self {
+        let is_known = |record: &Record| {
+            record.processor_seconds.is_some() && record.training_processor_seconds.is_some()
+        };
+        let clock = match results.records.iter().all(is_known) {
+            true => Clock::Processors,
+            false => Clock::Wall,
+        };
+        Self {
+            experiment,
+            results,
+            clock,
+        }
+    }
+
+    /// The number of a method in a scene, by seed.
+    fn values(&self, of: &Quantity, scene: &str, method: &str) -> BySeed {
+        if let Measure::Contributions(name) = of.measure {
+            let all = self.results.contributions.iter();
+            let mut own = all.filter(|found| found.scene == scene && found.method == method);
+            let passes = own.next().map_or(&[][..], |found| &found.passes);
+            let pass = |(pass, figures): (u64, &BTreeMap<String, f64>)| {
+                Some((pass, *figures.get(name)?))
+            };
+            return (0..).zip(passes).filter_map(pass).collect();
+        }
+        let mut scenes = self.results.scenes.iter();
+        let Some(info) = scenes.find(|info| info.name == scene) else {
+            return BySeed::new();
+        };
+        let records = self.records(of.budget, scene, method);
+        let value = |record: &&Record| {
+            let measured = Measured {
+                record,
+                scene: info,
+                clock: self.clock,
+                threads: self.results.machine.threads,
+                full: self.full(&record.budget),
+            };
+            Some((record.seed, measured.value(of.measure)?))
+        };
+        records.iter().filter_map(value).collect()
+    }
+
+    /// The records of a method in a scene, of the first budget of this kind that it has there.
+    fn records(&self, kind: Option<BudgetKind>, scene: &str, method: &str) -> Vec<&'a Record> {
+        let of_budget = |name: &str| -> Vec<&'a Record> {
+            let is_one = |record: &&Record| {
+                record.scene == scene && record.method == method && record.budget == name
+            };
+            self.results.records.iter().filter(is_one).collect()
+        };
+        let budgets = self.results.budgets.iter();
+        let mut budgets = budgets.filter(|budget| kind.is_none_or(|kind| budget.kind == kind));
+        let found = budgets.find_map(|budget| {
+            let records = of_budget(&budget.name);
+            (!records.is_empty()).then_some(records)
+        });
+        found.unwrap_or_default()
+    }
+
+    /// The full budget of that of this name, in rays per pixel or in seconds.
+    fn full(&self, name: &str) -> Option<(Cost, f64)> {
+        let mut budgets = self.experiment.budgets.iter();
+        let budget = budgets.find(|budget| budget.name == name)?;
+        match budget.kind {
+            BudgetKind::Rays => Some((Cost::Rays, budget.full)),
+            BudgetKind::Seconds => Some((Cost::Time, budget.full)),
+            BudgetKind::Samples => None,
+        }
+    }
+
+    /// The number and its divisor in a scene, over the seeds that have both.
+    fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
+        let own = self.values(of, scene, &of.method);
+        let other = match &of.over {
+            Over::Nothing => own.keys().map(|seed| (*seed, 1.0)).collect(),
+            Over::Number(number) => own.keys().map(|seed| (*seed, *number)).collect(),
+            Over::Method(method) => self.values(of, scene, method),
+        };
+        let pair = |(seed, value): (&u64, &f64)| Some((*seed, *value, *other.get(seed)?));
+        own.iter().filter_map(pair).collect()
+    }
+
+    /// The geometric mean over seeds of the ratio, with its interval. None: fewer than two seeds have
+    /// it, or a number is not positive.
+    pub(super) fn interval(&self, of: &Quantity, confidence: f64) -> Option<Interval> {
+        let own = self.pairs(of, &of.scene);
+        let Some(than) = &of.than else {
+            let (a, b): (Vec<_>, Vec<_>) = own.into_iter().map(|(_, a, b)| (a, b)).unzip();
+            return ratio_interval(&a, &b, confidence);
+        };
+        // Renders of other scenes are independent; pairing them by seed costs nothing.
+        let ratios = self.pairs(of, than).into_iter();
+        let other: BySeed = ratios.map(|(seed, a, b)| (seed, a / b)).collect();
+        let both = own.into_iter();
+        let both = both.filter_map(|(seed, a, b)| Some((a / b, *other.get(&seed)?)));
+        let (a, b): (Vec<_>, Vec<_>) = both.unzip();
+        ratio_interval(&a, &b, confidence)
+    }
+
+    /// The mean over seeds. None: there is no record.
+    pub(super) fn mean(&self, of: &Quantity) -> Option<f64> {
+        let values = self.values(of, &of.scene, &of.method);
+        let sum: f64 = values.values().sum();
+        (!values.is_empty()).then(|| sum / values.len() as f64)
+    }
+
+    /// A claim without its tables.
+    pub(super) fn claim(&self, spec: &ClaimSpec) -> Claim {
+        let confidence = shared(spec.parts.len());
+        let parts = spec.parts.iter();
+        let intervals: Vec<_> = parts.map(|(_, of)| self.interval(of, confidence)).collect();
+        let names = spec.parts.iter().map(|(name, _)| name);
+        let parts = names.zip(&intervals);
+        let parts: Vec<_> = parts.map(|(name, found)| part(name, *found)).collect();
+        let measure = spec.parts.first().map(|(_, of)| of.measure);
+        let measure = measure.map_or(String::new(), |measure| measure.to_string());
+        Claim {
+            id: spec.id.clone(),
+            claim: spec.claim.clone(),
+            source: spec.source.clone(),
+            verdict: worded(verdict(&intervals, spec.expected), spec.kind),
+            found: format!("{measure}: {}.", parts.join("; ")),
+            method: self.method(spec),
+            tables: Vec::new(),
+            plots: Vec::new(),
+        }
+    }
+
+    /// How certain a claim is.
+    fn method(&self, spec: &ClaimSpec) -> String {
+        let mut text = format!("{RATIOS} The intervals of a statement hold together with 95 %.");
+        if spec.parts.iter().any(|(_, of)| of.measure.is_time()) {
+            text.push_str(match self.clock {
+                Clock::Processors => " Time is processor time of all threads.",
+                Clock::Wall => " Time is that of the clock: the system reports no processor time.",
+            });
+        }
+        text
+    }
+}
+
+/// The confidence of each of `parts` intervals that a statement needs all of.
+fn shared(parts: usize) -> f64 {
+    1.0 - (1.0 - CONFIDENCE) / parts.max(1) as f64
+}
+
+/// A number with its interval, in words.
+fn part(name: &str, found: Option<Interval>) -> String {
+    let Some(Interval { value, low, high }) = found else {
+        return format!("{name}: not measured");
+    };
+    let digits = match value.abs() {
+        small if small < 10.0 => 3,
+        medium if medium < 100.0 => 2,
+        _ => 0,
+    };
+    format!("{name}: {value:.digits$} [{low:.digits$}, {high:.digits$}]")
+}
+
+/// The verdict on a statement that says the same of all these numbers.
+fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
+    let Expected { low, high } = expected;
+    let Some(known) = intervals.iter().copied().collect::<Option<Vec<_>>>() else {
+        return Verdict::NotMeasured;
+    };
+    let is_outside = |found: &Interval| found.high < low || found.low > high;
+    let is_inside = |found: &Interval| found.low > low && found.high < high;
+    if known.iter().any(is_outside) {
+        Verdict::NotReproduced
+    } else if known.iter().all(is_inside) {
+        Verdict::Reproduced
+    } else {
+        Verdict::Undecided
+    }
+}
+
+fn worded(verdict: Verdict, kind: ClaimKind) -> Verdict {
+    match (verdict, kind) {
+        (Verdict::Reproduced, ClaimKind::Goal) => Verdict::Met,
+        (Verdict::NotReproduced, ClaimKind::Goal) => Verdict::NotMet,
+        (other, _) => other,
+    }
+}

@@ -1,0 +1,83 @@
+//! Plots of tables, and histograms of contributions.
+
+use super::{CellSpec, Measure, PlotSpec, TableSpec};
+use crate::results::{Axis, Cell, Contributions, Plot, PlotKind, Scale, Series, Table};
+
+/// Columns of a table as curves.
+pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
+    let axis = |label: &str, scale| Axis {
+        label: label.to_owned(),
+        scale,
+    };
+    let series = spec.curves.iter();
+    Plot {
+        caption: table.caption.clone(),
+        kind: PlotKind::Lines,
+        x: axis(&table.columns[spec.x], spec.x_scale),
+        y: axis(&spec.label, spec.y_scale),
+        series: series.map(|column| curve(table, spec.x, *column)).collect(),
+    }
+}
+
+/// A column over that of the x coordinates, with intervals where all of its numbers have them.
+fn curve(table: &Table, x: usize, y: usize) -> Series {
+    let point = |row: &Vec<Cell>| Some((number(&row[x])?.0, number(&row[y])?));
+    let points: Vec<_> = table.rows.iter().filter_map(point).collect();
+    let intervals: Option<Vec<_>> = points.iter().map(|(_, (_, interval))| *interval).collect();
+    Series {
+        name: table.columns[y].clone(),
+        points: points.iter().map(|(x, (y, _))| [*x, *y]).collect(),
+        intervals: intervals.unwrap_or_default(),
+    }
+}
+
+/// The number of a cell, with its interval. None: it is a text.
+fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
+    match cell {
+        Cell::Text(_) => None,
+        Cell::Number(number) => Some((*number, None)),
+        Cell::Interval { value, low, high } => Some((*value, Some([*low, *high]))),
+    }
+}
+
+/// The contributions that the rows of a table have numbers of, as bars named by the first column.
+pub(super) fn histogram(
+    label: &str,
+    spec: &TableSpec,
+    all: &[Contributions],
+) -> Plot {
+    let linear = |label: &str| Axis {
+        label: label.to_owned(),
+        scale: Scale::Linear,
+    };
+    let bars = spec.rows.iter().filter_map(|row| bars(row, all));
+    Plot {
+        caption: spec.caption.clone(),
+        kind: PlotKind::Histogram,
+        x: linear(label),
+        y: linear("part of all"),
+        series: bars.collect(),
+    }
+}
+
+/// The bars of a row. None: it has no number of contributions.
+fn bars(row: &[CellSpec], all: &[Contributions]) -> Option<Series> {
+    let name = row.iter().find_map(|cell| match cell {
+        CellSpec::Value(name) => Some(name.clone()),
+        CellSpec::Quantity(_) => None,
+    });
+    let (of, figure) = row.iter().find_map(|cell| match cell {
+        CellSpec::Quantity(of) => match of.measure {
+            Measure::Contributions(figure) => Some((of, figure)),
+            _ => None,
+        },
+        CellSpec::Value(_) => None,
+    })?;
+    let mut all = all.iter();
+    let found = all.find(|found| found.scene == of.scene && found.method == of.method)?;
+    Some(Series {
+        name: name.unwrap_or_default(),
+        points: found.histogram(figure).to_vec(),
+        intervals: Vec::new(),
+    })
+}

@@ -1,0 +1,58 @@
+//! Tables of a description.
+
+use super::plot::{curves, histogram};
+use super::{CellSpec, Findings, Over, Quantity, TableSpec};
+use crate::experiment::analysis::CONFIDENCE;
+use crate::results::{Cell, Plot, Table};
+use crate::statistics::Interval;
+
+impl Findings<'_> {
+    /// Adds a table, and its plots, but for rows of which nothing was measured.
+    pub(super) fn show(&self, spec: &TableSpec, tables: &mut Vec<Table>, plots: &mut Vec<Plot>) {
+        let rows = spec.rows.iter().filter_map(|row| self.row(row));
+        let table = Table {
+            caption: spec.caption.clone(),
+            columns: spec.columns.clone(),
+            rows: rows.collect(),
+        };
+        plots.extend(spec.plot.as_ref().map(|plot| curves(plot, &table)));
+        let bars = spec.histogram.as_ref();
+        plots.extend(bars.map(|label| histogram(label, spec, &self.results.contributions)));
+        tables.push(table);
+    }
+
+    /// The cells of a row. None: it has numbers, and none of them was measured.
+    fn row(&self, specs: &[CellSpec]) -> Option<Vec<Cell>> {
+        let cells: Vec<Cell> = specs.iter().map(|spec| self.cell(spec)).collect();
+        let numbers = specs.iter().zip(&cells);
+        let mut numbers = numbers.filter(|(spec, _)| matches!(spec, CellSpec::Quantity(_)));
+        let has_numbers = numbers.clone().next().is_some();
+        let is_measured = numbers.any(|(_, cell)| !matches!(cell, Cell::Text(_)));
+        (is_measured || !has_numbers).then_some(cells)
+    }
+
+    fn cell(&self, spec: &CellSpec) -> Cell {
+        match spec {
+            CellSpec::Value(text) => match text.parse() {
+                Ok(number) => Cell::Number(number),
+                Err(_) => Cell::Text(text.clone()),
+            },
+            CellSpec::Quantity(of) => self.number(of),
+        }
+    }
+
+    /// A mean, or a ratio with its interval; that of a measured method over itself is 1.
+    fn number(&self, of: &Quantity) -> Cell {
+        let is_itself = |method: &String| *method == of.method && of.than.is_none();
+        let found = match &of.over {
+            Over::Method(method) if is_itself(method) => self.mean(of).map(|_| Cell::Number(1.0)),
+            Over::Nothing if of.than.is_none() => self.mean(of).map(Cell::Number),
+            _ => self.interval(of, CONFIDENCE).map(interval),
+        };
+        found.unwrap_or_else(|| Cell::Text("–".to_owned()))
+    }
+}
+
+fn interval(Interval { value, low, high }: Interval) -> Cell {
+    Cell::Interval { value, low, high }
+}

@@ -1,0 +1,257 @@
+//! How large the contributions C_ij are that a shadow ray may bring.
+//!
+//! C_ij is the term of connection (i, j) in the sum of the estimate if nothing is in the way, with its
+//! weight; unweighted contributions are f / p. Both are luminances of the terms that are not zero; the
+//! others need no ray. Every pass of a bidirectional method gives each of the [`FIGURES`] once, so that
+//! claims treat passes as they treat seeds.
+
+use super::error::ExperimentError;
+use super::stage::Stage;
+use super::{Experiment, MethodSpec};
+use crate::results::Contributions;
+use bidir::driver::Settings;
+use bidir::integrator::{IntegratorKind, Journal, Link, LvcSettings, Sample, Workspace};
+use bidir::path::{Connections, PathContext};
+use bidir::sampler::{Domain, Sampler};
+use bidir::scene::Scene;
+use bidir::select::ShadowRays;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Of which methods contributions are measured, where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ContributionsSpec {
+    /// The names of the methods, which are bidirectional.
+    pub methods: Vec<String>,
+    /// The names of the scenes; empty: all.
+    pub scenes: Vec<String>,
+    /// Samples per pixel, each a pass that is independent of the others.
+    pub spp: u64,
+}
+
+macro_rules! figures {
+    ($($name:literal)*) => {
+        [$(concat!("contributions", $name)),*, $(concat!("unweighted contributions", $name)),*]
+    };
+}
+
+/// The numbers of a pass; the second half is without weights.
+pub const FIGURES: [&str; 18] = figures![
+    " per sample"
+    ": orders of magnitude"
+    ": share of the largest tenth"
+    ": log10 of the least"
+    ": log10 of the quantile 1 %"
+    ": log10 of the median"
+    ": log10 of the quantile 99 %"
+    ": log10 of the largest"
+    ": part that makes 90 % of the sum"
+];
+
+/// Bins per order of magnitude of histograms.
+const BINS: u32 = 2;
+
+impl Contributions {
+    /// The distribution that a figure is of: for each bin of log10 its left edge and the part of all
+    /// contributions in it.
+    pub fn histogram(&self, figure: &str) -> &[[f64; 2]] {
+        if figure.starts_with("unweighted") {
+            &self.unweighted
+        } else {
+            &self.weighted
+        }
+    }
+}
+
+/// All contributions that a description asks for.
+pub(super) fn measure(
+    experiment: &Experiment,
+    stages: &[Stage<'_>],
+) -> Result<Vec<Contributions>, ExperimentError> {
+    let Some(spec) = &experiment.contributions else {
+        return Ok(Vec::new());
+    };
+    let is_shown = |name: &String| spec.scenes.is_empty() || spec.scenes.contains(name);
+    let stages = stages.iter().filter(|stage| is_shown(&stage.spec.name));
+    let methods = || {
+        let methods = experiment.methods.iter();
+        methods.filter(|method| spec.methods.contains(&method.name))
+    };
+    let pairs = stages.flat_map(|stage| methods().map(move |method| (stage, method)));
+    pairs
+        .map(|(stage, method)| of_method(stage, method, spec.spp))
+        .collect()
+}
+
+fn of_method(
+    stage: &Stage<'_>,
+    method: &MethodSpec,
+    spp: u64,
+) -> Result<Contributions, ExperimentError> {
+    let settings = method.changes.apply(&stage.settings);
+    if settings.integrator != IntegratorKind::Bdpt {
+        return Err(ExperimentError::Contributions {
+            scene: stage.spec.name.clone(),
+            method: method.name.clone(),
+        });
+    }
+    let passes = (0..spp).into_par_iter();
+    let passes: Vec<_> = passes.map(|pass| terms(&stage.scene, &settings, pass)).collect();
+    let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {
+        let pass = |terms: &Vec<[f64; 2]>| sorted(terms.iter().map(which).collect());
+        passes.iter().map(pass).collect()
+    };
+    let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
+    let samples = stage.scene.film().crop.area() as f64;
+    let both = weighted.iter().zip(&unweighted);
+    let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
+        let numbers = [weighted, unweighted].map(|values| figures(values, samples));
+        let names = FIGURES.iter().map(|name| (*name).to_owned());
+        let pairs = names.zip(numbers.concat());
+        pairs.filter(|(_, number)| number.is_finite()).collect::<BTreeMap<_, _>>()
+    };
+    Ok(Contributions {
+        scene: stage.spec.name.clone(),
+        method: method.name.clone(),
+        passes: both.map(pass).collect(),
+        weighted: histogram(&sorted_all(&weighted)),
+        unweighted: histogram(&sorted_all(&unweighted)),
+    })
+}
+
+fn sorted(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    values
+}
+
+fn sorted_all(passes: &[Vec<f64>]) -> Vec<f64> {
+    sorted(passes.concat())
+}
+
+/// The [`FIGURES`] of ascending values of so many samples.
+fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
+    let log = |part| quantile(values, part).map_or(f64::NAN, libm::log10);
+    [
+        values.len() as f64 / samples,
+        log(0.99) - log(0.01),
+        share_of_largest(values, 0.1),
+        log(0.0),
+        log(0.01),
+        log(0.5),
+        log(0.99),
+        log(1.0),
+        part_with(values, 0.9),
+    ]
+}
+
+/// The terms of a sample of every pixel, without and with weight.
+fn terms(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
+    let film = scene.film();
+    let sampler = Sampler::new(settings.sampler, settings.seed);
+    let context = PathContext {
+        scene,
+        settings: &settings.path,
+        wavelengths: scene.color().sample_wavelengths(0.5),
+        connections: Connections::ONE_SUBPATH,
+    };
+    let integrator =
+        IntegratorKind::Bdpt.integrator(ShadowRays::All.selector(0.0), &LvcSettings::default());
+    let mut workspace = Workspace::default();
+    workspace.journal = Some(Journal::default());
+    let mut terms = Vec::new();
+    for i in 0..film.crop.area() {
+        let camera = sampler.stream(Domain::Camera, i, pass);
+        let sample = Sample {
+            pass,
+            pixel: film.crop.pixel(i as usize),
+            ray: camera,
+            camera,
+            light: sampler.stream(Domain::Light, 0, pass * film.light_paths() + i),
+        };
+        integrator.sample(&context, &sample, &mut workspace);
+        let entries = workspace.journal.iter().flat_map(|j| &j.entries);
+        let connections = entries.filter(|entry| matches!(entry.link, Link::Connection(_)));
+        terms.extend(connections.map(|entry| {
+            let luminance = |value| f64::from(scene.color().luminance(value, &context.wavelengths));
+            [entry.term.contribution, entry.term.value()].map(luminance)
+        }));
+    }
+    terms.retain(|term| term.iter().all(|c| *c > 0.0 && c.is_finite()));
+    terms
+}
+
+/// The value below which the part `part` of ascending `values` lies. None: there is none.
+fn quantile(values: &[f64], part: f64) -> Option<f64> {
+    let index = (part * values.len() as f64) as usize;
+    values.get(index.min(values.len().checked_sub(1)?)).copied()
+}
+
+/// The share of the sum that the largest part `part` of ascending `values` has.
+fn share_of_largest(values: &[f64], part: f64) -> f64 {
+    let small = ((1.0 - part) * values.len() as f64) as usize;
+    let total: f64 = values.iter().sum();
+    values[small.min(values.len())..].iter().sum::<f64>() / total
+}
+
+/// The part of ascending `values`, the largest first, that makes `share` of their sum.
+fn part_with(values: &[f64], share: f64) -> f64 {
+    let enough = share * values.iter().sum::<f64>();
+    let mut sum = 0.0;
+    let count = values.iter().rev().take_while(|value| {
+        let more = sum < enough;
+        sum += **value;
+        more
+    });
+    count.count() as f64 / values.len() as f64
+}
+
+/// Parts of ascending `values` by log10: for each bin its left edge and the part of all values in it.
+fn histogram(values: &[f64]) -> Vec<[f64; 2]> {
+    let bin = |value: &f64| (libm::log10(*value) * f64::from(BINS)).floor() as i64;
+    let (Some(first), Some(last)) = (values.first().map(bin), values.last().map(bin)) else {
+        return Vec::new();
+    };
+    let mut counts = vec![0u64; (last - first + 1) as usize];
+    for value in values {
+        counts[(bin(value) - first) as usize] += 1;
+    }
+    let point = |(i, count): (usize, &u64)| {
+        let edge = (first + i as i64) as f64 / f64::from(BINS);
+        [edge, *count as f64 / values.len() as f64]
+    };
+    counts.iter().enumerate().map(point).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-9, "{found}, not {expected}");
+    }
+
+    #[test]
+    fn figures_are_as_by_hand() {
+        let values = [0.001, 0.01, 0.1, 1.0, 8.889];
+        let figures = figures(&values, 10.0);
+        check(figures[0], 0.5);
+        check(figures[1], libm::log10(8889.0));
+        check(figures[5], -1.0);
+        check(figures[8], 0.4);
+        check(share_of_largest(&values, 0.2), 0.8889);
+        check(part_with(&values, 0.88), 0.2);
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+
+    #[test]
+    fn every_value_is_in_a_bin() {
+        let bins = histogram(&[0.002, 0.003, 0.5, 20.0]);
+        check(bins[0][0], -3.0);
+        check(bins[0][1], 0.25);
+        check(bins[1][1], 0.25);
+        check(bins.last().unwrap()[0], 1.0);
+        check(bins.iter().map(|bin| bin[1]).sum(), 1.0);
+        assert!(histogram(&[]).is_empty());
+    }
+}

@@ -1,0 +1,281 @@
+//! Claims and tables of a description.
+
+use super::super::claims::{
+    CellSpec, ClaimKind, ClaimSpec, Expected, Measure, Over, PlotSpec, Quantity, TablePlace,
+    TableSpec,
+};
+use super::super::error::ExperimentError;
+use super::super::expand::Binding;
+use super::super::names::{file_name, value_of};
+use super::super::reader::{Entry, Section};
+use super::super::{BudgetSpec, Experiment};
+use super::text_of;
+use crate::results::{BudgetKind, Scale};
+use bidir::names::UnknownName;
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The keys of a quantity.
+const QUANTITY: [&str; 7] = [
+    "measure",
+    "budget",
+    "scene",
+    "method",
+    "over",
+    "gain-over",
+    "than",
+];
+/// The other keys of `[[claim]]`.
+const CLAIM: [&str; 8] = [
+    "id", "source", "claim", "goal", "each", "part", "below", "above",
+];
+/// The other keys of `[[table]]`, and those of its columns.
+const TABLE: [&str; 7] = [
+    "claim",
+    "section",
+    "caption",
+    "each",
+    "columns",
+    "plot",
+    "histogram",
+];
+const COLUMN: [&str; 3] = ["head", "value", "for"];
+const PLOT: [&str; 4] = ["x", "curves", "label", "log"];
+const KINDS: [(&str, BudgetKind); 3] = [
+    ("samples", BudgetKind::Samples),
+    ("rays", BudgetKind::Rays),
+    ("seconds", BudgetKind::Seconds),
+];
+
+/// The names that quantities may have.
+pub(super) struct Names {
+    scenes: Vec<String>,
+    methods: Vec<String>,
+    budgets: Vec<BudgetKind>,
+}
+
+impl Names {
+    pub(super) fn of(experiment: &Experiment) -> Self {
+        let methods = experiment.methods.iter();
+        Self {
+            scenes: experiment.scene_names(),
+            methods: methods.map(|method| method.name.clone()).collect(),
+            budgets: experiment.budgets.iter().map(|budget: &BudgetSpec| budget.kind).collect(),
+        }
+    }
+}
+
+/// A name that is one of these.
+fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
+    let name = entry.written()?;
+    if names.iter().any(|known| known == name) {
+        return Ok(name.to_owned());
+    }
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    Err(entry.fault(UnknownName::new(name, &names).to_string()))
+}
+
+/// A quantity; keys that the section lacks are those of `outer`.
+fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
+    let measure = section.need("measure")?.read(str::parse::<Measure>)?;
+    let budget = section.take("budget");
+    let budget = budget.map(|entry| {
+        let kind = entry.read(|name| value_of(&KINDS, name))?;
+        match names.budgets.contains(&kind) {
+            true => Ok(kind),
+            false => Err(entry.fault("no [[budget]] is of this kind")),
+        }
+    });
+    let method = known(&section.need("method")?, &names.methods)?;
+    let (method, over) = match (section.take("over"), section.take("gain-over")) {
+        (Some(_), Some(gain)) => {
+            return Err(gain.fault("`over` and `gain-over` exclude each other"));
+        }
+        (None, None) => (method, Over::Nothing),
+        (Some(over), None) => (method, divisor(&over, names)?),
+        (None, Some(over)) => (known(&over, &names.methods)?, Over::Method(method)),
+    };
+    let than = section.take("than");
+    Ok(Quantity {
+        measure,
+        budget: budget.transpose()?,
+        scene: known(&section.need("scene")?, &names.scenes)?,
+        method,
+        over,
+        than: than.map(|entry| known(&entry, &names.scenes)).transpose()?,
+    })
+}
+
+/// A number, or another method.
+fn divisor(entry: &Entry<'_>, names: &Names) -> Result<Over> {
+    match entry.written()?.parse::<f64>() {
+        Ok(number) if number > 0.0 && number.is_finite() => Ok(Over::Number(number)),
+        Ok(_) => Err(entry.fault("expected a number above 0")),
+        Err(_) => Ok(Over::Method(known(entry, &names.methods)?)),
+    }
+}
+
+/// All `[[claim]]`.
+pub(super) fn claims(top: &mut Section<'_>, names: &Names) -> Result<Vec<ClaimSpec>> {
+    let mut claims: Vec<ClaimSpec> = Vec::new();
+    for mut section in top.sections("claim")? {
+        let claim = claim(&mut section, names)?;
+        if claims.iter().any(|other| other.id == claim.id) {
+            return Err(section.fault(format!("there is another claim `{}`", claim.id)));
+        }
+        claims.push(claim);
+    }
+    Ok(claims)
+}
+
+fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
+    section.only(&[&CLAIM[..], &QUANTITY].concat(), &[])?;
+    let id = section.need("id")?;
+    let goal = section.take("goal");
+    let kind = match goal.map(|entry| entry.truth()).transpose()? {
+        Some(true) => ClaimKind::Goal,
+        _ => ClaimKind::Statement,
+    };
+    let claim = section.need("claim")?.text()?.to_owned();
+    let source = text_of(section, "source")?;
+    let expected = expected(section)?;
+    let bindings = section.bindings("each")?;
+    let parts = bindings.iter().map(|binding| part(section, binding, names));
+    Ok(ClaimSpec {
+        id: file_name(id.text()?),
+        source: source.unwrap_or_else(|| "This description".to_owned()),
+        claim,
+        kind,
+        expected,
+        parts: parts.collect::<Result<_>>()?,
+    })
+}
+
+/// A number of a claim, with its name.
+fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(String, Quantity)> {
+    let mut section = section.bound(binding);
+    let name = text_of(&mut section, "part")?;
+    let quantity = quantity(&mut section, names)?;
+    let usual = || format!("{}, {}", quantity.method, quantity.scene);
+    Ok((name.unwrap_or_else(usual), quantity))
+}
+
+/// The range of `below`, `above`, or both.
+fn expected(section: &mut Section<'_>) -> Result<Expected> {
+    let [low, high] = ["above", "below"].map(|key| section.take(key));
+    if low.is_none() && high.is_none() {
+        return Err(section.fault("expected `below`, `above`, or both"));
+    }
+    let number = |entry: Option<Entry<'_>>, other: f64| {
+        entry.map_or(Ok(other), |entry| entry.number())
+    };
+    Ok(Expected {
+        low: number(low, f64::NEG_INFINITY)?,
+        high: number(high, f64::INFINITY)?,
+    })
+}
+
+/// All `[[table]]`.
+pub(super) fn tables(
+    top: &mut Section<'_>,
+    names: &Names,
+    claims: &[ClaimSpec],
+) -> Result<Vec<TableSpec>> {
+    let sections = top.sections("table")?.into_iter();
+    sections
+        .map(|mut section| table(&mut section, names, claims))
+        .collect()
+}
+
+fn table(section: &mut Section<'_>, names: &Names, claims: &[ClaimSpec]) -> Result<TableSpec> {
+    section.only(&[&TABLE[..], &QUANTITY].concat(), &[])?;
+    let place = place(section, claims)?;
+    let caption = section.need("caption")?.text()?.to_owned();
+    let plot = section.take("plot");
+    let histogram = text_of(section, "histogram")?;
+    let bindings = section.bindings("each")?;
+    let mut columns = Vec::new();
+    let mut rows = Vec::new();
+    for binding in &bindings {
+        let (heads, cells): (Vec<_>, Vec<_>) =
+            row(section.bound(binding), names)?.into_iter().unzip();
+        columns = heads;
+        rows.push(cells);
+    }
+    Ok(TableSpec {
+        place,
+        caption,
+        plot: plot.map(|plot| self::plot(plot, &columns)).transpose()?,
+        columns,
+        rows,
+        histogram,
+    })
+}
+
+/// The claim or the section of a table.
+fn place(section: &mut Section<'_>, claims: &[ClaimSpec]) -> Result<TablePlace> {
+    match (section.take("claim"), section.take("section")) {
+        (Some(claim), None) => {
+            let ids: Vec<String> = claims.iter().map(|claim| claim.id.clone()).collect();
+            let id = file_name(claim.text()?);
+            if ids.contains(&id) {
+                return Ok(TablePlace::Claim(id));
+            }
+            Err(claim.fault(format!("there is no claim `{id}`")))
+        }
+        (None, title) => Ok(TablePlace::Section(match title {
+            Some(title) => title.text()?.to_owned(),
+            None => "Tables".to_owned(),
+        })),
+        (_, Some(title)) => Err(title.fault("`claim` and `section` exclude each other")),
+    }
+}
+
+/// The cells of a row with the heads of their columns.
+fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)>> {
+    let columns = section.need("columns")?;
+    let mut cells = Vec::new();
+    for column in columns.list("a list of columns")? {
+        for mut column in column.section()?.expanded()? {
+            column.only(&[&COLUMN[..], &QUANTITY].concat(), &[])?;
+            let head = column.need("head")?.text()?.to_owned();
+            let cell = match column.take("value") {
+                Some(value) => CellSpec::Value(value.written()?.to_owned()),
+                None => {
+                    column.fill(&section, &QUANTITY);
+                    CellSpec::Quantity(quantity(&mut column, names)?)
+                }
+            };
+            cells.push((head, cell));
+        }
+    }
+    Ok(cells)
+}
+
+/// Columns as curves.
+fn plot(entry: Entry<'_>, heads: &[String]) -> Result<PlotSpec> {
+    let mut section = entry.section()?;
+    section.only(&PLOT, &[])?;
+    let column = |entry: &Entry<'_>| {
+        let head = entry.text()?;
+        let place = heads.iter().position(|known| known == head);
+        place.ok_or_else(|| entry.fault(format!("there is no column `{head}`")))
+    };
+    let x = column(&section.need("x")?)?;
+    let curves = section.need("curves")?.list("a list of columns")?;
+    let curves = curves.iter().map(column).collect::<Result<_>>()?;
+    let label = section.need("label")?.text()?.to_owned();
+    let log = section.take("log");
+    let log = log.map_or(Ok(String::new()), |entry| entry.text().map(str::to_owned))?;
+    let scale = |axis| match log.contains(axis) {
+        true => Scale::Log,
+        false => Scale::Linear,
+    };
+    Ok(PlotSpec {
+        x,
+        curves,
+        label,
+        x_scale: scale('x'),
+        y_scale: scale('y'),
+    })
+}

@@ -1,0 +1,238 @@
+//! Scenes of a description, with their references.
+
+use super::super::error::{ExperimentError, Place};
+use super::super::names::value_of;
+use super::super::reader::{Entry, Section};
+use super::super::{Absent, Lamp, Presence, ReferenceSpec, Room, SceneSpec};
+use super::{or, size, text_of};
+use bidir::integrator::IntegratorKind;
+use bidir::settings::Request;
+use formats::scene::Files;
+use std::path::{Component, Path, PathBuf};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The keys of `[[scene]]`, and those that are accepted for old descriptions.
+const SCENE: [&str; 10] = [
+    "file",
+    "room",
+    "name",
+    "size",
+    "optional",
+    "reference",
+    "reference-of",
+    "reference-spp",
+    "reference-strategies",
+    "reference-cross-check",
+];
+const OLD_SCENE: [&str; 1] = ["reference-witness"];
+/// The keys of `room`.
+const ROOM: [&str; 3] = ["light", "albedo", "triangles"];
+/// The most triangles of a room.
+const MOST_TRIANGLES: usize = 10_000_000;
+
+/// The scenes: those that are there, and the optional ones that are not.
+pub(super) fn all(
+    top: &mut Section<'_>,
+    folder: &Path,
+    defaults: &Request,
+) -> Result<(Vec<SceneSpec>, Vec<Absent>)> {
+    let read = |section: &mut Section<'_>| scene(section, folder, defaults);
+    let (mut there, mut absent) = (Vec::new(), Vec::new());
+    for scene in super::all(top, "scene", read)? {
+        match absence(&scene) {
+            None => there.push(scene),
+            Some(reason) => absent.push(Absent {
+                name: scene.name,
+                reason,
+            }),
+        }
+    }
+    Ok((there, absent))
+}
+
+/// The reason why an optional scene is left out. None: it is there.
+fn absence(scene: &SceneSpec) -> Option<String> {
+    if scene.presence == Presence::Required {
+        return None;
+    }
+    if let Some(variable) = variable(&scene.path) {
+        return Some(format!("{variable} is not set"));
+    }
+    let is_there = scene.path.is_file();
+    (!is_there).then(|| format!("there is no file {}", scene.path.display()))
+}
+
+/// The environment variable that a path begins with, as in `$BIDIR_SCENES/room.pbrt`.
+fn variable(path: &Path) -> Option<&str> {
+    let first = path.components().next()?;
+    first.as_os_str().to_str()?.strip_prefix('$')
+}
+
+/// A path whose environment variable has its value, where it has one.
+fn with_variable(file: &str) -> PathBuf {
+    let path = Path::new(file);
+    match variable(path).and_then(std::env::var_os) {
+        Some(value) => Path::new(&value).join(path.components().skip(1).collect::<PathBuf>()),
+        None => path.to_owned(),
+    }
+}
+
+fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result<SceneSpec> {
+    section.only(&SCENE, &OLD_SCENE)?;
+    let room = section.take("room");
+    let optional = section.take("optional");
+    let is_optional = optional.map(|entry| entry.truth()).transpose()?;
+    let presence = match is_optional {
+        Some(true) => Presence::Optional,
+        _ => Presence::Required,
+    };
+    let (file, path, files, place) = match room {
+        Some(room) => {
+            let room = room_of(room)?;
+            let name = room.name();
+            (name.display().to_string(), name, room.files(), None)
+        }
+        None => {
+            let named = section.need("file")?;
+            let file = named.text()?.to_owned();
+            let path = with_variable(&file);
+            if let (Some(name), Presence::Required) = (variable(&path), presence) {
+                return Err(named.fault(format!("the environment variable {name} is not set")));
+            }
+            let path = match variable(&path) {
+                Some(_) => path,
+                None => joined(folder, &path),
+            };
+            (file, path, Files::default(), Some(named.at()))
+        }
+    };
+    let stem = Path::new(&file).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    let name = or(text_of(section, "name")?, &stem);
+    let size = size(section)?;
+    let (reference, at) = reference(section, folder, defaults)?;
+    Ok(SceneSpec {
+        name,
+        path,
+        files,
+        size,
+        reference,
+        file,
+        presence,
+        places: [place, at],
+    })
+}
+
+/// A room that is made.
+fn room_of(entry: Entry<'_>) -> Result<Room> {
+    let mut section = entry.section()?;
+    section.only(&ROOM, &[])?;
+    let light = section.need("light")?;
+    let albedo = section.need("albedo")?;
+    let is_albedo = |albedo: &f64| *albedo > 0.0 && *albedo < 1.0;
+    let value = Some(albedo.number()?).filter(is_albedo);
+    let count = section.need("triangles")?;
+    let triangles = count.written()?.parse().ok();
+    let triangles = triangles.filter(|count| (1..=MOST_TRIANGLES).contains(count));
+    Ok(Room {
+        light: light.read(|name| value_of(&Lamp::NAMES, name))?,
+        albedo: value.ok_or_else(|| albedo.fault("expected a number between 0 and 1"))? as f32,
+        triangles: triangles.ok_or_else(|| {
+            count.fault(format!("expected a whole number from 1 to {MOST_TRIANGLES}"))
+        })?,
+    })
+}
+
+/// A file relative to `folder`, without detours such as `out/..`.
+fn joined(folder: &Path, file: &Path) -> PathBuf {
+    let mut path = PathBuf::new();
+    for part in folder.join(file).components() {
+        let is_detour = part == Component::ParentDir
+            && matches!(path.components().next_back(), Some(Component::Normal(_)))
+            // The folder above the target of a link is another one.
+            && !path.is_symlink();
+        match part {
+            _ if is_detour => {
+                path.pop();
+            }
+            Component::CurDir => {}
+            part => path.push(part),
+        }
+    }
+    path
+}
+
+/// A reference that is there, with the place of its name, or how many samples the one that is made has.
+fn reference(
+    section: &mut Section<'_>,
+    folder: &Path,
+    defaults: &Request,
+) -> Result<(ReferenceSpec, Option<Place>)> {
+    if let Some(entry) = section.take("reference-of") {
+        return Ok((ReferenceSpec::Of(entry.text()?.to_owned()), Some(entry.at())));
+    }
+    let image = section.take("reference");
+    let spp = section.take("reference-spp");
+    let strategies = section.take("reference-strategies");
+    let cross_check = section.take_renamed("reference-cross-check", "reference-witness")?;
+    match (image, spp) {
+        (Some(image), None) => {
+            if let Some(entry) = strategies.or(cross_check) {
+                return Err(entry.fault_with(
+                    "an existing reference cannot be changed".to_owned(),
+                    "leave this out, or have the reference made with `reference-spp`".to_owned(),
+                ));
+            }
+            let there = ReferenceSpec::There(folder.join(image.text()?));
+            Ok((there, Some(image.at())))
+        }
+        (None, Some(spp)) => {
+            let made = ReferenceSpec::Make {
+                spp: spp.whole(1)?,
+                changes: Box::new(reference_changes(strategies, defaults)?),
+                witness: cross_check.as_ref().map(cross_check_of).transpose()?,
+            };
+            Ok((made, None))
+        }
+        (Some(_), Some(spp)) => {
+            Err(spp.fault("`reference` and `reference-spp` exclude each other"))
+        }
+        (None, None) => Err(section.fault("`reference` or `reference-spp` is missing")),
+    }
+}
+
+/// What decides the expectation of the images is that of all methods.
+fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
+    let mut changes = Request {
+        strategies: defaults.strategies.clone(),
+        max_depth: defaults.max_depth,
+        ..Request::default()
+    };
+    if let Some(entry) = strategies {
+        entry.read(|value| {
+            changes
+                .set("strategies", value)
+                .map_err(|error| error.to_string())
+        })?;
+    }
+    Ok(changes)
+}
+
+/// An estimator that can contradict that of the picture.
+fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
+    let mut changes = Request::default();
+    entry.read(|value| {
+        changes
+            .set("integrator", value)
+            .map_err(|error| error.to_string())
+    })?;
+    match changes.integrator {
+        Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
+            "an estimator cannot cross-check itself".to_owned(),
+            "references are made by `bdpt`: use path, light or lvc".to_owned(),
+        )),
+        Some(witness) => Ok(witness),
+    }
+}
+

@@ -1,0 +1,177 @@
+//! How much of an experiment is rendered: less in a quick run, and as flags say.
+
+use super::{BudgetSpec, Experiment, ReferenceSpec, SceneSpec};
+use crate::results::BudgetKind;
+use bidir::names::UnknownName;
+
+/// The extent of a quick run, to see whether an experiment works.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quick {
+    /// The most seeds.
+    pub seeds: u64,
+    /// The factor of the sides of images. None: images have at most 64 pixels a side.
+    pub size: Option<f64>,
+    /// The factor of samples of budgets and of images of strategies.
+    pub samples: f64,
+    /// The factor of rays of budgets.
+    pub rays: f64,
+    /// The factor of seconds of budgets.
+    pub seconds: f64,
+    /// The factor of samples of references.
+    pub references: f64,
+}
+
+impl Default for Quick {
+    fn default() -> Self {
+        let eighth = 0.125;
+        Self {
+            seeds: 3,
+            size: None,
+            samples: eighth,
+            rays: eighth,
+            seconds: eighth,
+            references: eighth,
+        }
+    }
+}
+
+impl Quick {
+    /// A size of the same shape.
+    fn size(&self, size: [u32; 2]) -> [u32; 2] {
+        let factor = self.size.unwrap_or_else(|| {
+            let longest = size[0].max(size[1]);
+            1.0 / f64::from(longest.div_ceil(64).max(1))
+        });
+        size.map(|side| ((f64::from(side) * factor + 1e-9) as u32).max(1))
+    }
+
+    fn budget(&self, budget: &BudgetSpec) -> BudgetSpec {
+        let (factor, pixels) = match budget.kind {
+            BudgetKind::Samples => (self.samples, 1.0),
+            // Training costs as much, and there are fewer pixels to bear it.
+            BudgetKind::Rays => (self.rays, self.size.map_or(1.0, |side| side * side)),
+            BudgetKind::Seconds => (self.seconds, 1.0),
+        };
+        let amount = budget.amount * factor;
+        let is_whole = budget.kind == BudgetKind::Samples;
+        let amount = if is_whole { amount.ceil() } else { amount };
+        BudgetSpec {
+            full: budget.full / pixels,
+            methods: budget.methods.clone(),
+            scenes: budget.scenes.clone(),
+            ..BudgetSpec::new(budget.kind, amount)
+        }
+    }
+}
+
+/// Parts of an extent that stand for those of a description.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Extent {
+    /// The names of the scenes; empty: all.
+    pub scenes: Vec<String>,
+    /// Width and height of all images. Unit: pixels.
+    pub size: Option<[u32; 2]>,
+    /// Number of seeds.
+    pub seeds: Option<u64>,
+    /// The amount of budgets in seconds.
+    pub seconds: Option<f64>,
+    /// The amount of budgets in rays per pixel.
+    pub rays: Option<f64>,
+    /// Samples per pixel of references that are rendered.
+    pub reference_spp: Option<u64>,
+}
+
+impl Experiment {
+    /// The same in little time, as the description's [`Quick`] says.
+    #[must_use]
+    pub fn quick(mut self) -> Self {
+        let quick = self.quick;
+        self.seeds.count = self.seeds.count.min(quick.seeds);
+        for scene in &mut self.scenes {
+            let size = scene.size.or(self.size);
+            match &mut scene.reference {
+                // An image that is there has the size that it has.
+                ReferenceSpec::There(_) => scene.size = size,
+                ReferenceSpec::Of(_) => scene.size = Some(quick.size(size.unwrap_or([64, 48]))),
+                ReferenceSpec::Make { spp, .. } => {
+                    scene.size = Some(quick.size(size.unwrap_or([64, 48])));
+                    *spp = (*spp as f64 * quick.references).ceil() as u64;
+                }
+            }
+        }
+        self.size = None;
+        let mut budgets: Vec<BudgetSpec> = Vec::new();
+        for budget in self.budgets.iter().map(|budget| quick.budget(budget)) {
+            if !budgets.contains(&budget) {
+                budgets.push(budget);
+            }
+        }
+        self.budgets = budgets;
+        if let Some(pyramid) = &mut self.pyramid {
+            pyramid.spp = ((pyramid.spp as f64 * quick.samples).ceil() as u64).max(2);
+        }
+        self
+    }
+
+    /// With these parts in place of its own.
+    ///
+    /// Errors: there is no scene of a name.
+    pub fn within(mut self, extent: &Extent) -> Result<Self, UnknownName> {
+        let names = self.scene_names();
+        for name in &extent.scenes {
+            if !names.contains(name) {
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                return Err(UnknownName::new(name, &names));
+            }
+        }
+        if !extent.scenes.is_empty() {
+            self.scenes.retain(|scene| extent.scenes.contains(&scene.name));
+            self.absent.retain(|scene| extent.scenes.contains(&scene.name));
+        }
+        for scene in &mut self.scenes {
+            scene.extend(extent);
+        }
+        self.size = extent.size.or(self.size);
+        self.seeds.count = extent.seeds.unwrap_or(self.seeds.count);
+        for budget in &mut self.budgets {
+            *budget = budget.extended(extent);
+        }
+        Ok(self)
+    }
+
+    /// The names of all scenes, also of those that are not there.
+    pub(super) fn scene_names(&self) -> Vec<String> {
+        let there = self.scenes.iter().map(|scene| scene.name.clone());
+        there.chain(self.absent.iter().map(|scene| scene.name.clone())).collect()
+    }
+}
+
+impl SceneSpec {
+    fn extend(&mut self, extent: &Extent) {
+        self.size = extent.size.or(self.size);
+        if let (ReferenceSpec::Make { spp, .. }, Some(wanted)) =
+            (&mut self.reference, extent.reference_spp)
+        {
+            *spp = wanted;
+        }
+    }
+}
+
+impl BudgetSpec {
+    /// With the amount that is given for its kind, which is then its full one.
+    fn extended(&self, extent: &Extent) -> Self {
+        let amount = match self.kind {
+            BudgetKind::Samples => None,
+            BudgetKind::Rays => extent.rays,
+            BudgetKind::Seconds => extent.seconds,
+        };
+        let Some(amount) = amount else {
+            return self.clone();
+        };
+        Self {
+            methods: self.methods.clone(),
+            scenes: self.scenes.clone(),
+            ..Self::new(self.kind, amount)
+        }
+    }
+}
