@@ -13,6 +13,7 @@ between runs. Standard library only.
 
 import argparse
 import fcntl
+import functools
 import os
 import re
 import subprocess
@@ -113,9 +114,29 @@ def passed(output):
     return sum(int(count) for count in re.findall(r"(\d+) passed", output))
 
 
+@functools.cache
+def tests_of(package):
+    """The paths of a package's tests as far as its files give them, each as `module::…::name`."""
+    found = []
+    top = os.path.join(ROOT, "crates", package.removeprefix("bidir-"))
+    for folder, _, names in os.walk(top):
+        for name in names:
+            if not name.endswith(".rs"):
+                continue
+            path = os.path.relpath(os.path.join(folder, name), top)
+            module = re.sub(r"^(src|tests/[^/]+)/|(/mod)?\.rs$", "", path).replace("/", "::")
+            code = read(os.path.join(folder, name)).decode()
+            tests = re.findall(r"#\[test\]\s+(?:#\[[^\]]*\]\s+)*fn (\w+)|^\s+fn (\w+)\(", code, re.MULTILINE)
+            for test in (one or other for one, other in tests):
+                found += [module + "::" + test, module + "::tests::" + test]
+    return found
+
+
 def stale(mutation):
-    """Why a fault cannot be applied; None where it can."""
-    _, file, old, new, _ = mutation
+    """Why a fault cannot be applied or noticed; None where it can."""
+    _, file, old, new, (package, _, filter_) = mutation
+    if filter_ and not any(filter_ in test for test in tests_of(package)):
+        return "no test is named `%s`" % filter_
     path = os.path.join(ROOT, file)
     if not os.path.isfile(path):
         return "no such file"

@@ -63,6 +63,11 @@ impl Files {
         self.memory.is_empty() && self.others == Others::OnDisk
     }
 
+    /// True where this name is in memory.
+    pub fn has_in_memory(&self, path: &Path) -> bool {
+        self.memory.contains_key(path)
+    }
+
     /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
     pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         match (self.memory.get(path), self.others) {

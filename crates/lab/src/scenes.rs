@@ -106,11 +106,6 @@ pub(crate) fn files() -> Files {
     Files::only(files.collect::<InMemory>())
 }
 
-/// True for the name of one of [`files`].
-pub(crate) fn has(name: &Path) -> bool {
-    FILES.iter().any(|(file, _)| path(file) == name)
-}
-
 fn path(name: &str) -> PathBuf {
     Path::new(FOLDER).join(name)
 }
@@ -129,7 +124,6 @@ mod tests {
         };
         let top = FILES.iter().filter(|(name, _)| name.ends_with(".pbrt"));
         for (name, _) in top.filter(|(name, _)| !name.contains('/')) {
-            assert!(has(&path(name)));
             let loaded = load_from(&path(name), &options, &files()).unwrap();
             assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
             let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -79,6 +79,6 @@ MATERIALS = [
         "crates/bidir/src/material/mod.rs",
         "material.choose(at, || rest.clamp(0.0, ONE_MINUS_EPSILON))",
         "material.choose(at, || u)",
-        materials("in_the_given_shares"),
+        materials("a_mixture_is_its_parts"),
     ),
 ]

@@ -12,7 +12,7 @@ TEXTURES = [
         "crates/bidir/src/path/vertex.rs",
         "scene.footprint(surface.point)",
         "scene.footprint(surface.point + wo)",
-        relief("looks_the_same_to_every_walk"),
+        relief("a_point_looks_the_same"),
     ),
     (
         "copies of images of odd sizes not weighted by area",

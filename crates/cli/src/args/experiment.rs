@@ -41,6 +41,17 @@ A description:
   # samples = 64                         # samples per pixel
   # seconds = 10                         # of training and passes
 
+  [[claim]]                              # optional: a statement that gets a verdict
+  id = \"one-is-better\"
+  claim = \"One ray for each pair has a lower error.\"
+  measure = \"rmse at equal rays\"        # of this method, over that of the other
+  scene = \"room\"
+  method = \"one\"
+  over = \"all\"
+  below = 1
+
+  docs/reference/experiments.md explains tables, repetition and all measures.
+
 Examples:
   bidir experiment experiments/shadow-rays.toml -o out/shadow-rays
       every method under every budget and seed; repeat the command to continue

@@ -13,9 +13,9 @@ fn beyond_judges_what_there_is_and_goes_on() {
         .expect(0)
         .says("scene `veach-ajar` is left out: BIDIR_SCENES is not set")
         .says("wrote out/report.html")
-        .prints("Estimators in equal time")
-        .prints("Shadow-ray selectors: gains at equal rays")
-        .prints("Targets: gains, the goals and the results")
+        .prints("Integrators in equal time")
+        .prints("Gains of each idea at equal rays")
+        .prints("Goals: gains of auto")
         .prints("not measured  in-equal-time-veach-ajar-over-bdpt-all");
     let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
     let records = results["records"].as_array().unwrap();
@@ -38,9 +38,9 @@ fn beyond_judges_what_there_is_and_goes_on() {
     }
     assert!(page.contains("--scenes room-direct,veach-ajar --size 8x6 --seconds 0.02"));
     // Nothing is rendered twice: records are the same, times too.
-    let before = place.read("out/room-direct/records.ndjson");
+    let before = place.read("out/records.ndjson");
     place.run(&format!("{TINY} -o out")).expect(0);
-    assert_eq!(place.read("out/room-direct/records.ndjson"), before);
+    assert_eq!(place.read("out/records.ndjson"), before);
     place
         .run(&format!(
             "{} -o out",
@@ -92,22 +92,37 @@ fn results_of_a_description_are_not_replaced_by_those_of_the_program() {
 }
 
 #[test]
-fn what_is_wrong_with_flags_is_told() {
+fn an_extent_is_checked() {
     let place = Workplace::new();
     let run = |arguments: &str| -> Ran { place.run(&format!("experiment {arguments} -o out")) };
     run("beyond --scenes room-dirct")
         .expect(2)
-        .says("room-direct");
+        .says("--scenes: there is no `room-dirct`: did you mean `room-direct`?");
     run("beyond --seconds 0").expect(2).says("a number above 0");
     run("beyond --seeds 0").expect(2).says("--seeds");
-    run("paper --seeds 3")
+    run("a.toml --ray local --seeds 3")
         .expect(2)
-        .says("--seeds applies to `beyond` alone");
-    run("test.toml --size 8x6")
-        .expect(2)
-        .says("--size applies to `beyond` alone");
+        .says("--ray cannot be used with --seeds: write it into the description");
     run("beyond --scenes coffee,living-room")
         .expect(4)
         .says("there is no scene to render: BIDIR_SCENES is not set")
         .says("hint: BIDIR_SCENES names the folder that has pbrt-v4/");
+}
+
+#[test]
+fn an_extent_stands_for_that_of_a_description() {
+    let place = Workplace::new();
+    place.write("test.toml", OTHER);
+    place
+        .run("experiment test.toml -o out --size 5x4 --seeds 2 --reference-spp 32")
+        .expect(0);
+    let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
+    assert_eq!(results["records"].as_array().unwrap().len(), 2);
+    assert_eq!(results["scenes"][0]["size"], serde_json::json!([5, 4]));
+    assert!(
+        results["scenes"][0]["reference"]
+            .as_str()
+            .unwrap()
+            .contains("32 samples")
+    );
 }

@@ -1,6 +1,7 @@
 use crate::common::{Ran, Workplace};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Two methods under two budgets, in 16 x 12 pixels.
@@ -209,11 +210,6 @@ fn a_cluster_needs_the_python_package() {
         .run("experiment a.toml -o out --ray local --threads 2")
         .expect(2)
         .says("cannot be used with --threads");
-    // Flags of `beyond` are refused wherever a description runs.
-    place
-        .run("experiment a.toml -o out --ray local --scenes coffee --seconds 3 --size 8x8")
-        .expect(2)
-        .says("--scenes applies to `beyond` alone");
 }
 
 #[cfg(unix)]
@@ -253,4 +249,34 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
     run(&with)
         .expect(75)
         .says("-m bidir.ray experiment a.toml --output out --address host:1 --quick");
+}
+
+/// The description of the guide, small: the whole command works as it is printed there.
+#[test]
+fn the_description_of_the_guide_runs() {
+    let place = Workplace::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let guide = std::fs::read_to_string(root.join("docs/guide/comparing.md")).unwrap();
+    let (_, text) = guide.split_once("```toml\n").unwrap();
+    let (text, _) = text.split_once("```").unwrap();
+    let scenes = format!("file = \"{}/scenes/", root.display());
+    place.write("claims.toml", &text.replace("file = \"scenes/", &scenes));
+    place
+        .run("experiment claims.toml -o out --size 12x9 --seeds 3 --rays 40 --reference-spp 32")
+        .expect(0)
+        .prints("two-beat-all: ")
+        .prints("nanoseconds per ray: per-pair, direct: ");
+    let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
+    for claim in results["claims"].as_array().unwrap() {
+        assert_ne!(claim["verdict"], "not-measured", "{claim}");
+    }
+    // Claims can change: nothing is rendered again.
+    let before = place.read("out/records.ndjson");
+    let other = text.replace("below = 0.95", "below = 0.0001");
+    place.write("claims.toml", &other.replace("file = \"scenes/", &scenes));
+    place
+        .run("experiment claims.toml -o out --size 12x9 --seeds 3 --rays 40 --reference-spp 32")
+        .expect(0)
+        .prints("two-beat-all: not reproduced");
+    assert_eq!(place.read("out/records.ndjson"), before);
 }

@@ -77,6 +77,7 @@ fn results() -> Results {
         budgets: SAMPLES.iter().map(|&spp| budget(spp)).collect(),
         records: records(),
         pyramids: vec![pyramid()],
+        contributions: Vec::new(),
         claims: vec![slope(), speedup(), roulette()],
     }
 }

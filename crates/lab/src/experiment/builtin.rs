@@ -37,13 +37,6 @@ impl Builtin {
     /// Errors: as of [`Experiment::read`].
     pub fn experiment(self) -> Result<Experiment, ExperimentError> {
         let file = Path::new("experiments").join(self.name);
-        let mut experiment = Experiment::read(self.text, &file.with_extension("toml"))?;
-        let files = scenes::files();
-        for scene in &mut experiment.scenes {
-            if scenes::has(&scene.path) {
-                scene.files = files.clone();
-            }
-        }
-        Ok(experiment)
+        Experiment::read_with(self.text, &file.with_extension("toml"), &scenes::files())
     }
 }

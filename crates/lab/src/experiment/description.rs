@@ -3,11 +3,11 @@
 mod claims;
 mod scene;
 
+use super::contributions::ContributionsSpec;
 use super::error::ExperimentError;
 use super::names::{file_name, value_of};
 use super::reader::{Entry, Section, Source};
 use super::settings::{names, no_effect};
-use super::contributions::ContributionsSpec;
 use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, Quick, SceneSpec, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
@@ -16,6 +16,7 @@ use bidir::integrator::IntegratorKind;
 use bidir::names::nearest;
 use bidir::settings::Request;
 use claims::Names;
+use formats::scene::Files;
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -64,6 +65,11 @@ impl Experiment {
     ///
     /// Errors: [`ExperimentError::Description`], with line and column.
     pub fn read(text: &str, file: &Path) -> Result<Self> {
+        Self::read_with(text, file, &Files::default())
+    }
+
+    /// The same, with scenes that may be in memory.
+    pub(super) fn read_with(text: &str, file: &Path, memory: &Files) -> Result<Self> {
         let mut top = Source { file, text }.parse()?;
         top.only(&TOP, &[])?;
         let mut defaults = Request::default();
@@ -75,7 +81,7 @@ impl Experiment {
             defaults = changes(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
-        let (scenes, absent) = scene::all(&mut top, folder, &defaults)?;
+        let (scenes, absent) = scene::all(&mut top, folder, &defaults, memory)?;
         let method = |section: &mut Section<'_>| method(section, &defaults);
         let shown = [top.take("pyramid"), top.take("pyramid-spp")];
         let mut experiment = Self {
@@ -96,7 +102,9 @@ impl Experiment {
             quick: quick(&mut top)?,
         };
         experiment.pyramid = pyramid(shown, &experiment.methods)?;
-        if let (Some(pyramid), scenes) = (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?) {
+        if let (Some(pyramid), scenes) =
+            (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?)
+        {
             pyramid.scenes = scenes;
         }
         let names = Names::of(&experiment);
@@ -112,7 +120,10 @@ fn list(section: &mut Section<'_>, key: &str) -> Result<Vec<String>> {
         return Ok(Vec::new());
     };
     let names = entry.list("a list of names")?;
-    names.iter().map(|name| Ok(name.text()?.to_owned())).collect()
+    names
+        .iter()
+        .map(|name| Ok(name.text()?.to_owned()))
+        .collect()
 }
 
 fn contributions(top: &mut Section<'_>) -> Result<Option<ContributionsSpec>> {
@@ -136,7 +147,10 @@ fn quick(top: &mut Section<'_>) -> Result<Quick> {
     let mut section = entry.section()?;
     section.only(&QUICK, &[])?;
     quick.seeds = whole(&mut section, "seeds", 1)?.unwrap_or(quick.seeds);
-    quick.size = section.take("size").map(|entry| entry.positive()).transpose()?;
+    quick.size = section
+        .take("size")
+        .map(|entry| entry.positive())
+        .transpose()?;
     for (key, factor) in [
         ("samples", &mut quick.samples),
         ("rays", &mut quick.rays),

@@ -168,7 +168,9 @@ impl ExperimentError {
                  another estimator (`reference-cross-check`), or name a `reference` made by \
                  `bidir reference --estimator … --against …`",
             ),
-            Self::Pyramid { .. } | Self::Contributions { .. } => Some("give the method integrator = \"bdpt\""),
+            Self::Pyramid { .. } | Self::Contributions { .. } => {
+                Some("give the method integrator = \"bdpt\"")
+            }
             Self::NoEffect { .. } => Some("set `integrator` in [settings] or in the method"),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
             Self::Size { .. } => Some("give the scene the size of its reference"),

@@ -102,7 +102,13 @@ impl Experiment {
         self.size = None;
         let mut budgets: Vec<BudgetSpec> = Vec::new();
         for budget in self.budgets.iter().map(|budget| quick.budget(budget)) {
-            if !budgets.contains(&budget) {
+            let is_same = |other: &BudgetSpec| {
+                BudgetSpec {
+                    full: budget.full,
+                    ..other.clone()
+                } == budget
+            };
+            if !budgets.iter().any(is_same) {
                 budgets.push(budget);
             }
         }
@@ -125,8 +131,10 @@ impl Experiment {
             }
         }
         if !extent.scenes.is_empty() {
-            self.scenes.retain(|scene| extent.scenes.contains(&scene.name));
-            self.absent.retain(|scene| extent.scenes.contains(&scene.name));
+            self.scenes
+                .retain(|scene| extent.scenes.contains(&scene.name));
+            self.absent
+                .retain(|scene| extent.scenes.contains(&scene.name));
         }
         for scene in &mut self.scenes {
             scene.extend(extent);
@@ -142,7 +150,9 @@ impl Experiment {
     /// The names of all scenes, also of those that are not there.
     pub(super) fn scene_names(&self) -> Vec<String> {
         let there = self.scenes.iter().map(|scene| scene.name.clone());
-        there.chain(self.absent.iter().map(|scene| scene.name.clone())).collect()
+        there
+            .chain(self.absent.iter().map(|scene| scene.name.clone()))
+            .collect()
     }
 }
 

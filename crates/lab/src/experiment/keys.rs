@@ -50,24 +50,76 @@ const KEYS: &[Key] = &[
     key("", "metrics", "list of [metrics](metrics.md)", "`relmse`, `relmse_trim`", "Metrics in addition to `rmse`."),
     key("", "pyramid", "name of a method", "none", "Renders each strategy (s, t) of this method for the report."),
     key("", "pyramid-spp", "whole number from 2", "64", "Samples per pixel of these images."),
+    key("", "pyramid-scenes", "list of names", "all", "Scenes whose strategies are shown."),
     key("settings", "", "", "", "Settings of all methods."),
-    key("scene", "file", "path", "required", "The scene file, relative to the description."),
+    key("scene", "file", "path", "required without `room`", "The scene file, relative to the description; it may begin with an environment variable, such as `$BIDIR_SCENES/`."),
+    key("scene", "room", "table of `light` (`direct` or `indirect`), `albedo` and `triangles`", "none", "A furnished room that is made instead of a file: the same light with any number of triangles."),
+    key("scene", "optional", "`true` or `false`", "`false`", "Leaves the scene out, with a warning, if its file is missing or its reference is contradicted."),
     key("scene", "name", "text", "the file's name", "Name in results; unique."),
     key("scene", "size", "`\"WIDTHxHEIGHT\"`", "`size` above", "Size of its images. Unit: pixels."),
     key("scene", "reference", "path", "none", "An existing reference folder, or an image with finite pixels."),
-    key("scene", "reference-spp", "whole number from 1", "none", "Renders a reference with this many samples per pixel; each scene needs this key or `reference`."),
+    key("scene", "reference-of", "name of a scene before it", "none", "Shares the reference of a scene with the same light."),
+    key("scene", "reference-spp", "whole number from 1", "none", "Renders a reference with this many samples per pixel; each scene needs one of these three keys."),
     key("scene", "reference-strategies", "as `strategies`", "those of `[settings]`", "Strategies of the rendered reference."),
     key("scene", "reference-cross-check", "`path`, `light` or `lvc`", "`path`", "Integrator that checks the rendered reference."),
     key("method", "name", "text", "required", "Name in results; unique. Ratios are relative to the first method."),
+    key("method", "scenes", "list of names", "all", "Scenes in which it is rendered."),
     key("method", "", "", "", "Settings of this method; they replace those of `[settings]`."),
     key("budget", "samples", "whole number from 1", "none", "Samples per pixel."),
     key("budget", "rays", "number above 0", "none", "Rays per pixel. Each budget has exactly one of `samples`, `rays` and `seconds`."),
     key("budget", "seconds", "number above 0", "none", "Render time. Unit: seconds."),
     key("budget", "name", "text", "amount and unit", "Name in results, such as the default `64 spp`; unique."),
+    key("budget", "methods", "list of names", "all", "Methods that are rendered under it."),
+    key("budget", "scenes", "list of names", "all", "Scenes that are rendered under it."),
+    key("contributions", "methods", "list of names", "none", "Methods whose contributions before visibility are measured; they need `integrator = \"bdpt\"`."),
+    key("contributions", "scenes", "list of names", "all", "Scenes in which they are measured."),
+    key("contributions", "spp", "whole number from 2", "16", "Samples per pixel that are measured."),
+    key("claim", "id", "text", "required", "Name in results; unique."),
+    key("claim", "claim", "text", "required", "The statement, in a sentence."),
+    key("claim", "source", "text", "`This description`", "Its origin."),
+    key("claim", "goal", "`true` or `false`", "`false`", "The verdict is `met` or `not met` instead of `reproduced` or `not reproduced`."),
+    key("claim", "part", "text", "method and scene", "Name of a number in the result."),
+    key("claim", "each", "as `for`", "one number", "The numbers of the claim; all must lie in the range."),
+    key("claim", "above", "number", "none", "Lower end of the range; a claim needs `above`, `below`, or both."),
+    key("claim", "below", "number", "none", "Upper end of the range."),
+    key("table", "claim", "id of a claim", "none", "Shows the table below this claim."),
+    key("table", "section", "text", "`Tables`", "Shows it in a section with this title."),
+    key("table", "caption", "text", "required", "Sentence above the table."),
+    key("table", "each", "as `for`", "one row", "Its rows; a row of which nothing was measured is left out."),
+    key("table", "columns", "list of tables", "required", "Each has a `head`, and either a `value` to print or the keys of a number, which it inherits from the table."),
+    key("table", "plot", "table of `x`, `curves`, `label` and `log`", "none", "Draws the columns `curves` over the column `x`; `log = \"xy\"` makes both axes logarithmic."),
+    key("table", "histogram", "text", "none", "Draws the contributions of each row over this axis."),
+    key("quick", "seeds", "whole number from 1", "3", "The most seeds of `--quick`."),
+    key("quick", "size", "number above 0", "at most 64 pixels a side", "Factor of the sides of images."),
+    key("quick", "samples", "number above 0", "0.125", "Factor of `samples` and `pyramid-spp`."),
+    key("quick", "rays", "number above 0", "0.125", "Factor of `rays`."),
+    key("quick", "seconds", "number above 0", "0.125", "Factor of `seconds`."),
+    key("quick", "references", "number above 0", "0.125", "Factor of `reference-spp`."),
+];
+
+/// The keys of a number, in claims, tables and their columns.
+#[rustfmt::skip]
+const NUMBER: [Key; 7] = [
+    key("", "measure", "[measure](#measures)", "required", "The number of each render."),
+    key("", "budget", "`samples`, `rays` or `seconds`", "the first of the method", "Kind of the budget of the renders."),
+    key("", "scene", "name", "required", "The scene."),
+    key("", "method", "name", "required", "The method."),
+    key("", "over", "name of a method, or number", "the plain mean", "Divides the measure, paired by seed; `over = 1` gives the mean with an interval."),
+    key("", "gain-over", "name of a method", "none", "The inverse: by which factor this method has more."),
+    key("", "than", "name of a scene", "none", "Divides the ratio by the same ratio in this scene."),
 ];
 
 /// The tables of a description.
-const TABLES: [&str; 4] = ["settings", "scene", "method", "budget"];
+const TABLES: [&str; 8] = [
+    "settings",
+    "scene",
+    "method",
+    "budget",
+    "contributions",
+    "claim",
+    "table",
+    "quick",
+];
 
 const PAGE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -88,7 +140,17 @@ fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
         with("scene", "[[scene]]\nfile = \"a.pbrt\"\nreference-spp = 1"),
         with("method", "[[method]]\nname = \"a\""),
         with("budget", "[[budget]]\nsamples = 1"),
+        with("contributions", "[contributions]"),
+        with("claim", "[[claim]]"),
+        with("table", "[[table]]"),
+        with("quick", "[quick]"),
     ];
+    let text = text.iter().filter(|part| {
+        // Claims and tables are whole or not there.
+        let is_partial = part.starts_with("[[claim]]") || part.starts_with("[[table]]");
+        !is_partial || part.contains(line) && !line.is_empty()
+    });
+    let text: Vec<&str> = text.map(String::as_str).collect();
     Experiment::read(&text.concat(), Path::new("a.toml"))
 }
 
@@ -103,6 +165,9 @@ fn names(table: &str) -> Vec<String> {
     }
     if table.is_empty() {
         names.extend(TABLES.map(str::to_owned));
+    }
+    if ["claim", "table"].contains(&table) {
+        names.extend(NUMBER.map(|key| key.name.to_owned()));
     }
     names.sort_unstable();
     names
@@ -145,11 +210,17 @@ fn list() -> String {
     for table in [""].into_iter().chain(TABLES) {
         match table {
             "" => text += "\nAt the top of the file:\n\n",
-            "settings" => text += "\n`[settings]`:\n\n",
+            "settings" | "contributions" | "quick" => {
+                write!(text, "\n`[{table}]`:\n\n").unwrap();
+            }
+            "claim" | "table" => {
+                write!(text, "\n`[[{table}]]`, and the keys of a number:\n\n").unwrap()
+            }
             _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
         }
         text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
-        for key in KEYS.iter().filter(|key| key.table == table) {
+        let more = NUMBER.iter().filter(|_| table == "table");
+        for key in KEYS.iter().filter(|key| key.table == table).chain(more) {
             let name = match key.name {
                 "" => settings()
                     .iter()

@@ -68,18 +68,18 @@ pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use builtin::{BUILTIN, Builtin};
 pub use error::{ExperimentError, Fault, Place};
 pub use extent::{Extent, Quick};
-pub use room::{Lamp, Room};
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
+pub use room::{Lamp, Room};
 pub use run::{End, Event, Observer, Outcome, Setup, Start, run};
 pub use settings::{names, texts};
 
 use crate::metric::Metric;
 use crate::results::BudgetKind;
-use claims::{ClaimSpec, TableSpec};
-use contributions::ContributionsSpec;
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
+use claims::{ClaimSpec, TableSpec};
+use contributions::ContributionsSpec;
 use formats::scene::Files;
 use std::path::PathBuf;
 
@@ -267,10 +267,7 @@ impl Experiment {
     }
 
     /// The methods that are rendered in a scene.
-    pub(crate) fn methods_in<'a>(
-        &'a self,
-        scene: &'a str,
-    ) -> impl Iterator<Item = &'a MethodSpec> {
+    pub(crate) fn methods_in<'a>(&'a self, scene: &'a str) -> impl Iterator<Item = &'a MethodSpec> {
         let is_used = move |method: &&MethodSpec| {
             let mut renders = self.renders(scene);
             renders.any(|(_, other)| other.name == method.name)

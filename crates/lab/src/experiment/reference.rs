@@ -1,12 +1,12 @@
 //! What images are compared with: a picture that is there, or one that is made once and kept.
 
-use super::{Absent, Experiment, Presence, ReferenceSpec};
 use super::cell::write_image;
 use super::error::{ExperimentError, Place};
 use super::names::file_name;
 use super::run::{Event, Observer, Ready, Setup};
 use super::settings::texts;
 use super::stage::{Reference, Stage};
+use super::{Absent, Experiment, Presence, ReferenceSpec};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Made, Plan, Subject};
 use crate::seal::sha256;

@@ -23,7 +23,8 @@ pub enum Lamp {
 
 impl Lamp {
     /// Every kind with its name.
-    pub const NAMES: [(&'static str, Self); 2] = [("direct", Self::Panel), ("indirect", Self::Bowl)];
+    pub const NAMES: [(&'static str, Self); 2] =
+        [("direct", Self::Panel), ("indirect", Self::Bowl)];
 
     /// The name.
     pub fn name(self) -> &'static str {

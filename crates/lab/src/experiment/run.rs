@@ -147,7 +147,10 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
     results.contributions = contributions::measure(experiment, &stages)?;
     for Absent { name, reason } in absent {
-        let _ = write!(results.description, "\n\nThe scene {name} is left out: {reason}.");
+        let _ = write!(
+            results.description,
+            "\n\nThe scene {name} is left out: {reason}."
+        );
     }
     results.claims = experiment.judge(&results);
     for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
@@ -266,7 +269,9 @@ impl Absent {
     /// Says that it is left out.
     pub(super) fn warn(&self, observer: &mut dyn Observer) {
         let Self { name, reason } = self;
-        observer.tell(Event::Warning(&format!("scene `{name}` is left out: {reason}")));
+        observer.tell(Event::Warning(&format!(
+            "scene `{name}` is left out: {reason}"
+        )));
     }
 }
 

@@ -56,7 +56,11 @@ impl<'a> Stage<'a> {
         files: &Files,
     ) -> Result<Self, ExperimentError> {
         // Files in memory are the same on every machine.
-        let files = if spec.files.are_on_disk() { files } else { &spec.files };
+        let files = if spec.files.are_on_disk() {
+            files
+        } else {
+            &spec.files
+        };
         let options = LoadOptions {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()

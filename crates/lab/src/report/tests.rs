@@ -115,6 +115,7 @@ fn results() -> Results {
         }],
         records: Vec::new(),
         pyramids: vec![pyramid()],
+        contributions: Vec::new(),
         claims: vec![
             claim("one", Verdict::Reproduced),
             claim("two", Verdict::NotReproduced),

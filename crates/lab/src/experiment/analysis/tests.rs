@@ -63,6 +63,7 @@ fn results(seeds: u64) -> Results {
         budgets: vec![budget(64.0), budget(16.0)],
         records: cells.collect(),
         pyramids: Vec::new(),
+        contributions: Vec::new(),
         claims: Vec::new(),
     }
 }

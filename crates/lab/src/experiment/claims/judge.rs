@@ -41,9 +41,8 @@ impl<'a> Findings<'a> {
             let all = self.results.contributions.iter();
             let mut own = all.filter(|found| found.scene == scene && found.method == method);
             let passes = own.next().map_or(&[][..], |found| &found.passes);
-            let pass = |(pass, figures): (u64, &BTreeMap<String, f64>)| {
-                Some((pass, *figures.get(name)?))
-            };
+            let pass =
+                |(pass, figures): (u64, &BTreeMap<String, f64>)| Some((pass, *figures.get(name)?));
             return (0..).zip(passes).filter_map(pass).collect();
         }
         let mut scenes = self.results.scenes.iter();
@@ -136,14 +135,16 @@ impl<'a> Findings<'a> {
         let names = spec.parts.iter().map(|(name, _)| name);
         let parts = names.zip(&intervals);
         let parts: Vec<_> = parts.map(|(name, found)| part(name, *found)).collect();
-        let measure = spec.parts.first().map(|(_, of)| of.measure);
-        let measure = measure.map_or(String::new(), |measure| measure.to_string());
+        let measures: Vec<_> = spec.parts.iter().map(|(_, of)| of.measure).collect();
+        let is_one = measures.windows(2).all(|pair| pair[0] == pair[1]);
+        let measure = measures.first().filter(|_| is_one);
+        let measure = measure.map_or(String::new(), |measure| format!("{measure}: "));
         Claim {
             id: spec.id.clone(),
             claim: spec.claim.clone(),
             source: spec.source.clone(),
             verdict: worded(verdict(&intervals, spec.expected), spec.kind),
-            found: format!("{measure}: {}.", parts.join("; ")),
+            found: format!("{measure}{}.", parts.join("; ")),
             method: self.method(spec),
             tables: Vec::new(),
             plots: Vec::new(),

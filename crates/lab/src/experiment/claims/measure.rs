@@ -172,7 +172,10 @@ impl FromStr for Measure {
 fn all() -> Vec<(String, Measure)> {
     let metrics = Metric::NAMES.into_iter().flat_map(|(name, metric)| {
         let at = |words: &str, cost| (format!("{name} {words}"), Measure::AtCost(metric, cost));
-        let equal = [at("at equal rays", Cost::Rays), at("in equal time", Cost::Time)];
+        let equal = [
+            at("at equal rays", Cost::Rays),
+            at("in equal time", Cost::Time),
+        ];
         let equal = equal.into_iter().filter(move |_| metric.order().is_some());
         std::iter::once((name.to_owned(), Measure::Metric(metric))).chain(equal)
     });

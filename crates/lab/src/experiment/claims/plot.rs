@@ -41,11 +41,7 @@ fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
 }
 
 /// The contributions that the rows of a table have numbers of, as bars named by the first column.
-pub(super) fn histogram(
-    label: &str,
-    spec: &TableSpec,
-    all: &[Contributions],
-) -> Plot {
+pub(super) fn histogram(label: &str, spec: &TableSpec, all: &[Contributions]) -> Plot {
     let linear = |label: &str| Axis {
         label: label.to_owned(),
         scale: Scale::Linear,

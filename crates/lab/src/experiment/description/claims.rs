@@ -60,7 +60,11 @@ impl Names {
         Self {
             scenes: experiment.scene_names(),
             methods: methods.map(|method| method.name.clone()).collect(),
-            budgets: experiment.budgets.iter().map(|budget: &BudgetSpec| budget.kind).collect(),
+            budgets: experiment
+                .budgets
+                .iter()
+                .map(|budget: &BudgetSpec| budget.kind)
+                .collect(),
         }
     }
 }
@@ -166,9 +170,8 @@ fn expected(section: &mut Section<'_>) -> Result<Expected> {
     if low.is_none() && high.is_none() {
         return Err(section.fault("expected `below`, `above`, or both"));
     }
-    let number = |entry: Option<Entry<'_>>, other: f64| {
-        entry.map_or(Ok(other), |entry| entry.number())
-    };
+    let number =
+        |entry: Option<Entry<'_>>, other: f64| entry.map_or(Ok(other), |entry| entry.number());
     Ok(Expected {
         low: number(low, f64::NEG_INFINITY)?,
         high: number(high, f64::INFINITY)?,

@@ -36,8 +36,15 @@ pub(super) fn all(
     top: &mut Section<'_>,
     folder: &Path,
     defaults: &Request,
+    memory: &Files,
 ) -> Result<(Vec<SceneSpec>, Vec<Absent>)> {
-    let read = |section: &mut Section<'_>| scene(section, folder, defaults);
+    let read = |section: &mut Section<'_>| {
+        let mut scene = scene(section, folder, defaults)?;
+        if memory.has_in_memory(&scene.path) {
+            scene.files = memory.clone();
+        }
+        Ok(scene)
+    };
     let (mut there, mut absent) = (Vec::new(), Vec::new());
     for scene in super::all(top, "scene", read)? {
         match absence(&scene) {
@@ -59,7 +66,7 @@ fn absence(scene: &SceneSpec) -> Option<String> {
     if let Some(variable) = variable(&scene.path) {
         return Some(format!("{variable} is not set"));
     }
-    let is_there = scene.path.is_file();
+    let is_there = !scene.files.are_on_disk() || scene.path.is_file();
     (!is_there).then(|| format!("there is no file {}", scene.path.display()))
 }
 
@@ -139,7 +146,9 @@ fn room_of(entry: Entry<'_>) -> Result<Room> {
         light: light.read(|name| value_of(&Lamp::NAMES, name))?,
         albedo: value.ok_or_else(|| albedo.fault("expected a number between 0 and 1"))? as f32,
         triangles: triangles.ok_or_else(|| {
-            count.fault(format!("expected a whole number from 1 to {MOST_TRIANGLES}"))
+            count.fault(format!(
+                "expected a whole number from 1 to {MOST_TRIANGLES}"
+            ))
         })?,
     })
 }
@@ -170,7 +179,10 @@ fn reference(
     defaults: &Request,
 ) -> Result<(ReferenceSpec, Option<Place>)> {
     if let Some(entry) = section.take("reference-of") {
-        return Ok((ReferenceSpec::Of(entry.text()?.to_owned()), Some(entry.at())));
+        return Ok((
+            ReferenceSpec::Of(entry.text()?.to_owned()),
+            Some(entry.at()),
+        ));
     }
     let image = section.take("reference");
     let spp = section.take("reference-spp");
@@ -235,4 +247,3 @@ fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
         Some(witness) => Ok(witness),
     }
 }
-
