@@ -87,15 +87,10 @@ fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
 /// Reads a description, or takes the built-in one, with the extent that flags give it.
 fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let file = &args.description;
-    let mut experiment = match Builtin::named(file) {
-        Some(builtin) => builtin.experiment().map_err(failure)?,
-        None => {
-            let text = std::fs::read_to_string(file);
-            let text = text.map_err(|error| unreadable(file, &error))?;
-            let experiment = Experiment::read(&text, file).map_err(failure)?;
-            experiment::check_description(file, &args.output).map_err(failure)?;
-            experiment
-        }
+    let builtin = Builtin::named(file).map(Builtin::experiment);
+    let mut experiment = match builtin {
+        Some(experiment) => experiment.map_err(failure)?,
+        None => described(file, &args.output)?,
     };
     if args.quick {
         experiment = experiment.quick();
@@ -103,6 +98,15 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let extent = args.extent.extent();
     let within = experiment.within(&extent);
     within.map_err(|error| Failure::usage(format!("--scenes: {error}")))
+}
+
+/// Reads the description in a file, which its results in `folder` must not replace.
+fn described(file: &Path, folder: &Path) -> Result<Experiment, Failure> {
+    let text = std::fs::read_to_string(file);
+    let text = text.map_err(|error| unreadable(file, &error))?;
+    let experiment = Experiment::read(&text, file).map_err(failure)?;
+    experiment::check_description(file, folder).map_err(failure)?;
+    Ok(experiment)
 }
 
 /// Why a description cannot be read; a name near a built-in experiment's is probably that.

@@ -229,7 +229,7 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
         "without",
         "#!/bin/sh\necho 'No module named bidir' >&2\nexit 1\n",
     );
-    let run = |python: &std::path::Path| {
+    let run = |python: &Path| {
         let command = "experiment a.toml -o out --ray host:1 --quick";
         let mut command = place.command(command);
         // That is for all commands, and nodes have their own.
@@ -240,7 +240,7 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
         .expect(4)
         .says("No module named bidir")
         .says("pip install '.[ray]'");
-    run(std::path::Path::new("no-such-python")).expect(4);
+    run(Path::new("no-such-python")).expect(4);
     // What the package ends with is what the command ends with.
     let with = python(
         "with",

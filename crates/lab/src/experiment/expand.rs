@@ -16,7 +16,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 /// Texts by the names that stand for them.
 pub(super) type Binding = Vec<(String, String)>;
 
-impl<'a> Section<'a> {
+impl Section<'_> {
     /// The tables that this one stands for: itself, where it has no `for`.
     pub(super) fn expanded(mut self) -> Result<Vec<Self>> {
         let bindings = self.bindings("for")?;

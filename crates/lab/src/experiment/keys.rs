@@ -214,7 +214,7 @@ fn list() -> String {
                 write!(text, "\n`[{table}]`:\n\n").unwrap();
             }
             "claim" | "table" => {
-                write!(text, "\n`[[{table}]]`, and the keys of a number:\n\n").unwrap()
+                write!(text, "\n`[[{table}]]`, and the keys of a number:\n\n").unwrap();
             }
             _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
         }

@@ -86,9 +86,10 @@ impl<'a> Stage<'a> {
 
     /// The files that another machine needs to be given: none of those in memory.
     pub(super) fn shared_files(&self) -> Vec<PathBuf> {
-        match self.spec.files.are_on_disk() {
-            true => self.files.clone(),
-            false => Vec::new(),
+        if self.spec.files.are_on_disk() {
+            self.files.clone()
+        } else {
+            Vec::new()
         }
     }
 

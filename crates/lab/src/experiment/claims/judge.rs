@@ -24,9 +24,10 @@ impl<'a> Findings<'a> {
         let is_known = |record: &Record| {
             record.processor_seconds.is_some() && record.training_processor_seconds.is_some()
         };
-        let clock = match results.records.iter().all(is_known) {
-            true => Clock::Processors,
-            false => Clock::Wall,
+        let clock = if results.records.iter().all(is_known) {
+            Clock::Processors
+        } else {
+            Clock::Wall
         };
         Self {
             experiment,

@@ -138,7 +138,7 @@ impl Measured<'_> {
             Measure::Metric(metric) => self.record.metrics.get(metric.name()).copied(),
             Measure::AtCost(metric, cost) => {
                 let error = self.value(Measure::Metric(metric))?;
-                Some(error * self.weighed(cost)?.powf(metric.order()?))
+                Some(error * libm::pow(self.weighed(cost)?, metric.order()?))
             }
             Measure::Figure(index) => FIGURES[index].1(self),
             Measure::Contributions(_) => None,

@@ -85,9 +85,10 @@ fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     let budget = section.take("budget");
     let budget = budget.map(|entry| {
         let kind = entry.read(|name| value_of(&KINDS, name))?;
-        match names.budgets.contains(&kind) {
-            true => Ok(kind),
-            false => Err(entry.fault("no [[budget]] is of this kind")),
+        if names.budgets.contains(&kind) {
+            Ok(kind)
+        } else {
+            Err(entry.fault("no [[budget]] is of this kind"))
         }
     });
     let method = known(&section.need("method")?, &names.methods)?;
@@ -242,12 +243,11 @@ fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)
         for mut column in column.section()?.expanded()? {
             column.only(&[&COLUMN[..], &QUANTITY].concat(), &[])?;
             let head = column.need("head")?.text()?.to_owned();
-            let cell = match column.take("value") {
-                Some(value) => CellSpec::Value(value.written()?.to_owned()),
-                None => {
-                    column.fill(&section, &QUANTITY);
-                    CellSpec::Quantity(quantity(&mut column, names)?)
-                }
+            let cell = if let Some(value) = column.take("value") {
+                CellSpec::Value(value.written()?.to_owned())
+            } else {
+                column.fill(&section, &QUANTITY);
+                CellSpec::Quantity(quantity(&mut column, names)?)
             };
             cells.push((head, cell));
         }
@@ -270,9 +270,12 @@ fn plot(entry: Entry<'_>, heads: &[String]) -> Result<PlotSpec> {
     let label = section.need("label")?.text()?.to_owned();
     let log = section.take("log");
     let log = log.map_or(Ok(String::new()), |entry| entry.text().map(str::to_owned))?;
-    let scale = |axis| match log.contains(axis) {
-        true => Scale::Log,
-        false => Scale::Linear,
+    let scale = |axis| {
+        if log.contains(axis) {
+            Scale::Log
+        } else {
+            Scale::Linear
+        }
     };
     Ok(PlotSpec {
         x,

@@ -85,49 +85,70 @@ fn with_variable(file: &str) -> PathBuf {
     }
 }
 
+/// Where a scene comes from.
+struct Source {
+    /// The file, as messages and results call it.
+    file: String,
+    path: PathBuf,
+    files: Files,
+    /// Where the description names the file. None: it is a room.
+    place: Option<Place>,
+}
+
+impl Source {
+    fn room(entry: Entry<'_>) -> Result<Self> {
+        let room = room_of(entry)?;
+        Ok(Self {
+            file: room.name().display().to_string(),
+            path: room.name(),
+            files: room.files(),
+            place: None,
+        })
+    }
+
+    fn file(entry: &Entry<'_>, folder: &Path, presence: Presence) -> Result<Self> {
+        let file = entry.text()?.to_owned();
+        let path = with_variable(&file);
+        let path = match (variable(&path), presence) {
+            (None, _) => joined(folder, &path),
+            (Some(_), Presence::Optional) => path,
+            (Some(name), Presence::Required) => {
+                return Err(entry.fault(format!("the environment variable {name} is not set")));
+            }
+        };
+        Ok(Self {
+            file,
+            path,
+            files: Files::default(),
+            place: Some(entry.at()),
+        })
+    }
+}
+
 fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result<SceneSpec> {
     section.only(&SCENE, &OLD_SCENE)?;
-    let room = section.take("room");
     let optional = section.take("optional");
-    let is_optional = optional.map(|entry| entry.truth()).transpose()?;
-    let presence = match is_optional {
+    let presence = match optional.map(|entry| entry.truth()).transpose()? {
         Some(true) => Presence::Optional,
         _ => Presence::Required,
     };
-    let (file, path, files, place) = match room {
-        Some(room) => {
-            let room = room_of(room)?;
-            let name = room.name();
-            (name.display().to_string(), name, room.files(), None)
-        }
-        None => {
-            let named = section.need("file")?;
-            let file = named.text()?.to_owned();
-            let path = with_variable(&file);
-            if let (Some(name), Presence::Required) = (variable(&path), presence) {
-                return Err(named.fault(format!("the environment variable {name} is not set")));
-            }
-            let path = match variable(&path) {
-                Some(_) => path,
-                None => joined(folder, &path),
-            };
-            (file, path, Files::default(), Some(named.at()))
-        }
+    let source = match section.take("room") {
+        Some(room) => Source::room(room)?,
+        None => Source::file(&section.need("file")?, folder, presence)?,
     };
-    let stem = Path::new(&file).file_stem().unwrap_or_default();
-    let stem = stem.to_string_lossy();
-    let name = or(text_of(section, "name")?, &stem);
+    let stem = Path::new(&source.file).file_stem().unwrap_or_default();
+    let name = or(text_of(section, "name")?, &stem.to_string_lossy());
     let size = size(section)?;
     let (reference, at) = reference(section, folder, defaults)?;
     Ok(SceneSpec {
         name,
-        path,
-        files,
+        path: source.path,
+        files: source.files,
         size,
         reference,
-        file,
+        file: source.file,
         presence,
-        places: [place, at],
+        places: [source.place, at],
     })
 }
 
