@@ -11,7 +11,7 @@ use std::str::FromStr;
 pub enum Cost {
     /// All rays.
     Rays,
-    /// Time, by the [`Clock`] that all records have.
+    /// Time of the processors where all records have it, else that of the clock.
     Time,
 }
 
@@ -22,7 +22,7 @@ pub enum Measure {
     Metric(Metric),
     /// The same at equal cost.
     AtCost(Metric, Cost),
-    /// One of [`FIGURES`], by its place there.
+    /// Another number, by its place in the list of figures.
     Figure(usize),
     /// One of the [`FIGURES`](crate::experiment::contributions::FIGURES) of contributions.
     Contributions(&'static str),
