@@ -66,8 +66,7 @@ pub(crate) fn with(
         all.records.push(record);
     }
     for mut pyramid in part.pyramids {
-        pyramid.weighted = moved(pyramid.weighted);
-        pyramid.raw = moved(pyramid.raw);
+        pyramid.images = moved(pyramid.images);
         all.pyramids.push(pyramid);
     }
     for method in part.methods {

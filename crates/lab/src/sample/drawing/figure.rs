@@ -6,7 +6,7 @@ use super::super::term::TermReport;
 use super::shapes::{circle, polyline, px, text};
 use super::view::View;
 use crate::markup::{Element, element};
-use crate::report::number::number;
+use super::number::number;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::luminance;
 

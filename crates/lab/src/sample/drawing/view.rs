@@ -3,7 +3,7 @@
 use super::super::subpath::Place;
 use super::shapes::{rectangle, text};
 use crate::markup::{Element, element};
-use crate::report::number::number;
+use super::number::number;
 use bidir::camera::Pose;
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
