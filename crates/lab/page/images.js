@@ -106,6 +106,7 @@ export function images({ images, most_flip_pixels }) {
     make("div", { class: "controls" }, controls()),
     make("p", { class: "shown" }, [make("output", { id: "shown", "aria-live": "polite" })]),
     stageOf(),
+    make("div", { id: "legend", hidden: "" }, [make("canvas", { id: "ramp", width: "256", height: "1" }), make("div", { id: "marks" })]),
     make("pre", { id: "figures" }, ["\n\n\n"]),
     ...(missing > 0 ? [note(words)] : []),
     make("details", { id: "keys" }, [
@@ -140,12 +141,10 @@ function controls() {
 
 function stageOf() {
   const divider = { id: "divider", role: "slider", tabindex: "0", "aria-label": "Border between A and B", "aria-orientation": "horizontal", "aria-valuemin": "0", "aria-valuemax": "100", hidden: "" };
-  const legend = [make("canvas", { id: "ramp", width: "256", height: "1" }), make("div", { id: "marks" })];
   return make("div", { id: "stage", tabindex: "0", role: "application", "aria-label": "Image", "aria-describedby": "keys" }, [
     make("canvas", { id: "canvas" }),
     make("canvas", { id: "values" }),
     make("div", divider),
-    make("div", { id: "legend", hidden: "" }, legend),
   ]);
 }
 

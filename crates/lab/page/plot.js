@@ -115,7 +115,7 @@ export function leftOut({ kind, series }, frame) {
 export function drawing(plot, frame, size) {
   const [legend, legendHeight] = legendOf(plot, frame.bottom + BELOW, size.width);
   const series = plot.series.map((one, index) =>
-    group(index, [draw("title", {}, [one.name]), ...(plot.kind === "lines" ? curve(one, index, frame) : steps(one, index, frame))]),
+    group(index, "series", [draw("title", {}, [one.name]), ...(plot.kind === "lines" ? curve(one, index, frame) : steps(one, index, frame))]),
   );
   return draw(
     "svg",
@@ -185,10 +185,11 @@ function words([x, y], anchor, text) {
 
 /**
  * @param {number} index
+ * @param {"series" | "sample"} kind
  * @param {(SVGElement | string)[]} children
  */
-function group(index, children) {
-  return draw("g", { class: `series series-${index}`, color: COLORS[index % COLORS.length] }, children);
+function group(index, kind, children) {
+  return draw("g", { class: `${kind} series-${index}`, color: COLORS[index % COLORS.length] }, children);
 }
 
 /**
@@ -306,7 +307,7 @@ function legendOf({ kind, series }, top, width) {
     const [at, y] = [x, top + ROW * (row + 0.5)];
     x += own;
     const point = kind === "lines" ? [marker(index, [at + 16, y])] : [];
-    const sample = group(index, [stroke(index, `M${at} ${y}h32`), ...point]);
+    const sample = group(index, "sample", [stroke(index, `M${at} ${y}h32`), ...point]);
     return draw("g", {}, [sample, words([at + SAMPLE - 6, y + 4], "start", name)]);
   });
   return [entries, series.length === 0 ? 4 : ROW * (row + 1) + 4];

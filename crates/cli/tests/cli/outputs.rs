@@ -113,8 +113,12 @@ fn links_to_a_file_of_the_scene_are_that_file() {
     fs::hard_link(place.path("sky.exr"), place.path("second.exr")).unwrap();
     let render = "render wood.pbrt -q --spp 1 --integrator bdpt -o";
     let pyramid = ["strategies/pyramid.exr", "input", "sky.exr"];
-    refused(&place, &format!("{render} a.exr --pyramid strategies"), pyramid)
-        .says("hint: name another file with --pyramid");
+    refused(
+        &place,
+        &format!("{render} a.exr --pyramid strategies"),
+        pyramid,
+    )
+    .says("hint: name another file with --pyramid");
     let second = ["second.exr", "input", "sky.exr"];
     refused(&place, &format!("{render} second.exr"), second);
 }

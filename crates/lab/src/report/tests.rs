@@ -197,7 +197,10 @@ fn the_data_come_back_as_they_were() {
 fn pixels_are_in_the_page_as_they_are() {
     let data = data(&page(&results()));
     let [reference, render] = [0, 1].map(|index| &data["images"][index]);
-    assert_eq!((&reference["scene"], &reference["name"]), (&HOSTILE.into(), &"reference".into()));
+    assert_eq!(
+        (&reference["scene"], &reference["name"]),
+        (&HOSTILE.into(), &"reference".into())
+    );
     assert_eq!(reference["is_reference"], true);
     // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
     assert_eq!(reference["halves"], "ADwAOAAAADwAOAAA");
