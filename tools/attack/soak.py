@@ -37,7 +37,7 @@ GARBAGE = (b"\0" * 64, b"GET", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00
            b"POST /status HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n", b"GET /" + b"a" * 70000,
            b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000 + b"\r\n",
            b"GET /../../etc/passwd HTTP/1.1\r\nHost: a\r\n\r\n", b"GET /%ff%00 HTTP/1.1\r\nHost: a\r\n\r\n")
-PAGES = ("", "status", "log", "render.png", "render.exr", "strategies", "strategies.png", "pixel?x=3&y=2",
+PAGES = ("", "status", "log", "render.png", "render.exr", "strategies", "strategies.png?kind=raw&s=1&t=2", "pixel?x=3&y=2",
          "sample?x=3&y=2",
          "pixel?x=-1&y=1e9", "sample?x=99999999999&y=", "assets/app.js", "assets/../x", "live", "none")
 COMMANDS = ({"command": "pause"}, {"command": "resume"}, {"command": "restart"}, {"command": "home"},

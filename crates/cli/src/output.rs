@@ -15,8 +15,8 @@ pub(crate) struct Outputs {
     png: Option<PathBuf>,
     /// The counts, as JSON.
     pub(crate) stats: Option<PathBuf>,
-    /// What each strategy does.
-    pub(crate) pyramid: Option<pyramid::Files>,
+    /// The images of strategies.
+    pub(crate) pyramid: Option<PathBuf>,
 }
 
 impl Outputs {
@@ -26,7 +26,7 @@ impl Outputs {
         let [exr, png] = image.map_or(Ok([None, None]), images)?;
         let stats = args.output.stats.clone();
         let folder = args.layers.pyramid.as_deref();
-        let pyramid = folder.map(pyramid::Files::new);
+        let pyramid = folder.map(pyramid::file);
         Ok(Self {
             exr,
             png,
@@ -49,10 +49,9 @@ impl Outputs {
     /// All files, each with the flag that names it.
     fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let images = self.exr.iter().chain(&self.png);
-        let pyramid = self.pyramid.iter().flat_map(pyramid::Files::all);
         let images = images.map(|file| ("--output", file));
         let stats = self.stats.iter().map(|file| ("--stats", file));
-        let pyramid = pyramid.map(|file| ("--pyramid", file));
+        let pyramid = self.pyramid.iter().map(|file| ("--pyramid", file));
         let all = images.chain(stats).chain(pyramid);
         all.map(|(flag, file)| (flag, file.as_path()))
     }

@@ -1,33 +1,15 @@
-//! `bidir render --pyramid DIR`: what each strategy (s, t) does, weighted and raw, as layers of one
-//! EXR and as contact sheets ([`lab::pyramid`]).
+//! `bidir render --pyramid DIR`: what each strategy (s, t) does, weighted and raw, as layers of one EXR
+//! ([`lab::pyramid`]).
 
 use crate::exit::Failure;
 use crate::film_header;
-use crate::scene_io::{self, Developed, FilmHeader};
-use bidir::film::{Film, LayerImage};
-use lab::pyramid::{self, Kind};
+use crate::scene_io::{self, FilmHeader};
+use bidir::film::Film;
 use std::path::{Path, PathBuf};
 
-/// The files of a pyramid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Files {
-    exr: PathBuf,
-    weighted: PathBuf,
-    raw: PathBuf,
-}
-
-impl Files {
-    /// The files in `folder`.
-    pub(crate) fn new(folder: &Path) -> Self {
-        let [exr, weighted, raw] =
-            ["pyramid.exr", "weighted.png", "raw.png"].map(|name| folder.join(name));
-        Self { exr, weighted, raw }
-    }
-
-    /// All of them.
-    pub(crate) fn all(&self) -> [&PathBuf; 3] {
-        [&self.exr, &self.weighted, &self.raw]
-    }
+/// The file of a pyramid in its folder.
+pub(crate) fn file(folder: &Path) -> PathBuf {
+    folder.join("pyramid.exr")
 }
 
 /// Makes the folder of a pyramid where there is none; the one that it is in has to be there.
@@ -39,28 +21,8 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 /// Writes what `film`, which has this header, keeps of strategies.
-pub(crate) fn write(files: &Files, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
+pub(crate) fn write(file: &Path, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = film_header::metadata(header);
-    scene_io::write_exr(&files.exr, film.settings(), &developed(film), &metadata)?;
-    let scene = header.scene_name();
-    for (path, kind) in [(&files.weighted, Kind::Weighted), (&files.raw, Kind::Raw)] {
-        scene_io::write_screen(path, &pyramid::sheet(film, kind, &scene))?;
-    }
-    Ok(())
-}
-
-/// The picture with the images of strategies alone.
-fn developed(film: &Film) -> Developed {
-    let layers = film.layers();
-    let names = layers.part_names().enumerate();
-    let images = names.skip(layers.light_groups().len());
-    let images = images.map(|(part, name)| LayerImage {
-        name,
-        channels: &["R", "G", "B"],
-        data: film.part_pixels(part).flatten().collect(),
-    });
-    Developed {
-        picture: film.develop(),
-        layers: images.collect(),
-    }
+    let developed = lab::pyramid::developed(film);
+    scene_io::write_exr(file, film.settings(), &developed, &metadata)
 }

@@ -287,8 +287,8 @@ impl Job<'_> {
         report: &Report,
     ) -> Result<(), Failure> {
         self.write_image(session, header)?;
-        if let Some(files) = &self.outputs.pyramid {
-            pyramid::write(files, session.film(), header)?;
+        if let Some(file) = &self.outputs.pyramid {
+            pyramid::write(file, session.film(), header)?;
         }
         let Some(path) = &self.outputs.stats else {
             return Ok(());

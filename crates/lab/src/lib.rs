@@ -4,7 +4,7 @@
 //! - [`image`]: linear pictures in memory, pairs of them, other sizes.
 //! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
 //! - [`flip`]: the difference that an observer sees when two images alternate.
-//! - [`pyramid`]: what each strategy does, as contact sheets and figures.
+//! - [`pyramid`]: what each strategy does, as images and figures.
 //! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
 //! - [`report`]: what an experiment found, as a page for people.
 //! - [`results`]: what an experiment found, as it is written down.

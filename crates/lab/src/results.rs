@@ -206,10 +206,8 @@ pub struct Pyramid {
     pub longer: f64,
     /// The strategies that something was counted of, shorter paths first.
     pub strategies: Vec<StrategyInfo>,
-    /// The contact sheet of weighted images, relative to the folder of the results.
-    pub weighted: String,
-    /// The contact sheet of raw images.
-    pub raw: String,
+    /// The EXR with their images as layers, relative to the folder of the results.
+    pub images: String,
 }
 
 /// What a strategy does.

@@ -2,6 +2,7 @@
 //
 //     node pictures.js view OUT.jpg            two integrators side by side in `bidir view`
 //     node pictures.js report REPORT.html OUT.jpg   the first chart of an experiment's report
+//     node pictures.js strategies REPORT.html OUT.jpg   the strategies of its first scene as tiles
 //     node pictures.js photo IN.png OUT.jpg    an image as a JPEG, at its own size
 
 import { readFileSync } from "node:fs";
@@ -52,6 +53,13 @@ async function chart(browser, report, out) {
   await shoot(page, out);
 }
 
+/** @param {Browser} browser @param {string} report @param {string} out */
+async function strategies(browser, report, out) {
+  const page = await browser.newPage({ viewport: WINDOW, colorScheme: "dark" });
+  await page.goto(pathToFileURL(path.resolve(report)).href);
+  await page.locator(".strategies details > .scroll").first().screenshot({ path: out, type: "jpeg", quality: QUALITY });
+}
+
 /** @param {Browser} browser @param {string} image @param {string} out */
 async function photo(browser, image, out) {
   const page = await browser.newPage();
@@ -64,12 +72,12 @@ async function photo(browser, image, out) {
 }
 
 /** @type {Record<string, (browser: Browser, ...files: string[]) => Promise<void>>} */
-const PICTURES = { view, report: chart, photo };
+const PICTURES = { view, report: chart, strategies, photo };
 
 const [kind, ...files] = process.argv.slice(2);
 const make = PICTURES[kind];
 if (!make || files.length !== make.length - 1) {
-  console.error("usage: node pictures.js view OUT.jpg | report REPORT.html OUT.jpg | photo IN.png OUT.jpg");
+  console.error("usage: node pictures.js view OUT.jpg | report REPORT.html OUT.jpg | strategies REPORT.html OUT.jpg | photo IN.png OUT.jpg");
   process.exit(2);
 }
 if (MISSING) throw new Error(MISSING);

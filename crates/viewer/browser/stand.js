@@ -160,10 +160,11 @@ export async function open(browser, url, viewport = WIDE) {
  * Keeps what the page looks like, for people.
  * @param {Page} page
  * @param {string} name
+ * @param {{fullPage?: boolean}} how
  */
-export function keep(page, name) {
+export function keep(page, name, how = {}) {
   const size = page.viewportSize()?.width === NARROW.width ? "narrow" : "wide";
-  return page.screenshot({ path: path.join(SHOTS, `${name}-${size}.png`) });
+  return page.screenshot({ path: path.join(SHOTS, `${name}-${size}.png`), ...how });
 }
 
 /** @type {WeakMap<Browser, Promise<Page>>} Where images are decoded. */

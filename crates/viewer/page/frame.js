@@ -1,18 +1,9 @@
 // Frames as they come by the socket: a header of ten numbers of 32 bits, then linear Rec. 709 in
 // floats, row by row from the top left; all little endian.
 
-/** @import { LaneName } from "./types.js" */
+/** @import { Frame as Pixels } from "./pixels.js" */
 
-/**
- * @typedef {object} Frame
- * @property {LaneName} lane
- * @property {number} generation
- * @property {number} passes
- * @property {[number, number]} resolution Of the film that the frame is a part of.
- * @property {[number, number]} origin Of the crop on that film.
- * @property {[number, number]} size Of the crop.
- * @property {Float32Array} channels Three for each pixel of the crop.
- */
+/** @typedef {Pixels & {generation: number, passes: number}} Frame */
 
 const MAGIC = 0x31464442; // "BDF1"
 const HEADER = 40;
@@ -54,20 +45,4 @@ function floats(bytes, view) {
   if (isLittle) return new Float32Array(bytes, HEADER);
   const count = (bytes.byteLength - HEADER) / 4;
   return Float32Array.from({ length: count }, (_, i) => view.getFloat32(HEADER + 4 * i, true));
-}
-
-/**
- * The value that a frame has at a pixel of a film of another resolution, such as the whole one's
- * while the frame is a preview. Null outside.
- * @param {Frame} frame
- * @param {[number, number]} resolution
- * @param {[number, number]} pixel
- * @returns {[number, number, number] | null}
- */
-export function valueAt(frame, resolution, pixel) {
-  const x = Math.floor(((pixel[0] + 0.5) * frame.resolution[0]) / resolution[0]) - frame.origin[0];
-  const y = Math.floor(((pixel[1] + 0.5) * frame.resolution[1]) / resolution[1]) - frame.origin[1];
-  if (x < 0 || y < 0 || x >= frame.size[0] || y >= frame.size[1]) return null;
-  const at = 3 * (y * frame.size[0] + x);
-  return [frame.channels[at], frame.channels[at + 1], frame.channels[at + 2]];
 }

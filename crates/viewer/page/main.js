@@ -4,23 +4,24 @@ import { showCurves } from "./chart.js";
 import { connectDivider, placeDivider } from "./divider.js";
 import { box, button, get, say } from "./dom.js";
 import { cell, digits } from "./format.js";
-import { valueAt } from "./frame.js";
-import { Gestures } from "./gestures.js";
 import { connectTransport, showFigures, showHead } from "./head.js";
 import { Inspector } from "./inspector.js";
 import { Link } from "./link.js";
 import { connectMethods, showMethods } from "./methods.js";
 import { Pilot } from "./motion.js";
+import { valueAt } from "./pixels.js";
 import { placePlain, showPlain } from "./plain.js";
 import { Pyramid } from "./pyramid.js";
 import { SampleView } from "./sample.js";
 import { connectSave, showSave } from "./save.js";
 import { Stage } from "./stage.js";
+import { Steering } from "./steering.js";
 import { connectTabs, showTab } from "./tabs.js";
 import { drawValues, marker } from "./values.js";
 
-/** @import { Mode } from "./gestures.js" */
-/** @import { LaneName, Status } from "./types.js" */
+/** @import { LaneName } from "./pixels.js" */
+/** @import { Mode } from "./steering.js" */
+/** @import { Status } from "./types.js" */
 /** @import { Point } from "./view.js" */
 
 /** @type {Status | null} */
@@ -34,7 +35,7 @@ const inspector = new Inspector(link, choose);
 const sample = new SampleView(link, () => stage.redraw());
 const pyramid = new Pyramid(link);
 const pilot = new Pilot((name, amounts) => link.send(name, amounts));
-new Gestures(stage, pilot, {
+new Steering(stage, pilot, {
   mode,
   onClick: click,
   onHover: (pixel) => {

@@ -1,58 +1,14 @@
 // The pyramid of strategies: an image of what each (s, t) adds, a row for each number of vertices.
 
 import { box, button, get, input, make, say, select } from "./dom.js";
-import { cell, compact, count, digits, percent } from "./format.js";
+import { count, digits } from "./format.js";
+import { figuresOf, meaning, rowName, rowOf, rowsOf } from "./tiles.js";
 
 /** @import { Link } from "./link.js" */
 /** @import { LaneName, Lane, Status, StrategyReport, StrategyTile } from "./types.js" */
 
 /** The least time between two looks. Unit: milliseconds. */
 const PATIENCE = 2000;
-
-/**
- * Tiles by the number of vertices of their paths, s growing.
- * @param {StrategyTile[]} tiles
- * @returns {[number, StrategyTile[]][]}
- */
-export function rowsOf(tiles) {
-  /** @type {Map<number, StrategyTile[]>} */
-  const rows = new Map();
-  for (const tile of tiles) {
-    const vertices = tile.s + tile.t;
-    rows.set(vertices, [...(rows.get(vertices) ?? []), tile]);
-  }
-  const sorted = [...rows].sort(([a], [b]) => a - b);
-  return sorted.map(([vertices, row]) => [vertices, row.sort((a, b) => a.s - b.s)]);
-}
-
-/** @param {number} vertices */
-export function rowName(vertices) {
-  return `${vertices} vertices, ${count(vertices - 2, "bounce")}`;
-}
-
-/**
- * What a strategy does, in words.
- * @param {{s: number, t: number}} strategy
- */
-export function meaning({ s, t }) {
-  if (s === 0) return "the camera subpath hits a light";
-  if (t === 1) return "the light subpath is seen by the lens";
-  if (s === 1) return "a point of a light is connected (next event)";
-  return "both subpaths are connected";
-}
-
-/**
- * The figures of a tile.
- * @param {StrategyTile} tile
- */
-export function figuresOf(tile) {
-  return [
-    `mean ${cell(tile.mean)}`,
-    `traced ${compact(tile.traced)}`,
-    `blocked ${percent(tile.blockedShare)}`,
-    `variance ${tile.variance === null ? "–" : cell(Number(tile.variance.toPrecision(2)))}`,
-  ];
-}
 
 export class Pyramid {
   /** @param {Link} link */
@@ -105,7 +61,6 @@ export class Pyramid {
     if (!lane || !this.isShown) return;
     const isKept = lane.strategyVertices > 0;
     box("strategies-look").hidden = !isKept && this.lanes.length < 2;
-    box("strategies-sheet").hidden = !isKept;
     button("strategies-drop").hidden = !isKept;
     if (!isKept) return this.explain();
     const state = `${lane.lane} ${lane.generation}/${lane.passes}`;
@@ -145,8 +100,7 @@ export class Pyramid {
 
   /** @param {StrategyReport} report */
   show(report) {
-    const { lane, kind } = this.query;
-    get("strategies-sheet", HTMLAnchorElement).href = this.link.url("/strategies.png", { lane, kind });
+    const { kind } = this.query;
     const told =
       kind === "weighted"
         ? "The contribution of each strategy: all tiles and longer paths add up to the image."
@@ -170,7 +124,7 @@ export class Pyramid {
         ...figuresOf(tiles[0]).map(() => make("span")),
       ]),
     );
-    return [make("h2", {}, [rowName(vertices)]), make("div", { class: "pyramid-row" }, buttons)];
+    return rowOf(rowName(vertices), buttons);
   }
 
   /**

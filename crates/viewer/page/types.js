@@ -1,6 +1,6 @@
 // What the server says, as types: `Status` by the socket, the others as answers to requests.
 
-/** @typedef {"a" | "b"} LaneName */
+/** @typedef {import("./pixels.js").LaneName} LaneName */
 
 /** @typedef {[number, number, number]} Triple Linear Rec. 709, or a point. */
 
@@ -68,17 +68,7 @@
  * @property {number} generation
  */
 
-/**
- * What a strategy has made.
- * @typedef {object} StrategyTile
- * @property {number} s
- * @property {number} t
- * @property {string} name
- * @property {number} mean
- * @property {number} traced
- * @property {number | null} blockedShare
- * @property {number | null} variance
- */
+/** @typedef {import("./tiles.js").StrategyTile & {name: string}} StrategyTile */
 
 /**
  * @typedef {object} StrategyReport

@@ -40,12 +40,12 @@ pub(crate) struct LayerArgs {
     #[arg(long, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u16).range(2..=Layers::MOST_STRATEGY_VERTICES as i64))]
     pub(crate) strategy_layers: Option<u16>,
-    /// Write the strategy pyramid: pyramid.exr, weighted.png and raw.png in this folder.
+    /// Write the strategy pyramid: pyramid.exr in this folder.
     ///
-    /// pyramid.exr has the layers of --strategy-layers (6 by default) and raw.sStT.R, G, B, the same
-    /// without weights: the estimate of each strategy alone. The PNGs are contact sheets with a row per
-    /// path length. The render prints the rays, blocked rays, mean and variance of each strategy at the
-    /// end; --stats has them too. Needs 6.4 KB of memory per pixel at 6 vertices.
+    /// It has the layers of --strategy-layers (6 by default) and raw.sStT.R, G, B, the same without
+    /// weights: the estimate of each strategy alone. The render prints the rays, blocked rays, mean and
+    /// variance of each strategy at the end; --stats has them too. Needs 6.4 KB of memory per pixel at 6
+    /// vertices.
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub(crate) pyramid: Option<PathBuf>,
 }

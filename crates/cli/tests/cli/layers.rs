@@ -113,11 +113,11 @@ fn the_picture_does_not_depend_on_layers() {
 const PYRAMID: &str = "--pyramid p --strategy-layers 4 --spp 4";
 
 #[test]
-fn a_pyramid_is_an_exr_and_two_sheets() {
+fn a_pyramid_is_an_exr() {
     let workplace = workplace();
     let render = format!("{ROOM} {PYRAMID} -o a.png --stats a.json");
     let ran = workplace.run(&render).expect(0);
-    ran.says("p/weighted.png").says("rays/sample").says("s1t2");
+    ran.says("p/pyramid.exr").says("rays/sample").says("s1t2");
     let layers = workplace.layers("p/pyramid.exr");
     let mut names: Vec<_> = layers.names().filter(|name| name.ends_with('R')).collect();
     names.sort();
@@ -143,10 +143,6 @@ fn a_pyramid_is_an_exr_and_two_sheets() {
     let (weighted, raw) = (channel("s1t2.R"), channel("raw.s1t2.R"));
     assert!(weighted.iter().zip(&raw).all(|(w, raw)| *w <= raw * 1.0001));
     assert!(weighted.iter().zip(&raw).any(|(w, raw)| w < raw));
-    for sheet in ["p/weighted.png", "p/raw.png"] {
-        let image = formats::image::read(&workplace.path(sheet), None).unwrap();
-        assert!(image.width >= 640 && image.height > 4 * 135, "{sheet}");
-    }
     let stats: serde_json::Value = serde_json::from_str(&workplace.read("a.json")).unwrap();
     let rows = stats["strategies"].as_array().unwrap();
     let row = rows

@@ -109,12 +109,16 @@ fn the_outputs_of_a_render_are_different_files() {
 fn links_to_a_file_of_the_scene_are_that_file() {
     let place = place();
     fs::create_dir(place.path("strategies")).unwrap();
-    std::os::unix::fs::symlink("../wood.png", place.path("strategies/raw.png")).unwrap();
+    std::os::unix::fs::symlink("../sky.exr", place.path("strategies/pyramid.exr")).unwrap();
     fs::hard_link(place.path("sky.exr"), place.path("second.exr")).unwrap();
     let render = "render wood.pbrt -q --spp 1 --integrator bdpt -o";
-    let raw = ["strategies/raw.png", "input", "wood.png"];
-    refused(&place, &format!("{render} a.exr --pyramid strategies"), raw)
-        .says("hint: name another file with --pyramid");
+    let pyramid = ["strategies/pyramid.exr", "input", "sky.exr"];
+    refused(
+        &place,
+        &format!("{render} a.exr --pyramid strategies"),
+        pyramid,
+    )
+    .says("hint: name another file with --pyramid");
     let second = ["second.exr", "input", "sky.exr"];
     refused(&place, &format!("{render} second.exr"), second);
 }

@@ -12,7 +12,7 @@
 //! |---|---|
 //! | `records.ndjson` | whose records these are and of which machine, and a record per line; replaced after each render |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
-//! | `images/` | the pictures of the first seed, EXR; contact sheets of strategies, PNG |
+//! | `images/` | the pictures of the first seed, and of strategies, EXR |
 //! | `references/` | references that were made here |
 //!
 //! # Budgets

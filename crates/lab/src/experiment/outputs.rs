@@ -23,8 +23,8 @@ pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
 pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>], setup: &Setup) -> Result<()> {
     let mut written = always(&setup.folder);
     let images = stages.iter().flat_map(|stage| images(experiment, stage));
-    let sheets = pyramid::files(experiment, stages);
-    written.extend(images.chain(sheets).map(|name| setup.folder.join(name)));
+    let strategies = pyramid::files(experiment, stages);
+    written.extend(images.chain(strategies).map(|name| setup.folder.join(name)));
     for stage in stages {
         written.extend(reference::written(stage, setup));
     }

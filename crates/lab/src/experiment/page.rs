@@ -3,8 +3,9 @@
 use super::analysis::Section;
 use super::error::ExperimentError;
 use crate::image::Pixels;
-use crate::report::{self, ImageKind, Report, ReportImage, Sheet};
-use crate::results::Results;
+use crate::report::{self, ImageKind, Report, ReportImage};
+use crate::results::{Pyramid, Results};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -31,23 +32,34 @@ pub fn write_page(
         tables: &tables,
         plots: &plots,
         images: &images(folder, results)?,
-        sheets: &sheets(folder, results)?,
+        layers: &layers(folder, results)?,
         command,
     });
     Ok(formats::file::replace(&folder.join(PAGE), page.as_bytes())?)
 }
 
-/// The contact sheets of strategies.
-fn sheets(folder: &Path, results: &Results) -> Result<Vec<Sheet>> {
-    let names = results.pyramids.iter();
-    let names = names.flat_map(|pyramid| [&pyramid.weighted, &pyramid.raw]);
-    let read = |name: &String| {
-        let path = folder.join(name);
-        let png = std::fs::read(&path).map_err(|error| ExperimentError::Folder { path, error })?;
-        let name = name.clone();
-        Ok(Sheet { name, png })
+/// The images of each pyramid by the names of their layers; that of the picture is empty.
+fn layers(folder: &Path, results: &Results) -> Result<Vec<BTreeMap<String, Pixels>>> {
+    let read = |pyramid: &Pyramid| {
+        let file = formats::image::read_layers(&folder.join(&pyramid.images))?;
+        let names = file.names().filter_map(|name| match name.as_str() {
+            "R" => Some(String::new()),
+            name => name.strip_suffix(".R").map(str::to_owned),
+        });
+        let layers = names.filter_map(|name| {
+            let prefix = if name.is_empty() {
+                String::new()
+            } else {
+                format!("{name}.")
+            };
+            let [r, g, b] = ["R", "G", "B"].map(|channel| format!("{prefix}{channel}"));
+            let data = file.triples([&r, &g, &b])?;
+            let size = pyramid.size;
+            Some((name, Pixels { size, data }))
+        });
+        Ok(layers.collect())
     };
-    names.map(read).collect()
+    results.pyramids.iter().map(read).collect()
 }
 
 /// The images of the first seed, and the references that they are compared with.

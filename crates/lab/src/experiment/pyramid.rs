@@ -1,7 +1,7 @@
 //! What each strategy of one method does in every scene: rendered apart from the records, once.
 //!
-//! Images of strategies take kilobytes for each pixel, and a contact sheet shows them small: a scene
-//! whose images are larger than a tile is rendered at the size of one.
+//! Images of strategies take kilobytes for each pixel, and a page shows them small: a scene whose images
+//! are larger than a tile is rendered at the size of one.
 
 use super::error::ExperimentError;
 use super::journal::Journal;
@@ -9,7 +9,7 @@ use super::names::file_name;
 use super::run::{End, Event, Observer, Setup};
 use super::stage::Stage;
 use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec};
-use crate::pyramid::{self, Figures, Kind};
+use crate::pyramid::{self, Figures};
 use crate::results::{Pyramid, StrategyInfo};
 use bidir::driver::Session;
 use bidir::film::Layers;
@@ -49,23 +49,19 @@ pub(super) fn found(
     found.cloned().collect()
 }
 
-/// The names of the files of all contact sheets, relative to the folder of the results.
+/// The names of the files with their images, relative to the folder of the results.
 pub(super) fn files(experiment: &Experiment, stages: &[Stage<'_>]) -> Vec<String> {
     let Some((spec, _)) = wanted(experiment) else {
         return Vec::new();
     };
     let shown = stages.iter().filter(|stage| is_shown(spec, stage));
-    let files = shown.flat_map(|stage| ["weighted", "raw"].map(|word| file(stage, word)));
-    files.collect()
+    shown.map(file).collect()
 }
 
-/// The name of a contact sheet.
-fn file(stage: &Stage<'_>, word: &str) -> String {
-    // No image of a method has this name: those end in `.exr`.
-    format!(
-        "images/{}--strategies-{word}.png",
-        file_name(&stage.spec.name)
-    )
+/// The name of the file with the images of a scene.
+fn file(stage: &Stage<'_>) -> String {
+    // No image of a method has this name: those have the budget between two `--`.
+    format!("images/{}--strategies.exr", file_name(&stage.spec.name))
 }
 
 /// Refuses a method that is not bidirectional in one of the scenes.
@@ -172,24 +168,14 @@ impl Work<'_> {
             }
             session.step(&());
         }
-        let [weighted, raw] = [
-            self.sheet(&session, Kind::Weighted, "weighted")?,
-            self.sheet(&session, Kind::Raw, "raw")?,
-        ];
-        Ok(Some(self.told(&session, weighted, raw)))
+        let images = file(self.stage);
+        let film = session.film();
+        let developed = pyramid::developed(film);
+        developed.write_exr(&self.setup.folder.join(&images), film.settings(), &[])?;
+        Ok(Some(self.told(&session, images)))
     }
 
-    /// Writes a contact sheet, and gives its name relative to the folder of the results.
-    fn sheet(&self, session: &Session<'_>, kind: Kind, word: &str) -> Result<String> {
-        let scene = &self.stage.spec.name;
-        let pixels = pyramid::sheet(session.film(), kind, scene);
-        let name = file(self.stage, word);
-        let size = pixels.size.map(|side| side as u32);
-        formats::image::write_png(&self.setup.folder.join(&name), size, &pixels.data)?;
-        Ok(name)
-    }
-
-    fn told(&self, session: &Session<'_>, weighted: String, raw: String) -> Pyramid {
+    fn told(&self, session: &Session<'_>, images: String) -> Pyramid {
         let all = Figures::all(session);
         Pyramid {
             scene: self.stage.spec.name.clone(),
@@ -201,8 +187,7 @@ impl Work<'_> {
             mean: pyramid::mean(session.film()),
             longer: pyramid::mean_of_longer(session.film()),
             strategies: all.iter().filter_map(strategy).collect(),
-            weighted,
-            raw,
+            images,
         }
     }
 }

@@ -7,7 +7,7 @@ use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
 /// A page has maps for as many pixels of renders: half a million take about a second of one core in
 /// rooms, and nobody should wait for a page.
-const MOST_PIXELS: usize = 1 << 22;
+pub(super) const MOST_PIXELS: usize = 1 << 22;
 
 /// Gives renders their maps against the reference of their scene, where that has their size: the
 /// difference at the exposure at which it is seen best. In order, as far as `MOST_PIXELS` goes.
@@ -34,24 +34,6 @@ pub fn add_flip(images: &mut [ReportImage]) {
         let pair = Pair::new(&image.pixels, reference);
         image.flip = pair.map(|pair| Metric::FlipHdr.errors(&pair));
     });
-}
-
-/// What a reader has to know of maps that are not there. None: all are.
-pub(super) fn missing(images: &[ReportImage]) -> Option<String> {
-    let renders = || {
-        images
-            .iter()
-            .filter(|image| image.kind != ImageKind::Reference)
-    };
-    let missing = renders().filter(|image| image.flip.is_none()).count();
-    (missing > 0).then(|| {
-        format!(
-            "{missing} of {} renders have no map of FLIP here: their scene has no reference of their \
-             size among the results, or the maps of those before have {MOST_PIXELS} pixels. \
-             bidir compare --flip hdr --error-map computes it from the images.",
-            renders().count()
-        )
-    })
 }
 
 #[cfg(test)]
@@ -91,8 +73,6 @@ mod tests {
         assert_eq!(has, [false, true, true, false, false, false]);
         let mean = |index: usize| Metric::FlipHdr.pool(images[index].flip.as_ref().unwrap());
         assert!(mean(1).abs() < 1e-12 && mean(2) > 0.1);
-        assert!(missing(&images).unwrap().starts_with("2 of 4 renders"));
-        assert_eq!(missing(&images[..3]), None);
     }
 
     /// The one that is too large is left out; what fits behind it is not.

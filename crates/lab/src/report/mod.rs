@@ -1,98 +1,75 @@
 //! The report: what an experiment found, as one page that needs nothing else.
 //!
-//! [`html`] makes the page; it opens from a file, on paper, in the dark, without a network. In order:
+//! [`html`] makes the page; it opens from a file, on paper, in the dark, without a network. It has the
+//! results as JSON, a style and a script: modules in `page/`, of which the viewer of renders has some,
+//! too (`bundle`). The script draws everything: verdicts, settings, claims, tables, plots, strategies, and
+//! the viewer that flips between images at the same place. Without it the page has the verdicts alone.
 //!
-//! 1. what the experiment is about, and the verdicts of all claims at a glance (`overview`),
-//! 2. what was compared, on what, with which settings, seeds and machine (`setting`),
-//! 3. each claim: its source, its verdict, what was found, how sure that is, tables and plots (`claims`),
-//! 4. more tables and plots,
-//! 5. what each strategy does (`strategies`),
-//! 6. the viewer, which flips between images at the same place (`viewer`, `*.js`),
-//! 7. how to make it again, and what the words mean (`glossary`).
-//!
-//! *Nothing leaves the page.* Its security policy forbids every request, images but those that stand in
-//! the page, and of scripts and styles all but those of this folder, by their hashes. Texts cannot become markup, since the page is a tree
-//! until it is written (`markup`).
-//!
-//! *Numbers* are written to the digits that their intervals give them (`number`), and what is best is
-//! marked together with all that cannot be told from it (`table`). *Plots* are SVG: series differ by
-//! colour, marker and dashes, and each has its numbers as a table (`plot`, `axis`, `series`).
+//! *Nothing leaves the page.* Its security policy forbids every request, and all scripts and styles but
+//! those that stand in it, by their hashes. Texts cannot become markup: in the JSON no `<` is left, and
+//! the script makes texts of them.
 //!
 //! *Pixels* are half floats in base64 (`half`), so that exposure works as on the original: 11 bits of
 //! precision, up to 65504. An image takes 8 bytes per pixel, and 1⅓ more where it has a map of FLIP.
 //!
 //! This module measures nothing and concludes nothing: it shows [`Results`] as they are.
 
-mod axis;
-mod claims;
+mod bundle;
 mod flip;
-mod glossary;
 mod half;
-mod legend;
-pub(crate) mod number;
-mod overview;
-mod plot;
-mod series;
-mod setting;
-mod strategies;
-mod table;
 #[cfg(test)]
 mod tests;
 mod text;
-mod viewer;
 
+pub use bundle::module;
 pub use flip::add_flip;
 pub use text::table_text;
 
+use crate::experiment::analysis::{ReferenceNoise, reference_noise};
 use crate::image::Pixels;
-use crate::markup::{Element, element};
+use crate::markup::{Element, element, script_json};
 use crate::metric::ErrorMap;
-use crate::results::{Plot, Results, Table};
+use crate::results::{Claim, Plot, Results, Table, Verdict};
+use crate::statistics::RATIOS;
+use half::{base64, half_bytes};
+use serde::Serialize;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 
 /// All that a page shows.
 #[derive(Clone, Copy, Debug)]
 pub struct Report<'a> {
-    /// What was found.
+    /// The results.
     pub results: &'a Results,
     /// Tables that belong to no claim.
     pub tables: &'a [Table],
     /// Plots that belong to no claim.
     pub plots: &'a [Plot],
-    /// What the viewer shows.
+    /// The images to flip between.
     pub images: &'a [ReportImage],
-    /// The contact sheets that the results name.
-    pub sheets: &'a [Sheet],
+    /// The images of each pyramid of the results, by the names of their layers.
+    pub layers: &'a [BTreeMap<String, Pixels>],
     /// The command that makes the experiment again.
     pub command: &'a str,
 }
 
-/// A contact sheet of strategies.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sheet {
-    /// Its name in the results.
-    pub name: String,
-    /// The file.
-    pub png: Vec<u8>,
-}
-
-/// An image of the viewer; one scene has each kind once.
+/// An image to flip to; one scene has each kind once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReportImage {
     /// The name of its scene.
     pub scene: String,
-    /// What it is.
+    /// Its kind.
     pub kind: ImageKind,
     /// Its pixels.
     pub pixels: Pixels,
-    /// What FLIP says of every pixel, where the viewer should show it; see [`add_flip`].
+    /// FLIP of every pixel, where the page should show it; see [`add_flip`].
     pub flip: Option<ErrorMap>,
 }
 
-/// What an image of the viewer is.
+/// The kind of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ImageKind {
-    /// What the others of the scene are compared with.
+    /// The others of the scene are compared with it.
     Reference,
     /// A render.
     Render {
@@ -103,116 +80,145 @@ pub enum ImageKind {
     },
 }
 
-const STYLE: &str = include_str!("report.css");
-
-/// The scripts of the viewer; as one module they share their names with nobody else.
-const SCRIPT: &str = concat!(
-    include_str!("pixels.js"),
-    include_str!("view.js"),
-    include_str!("viewer.js"),
-    include_str!("selftest.js"),
-);
+const STYLE: &str = include_str!("../../page/report.css");
 
 /// The page. The same report gives the same bytes.
 pub fn html(report: &Report<'_>) -> String {
-    let results = report.results;
-    let main = element("main")
-        .child(overview::verdicts(&results.claims))
-        .child(setting::section(results))
-        .child(claims::section(&results.claims))
-        .child(others(report))
-        .child(strategies::section(results, report.sheets))
-        .child(viewer::section(report.images))
-        .child(glossary::again(report))
-        .child(glossary::section());
-    let script = element("script").with("type", "module").code(SCRIPT);
-    let before = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">{}\n<body>{}{main}",
-        head(&results.title),
-        overview::header(report)
-    );
-    let after = format!(
-        "{}{script}\n</body>\n</html>\n",
-        viewer::data(report.images)
-    );
-    let footer = footer(before.len() + after.len());
-    [before, footer, after].concat()
+    let script = bundle::script();
+    let json = serde_json::to_string(&Data::new(report)).expect("texts and numbers are JSON");
+    let data = element("script")
+        .with("type", "application/json")
+        .with("id", "data")
+        .code(script_json(&json));
+    let head = head(&report.results.title, &script);
+    let body = element("body")
+        .child(element("noscript").children(without_script(&report.results.claims)))
+        .child(data)
+        .child(element("script").with("type", "module").code(script));
+    format!("<!DOCTYPE html>\n<html lang=\"en\">{head}{body}\n</html>\n")
 }
 
-/// The footer, with the size of the page that it belongs to; `others` is that of all the rest.
-fn footer(others: usize) -> String {
-    let mut footer = String::new();
-    // The size has more digits with the footer than without it at most once.
-    for _ in 0..3 {
-        footer = overview::footer(others + footer.len()).to_string();
-    }
-    footer
-}
-
-fn head(title: &str) -> Element {
+fn head(title: &str, script: &str) -> Element {
+    let meta = |name, content: &str| element("meta").with("name", name).with("content", content);
+    let policy = element("meta")
+        .with("http-equiv", "Content-Security-Policy")
+        .with("content", policy(script));
     element("head")
         .child(element("meta").with("charset", "utf-8"))
-        .child(
-            element("meta")
-                .with("http-equiv", "Content-Security-Policy")
-                .with("content", policy()),
-        )
-        .child(
-            element("meta")
-                .with("name", "viewport")
-                .with("content", "width=device-width, initial-scale=1"),
-        )
-        .child(
-            element("meta")
-                .with("name", "color-scheme")
-                .with("content", "light dark"),
-        )
+        .child(policy)
+        .child(meta("viewport", "width=device-width, initial-scale=1"))
+        .child(meta("color-scheme", "light dark"))
         .child(element("title").text(title))
         .child(element("style").code(STYLE))
 }
 
-/// Nothing may be loaded, sent or framed; images are in the page; this style and this script may run, and no other.
-fn policy() -> String {
-    let hash = |code: &str| half::base64(&Sha256::digest(code.as_bytes()));
+/// Nothing may be loaded, sent or framed; this style and this script may run, and no other.
+fn policy(script: &str) -> String {
+    let hash = |code: &str| base64(&Sha256::digest(code.as_bytes()));
     format!(
         "default-src 'none'; style-src 'sha256-{}'; script-src 'sha256-{}'; \
-         img-src data:; base-uri 'none'; form-action 'none'",
+         base-uri 'none'; form-action 'none'",
         hash(STYLE),
-        hash(SCRIPT)
+        hash(script)
     )
 }
 
-/// Tables and plots that belong to no claim.
-fn others(report: &Report<'_>) -> Element {
-    let mut section = section("more", "More tables and plots");
-    if report.tables.is_empty() && report.plots.is_empty() {
-        section = section.child(element("p").text("There are no others."));
+/// The page for readers whose browser runs no scripts.
+fn without_script(claims: &[Claim]) -> Vec<Element> {
+    let line = |claim: &Claim| {
+        let verdict = match claim.verdict {
+            Verdict::Reproduced => "reproduced",
+            Verdict::NotReproduced => "not reproduced",
+            Verdict::Undecided => "undecided",
+            Verdict::Met => "met",
+            Verdict::NotMet => "not met",
+            Verdict::NotMeasured => "not measured",
+        };
+        let rest = format!(": {} {}", claim.claim, claim.found);
+        let verdict = element("b").text(verdict);
+        element("p").child(verdict).text(rest)
+    };
+    let notice = "This page needs JavaScript. Its figures are in results.json, too.";
+    let notice = element("p").text(notice);
+    std::iter::once(notice)
+        .chain(claims.iter().map(line))
+        .collect()
+}
+
+/// The data of a page, as `page/results.js` describes them.
+#[derive(Serialize)]
+struct Data<'a> {
+    results: &'a Results,
+    tables: &'a [Table],
+    plots: &'a [Plot],
+    images: Vec<Image<'a>>,
+    layers: Vec<BTreeMap<&'a str, String>>,
+    noises: Vec<ReferenceNoise<'a>>,
+    ratios: &'static str,
+    most_flip_pixels: usize,
+    command: &'a str,
+}
+
+impl<'a> Data<'a> {
+    fn new(report: &Report<'a>) -> Self {
+        let coded = |layers: &'a BTreeMap<String, Pixels>| {
+            let layers = layers.iter();
+            layers
+                .map(|(name, pixels)| (name.as_str(), halves(pixels)))
+                .collect()
+        };
+        Self {
+            results: report.results,
+            tables: report.tables,
+            plots: report.plots,
+            images: report.images.iter().map(Image::new).collect(),
+            layers: report.layers.iter().map(coded).collect(),
+            noises: reference_noise(report.results).collect(),
+            ratios: RATIOS,
+            most_flip_pixels: flip::MOST_PIXELS,
+            command: report.command,
+        }
     }
-    let plots = report.plots.iter().enumerate();
-    section
-        .children(report.tables.iter().map(table::table))
-        .children(plots.map(|(index, plot)| plot::figure(plot, &format!("plot-{index}"))))
 }
 
-/// A section with its heading.
-fn section(id: &'static str, heading: &str) -> Element {
-    element("section")
-        .with("id", id)
-        .child(element("h2").text(heading))
+#[derive(Serialize)]
+struct Image<'a> {
+    scene: &'a str,
+    name: String,
+    is_reference: bool,
+    size: [usize; 2],
+    halves: String,
+    flip: Option<String>,
 }
 
-/// Paragraphs of a text, which empty lines divide.
-fn paragraphs(text: &str) -> impl Iterator<Item = Element> + '_ {
-    let parts = text.split("\n\n").map(str::trim);
-    parts
-        .filter(|part| !part.is_empty())
-        .map(|part| element("p").text(part))
+impl<'a> Image<'a> {
+    fn new(image: &'a ReportImage) -> Self {
+        let name = match &image.kind {
+            ImageKind::Reference => "reference".to_owned(),
+            ImageKind::Render { method, budget } => format!("{method} · {budget}"),
+        };
+        Self {
+            scene: &image.scene,
+            name,
+            is_reference: image.kind == ImageKind::Reference,
+            size: image.pixels.size,
+            halves: halves(&image.pixels),
+            flip: image.flip.as_ref().map(flip_bytes),
+        }
+    }
 }
 
-/// Words and what stands for them, as a list.
-fn definitions(pairs: impl IntoIterator<Item = (String, String)>) -> Element {
-    let pairs = pairs
-        .into_iter()
-        .flat_map(|(word, meaning)| [element("dt").text(word), element("dd").text(meaning)]);
-    element("dl").children(pairs)
+fn halves(pixels: &Pixels) -> String {
+    base64(&half_bytes(&pixels.data))
+}
+
+/// A byte for each pixel: 254 for an error of 1, 255 for no number.
+fn flip_bytes(map: &ErrorMap) -> String {
+    let byte = |&error: &f64| {
+        if error.is_nan() {
+            return 255;
+        }
+        (error.clamp(0.0, 1.0) * 254.0).round() as u8
+    };
+    base64(&map.data.iter().map(byte).collect::<Vec<_>>())
 }

@@ -1,4 +1,4 @@
-//! The page as a whole; a browser looks at it in `tests/report.rs`.
+//! The page as a whole; `crates/viewer/browser/live/report.test.js` looks at one in a browser.
 
 use super::*;
 use crate::results::{
@@ -73,16 +73,18 @@ fn pyramid() -> Pyramid {
         mean: 1.0,
         longer: 0.5,
         strategies: vec![strategy(0, 2, 0), strategy(1, 2, 8)],
-        weighted: "images/weighted.png".into(),
-        raw: "images/raw.png".into(),
+        images: "images/room--strategies.exr".into(),
     }
 }
 
-fn sheets() -> [Sheet; 2] {
-    [("images/weighted.png", b"foo"), ("images/raw.png", b"bar")].map(|(name, png)| Sheet {
-        name: name.into(),
-        png: png.to_vec(),
-    })
+fn layers() -> [BTreeMap<String, Pixels>; 1] {
+    let pixels = Pixels {
+        size: [1, 1],
+        data: vec![[1.0, 0.5, 0.0]],
+    };
+    [["", "longer", "raw.s1t2"]
+        .map(|name| (name.to_owned(), pixels.clone()))
+        .into()]
 }
 
 fn results() -> Results {
@@ -160,132 +162,108 @@ fn page(results: &Results) -> String {
             curve("a plot without points", PlotKind::Lines, &[[0.0, 1.0]]),
         ],
         images: &images(),
-        sheets: &sheets(),
+        layers: &layers(),
         command: "bidir experiment <file>",
     })
 }
 
-#[test]
-fn everything_is_in_the_page() {
-    let page = page(&results());
-    let parts = [
-        "Title &amp; &lt;b&gt;",
-        "First.",
-        "Second.",
-        "bidir 7.8.9",
-        "room.pbrt",
-        "abc123",
-        "made with care",
-        "2 × 1",
-        "64 spp",
-        "shadow-rays",
-        "per-pair",
-        "✔ reproduced",
-        "✘ not reproduced",
-        "? undecided",
-        "a table of none",
-        "a plot of none",
-        "a plot without points",
-        "No point of this plot can be drawn",
-        "bidir experiment &lt;file&gt;",
-        "1 reproduced, 1 not reproduced, 1 undecided",
-    ];
-    for part in parts {
-        assert!(page.contains(part), "{part}");
-    }
-    for id in ["one", "two", "three"] {
-        for part in [
-            "What",
-            "source of",
-            "found for",
-            "test of",
-            "table of",
-            "plot of",
-        ] {
-            let says = if part == "What" { " says" } else { "" };
-            assert!(page.contains(&format!("{part} {id}{says}")), "{part} {id}");
-        }
-    }
-    for (name, _) in crate::metric::Metric::NAMES {
-        assert!(page.contains(&format!("<dt>{name}</dt>")), "{name}");
-    }
-    assert_eq!(page.matches("<svg").count(), 4);
+/// The text of the element that begins with `start`.
+fn inside<'a>(page: &'a str, start: &str, end: &str) -> &'a str {
+    let (_, rest) = page.split_once(start).unwrap();
+    rest.split_once(end).unwrap().0
+}
+
+fn data(page: &str) -> serde_json::Value {
+    serde_json::from_str(inside(page, "id=\"data\">", "</script>")).unwrap()
 }
 
 #[test]
-fn nothing_in_a_text_is_markup() {
-    let page = page(&results());
-    // The two sheets alone.
-    assert_eq!(page.matches("<img").count(), 2);
-    assert!(!page.contains("<img src=x"));
-    // The pixels and the scripts: one end each.
-    assert_eq!(page.matches("</script>").count(), 2);
+fn the_data_come_back_as_they_were() {
+    let results = results();
+    let first = page(&results);
+    let data = data(&first);
+    let back: Results = serde_json::from_value(data["results"].clone()).unwrap();
+    assert_eq!(back, results);
+    let tables: Vec<Table> = serde_json::from_value(data["tables"].clone()).unwrap();
+    assert_eq!(tables, [table("a table of none")]);
+    let plots: Vec<Plot> = serde_json::from_value(data["plots"].clone()).unwrap();
+    assert_eq!(plots[1].caption, "a plot without points");
+    assert_eq!(data["command"], "bidir experiment <file>");
+    assert_eq!(data["ratios"], RATIOS);
+    assert!(first.contains("<title>Title &amp; &lt;b&gt;</title>"));
+    assert_eq!(page(&results), first, "the same report has the same bytes");
+}
+
+#[test]
+fn pixels_are_in_the_page_as_they_are() {
+    let data = data(&page(&results()));
+    let [reference, render] = [0, 1].map(|index| &data["images"][index]);
+    assert_eq!(
+        (&reference["scene"], &reference["name"]),
+        (&HOSTILE.into(), &"reference".into())
+    );
+    assert_eq!(reference["is_reference"], true);
+    // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
+    assert_eq!(reference["halves"], "ADwAOAAAADwAOAAA");
+    assert_eq!(render["name"], format!("{HOSTILE} · 64 spp"));
+    assert_eq!(render["flip"], "AP4=");
+    let layers = data["layers"][0].as_object().unwrap();
+    let names: Vec<_> = layers.keys().map(String::as_str).collect();
+    assert_eq!(names, ["", "longer", "raw.s1t2"]);
+    assert_eq!(layers["raw.s1t2"], "ADwAOAAA");
+}
+
+#[test]
+fn no_text_is_markup_or_ends_the_script() {
+    let mut results = results();
+    results.title = HOSTILE.to_owned();
+    results.description = "<!-- <script> \0\u{1b}[31m\u{2028}]]>".to_owned();
+    results.claims[0].found = HOSTILE.to_owned();
+    let page = page(&results);
     assert_eq!(page.matches("<script").count(), 2);
-    let handler = [" onclick=", " onload=", " onerror=\"", " style=\""];
-    for attribute in handler {
+    assert_eq!(page.matches("</script>").count(), 2);
+    assert!(!page.contains("<img") && !page.contains("<!--"));
+    let json = inside(&page, "id=\"data\">", "</script>");
+    assert!(!json.contains('<') && !json.chars().any(char::is_control));
+    let back: Results = serde_json::from_value(data(&page)["results"].clone()).unwrap();
+    assert_eq!(back, results);
+}
+
+#[test]
+fn the_policy_has_the_hashes_of_the_style_and_the_script_and_allows_nothing_else() {
+    let page = page(&results());
+    let hash = |code: &str| base64(&Sha256::digest(code.as_bytes()));
+    let style = hash(inside(&page, "<style>", "</style>"));
+    let script = hash(inside(&page, "<script type=\"module\">", "</script>"));
+    let policy = inside(&page, "Content-Security-Policy\" content=\"", "\"");
+    let expected = format!(
+        "default-src 'none'; style-src 'sha256-{style}'; script-src 'sha256-{script}'; \
+         base-uri 'none'; form-action 'none'"
+    );
+    assert_eq!(policy.replace("&#39;", "'"), expected);
+    let attributes = [" style=\"", " onclick=", " src=\"", " href=\""];
+    for attribute in attributes {
         assert!(!page.contains(attribute), "{attribute}");
     }
 }
 
 #[test]
-fn nothing_is_elsewhere() {
-    let page = page(&results()).replace("src=\"data:image/png;base64,", "");
-    for scheme in [
-        "http:", "https:", "//cdn", "url(", "@import", "src=\"", "import(",
-    ] {
-        assert!(!page.contains(scheme), "{scheme}");
+fn without_a_script_the_page_has_the_verdicts() {
+    let page = page(&results());
+    let text = inside(&page, "<noscript>", "</noscript>");
+    assert!(text.contains("This page needs JavaScript."));
+    for verdict in ["reproduced", "not reproduced", "undecided"] {
+        assert!(text.contains(&format!("<b>{verdict}</b>")), "{verdict}");
     }
-    assert!(page.contains("default-src &#39;none&#39;"));
-    assert!(page.contains("img-src data:;"));
+    assert!(text.contains("What two says found for two"));
 }
 
 #[test]
-fn pixels_are_in_the_page_as_they_are() {
-    let page = page(&results());
-    let start = page.find("id=\"images\">").unwrap() + "id=\"images\">".len();
-    let json = &page[start..start + page[start..].find("</script>").unwrap()];
-    let scenes: serde_json::Value = serde_json::from_str(json).unwrap();
-    assert_eq!(scenes[0]["name"], HOSTILE);
-    assert_eq!(scenes[0]["images"][0]["is_reference"], true);
-    // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
-    assert_eq!(scenes[0]["images"][0]["halves"], "ADwAOAAAADwAOAAA");
-    assert_eq!(
-        scenes[0]["images"][1]["name"],
-        format!("{HOSTILE} · 64 spp")
-    );
-    assert_eq!(scenes[0]["images"][1]["flip"], "AP4=");
-}
-
-#[test]
-fn strategies_have_sheets_and_numbers() {
-    let page = page(&results());
-    let start = page.find("<section id=\"strategies\">").unwrap();
-    let section = &page[start..start + page[start..].find("</section>").unwrap()];
-    for part in [
-        "src=\"data:image/png;base64,Zm9v\"",
-        "src=\"data:image/png;base64,YmFy\"",
-        "alt=\"Raw images of the strategies of ",
-        "s=1 t=2 contributes most, 25 % of the image.",
-        "2 samples per pixel, seed 3, 4 × 2 pixels",
-        "Nothing was counted for s=1 t=1, s=0 t=3, s=2 t=1:",
-        "longer paths",
-    ] {
-        assert!(section.contains(part), "{part}: {section}");
+fn every_metric_has_a_meaning() {
+    let glossary = module("glossary.js").unwrap();
+    for (name, _) in crate::metric::Metric::NAMES {
+        assert!(glossary.contains(&format!("\"{name}\",")), "{name}");
     }
-    // Half a ray for each sample, a quarter of them blocked; s = 0 has none.
-    let rows: Vec<_> = section.split("<tr>").collect();
-    let row = |name: &str| rows.iter().find(|row| row.contains(name)).unwrap();
-    let numbers = |row: &str| row.matches("class=\"number\"").count();
-    assert!(row("s=1 t=2</td>").contains(">0.5<") && row("s=1 t=2</td>").contains(">25<"));
-    assert_eq!(numbers(row("s=0 t=2</td>")), 6);
-    assert_eq!(row("s=0 t=2</td>").matches('–').count(), 3);
-}
-
-#[test]
-fn the_page_knows_its_size() {
-    let page = page(&results());
-    let size = number::with_decimals(page.len() as f64, 0);
-    assert!(page.contains(&format!("This page has {size} bytes")));
 }
 
 #[test]
@@ -303,36 +281,8 @@ fn a_page_of_nothing_is_a_page() {
         tables: &[],
         plots: &[],
         images: &[],
-        sheets: &[],
+        layers: &[],
         command: "",
     });
-    assert!(page.contains("This experiment examines no claim."));
-    assert!(page.contains("No images were kept."));
-    assert!(page.contains("pyramid = &quot;METHOD&quot;"));
-}
-
-#[test]
-fn points_without_a_place_are_told() {
-    let some = curve(
-        "p",
-        PlotKind::Lines,
-        &[[1.0, 2.0], [2.0, 0.0], [f64::NAN, 1.0]],
-    );
-    let figure = plot::figure(&some, "p").to_string();
-    assert!(figure.contains("left out: 2."), "{figure}");
-    assert_eq!(figure.matches("<tr>").count(), 4);
-}
-
-/// The classes and ids that scripts and styles name are those of the page.
-#[test]
-fn scripts_find_their_elements() {
-    let page = page(&results());
-    let named = SCRIPT.split("byId(\"").skip(1);
-    let mut ids: Vec<_> = named.map(|rest| rest.split('"').next().unwrap()).collect();
-    ids.sort_unstable();
-    ids.dedup();
-    assert!(ids.len() > 15, "{ids:?}");
-    for id in ids {
-        assert!(page.contains(&format!("id=\"{id}\"")), "{id}");
-    }
+    assert_eq!(data(&page)["images"], serde_json::json!([]));
 }

@@ -1,5 +1,4 @@
-//! The crate from outside: experiments as a host runs them, descriptions that are nearly right, and
-//! the report in a browser.
+//! The crate from outside: experiments as a host runs them, and descriptions that are nearly right.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
@@ -8,4 +7,3 @@ extern crate bidir_lab as lab;
 
 mod experiment;
 mod mutations;
-mod report;

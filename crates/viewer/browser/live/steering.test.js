@@ -71,7 +71,7 @@ test("two shadow-ray rules side by side, at equal time", { skip }, async () => {
   await page.mouse.move(stage.x + 0.3 * stage.width, box.y + 60, { steps: 5 });
   await page.mouse.up();
   await page.waitForSelector('#divider[aria-valuenow="30"]');
-  await page.waitForFunction(() => document.querySelectorAll("#chart .curve").length === 2);
+  await page.waitForFunction(() => document.querySelectorAll("#chart .series").length === 2);
   await page.waitForTimeout(1500);
   await keepBoth("split");
   await page.click("#unsplit");

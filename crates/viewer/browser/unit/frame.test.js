@@ -2,7 +2,8 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { decodeFrame, valueAt } from "../../page/frame.js";
+import { fromHalf, halves, valueAt } from "../../../lab/page/pixels.js";
+import { decodeFrame } from "../../page/frame.js";
 
 /**
  * The bytes of a frame.
@@ -53,4 +54,12 @@ test("a preview's pixel stands for all that it covers", () => {
   assert.deepEqual(valueAt(frame, [160, 120], [12, 16]), [0.25, 0.5, 1]);
   assert.deepEqual(valueAt(frame, [160, 120], [15, 19]), [0.25, 0.5, 1]);
   assert.deepEqual(valueAt(frame, [160, 120], [16, 16]), [2, 4, 8]);
+});
+
+test("half floats are those of IEEE 754", () => {
+  const known = [[0x0000, 0], [0x3c00, 1], [0xc000, -2], [0x3555, 0.333251953125], [0x7bff, 65504], [0x0400, 2 ** -14], [0x0001, 2 ** -24], [0xfc00, -Infinity]];
+  for (const [bits, value] of known) assert.equal(fromHalf(bits), value);
+  assert.ok(Object.is(fromHalf(0x8000), -0) && Number.isNaN(fromHalf(0x7e00)));
+  // 1.0, 0.5, 0.0 twice: 00 3c 00 38 00 00.
+  assert.deepEqual([...halves("ADwAOAAAADwAOAAA")], [1, 0.5, 0, 1, 0.5, 0]);
 });

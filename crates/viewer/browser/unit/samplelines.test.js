@@ -5,7 +5,7 @@ import test from "node:test";
 import { fate, names, opacity, pieces, rays, width } from "../../page/samplelines.js";
 
 /** @import { SampleCandidate, SampleReport, SampleVertex } from "../../page/types.js" */
-/** @import { Point } from "../../page/view.js" */
+/** @import { Point } from "../../../lab/page/view.js" */
 
 /**
  * @param {Point | null} raster

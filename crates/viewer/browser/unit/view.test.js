@@ -2,9 +2,9 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { ZOOM_RANGE, centred, fit, pan, pixelAt, toFilm, toScreen, zoomAt } from "../../page/view.js";
+import { ZOOM_RANGE, centred, fit, pan, pixelAt, toFilm, toScreen, zoomAt } from "../../../lab/page/view.js";
 
-/** @import { Point, View } from "../../page/view.js" */
+/** @import { Point, View } from "../../../lab/page/view.js" */
 
 /** @type {View} */
 const VIEW = { zoom: 2.5, offset: [13, -7] };

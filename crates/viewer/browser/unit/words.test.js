@@ -2,13 +2,12 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { MAGMA, STOPS, magma, marks } from "../../page/falsecolor.js";
-import { cell, compact, count, digits, duration, exact, percent } from "../../page/format.js";
+import { MAGMA, STOPS, magma, marks } from "../../../lab/page/falsecolor.js";
+import { cell, compact, count, digits, duration, exact, percent } from "../../../lab/page/format.js";
 import { share } from "../../page/head.js";
 import { address, backoff } from "../../page/link.js";
-import { rowName, rowsOf } from "../../page/pyramid.js";
 
-/** @import { Lane, StrategyTile } from "../../page/types.js" */
+/** @import { Lane } from "../../page/types.js" */
 
 test("large numbers are short", () => {
   const told = [0, 12.345, 950, 999.6, 12345, 4.56e6, 7e9, NaN].map(compact);
@@ -57,15 +56,6 @@ test("progress is that of the lane that has furthest to go", () => {
   assert.equal(share([lane(6, 12), lane(1, 10)]), 0.1);
   assert.equal(share([lane(6, 12), lane(1, null)]), null);
   assert.equal(share([]), null);
-});
-
-test("strategies are in rows by their vertices", () => {
-  const tile = (/** @type {number} */ s, /** @type {number} */ t) =>
-    /** @type {StrategyTile} */ (/** @type {unknown} */ ({ s, t }));
-  const rows = rowsOf([tile(2, 1), tile(0, 2), tile(1, 2), tile(1, 1), tile(0, 3)]);
-  const places = rows.map(([count, tiles]) => [count, ...tiles.map(({ s, t }) => `${s},${t}`)]);
-  assert.deepEqual(places, [[2, "0,2", "1,1"], [3, "0,3", "1,2", "2,1"]]);
-  assert.equal(rowName(3), "3 vertices, 1 bounce");
 });
 
 test("false colour goes from dark to bright, and its marks follow the exposure", () => {

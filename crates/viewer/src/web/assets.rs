@@ -1,4 +1,5 @@
-//! The page and what belongs to it, as it was when the program was built.
+//! The page and what belongs to it, as it was when the program was built. It shares modules with the
+//! report of an experiment.
 
 use super::error::Refusal;
 use axum::extract::Path;
@@ -26,9 +27,12 @@ pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Refusal>
 }
 
 fn answer(name: &str) -> Result<Response, Refusal> {
+    let kind = [(header::CONTENT_TYPE, content_type(name))];
+    if let Some(module) = lab::report::module(name) {
+        return Ok((kind, module).into_response());
+    }
     let missing = || Refusal::new(StatusCode::NOT_FOUND, "there is no such page");
     let EmbeddedFile { data, .. } = Page::get(name).ok_or_else(missing)?;
-    let kind = [(header::CONTENT_TYPE, content_type(name))];
     Ok((kind, data).into_response())
 }
 

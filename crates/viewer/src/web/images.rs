@@ -80,15 +80,14 @@ fn file_name(name: &str) -> String {
         .collect()
 }
 
-/// Which picture of strategies.
+/// Which image of a strategy.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(super) struct OfStrategies {
     #[serde(default)]
     lane: LaneId,
     kind: KindName,
-    /// One strategy; without both the contact sheet of all.
-    s: Option<u16>,
-    t: Option<u16>,
+    s: u16,
+    t: u16,
     /// How much brighter a strategy is shown. Unit: stops.
     #[serde(default)]
     exposure: f32,
@@ -110,16 +109,15 @@ impl From<KindName> for Kind {
     }
 }
 
-/// The contact sheet of strategies, or one of them as large as the film.
+/// The image of a strategy, as large as the film.
 pub(super) async fn strategies(
     State(site): State<Arc<Site>>,
     Asked(asked): Asked<OfStrategies>,
 ) -> Result<Response, Refusal> {
     let kind = asked.kind.into();
-    let strategy = match (asked.s, asked.t) {
-        (None, None) => None,
-        (Some(s), Some(t)) => Some(Strategy { s, t }),
-        _ => return Err(Refusal::query("a strategy is both s and t")),
+    let strategy = Strategy {
+        s: asked.s,
+        t: asked.t,
     };
     if asked.exposure.is_nan() || asked.exposure.abs() > MOST_STOPS {
         let message = format!("the exposure is a number of stops up to {MOST_STOPS}");
@@ -128,9 +126,6 @@ pub(super) async fn strategies(
     let pixels = site.look(asked.lane, move |subject| {
         check_strategies(subject.session)?;
         let film = subject.session.film();
-        let Some(strategy) = strategy else {
-            return Ok(pyramid::sheet(film, kind, &(subject.header)().scene_name()));
-        };
         let image = pyramid::strategy_image(film, kind, strategy);
         image.ok_or_else(|| Refusal::query(format!("there is no image of {strategy}")))
     });

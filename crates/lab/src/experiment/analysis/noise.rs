@@ -6,12 +6,13 @@
 
 use super::records_of;
 use crate::results::{Record, Results, SceneInfo};
+use serde::Serialize;
 
 /// From this part on, the noise is told of as a warning.
 const MUCH: f64 = 0.1;
 
 /// The noise of a reference, in the smallest error that was measured against it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReferenceNoise<'a> {
     /// The scene.
     pub scene: &'a str,

@@ -28,9 +28,13 @@ fn strategies_add_up_to_the_picture() {
         assert_eq!(strategy.rays > 0, strategy.s > 0);
         assert!(strategy.variance.is_some(), "{strategy:?}");
     }
-    for sheet in [&pyramid.weighted, &pyramid.raw] {
-        let image = formats::image::read(&place.path("out").join(sheet), None).unwrap();
-        assert!(image.width > 640 && image.height > 6 * 135, "{sheet}");
+    let images = place.path("out").join(&pyramid.images);
+    let layers = formats::image::read_layers(&images).unwrap();
+    assert_eq!(layers.size(), pyramid.size);
+    for strategy in &pyramid.strategies {
+        let name = format!("raw.s{}t{}", strategy.s, strategy.t);
+        let [r, g, b] = ["R", "G", "B"].map(|channel| format!("{name}.{channel}"));
+        assert!(layers.triples([&r, &g, &b]).is_some(), "{name}");
     }
     let text = fs::read_to_string(place.path("out/results.json")).unwrap();
     assert_eq!(serde_json::from_str::<Results>(&text).unwrap(), results);

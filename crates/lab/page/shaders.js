@@ -46,16 +46,19 @@ vec3 neutral(vec3 color) {
 
 /** Luminance by magma, whose colours are coded already. */
 const FALSE_COLOUR = `
-vec3 falseColour(vec3 color) {
-  float stops = log2(max(dot(color, vec3(0.2126, 0.7152, 0.0722)), 1e-30));
-  float t = clamp((stops - ${literal(STOPS[0])}) / ${literal(STOPS[1] - STOPS[0])}, 0.0, 1.0);
+vec3 magma(float t) {
   return vec3(${MAGMA.map((fit) =>
     fit.reduceRight((sum, factor) => `(${sum} * t + ${literal(factor)})`, "0.0"),
   ).join(",\n    ")});
+}
+
+vec3 falseColour(vec3 color) {
+  float stops = log2(max(dot(color, vec3(0.2126, 0.7152, 0.0722)), 1e-30));
+  return magma(clamp((stops - ${literal(STOPS[0])}) / ${literal(STOPS[1] - STOPS[0])}, 0.0, 1.0));
 }`;
 
 /**
- * A fragment is a pixel of the screen. Where that covers many of the film, at most 8 x 8 of them are
+ * A fragment is a pixel of the screen; what is no number is green. Where that covers many of the film, at most 8 x 8 of them are
  * averaged, as light; where it is a part of one, it has that one's colour.
  */
 export const FRAGMENT = `#version 300 es
@@ -80,11 +83,13 @@ vec3 coded(vec3 linear) {
 }
 
 vec3 onScreen(vec3 light) {
-  vec3 color = light * gain;
-  color = mix(clamp(color, 0.0, 3e38), vec3(0.0), isnan(color));
+  if (any(isnan(light))) return vec3(0.0, 1.0, 0.0);
+  vec3 color = clamp(light * gain, 0.0, 3e38);
   if (operator == 1) return coded(agx(color));
   if (operator == 2) return coded(neutral(color));
   if (operator == 3) return clamp(falseColour(color), 0.0, 1.0);
+  if (operator == 4) return min(color, 1.0);
+  if (operator == 5) return clamp(magma(light.r), 0.0, 1.0);
   return coded(min(color, 1.0));
 }
 

@@ -2,12 +2,11 @@
 
 import { FRAGMENT, VERTEX } from "./shaders.js";
 
-/** @import { Frame } from "./frame.js" */
-/** @import { LaneName } from "./types.js" */
+/** @import { Frame, LaneName } from "./pixels.js" */
 /** @import { View } from "./view.js" */
 
-/** Operators by the names of `bidir tonemap`, and false colour. */
-export const OPERATORS = ["srgb", "agx", "neutral", "false"];
+/** Operators by the names of `bidir tonemap`, false colour, light as it is, and errors in [0, 1]. */
+export const OPERATORS = ["srgb", "agx", "neutral", "false", "linear", "errors"];
 
 /**
  * How light is shown.

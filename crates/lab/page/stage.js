@@ -1,14 +1,18 @@
 // The stage: what part of the film is seen, and how; it draws when something changed.
 
-import { box, get, input, say, select } from "./dom.js";
+import { box, get, input, make, say, select } from "./dom.js";
 import { magma, marks } from "./falsecolor.js";
 import { digits } from "./format.js";
 import { Picture } from "./picture.js";
 import { centred, clamp, fit, pan, pixelAt, toScreen, zoomAt } from "./view.js";
 
-/** @import { Frame } from "./frame.js" */
-/** @import { Status } from "./types.js" */
+/** @import { Frame } from "./pixels.js" */
 /** @import { Point, View } from "./view.js" */
+
+/**
+ * What a stage has to know of a film; `split`: lane b is beside lane a.
+ * @typedef {{film: {resolution: [number, number], crop: [number, number, number, number]}, split: boolean}} Scenery
+ */
 
 export class Stage {
   /** @param {(reason: string) => void} onGiveUp */
@@ -66,7 +70,7 @@ export class Stage {
     this.redraw();
   }
 
-  /** @param {Status} status */
+  /** @param {Scenery} scenery */
   update({ film, split }) {
     const isOther = String(film.resolution) !== String(this.film);
     this.film = film.resolution;
@@ -182,25 +186,32 @@ export class Stage {
     this.picture?.draw(view, look, this.film, this.divide * this.size[0], density);
     say(box("exposure-value"), `${look.exposure > 0 ? "+" : ""}${look.exposure}`);
     say(box("zoom-value"), `${digits(view.zoom * density, 3)}×`);
-    this.drawLegend(look);
+    this.drawLegend();
     for (const listener of this.listeners) listener();
   }
 
-  /** @param {{exposure: number, operator: string}} look */
-  drawLegend({ exposure, operator }) {
+  /**
+   * What is written at the colours of the scale. Null: the picture has none.
+   * @returns {string[] | null}
+   */
+  scale() {
+    const { exposure, operator } = this.look;
+    return operator === "false" ? marks(exposure).map(({ value }) => digits(value, 2)) : null;
+  }
+
+  drawLegend() {
     const legend = box("legend");
-    legend.hidden = operator !== "false" || !this.picture;
-    if (legend.hidden || legend.dataset.exposure === String(exposure)) return;
-    legend.dataset.exposure = String(exposure);
+    const labels = this.picture && this.scale();
+    legend.hidden = !labels;
+    if (!labels || legend.dataset.labels === String(labels)) return;
+    legend.dataset.labels = String(labels);
     const ramp = get("ramp", HTMLCanvasElement);
     const context = ramp.getContext("2d");
     for (let x = 0; context && x < ramp.width; x++) {
       context.fillStyle = magma(x / (ramp.width - 1));
       context.fillRect(x, 0, 1, ramp.height);
     }
-    const labels = marks(exposure).map(({ value }) => digits(value, 2));
-    say(box("marks"), "");
-    box("marks").append(...labels.map((label) => Object.assign(document.createElement("span"), { textContent: label })));
+    box("marks").replaceChildren(...labels.map((label) => make("span", {}, [label])));
   }
 
   /**

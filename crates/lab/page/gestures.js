@@ -1,28 +1,10 @@
-// What hands do on the stage: mouse, fingers, wheel and keys.
+// What hands do on the stage: mouse, fingers, wheel and keys. They move the view of it.
 
 import { box } from "./dom.js";
-import { walks } from "./motion.js";
 
-/** @import { Pilot } from "./motion.js" */
 /** @import { Stage } from "./stage.js" */
 /** @import { Point } from "./view.js" */
 
-/** @typedef {"look" | "move" | "sample"} Mode */
-
-/**
- * What the page does with it.
- * @typedef {object} Hands
- * @property {() => Mode} mode
- * @property {(pixel: Point) => void} onClick
- * @property {(pixel: Point | null) => void} onHover
- * @property {() => void} onEnter
- * @property {() => void} onHome
- */
-
-/** Radians for a CSS pixel. */
-const TURN = 0.006;
-/** Radians for an arrow key. */
-const KEY_TURN = 0.08;
 /** How far a hand may shake in a click. Unit: CSS pixels. */
 const SHAKE = 4;
 
@@ -35,15 +17,9 @@ const ARROWS = new Map([
 ]);
 
 export class Gestures {
-  /**
-   * @param {Stage} stage
-   * @param {Pilot} pilot
-   * @param {Hands} hands
-   */
-  constructor(stage, pilot, hands) {
+  /** @param {Stage} stage */
+  constructor(stage) {
     this.stage = stage;
-    this.pilot = pilot;
-    this.hands = hands;
     /** @type {Map<number, Point>} */
     this.pointers = new Map();
     this.travelled = 0;
@@ -56,12 +32,16 @@ export class Gestures {
     element.addEventListener("pointermove", (event) => this.move(event));
     element.addEventListener("pointerup", (event) => this.up(event));
     element.addEventListener("pointercancel", (event) => this.forget(event));
-    element.addEventListener("pointerleave", () => this.hands.onHover(null));
+    element.addEventListener("pointerleave", () => this.onHover(null));
     element.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     element.addEventListener("keydown", (event) => this.key(event));
-    element.addEventListener("keyup", (event) => this.pilot.release(event.code));
-    element.addEventListener("blur", () => this.pilot.held.clear());
   }
+
+  /** @param {Point | null} _pixel Under the pointer. */
+  onHover(_pixel) {}
+
+  /** @param {Point} _pixel */
+  onClick(_pixel) {}
 
   /**
    * @param {MouseEvent} event
@@ -85,7 +65,7 @@ export class Gestures {
   move(event) {
     const place = this.place(event);
     const last = this.pointers.get(event.pointerId);
-    if (!last) return this.hands.onHover(this.stage.at(place));
+    if (!last) return this.onHover(this.stage.at(place));
     const by = /** @type {Point} */ ([place[0] - last[0], place[1] - last[1]]);
     this.travelled += Math.hypot(...by);
     if (this.pointers.size === 2) {
@@ -98,21 +78,10 @@ export class Gestures {
 
   /**
    * @param {Point} by
-   * @param {boolean} shift
+   * @param {boolean} _shift
    */
-  drag(by, shift) {
-    if (this.hands.mode() !== "move") return this.stage.pan(by);
-    if (shift) return this.shift(by);
-    this.pilot.move("orbit", { yaw: -TURN * by[0], pitch: TURN * by[1] });
-  }
-
-  /**
-   * Shifts the camera, so that what is under the hand follows it, about.
-   * @param {Point} by
-   */
-  shift(by) {
-    const scale = 1 / Math.max(1, this.stage.view.zoom * this.stage.film[1]);
-    this.pilot.move("pan", { right: -scale * by[0], up: scale * by[1] });
+  drag(by, _shift) {
+    this.stage.pan(by);
   }
 
   /**
@@ -125,16 +94,26 @@ export class Gestures {
     const last = /** @type {Point} */ (this.pointers.get(id));
     const [other] = [...this.pointers].filter(([pointer]) => pointer !== id).map(([, at]) => at);
     const apart = (/** @type {Point} */ at) => Math.max(8, Math.hypot(at[0] - other[0], at[1] - other[1]));
-    const factor = apart(place) / apart(last);
+    this.spread(apart(place) / apart(last), [(place[0] + other[0]) / 2, (place[1] + other[1]) / 2]);
     // Each finger moves the middle by half of its own way.
-    const half = /** @type {Point} */ ([by[0] / 2, by[1] / 2]);
-    if (this.hands.mode() === "move") {
-      this.pilot.move("dolly", { factor: 1 / factor });
-      this.shift(half);
-    } else {
-      this.stage.zoom(factor, [(place[0] + other[0]) / 2, (place[1] + other[1]) / 2]);
-      this.stage.pan(half);
-    }
+    this.follow([by[0] / 2, by[1] / 2]);
+  }
+
+  /**
+   * Two fingers or a wheel zoom about a point of the stage.
+   * @param {number} factor
+   * @param {Point} [about] Without it the middle.
+   */
+  spread(factor, about) {
+    this.stage.zoom(factor, about);
+  }
+
+  /**
+   * Both fingers move.
+   * @param {Point} by
+   */
+  follow(by) {
+    this.stage.pan(by);
   }
 
   /** @param {PointerEvent} event */
@@ -143,7 +122,7 @@ export class Gestures {
     const was = this.pointers.has(event.pointerId);
     this.forget(event);
     const pixel = this.stage.at(this.place(event));
-    if (was && isClick && pixel) this.hands.onClick(pixel);
+    if (was && isClick && pixel) this.onClick(pixel);
   }
 
   /** @param {PointerEvent} event */
@@ -158,22 +137,25 @@ export class Gestures {
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 33 : 1;
     const turn = Math.max(-240, Math.min(240, event.deltaY * lines));
     // Pinching on a touchpad comes as a wheel with the control key, in smaller steps.
-    const factor = Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.0025));
-    if (this.hands.mode() === "move") return this.pilot.move("dolly", { factor: 1 / factor });
-    this.stage.zoom(factor, this.place(event));
+    this.spread(Math.exp(-turn * (event.ctrlKey ? 0.01 : 0.0025)), this.place(event));
   }
 
   /** @param {KeyboardEvent} event */
   key(event) {
     if (event.target !== this.stage.element || event.ctrlKey || event.metaKey || event.altKey) return;
-    const isMoving = this.hands.mode() === "move";
     const arrow = ARROWS.get(event.key);
-    let isKnown = true;
-    if (arrow && event.shiftKey && !isMoving) this.step(arrow);
-    else if (arrow) this.arrow(arrow, isMoving, event.shiftKey);
-    else if (isMoving && walks(event.code)) this.pilot.press(event.code);
-    else isKnown = this.letter(event.key, isMoving);
-    if (isKnown) event.preventDefault();
+    if (arrow) this.arrow(arrow, event.shiftKey);
+    else if (!this.letter(event)) return;
+    event.preventDefault();
+  }
+
+  /**
+   * @param {Point} arrow
+   * @param {boolean} shift
+   */
+  arrow(arrow, shift) {
+    if (shift) this.step(arrow);
+    else this.stage.pan([-48 * arrow[0], -48 * arrow[1]]);
   }
 
   /**
@@ -183,42 +165,32 @@ export class Gestures {
   step(arrow) {
     const { crop, pixel } = this.stage;
     const from = pixel ?? [(crop[0] + crop[2]) >> 1, (crop[1] + crop[3]) >> 1];
-    this.hands.onClick([from[0] + arrow[0], from[1] + arrow[1]]);
-  }
-
-  /**
-   * @param {Point} arrow
-   * @param {boolean} isMoving
-   * @param {boolean} shift
-   */
-  arrow(arrow, isMoving, shift) {
-    if (!isMoving) return this.stage.pan([-48 * arrow[0], -48 * arrow[1]]);
-    if (shift) return this.shift([-24 * arrow[0], -24 * arrow[1]]);
-    this.pilot.move("orbit", { yaw: KEY_TURN * arrow[0], pitch: -KEY_TURN * arrow[1] });
+    this.onClick([from[0] + arrow[0], from[1] + arrow[1]]);
   }
 
   /**
    * Whether the key means something.
-   * @param {string} key
-   * @param {boolean} isMoving
+   * @param {KeyboardEvent} event
    */
-  letter(key, isMoving) {
-    const zoom = (/** @type {number} */ factor) =>
-      isMoving ? this.pilot.move("dolly", { factor: 1 / factor }) : this.stage.zoom(factor);
-    /** @type {Map<string, () => void>} */
-    const actions = new Map([
-      ["+", () => zoom(1.19)],
-      ["=", () => zoom(1.19)],
-      ["-", () => zoom(1 / 1.19)],
+  letter({ key }) {
+    const action = this.actions().get(key.length === 1 ? key.toLowerCase() : key);
+    action?.();
+    return action !== undefined;
+  }
+
+  /**
+   * What keys do.
+   * @returns {Map<string, () => void>}
+   */
+  actions() {
+    return new Map([
+      ["+", () => this.spread(1.19)],
+      ["=", () => this.spread(1.19)],
+      ["-", () => this.spread(1 / 1.19)],
       ["0", () => this.stage.fit()],
       ["1", () => this.stage.oneToOne()],
       ["[", () => this.stage.expose(-0.5)],
       ["]", () => this.stage.expose(0.5)],
-      ["Enter", () => this.hands.onEnter()],
     ]);
-    if (isMoving) actions.set("h", () => this.hands.onHome());
-    const action = actions.get(key);
-    action?.();
-    return action !== undefined;
   }
 }

@@ -2,7 +2,7 @@
 
 import { draw, get } from "./dom.js";
 import { cell } from "./format.js";
-import { valueAt } from "./frame.js";
+import { valueAt } from "./pixels.js";
 import { VALUES_ZOOM, toFilm, toScreen } from "./view.js";
 
 /** @import { Stage } from "./stage.js" */

@@ -1,7 +1,7 @@
 //! Numbers for people: as many digits as mean something.
 
 /// A number with at most four significant digits; whole numbers below ten millions have all of theirs.
-pub(crate) fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if let Some(word) = not_finite(value) {
         return word.to_owned();
     }
@@ -16,40 +16,8 @@ pub(crate) fn number(value: f64) -> String {
     grouped(&shortened(&format!("{value:.decimals$}")))
 }
 
-/// A number with exactly so many decimals.
-pub(super) fn with_decimals(value: f64, decimals: usize) -> String {
-    grouped(&format!("{value:.decimals$}"))
-}
-
-/// A number and its interval, `0.85 [0.82, 0.88]`.
-///
-/// The last digit is the first in which the interval has at least five steps; very large and very
-/// small numbers share one power of ten.
-pub(super) fn interval(value: f64, low: f64, high: f64) -> String {
-    let plain = || format!("{} [{}, {}]", number(value), number(low), number(high));
-    let width = high - low;
-    if !value.is_finite() || !width.is_finite() || width <= 0.0 {
-        return plain();
-    }
-    let largest = exponent(value.abs().max(low.abs()).max(high.abs()));
-    let last = exponent(width / 5.0);
-    // An interval of a millionth of its value needs no more digits.
-    let last = last.max(largest - 7);
-    let (shift, suffix) = if (-4..6).contains(&largest) {
-        (0, String::new())
-    } else {
-        (largest, format!(" ·{}", power_of_ten(largest)))
-    };
-    let decimals = usize::try_from(shift - last).unwrap_or(0);
-    let [value, low, high] = [value, low, high].map(|number| {
-        let shifted = number / libm::exp10(f64::from(shift));
-        with_decimals(shifted, decimals)
-    });
-    format!("{value} [{low}, {high}]{suffix}")
-}
-
 /// 10ⁿ.
-pub(super) fn power_of_ten(n: i32) -> String {
+fn power_of_ten(n: i32) -> String {
     let digit = |character| match character {
         '-' => '⁻',
         '0' => '⁰',
@@ -68,7 +36,7 @@ pub(super) fn power_of_ten(n: i32) -> String {
 }
 
 /// The power of ten of the first digit; 0 for 0.
-pub(super) fn exponent(value: f64) -> i32 {
+fn exponent(value: f64) -> i32 {
     let written = format!("{value:e}");
     let digits = written.split_once('e').map(|(_, exponent)| exponent);
     digits
@@ -151,24 +119,6 @@ mod tests {
             (f64::NEG_INFINITY, "−∞"),
         ] {
             assert_eq!(number(value), expected, "{value:e}");
-        }
-    }
-
-    #[test]
-    fn an_interval_decides_the_digits() {
-        for ([value, low, high], expected) in [
-            ([0.853, 0.821, 0.884], "0.85 [0.82, 0.88]"),
-            ([0.85, 0.84, 0.86], "0.850 [0.840, 0.860]"),
-            ([12.0, -3.0, 27.0], "12 [−3, 27]"),
-            ([1.0, 1.0, 1.0], "1 [1, 1]"),
-            ([2.13e-6, 1.91e-6, 2.35e-6], "2.13 [1.91, 2.35] ·10⁻⁶"),
-            (
-                [123456.0, 110000.0, 140000.0],
-                "123\u{202f}456 [110\u{202f}000, 140\u{202f}000]",
-            ),
-            ([1.0, 0.5, f64::INFINITY], "1 [0.5, ∞]"),
-        ] {
-            assert_eq!(interval(value, low, high), expected);
         }
     }
 }

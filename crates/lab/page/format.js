@@ -82,7 +82,7 @@ export function count(number, thing) {
 
 /**
  * Luminance of linear Rec. 709.
- * @param {readonly number[]} color
+ * @param {ArrayLike<number>} color
  */
 export function luminance(color) {
   return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
