@@ -133,7 +133,7 @@ fn light_warning(scene: &Scene) -> Option<String> {
 pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
         ErrorKind::Options => Exit::Usage,
-        ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,
+        ErrorKind::MissingFile | ErrorKind::Io if !error.has_place() => Exit::InputOutput,
         _ => Exit::Scene,
     }
 }
@@ -141,7 +141,7 @@ pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
 /// Why a scene cannot be read; for one that is not there, a file with a name near its own.
 fn refused(scene: &Path, error: formats::Error) -> Failure {
     let exit = exit_of_scene(&error);
-    let is_missing = error.kind() == ErrorKind::MissingFile && error.line().is_none();
+    let is_missing = error.kind() == ErrorKind::MissingFile && !error.has_place();
     match nearest_file(scene).filter(|_| is_missing) {
         Some(near) => Failure::new(exit, error.to_string())
             .with_hint(format!("did you mean `{}`?", near.display())),

@@ -58,7 +58,7 @@ pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
         ErrorKind::Unsupported => "UnsupportedError",
         ErrorKind::Options => "SettingsError",
         // What a scene names at a place is a matter of the scene.
-        _ if error.line().is_some() => "SceneError",
+        _ if error.has_place() => "SceneError",
         ErrorKind::Syntax | ErrorKind::Scene | ErrorKind::Limit => "SceneError",
         ErrorKind::Data => "DataError",
         ErrorKind::MissingFile => "MissingFileError",

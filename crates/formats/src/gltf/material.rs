@@ -2,7 +2,7 @@
 
 mod reader;
 
-use super::document::{Context, Document};
+use super::document::Context;
 use super::json::{Material as Described, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
@@ -39,7 +39,6 @@ impl Materials {
     pub(super) fn get(
         &mut self,
         (context, builder): (&mut Context<'_>, &mut SceneBuilder),
-        document: &Document,
         (index, user): (Option<usize>, &Place),
         color: [f32; 4],
     ) -> Result<Built, GltfFault> {
@@ -50,8 +49,8 @@ impl Materials {
         let default = Described::default();
         let described = match index {
             None => &default,
-            Some(index) => document.root.materials.get(index).ok_or_else(|| {
-                let count = document.root.materials.len();
+            Some(index) => context.document.root.materials.get(index).ok_or_else(|| {
+                let count = context.document.root.materials.len();
                 user.key("material").scene(format!(
                     "there is no material {index}: the file has {count}"
                 ))
@@ -61,7 +60,6 @@ impl Materials {
         let mut reader = Reader {
             baked: baked(described),
             context,
-            document,
             textures: &mut self.textures,
             described,
             place,

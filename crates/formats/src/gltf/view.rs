@@ -5,9 +5,6 @@ use super::json;
 use super::node::Nodes;
 use super::outside::Extent;
 use super::place::{GltfFault, Place};
-use crate::error::ErrorKind;
-use crate::limits::LARGEST_SIDE;
-use crate::pbrt::Crop;
 use crate::text::number;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
@@ -45,11 +42,8 @@ pub(super) struct View {
 }
 
 /// Finds the first camera of the scene.
-pub(super) fn find(
-    context: &mut Context<'_>,
-    document: &Document,
-    nodes: &Nodes,
-) -> Result<View, GltfFault> {
+pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, GltfFault> {
+    let document = context.document;
     let cameras: Vec<(usize, usize)> = nodes
         .order
         .iter()
@@ -65,7 +59,7 @@ pub(super) fn find(
     };
     if cameras.len() > 1 {
         let message = format!("the scene has {} cameras; using the first", cameras.len());
-        context.warn(&Place::of("nodes", node), message);
+        context.warn(Place::of("nodes", node), message);
     }
     let render_from_node = nodes.render_from_node[node].unwrap_or(DAffine3::IDENTITY);
     let mut view = read(document, camera, &render_from_node)?;
@@ -173,24 +167,12 @@ impl View {
                 HEIGHT,
             ],
         };
-        let [width, height] = context.options.resolution.unwrap_or(own);
-        let sides = 1..=LARGEST_SIDE;
-        if !sides.contains(&width) || !sides.contains(&height) {
-            let message = format!(
-                "the film has {width} × {height} pixels; each side can have 1 to {LARGEST_SIDE}"
-            );
-            return Err(self.place.fault(ErrorKind::Limit, message));
-        }
+        let options = context.options;
+        let resolution = options.resolution(own, self.place.clone())?;
         let filter = Filter::new(FilterKind::Gaussian { sigma: 0.5 }, Vec2::splat(1.5));
-        let mut film = FilmSettings::new([width, height], filter);
-        if let Some(crop) = context.options.crop {
-            film.crop = Crop::pixels(crop, [width, height]);
-        }
-        if film.crop.area() > 0 {
-            return Ok(film);
-        }
-        let message = format!("the crop lies outside the film of {width} × {height} pixels");
-        Err(Place::TOP.fault(ErrorKind::Options, message))
+        let mut film = FilmSettings::new(resolution, filter);
+        film.crop = options.crop(None, resolution, Place::TOP)?;
+        Ok(film)
     }
 
     /// Where the camera is: where the file has it, else where it sees all of `extent`.
@@ -204,7 +186,7 @@ impl View {
             let viewpoint = extent.viewpoint();
             let name = viewpoint.name;
             let message = format!("the scene has no camera; using one {name} that sees everything");
-            context.warn(&Place::TOP, message);
+            context.warn(Place::TOP, message);
             viewpoint.camera(extent, self.half(resolution))
         })
     }

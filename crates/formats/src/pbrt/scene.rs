@@ -3,7 +3,7 @@
 use super::parameters::{Parameter, ParameterList};
 use super::transform::Transforms;
 use crate::files::Files;
-use crate::limits::{FURTHER_WARNINGS, MOST_WARNINGS};
+use crate::import::Warning;
 use crate::source::{SourceMap, Span};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -220,36 +220,6 @@ pub struct MediumReference {
     pub name: Arc<str>,
     /// The name with its quotes.
     pub span: Span,
-}
-
-/// Something odd that is no error.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Warning {
-    /// What is odd.
-    pub message: String,
-    /// Where it is; of several, the first.
-    pub span: Span,
-    /// How often it occurred.
-    pub count: usize,
-}
-
-/// Counts a warning: the same words occur once in the list.
-pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
-    let mut message = message.into();
-    if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
-        FURTHER_WARNINGS.clone_into(&mut message);
-    }
-    match warnings
-        .iter_mut()
-        .find(|warning| warning.message == message)
-    {
-        Some(warning) => warning.count += 1,
-        None => warnings.push(Warning {
-            message,
-            span,
-            count: 1,
-        }),
-    }
 }
 
 /// What `Attribute` directives say, by target.

@@ -3,7 +3,7 @@
 use super::{Surface, UvMap};
 use crate::error::ErrorKind;
 use crate::gltf::place::{GltfFault, Place};
-use crate::space::Survey;
+use crate::import::Survey;
 use bidir::math::Vec3;
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};

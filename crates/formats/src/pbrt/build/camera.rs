@@ -47,7 +47,7 @@ struct Screen {
 
 /// Reads the camera; without one it is the format's default.
 pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
-    let Some(camera) = &context.description.camera else {
+    let Some(camera) = &context.document.camera else {
         let place = (&*context, &Transforms::default());
         return Ok(CameraSettings::default_at(SourceMap::BEGINNING, place));
     };

@@ -56,7 +56,7 @@ impl ImageSettings {
         let filter = read_filter(context, reader)?;
         reader.ignore(context, ParameterType::Float, "maxanisotropy");
         let file = ImageFile {
-            path: context.description.resolve(name),
+            path: context.document.resolve(name),
             span,
             encoding,
         };
@@ -74,7 +74,7 @@ impl ImageSettings {
     pub(super) fn of_normals(context: &Context<'_>, name: &str, span: Span) -> Self {
         Self {
             file: ImageFile {
-                path: context.description.resolve(name),
+                path: context.document.resolve(name),
                 span,
                 encoding: Some(Encoding::Linear),
             },

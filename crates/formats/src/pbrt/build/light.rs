@@ -204,7 +204,7 @@ pub(super) fn radiance_image(
     name: &str,
     span: Span,
 ) -> Result<Image<3>, Fault> {
-    let path = context.description.resolve(name);
+    let path = context.document.resolve(name);
     let data = context.read_image(&path, None, span)?;
     let is_radiance = |&channel: &f32| channel.is_finite() && channel >= 0.0;
     let mut texels: Vec<Rgb> = data.rgb().collect();

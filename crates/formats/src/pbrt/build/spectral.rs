@@ -64,7 +64,7 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
         return Ok(spectrum);
     }
     let span = parameter.value_span;
-    let path = context.description.resolve(name);
+    let path = context.document.resolve(name);
     if path.is_file() {
         return context.read_spectrum(&path, span);
     }

@@ -10,7 +10,7 @@ const MOST: usize = 3;
 /// A lamp of a file that no ray can hit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lamp {
-    /// Where the file describes it, as `file:line:column`.
+    /// Where the file describes it, such as `file:line:column`.
     pub place: String,
     /// The first of its lights, by index.
     pub light: u32,
