@@ -22,7 +22,7 @@ use bidir::integrator::{IntegratorKind, blind_spots};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
-use viewer::{Desk, StageSettings, Status};
+use viewer::{RenderMonitor, RequestQueue, Status};
 
 /// Renders a scene, or repeats one sample.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
@@ -100,7 +100,7 @@ impl Job<'_> {
         &self,
         checkpoint: Option<Checkpoint>,
         load: Duration,
-        server: Option<(Server, Desk)>,
+        server: Option<(Server, RequestQueue)>,
     ) -> Result<Exit, Failure> {
         let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
         let name = self.args.scene.scene.display().to_string();
@@ -130,16 +130,9 @@ impl Job<'_> {
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
         let tev = serve::display(self.args.display_server.as_ref(), &name)?;
-        let mut show = Show::new(
-            server,
-            tev,
-            &session,
-            StageSettings {
-                name: &name,
-                settings: self.settings,
-                target: budget.passes,
-            },
-        );
+        let mut show = Show::new(server, tev, |queue| {
+            RenderMonitor::new(queue, &session, self.settings, budget.passes)
+        });
         let clock = Clock {
             budget,
             samples_per_pass: self.loaded.scene.film().crop.area(),

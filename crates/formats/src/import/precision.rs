@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 /// The largest error that is passed over, as a part of half the longest side of the mesh.
 const NOTICED: f64 = 0.01;
-/// The largest error that is rendered, as a part of [`Survey::reach`](crate::space::Survey::reach).
+/// The largest error that is rendered, as a part of [`Survey::reach`](super::Survey::reach).
 const ACCEPTED: f64 = 0.25;
 
 /// The error of the vertices of a mesh.

@@ -1,5 +1,4 @@
-//! Who may ask: pages of this server alone, and elsewhere than on this machine those who know the
-//! token.
+//! Access of clients: pages of this server alone, and on other machines those that have the token.
 //!
 //! A page of another site could send requests here from a browser on this machine. It cannot read
 //! answers, but WebSockets know no such rule, and a name that is made to point here (DNS rebinding)

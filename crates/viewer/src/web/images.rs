@@ -43,7 +43,7 @@ pub(super) async fn exr(
     let Ok(_place) = site.large.acquire().await else {
         return Err(Refusal::bug("no image is encoded any more"));
     };
-    let developed = site.look(lane, |subject| {
+    let developed = site.query(lane, |subject| {
         let film = subject.session.film();
         let is_empty = film.passes().is_empty();
         let file = || {
@@ -125,7 +125,7 @@ pub(super) async fn strategies(
         let message = format!("the exposure is a number of stops up to {MOST_STOPS}");
         return Err(Refusal::query(message));
     }
-    let pixels = site.look(asked.lane, move |subject| {
+    let pixels = site.query(asked.lane, move |subject| {
         check_strategies(subject.session)?;
         let film = subject.session.film();
         let Some(strategy) = strategy else {
