@@ -41,7 +41,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 /// Writes what `film`, which has this header, keeps of strategies.
 pub(crate) fn write(files: &Files, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = film_header::metadata(header);
-    scene_io::write_exr(&files.exr, film.settings(), &developed(film), &metadata)?;
+    developed(film).write_exr(&files.exr, film.settings(), &metadata)?;
     let scene = header.scene_name();
     for (path, kind) in [(&files.weighted, Kind::Weighted), (&files.raw, Kind::Raw)] {
         scene_io::write_screen(path, &pyramid::sheet(film, kind, &scene))?;

@@ -33,7 +33,7 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     // Every flag may have influence: estimators are switched.
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
-    loaded.tell_warnings(&args.scene, lost + missing, console)?;
+    loaded.print_warnings(&args.scene, lost + missing, console)?;
     let name = args.scene.scene.display().to_string();
     let first = Status::interactive(&name, loaded.scene.film());
     let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
