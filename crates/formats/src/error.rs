@@ -28,7 +28,7 @@ struct Details {
     names_file: bool,
 }
 
-/// Where in a text an error is.
+/// The place of an error in a text.
 #[derive(Debug)]
 pub(crate) struct Place {
     /// Counted from 1.
@@ -46,7 +46,7 @@ pub enum ErrorKind {
     Syntax,
     /// The scene is well-formed but means nothing valid: mend the scene.
     Scene,
-    /// The format has this, the renderer does not yet: do without, or accept a stand-in.
+    /// The format has this, the renderer does not yet: do without, or accept a substitute.
     Unsupported,
     /// A mesh or an image is broken: write it anew.
     Data,
@@ -124,12 +124,12 @@ impl Error {
         self.0.kind
     }
 
-    /// What is wrong, without the place and the hint.
+    /// The reason, without the place and the hint.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// What to do about it. None: where the message says all there is to say.
+    /// The remedy. None: where the message says all there is to say.
     pub fn hint(&self) -> Option<&str> {
         self.0.hint.as_deref()
     }

@@ -290,7 +290,7 @@ impl ClientHandle {
     /// Asks the renderer to end; waits until the request finds room.
     pub(crate) fn close(&self) {
         self.interrupts.note(&Command::Stop {});
-        // Where the renderer is gone there is nobody to end.
+        // A renderer that is gone has ended.
         let _ = self.requests.send(Request::Close);
     }
 }

@@ -128,7 +128,7 @@ impl Choices {
     }
 }
 
-/// Where the camera is. Space: world.
+/// The place of the camera. Space: world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CameraStatus {
     /// Its kind in one word.

@@ -48,7 +48,7 @@ pub enum TevError {
     /// There is no such host, or nobody listens.
     #[error("cannot connect to {address}: {source}")]
     Absent {
-        /// Where.
+        /// The address.
         address: TevAddress,
         /// The reason of the system.
         source: io::Error,
@@ -56,7 +56,7 @@ pub enum TevError {
     /// The connection broke, or tev did not read.
     #[error("{address} does not accept images: {source}")]
     Broken {
-        /// Where.
+        /// The address.
         address: TevAddress,
         /// The reason of the system.
         source: io::Error,
@@ -64,7 +64,7 @@ pub enum TevError {
     /// The last frame was not taken in time.
     #[error("{address} did not take the last image within {} seconds", PATIENCE.as_secs())]
     Late {
-        /// Where.
+        /// The address.
         address: TevAddress,
     },
 }

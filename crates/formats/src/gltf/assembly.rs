@@ -39,7 +39,7 @@ struct MeshUse<'a> {
     weights: &'a [f32],
 }
 
-/// What makes two uses of a mesh the same: the mesh, and weights of morph targets.
+/// The key of uses of a mesh that are the same: the mesh, and weights of morph targets.
 type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Builder<'a> {
@@ -116,7 +116,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Where a node has its mesh, but for places that leave nothing of it.
+    /// The places of a node's mesh, but for those that leave nothing of it.
     fn world_places(
         &self,
         context: &mut Context<'_>,

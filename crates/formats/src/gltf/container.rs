@@ -1,4 +1,4 @@
-//! What a glTF file is made of: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
+//! The parts of a glTF file: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
 
 use super::place::{GltfFault, Place};
 use crate::error::{Error, ErrorKind, Result};
@@ -9,7 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
 
-/// What a `.glb` begins with.
+/// The beginning of a `.glb`.
 const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: [u8; 4] = *b"JSON";
 const BINARY_CHUNK: [u8; 4] = *b"BIN\0";

@@ -41,7 +41,7 @@ pub(super) type Log = import::Log<Place>;
 pub(super) struct Document {
     path: PathBuf,
     pub(super) root: Root,
-    /// Where files are looked for.
+    /// The source of files.
     files: Files,
     buffers: Vec<Vec<u8>>,
     /// Components that accessors may still read.
@@ -84,7 +84,7 @@ impl import::Document for Document {
 }
 
 impl Document {
-    /// Reads the file at `path`, checks what it says of itself, and reads its buffers.
+    /// Reads the file at `path`, checks its version and extensions, and reads its buffers.
     pub(super) fn open(path: &Path, options: &LoadOptions, files: &Files) -> Result<(Self, Log)> {
         let container = container::read(path, files)?;
         let mut log = Log::new(options, vec![path.to_owned()], container.size());
@@ -168,7 +168,7 @@ impl Document {
             let message = format!("it has {have} bytes instead of {wanted}");
             return Err(place.fault(ErrorKind::Data, message));
         }
-        // What follows is padding.
+        // The rest is padding.
         bytes.truncate(buffer.byte_length);
         Ok(bytes)
     }
@@ -202,7 +202,7 @@ impl Document {
     }
 }
 
-/// Parses the JSON of `path`. Errors: where it is none, with line and column.
+/// Parses the JSON of `path`. Errors: it is malformed, with line and column.
 fn parse(path: &Path, json: String) -> Result<Root> {
     let root = serde_json::from_str(&json);
     root.or_else(|error| {

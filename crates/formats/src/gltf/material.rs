@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// How much of the surface is there. None: all of it.
+    /// The alpha of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
-    /// What meshes of it have for parameters.
+    /// The parameters of its meshes.
     pub(super) uv: UvMap,
 }
 
@@ -75,7 +75,7 @@ impl Materials {
         Ok(built)
     }
 
-    /// How many there are.
+    /// The number of materials.
     pub(super) fn count(&self) -> usize {
         self.built.len()
     }
@@ -111,8 +111,8 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
     all.into_iter().flatten().collect()
 }
 
-/// What meshes of a material have for parameters: the map that all its textures share, else the set
-/// of the first one.
+/// The parameters of a material's meshes: the map that all its textures share, else the set of the
+/// first one.
 fn baked(described: &Described) -> UvMap {
     let mut maps = infos(described).into_iter().map(uv_map);
     let Some(first) = maps.next() else {

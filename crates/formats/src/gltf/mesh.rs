@@ -21,13 +21,13 @@ pub(super) struct Surface {
     /// Two sets; empty where there are none.
     pub(super) uvs: [Vec<[f32; 2]>; 2],
     pub(super) triangles: Vec<[u32; 3]>,
-    /// What all vertices multiply the base colour by: red, green, blue, alpha.
+    /// The factor of the base colour, from the vertices: red, green, blue, alpha.
     pub(super) color: [f32; 4],
     /// Joints and their weights, by vertex. Empty: there are none.
     pub(super) joints: Vec<[(u32, f32); 4]>,
 }
 
-/// How texture coordinates become those of the built mesh.
+/// The map from texture coordinates to those of the built mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvMap {
     /// Which set.
@@ -99,7 +99,7 @@ impl Surface {
         if let Some((index, place)) = find("NORMAL") {
             self.normals = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
         }
-        // Where normals are missing the format wants tangents to be passed over.
+        // Without normals the format ignores tangents.
         let is_smooth = !self.normals.is_empty();
         if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
             let tangents = document.finite_vectors::<4>(index, &place)?;

@@ -37,7 +37,7 @@ use bidir::sampler::SamplerKind;
 use document::Document;
 use std::path::Path;
 
-/// How a file is rendered unless the caller says otherwise: the format says nothing of it.
+/// The default settings of a render: the format has none.
 const SETTINGS: SceneSettings = SceneSettings {
     integrator: IntegratorKind::Auto,
     max_depth: 12,

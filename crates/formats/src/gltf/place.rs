@@ -46,7 +46,7 @@ impl Place {
         GltfFault::new(kind, self.clone(), message)
     }
 
-    /// Something that means nothing valid.
+    /// A fault of a value that means nothing valid.
     pub(super) fn scene(&self, message: impl Into<String>) -> GltfFault {
         self.fault(ErrorKind::Scene, message)
     }

@@ -15,7 +15,7 @@ use bidir::texture::{
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What is taken of an image.
+/// A channel of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Red,
@@ -25,7 +25,7 @@ pub(super) enum Part {
     Alpha,
 }
 
-/// What a number of an image becomes.
+/// A change of an image's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// Itself.
@@ -62,7 +62,7 @@ pub(super) struct Textures {
 pub(super) struct Lookup<'a> {
     pub(super) info: &'a TextureInfo,
     pub(super) place: &'a Place,
-    /// What the mesh has of it.
+    /// The part in the mesh.
     pub(super) baked: UvMap,
 }
 
@@ -228,7 +228,7 @@ fn resource(
     }
 }
 
-/// What its first bytes say that an image is.
+/// The format of an image, by its first bytes.
 fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
@@ -306,7 +306,7 @@ fn map<const N: usize>(
     })
 }
 
-/// What a sampler has beyond the borders that one coordinate crosses.
+/// The wrap mode of one coordinate.
 fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
     match wrap.unwrap_or(10497) {
         33071 => Ok(Beyond::Clamp),

@@ -12,17 +12,17 @@ use bidir::math::{Affine3A, Vec2};
 use glam::{DAffine3, DVec3};
 use std::ops::RangeInclusive;
 
-/// Rows of the film where nothing says how many.
+/// Rows of the film.
 const HEIGHT: u32 = 720;
-/// Columns where no camera says its proportions.
+/// Columns of the film without a camera of given proportions.
 const WIDTH: u32 = 1280;
-/// The vertical angle of the view where no camera says one. Unit: radians.
+/// The vertical angle of the view without a camera. Unit: radians.
 const ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
 /// Width over height of what cameras see.
 const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// How a camera sees, and half the height of what it sees.
+/// The projection of a camera, and half the height of its picture.
 #[derive(Clone, Copy)]
 enum Screen {
     /// At distance 1.
@@ -31,7 +31,7 @@ enum Screen {
     Orthographic(f64),
 }
 
-/// What is looked from.
+/// The view of a scene.
 pub(super) struct View {
     /// x right, y up, z forward. None: so that all is in view.
     world_from_camera: Option<Affine3A>,
@@ -100,7 +100,7 @@ fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Resul
     })
 }
 
-/// What a perspective camera sees, and width over height of it.
+/// The screen of a perspective camera, and its width over height.
 fn perspective(
     camera: &json::Perspective,
     place: &Place,
@@ -152,7 +152,7 @@ pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
 }
 
 impl View {
-    /// Where the camera of the file stands, in the space that is rendered in.
+    /// The position of the file's camera, in the space that is rendered in.
     pub(super) fn eye(&self) -> Option<DVec3> {
         let place = self.world_from_camera?;
         Some(place.translation.as_dvec3())
@@ -175,7 +175,7 @@ impl View {
         Ok(film)
     }
 
-    /// Where the camera is: where the file has it, else where it sees all of `extent`.
+    /// The place of the camera: that of the file, else one that sees all of `extent`.
     pub(super) fn placed(
         &self,
         context: &mut Context<'_>,

@@ -15,11 +15,11 @@ use std::path::{Path, PathBuf};
 /// Something odd that is no error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning<P = Span> {
-    /// What is odd.
+    /// The reason.
     pub message: String,
-    /// Where it is; of several, the first.
+    /// The place; of several, the first.
     pub place: P,
-    /// How often it occurred.
+    /// The number of times it occurred.
     pub count: usize,
 }
 

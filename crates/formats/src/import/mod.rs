@@ -47,7 +47,7 @@ pub(crate) trait Document {
     /// The place of an error that concerns all of the scene.
     const TOP: Self::Place;
 
-    /// Where the files of the scene are looked for.
+    /// The source of the scene's files.
     fn files(&self) -> &Files;
 
     /// Every file that the document may name, whether it is read or not.
@@ -60,23 +60,23 @@ pub(crate) trait Document {
     fn error(&self, fault: Fault<Self::Place>) -> Error;
 }
 
-/// A scene that was read, with what else its file says.
+/// A scene that was read, with its warnings and files.
 #[derive(Debug)]
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
-    /// How the file wants it rendered.
+    /// The settings of a render, by the file.
     pub settings: SceneSettings,
-    /// What is odd but no error, each as `place: message`. Places are `file:line:column` in pbrt,
+    /// The warnings, each as `place: message`. Places are `file:line:column` in pbrt,
     /// and `file: meshes[0]` in glTF.
     pub warnings: Vec<String>,
     /// Those of the warnings that name the substitute of an unsupported feature.
     pub refused: Vec<String>,
-    /// What the scene is made of.
+    /// The parts of the scene.
     pub summary: Summary,
     /// The first lamps that no ray can hit.
     pub lamps: Vec<Lamp>,
-    /// Which scene it is.
+    /// The identity of the scene.
     pub digest: SceneDigest,
     /// Every file that was read, by each name that it was asked for; the scene file is the first.
     pub files: Vec<PathBuf>,
@@ -85,7 +85,7 @@ pub struct Loaded {
     pub inputs: Vec<PathBuf>,
 }
 
-/// What a scene file says about how it is rendered.
+/// The settings of a render in a scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSettings {
     /// The estimator.
@@ -104,7 +104,7 @@ pub struct SceneSettings {
     pub aovs: Vec<Aov>,
 }
 
-/// What a scene is made of.
+/// The parts of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     /// Shapes as they are kept: those of shared objects count once.

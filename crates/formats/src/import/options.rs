@@ -1,4 +1,4 @@
-//! What the caller of a reader asks for.
+//! The options of a reader.
 
 use crate::error::ErrorKind;
 
@@ -6,7 +6,7 @@ use crate::limits::{self, LARGEST_SIDE};
 use crate::source::Fault;
 use bidir::film::PixelRect;
 
-/// What a caller may want otherwise than the file.
+/// The options of the caller, which have priority over the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LoadOptions {
     /// True to replace unsupported features by substitutes.

@@ -241,7 +241,7 @@ impl RenderController {
             message: self.message.clone(),
             camera: Some(self.camera.status()),
             split: self.wanted.len() > 1,
-            // Where there are none for the moment, the last ones say more than nothing.
+            // None for the moment: the last ones say more than nothing.
             lanes: if lanes.is_empty() {
                 before.lanes
             } else {

@@ -15,7 +15,7 @@ use subtle::ConstantTimeEq;
 /// Bytes of a token.
 const TOKEN: usize = 16;
 
-/// What requests have to show.
+/// The credentials of requests.
 #[derive(Debug)]
 pub(super) struct Access {
     address: SocketAddr,
@@ -33,7 +33,7 @@ impl Access {
         Ok(Self { address, token })
     }
 
-    /// What a user opens. An address that stands for all of this machine is named as the loopback.
+    /// The address that a user opens. An address that stands for all of this machine is named as the loopback.
     pub(super) fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
@@ -62,7 +62,7 @@ impl Access {
                 return Err(forbidden("the Origin is another site"));
             }
         }
-        // What is embedded is no secret, and modules ask for each other without a token.
+        // Embedded files are no secret, and modules load each other without a token.
         if super::assets::is_asset(uri.path()) || self.has_token(uri.query().unwrap_or_default()) {
             return Ok(());
         }

@@ -21,7 +21,7 @@ use tokio::sync::oneshot;
 /// The most that a tile is made brighter or darker. Unit: stops.
 const MOST_STOPS: f32 = 40.0;
 
-/// What the film shows, as `bidir render` writes PNG.
+/// The picture of the film, as `bidir render` writes PNG.
 pub(super) async fn png(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
@@ -89,7 +89,7 @@ pub(super) struct OfStrategies {
     /// One strategy; without both the contact sheet of all.
     s: Option<u16>,
     t: Option<u16>,
-    /// How much brighter a strategy is shown. Unit: stops.
+    /// The exposure of a strategy. Unit: stops.
     #[serde(default)]
     exposure: f32,
 }

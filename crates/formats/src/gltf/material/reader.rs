@@ -263,7 +263,7 @@ impl Reader<'_, '_> {
         }))
     }
 
-    /// How much of the surface is there, with vertices of alpha `vertex`.
+    /// The alpha of the surface, with vertices of alpha `vertex`.
     pub(super) fn coverage(&mut self, vertex: f32) -> Result<Option<FloatTexture>, GltfFault> {
         let pbr = &self.described.pbr_metallic_roughness;
         let factor = pbr.base_color_factor.map_or(1.0, |color| color[3]) * vertex;

@@ -77,7 +77,7 @@ fn default_film() -> FilmDescription {
     }
 }
 
-/// What light is multiplied by.
+/// The factor of light.
 fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fault> {
     let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
     let exposure = camera.exposure_time * iso / 100.0;
@@ -106,7 +106,7 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     }
 }
 
-/// What a film of `gbuffer` keeps beside the picture.
+/// The images of a `gbuffer` film beside the picture.
 const GBUFFER: [Aov; 5] = [
     Aov::Albedo,
     Aov::Position,

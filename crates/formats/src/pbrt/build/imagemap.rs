@@ -150,7 +150,7 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
     }
 }
 
-/// What makes two image textures share their texels: the file, and what its bytes mean.
+/// The key of image textures that share texels: the file, and the meaning of its bytes.
 type Key = (PathBuf, String);
 
 /// Images that are read already: each file once for colours and once for numbers.

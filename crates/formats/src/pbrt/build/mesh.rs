@@ -35,7 +35,7 @@ pub(super) fn ply_mesh(
     Ok(mesh)
 }
 
-/// What vertices have; the lists are empty, or as long as that of the positions.
+/// The attributes of vertices; the lists are empty, or as long as that of the positions.
 struct Vertices {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,

@@ -71,7 +71,7 @@ struct Builder<'a> {
     last_emission: Option<(Arc<Entity>, Arc<AreaEmission>)>,
 }
 
-/// Where a shape goes.
+/// The destination of a shape.
 #[derive(Clone, Copy)]
 enum Destination<'a> {
     /// Into the space that is rendered in, once for each of these places of its space.
@@ -199,7 +199,7 @@ impl<'a> Builder<'a> {
         with_emission.collect()
     }
 
-    /// Reads what a shape emits. Shapes that follow an `AreaLightSource` share it, and its image.
+    /// Reads the emission of a shape. Shapes that follow an `AreaLightSource` share it, and its image.
     fn emission(
         &mut self,
         context: &mut Context<'_>,
@@ -238,7 +238,7 @@ fn used_materials(description: &SceneDescription) -> BTreeSet<usize> {
         .collect()
 }
 
-/// Refuses what a shape has and the renderer has not.
+/// Refuses the features of a shape that the renderer lacks.
 fn refuse_motion_and_media(
     context: &mut Context<'_>,
     shape: &ShapeDescription,

@@ -28,7 +28,7 @@ pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<Scene
     Ok(settings)
 }
 
-/// Whether textures are averaged over pixels.
+/// The averaging of textures over pixels.
 pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
     let mut filtering = TextureFiltering::AsAsked;
     let options = description.options.iter();
@@ -113,7 +113,7 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
         "bdpt" => IntegratorKind::Bdpt,
         "lightpath" => IntegratorKind::Light,
         name => {
-            // The parameters of another method say nothing about the one that stands in.
+            // The parameters of another method do not apply to the substitute.
             let stand_in = match name {
                 "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
                 _ => ("`path` is used instead", IntegratorKind::Path),

@@ -26,8 +26,7 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Reads a shape, and how much of it is there (None: all). None: something else stands in for it,
-    /// namely nothing.
+    /// Reads a shape with its alpha (None: it is opaque). None: its substitute is nothing.
     pub(super) fn read(
         context: &mut Context<'_>,
         textures: &mut Textures<'_>,
@@ -212,7 +211,7 @@ fn place_mesh(
     }
 }
 
-/// What the file says of the front, whatever the shape's place.
+/// The front of a shape by the file, whatever its place.
 pub(super) fn orientation(shape: &ShapeDescription) -> Orientation {
     if shape.reverse_orientation {
         Orientation::Reversed
