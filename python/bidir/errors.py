@@ -1,7 +1,8 @@
 """Errors by cause.
 
 Every exception of the package is a :class:`BidirError`. Those about a file have its place as
-attributes, and their text is ``file:line:column: reason; hint``.
+attributes, and their text is ``file:line:column: reason; hint``, or ``file: value: reason; hint``
+for a value of a glTF file.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ class _PlacedError(BidirError):
     hint: str | None
     #: The file with the error, if there is one.
     file: str | None
-    #: The line, counted from 1; None if the error concerns the whole file.
+    #: The line, counted from 1; None for glTF, and if the error concerns the whole file.
     line: int | None
     #: The column in characters, counted from 1; None if ``line`` is None.
     column: int | None
@@ -93,7 +94,7 @@ class SceneError(_PlacedError):
 
 
 class SceneWarning(UserWarning):
-    """A warning about a scene, as ``file:line:column: text``."""
+    """A warning about a scene, as ``file:line:column: text``; in glTF ``file: value: text``."""
 
 
 class UnsupportedError(SceneError):

@@ -80,7 +80,7 @@ class Scene:
 
     @property
     def warnings(self) -> list[str]:
-        """The warnings, each as ``file:line:column: text``."""
+        """The warnings, each as ``file:line:column: text``; in glTF ``file: value: text``."""
         return self._native.warnings
 
     @property

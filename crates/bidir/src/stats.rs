@@ -1,5 +1,5 @@
-//! What a render counts: rays where they are traced, candidates, the fate of each strategy's
-//! contributions, and those that were dropped; and, apart from them, what a host's clock measures.
+//! Counters of a render: rays where they are traced, candidates, the fate of each strategy's
+//! contributions, and dropped ones; and, apart from them, times of a host's clock.
 
 mod stages;
 mod strategies;
@@ -8,6 +8,8 @@ pub use stages::{Clock, Stage, StageTimes, Stopwatch};
 pub use strategies::{LayerCounts, StrategyCounts, StrategyTable};
 
 use crate::path::Strategy;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 use std::ops::AddAssign;
 
@@ -31,6 +33,19 @@ impl RayCounts {
     }
 }
 
+/// Writes the kinds, and their sum as `total`.
+impl Serialize for RayCounts {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut rays = serializer.serialize_struct("RayCounts", 5)?;
+        rays.serialize_field("camera", &self.camera)?;
+        rays.serialize_field("light", &self.light)?;
+        rays.serialize_field("connection", &self.connection)?;
+        rays.serialize_field("light_image", &self.light_image)?;
+        rays.serialize_field("total", &self.total())?;
+        rays.end()
+    }
+}
+
 impl AddAssign for RayCounts {
     fn add_assign(&mut self, other: Self) {
         self.camera += other.camera;
@@ -40,8 +55,8 @@ impl AddAssign for RayCounts {
     }
 }
 
-/// A contribution that was not finite, or too large: where it came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// The origin of a contribution that was not finite, or too large.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Dropped {
     /// The pass.
     pub pass: u64,
@@ -51,7 +66,7 @@ pub struct Dropped {
     pub strategy: Strategy,
 }
 
-/// How many dropped contributions are listed: the first by (pass, pixel, strategy).
+/// The number of dropped contributions that are listed: the first by (pass, pixel, strategy).
 pub const LISTED_DROPS: usize = 64;
 
 /// The counters of a render, or of a part of one; adding parts in any order gives the same.
@@ -67,7 +82,7 @@ pub struct Stats {
     pub light_image_blocked: u64,
     /// Candidate connections evaluated.
     pub candidates: u64,
-    /// What became of the contributions of each strategy.
+    /// The fate of the contributions of each strategy.
     pub strategies: StrategyTable,
     /// The same of those that the film keeps images of.
     pub strategy_images: StrategyTable<LayerCounts>,
@@ -105,7 +120,7 @@ impl Stats {
         }
     }
 
-    /// Counts what one sample added to the weighted image of `strategy`.
+    /// Counts the luminance that one sample added to the weighted image of `strategy`.
     #[inline]
     pub fn add_square(&mut self, strategy: Strategy, luminance: f64) {
         self.strategy_images.of(strategy).add_square(luminance);

@@ -1,10 +1,10 @@
-//! How a render begins: with the session, whose training may take longer than its passes.
+//! The beginning of a render: the session, whose training may take longer than its passes.
 
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
 use crate::exit::{Exit, Failure};
 use crate::film_header;
-use crate::progress::tell_openjd;
+use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
 use bidir::driver::{Effort, Resources, Session, SessionError, Settings};
@@ -15,12 +15,12 @@ use std::time::{Duration, Instant};
 
 /// Signals are looked at this often.
 const GAP: Duration = Duration::from_millis(100);
-/// After so many gaps without a session it is told why.
+/// The gaps without a session after which a message says why.
 const LONG: u32 = 20;
 /// So long after the end of the time budget training may still end.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// How a render is trained.
+/// The training of a render.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Training {
     /// As long as it takes.
@@ -44,7 +44,7 @@ impl Training {
     }
 }
 
-/// What a render begins with.
+/// The beginning of a render.
 pub(crate) enum Began {
     /// A session that is trained.
     Session(Box<Session<'static>>),
@@ -75,7 +75,7 @@ pub(crate) fn session(
     };
     let (sender, receiver) = mpsc::channel();
     let in_thread = train.clone();
-    // What nobody waits for any more ends with the process.
+    // A training that nobody waits for ends with the process.
     let thread = thread::Builder::new().name("training".to_owned());
     let session = match thread.spawn(move || sender.send(in_thread())) {
         Ok(_) => match wait(&receiver, signals, display)? {
@@ -126,7 +126,7 @@ fn tell_training(display: Display) {
     match display {
         // Nothing but objects is expected there.
         Display::Silent | Display::Lines(LineFormat::Ndjson) => {}
-        Display::Lines(LineFormat::OpenJd) => tell_openjd("status", text),
+        Display::Lines(LineFormat::OpenJd) => write_openjd("status", text),
         Display::Bar | Display::Lines(LineFormat::Plain) => say(text),
     }
 }

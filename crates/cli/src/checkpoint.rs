@@ -24,7 +24,7 @@ pub(crate) struct Checkpoint {
     written: Instant,
     /// True where the file is there and can be read.
     is_whole: bool,
-    /// What is gone on from, until the session has it.
+    /// The film that the render continues, until the session has it.
     film: Option<FilmFile>,
     _lock: FilmLock,
 }
@@ -39,7 +39,7 @@ impl Checkpoint {
         let Some(name) = &args.checkpoint else {
             return Ok(None);
         };
-        scene_io::check_writable(name)?;
+        formats::file::check_replaceable(name)?;
         let path = scene_io::target_of(name);
         let lock = FilmLock::take(&path)?;
         check_existing(&path, args)?;
@@ -49,7 +49,7 @@ impl Checkpoint {
             None
         };
         Ok(Some(Self {
-            // What is damaged shall not push out the whole file before it.
+            // A damaged file does not replace the whole one before it.
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
             name: name.clone(),
             path,
@@ -101,14 +101,15 @@ impl Checkpoint {
 
     /// Writes the film, and keeps the file before as FILE.previous.
     fn write(&mut self, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
-        // A disk that is full shall not be asked again after every pass.
+        // Set first: a full disk is not tried again after every pass.
         self.written = Instant::now();
         if self.is_whole {
             let previous = lock::previous(&self.path);
-            return scene_io::write_film_keeping(&self.path, &previous, header, film);
+            formats::film::write_keeping(&self.path, &previous, header, film)?;
+        } else {
+            formats::film::write(&self.path, header, film)?;
+            self.is_whole = true;
         }
-        scene_io::write_film(&self.path, header, film)?;
-        self.is_whole = true;
         Ok(())
     }
 }
@@ -159,7 +160,7 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What a running render writes to its film file, if it has one.
+/// Writes the film file of a running render, if it has one.
 pub(crate) struct Keeper {
     checkpoint: Option<Checkpoint>,
     header: FilmHeader,

@@ -55,8 +55,8 @@ impl Filter {
         self.0.denoise(&input).map_err(|error| failure(&error))
     }
 
-    /// What denoises, with its version and these guides.
-    fn told(&self, guides: &str) -> String {
+    /// The denoiser with its version and these guides, in words.
+    fn text(&self, guides: &str) -> String {
         format!("Open Image Denoise {}, guides: {guides}", self.0.version())
     }
 
@@ -76,7 +76,7 @@ impl Filter {
             channels: &COLOR,
             data: noisy.into_flattened(),
         });
-        Ok(self.told("Albedo, Ns"))
+        Ok(self.text("Albedo, Ns"))
     }
 }
 
@@ -133,7 +133,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let format = scene_io::image_format(&args.output, IMAGES)?;
     scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
     output::check_file("--output", &args.output)?;
-    let mut layers = scene_io::read_layers(&args.image)?;
+    let mut layers = formats::image::read_layers(&args.image)?;
     let noisy = noisy(&layers, &args.image)?;
     let guides = Guides::of(&layers);
     let names = guides.names();
@@ -146,7 +146,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let filter = Filter::load(args.threads)?;
     let normal = guides.normal.as_ref().map(|(_, normal)| normal.as_slice());
     let clean = filter.apply(layers.size(), &noisy, [guides.albedo.as_deref(), normal])?;
-    let by = filter.told(&names);
+    let by = filter.text(&names);
     if format == ImageFormat::Png {
         let picture = Pixels {
             size: layers.size(),
@@ -154,8 +154,10 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
         };
         scene_io::write_screen(&args.output, &picture)?;
     } else {
-        let triples = [(COLOR, &clean[..]), (NOISY, &noisy)];
-        scene_io::write_layers(&args.output, &mut layers, &triples, ("bidir/denoiser", &by))?;
+        layers.set_triples(COLOR, &clean)?;
+        layers.set_triples(NOISY, &noisy)?;
+        layers.set_text("bidir/denoiser", &by);
+        formats::image::write_layers(&args.output, &layers)?;
     }
     say(format_args!("{by}; wrote {}", args.output.display()));
     Ok(Exit::Done)

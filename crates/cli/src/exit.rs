@@ -1,9 +1,10 @@
-//! How the command ends: exit codes, and failures with what to do about them.
+//! Ends of the command: exit codes, and failures with their remedies.
 
+use formats::ErrorKind;
 use std::fmt::Write;
 use std::path::Path;
 
-/// How the command ends; part of its interface, so that scripts and schedulers can tell.
+/// The end of the command; part of its interface, for scripts and schedulers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
     /// All was done.
@@ -85,7 +86,7 @@ impl Exit {
         }
     }
 
-    /// What the code of another program means, if it has the same ones.
+    /// The meaning of another program's code, if it has the same ones.
     pub(crate) fn of_code(code: Option<i32>) -> Self {
         let mut all = Self::ALL.into_iter().map(|(exit, _)| exit);
         let found = all.find(|exit| Some(i32::from(exit.code())) == code);
@@ -110,7 +111,7 @@ impl Exit {
     }
 }
 
-/// Why the command cannot go on.
+/// The reason why the command cannot go on.
 #[derive(Debug)]
 pub(crate) struct Failure {
     exit: Exit,
@@ -119,7 +120,7 @@ pub(crate) struct Failure {
 
 #[derive(Debug)]
 enum FailureKind {
-    /// What is wrong, and what to do about it.
+    /// The reason, and a remedy.
     Message {
         message: String,
         hint: Option<String>,
@@ -129,7 +130,7 @@ enum FailureKind {
 }
 
 impl Failure {
-    /// A failure that is told in words.
+    /// A failure in words.
     pub(crate) fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self {
             exit,
@@ -161,7 +162,7 @@ impl Failure {
         Self::new(Exit::InputOutput, formats::cannot(action, path, error))
     }
 
-    /// Adds what to do about it.
+    /// Adds a remedy.
     pub(crate) fn with_hint(mut self, text: impl Into<String>) -> Self {
         if let FailureKind::Message { hint, .. } = &mut self.kind {
             *hint = Some(text.into());
@@ -169,7 +170,7 @@ impl Failure {
         self
     }
 
-    /// How the command ends because of it.
+    /// The exit of the command.
     pub(crate) fn exit(&self) -> Exit {
         self.exit
     }
@@ -182,12 +183,23 @@ impl Failure {
         }
     }
 
-    /// The error that can show its place. None: it is told in words.
+    /// The error that can show its place. None: it is in words.
     pub(crate) fn as_diagnostic(&self) -> Option<&dyn miette::Diagnostic> {
         match &self.kind {
             FailureKind::Diagnostic(error) => Some(&**error),
             FailureKind::Message { .. } => None,
         }
+    }
+}
+
+/// An error with a file, other than a scene.
+impl From<formats::Error> for Failure {
+    fn from(error: formats::Error) -> Self {
+        let exit = match error.kind() {
+            ErrorKind::Memory => Exit::Scene,
+            _ => Exit::InputOutput,
+        };
+        Self::new(exit, error.to_string())
     }
 }
 

@@ -112,7 +112,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     let _lock = FilmLock::take(&args.output)?;
     let Merged { all, known } = merged(args)?;
     check_kept(&args.output, &all.header)?;
-    scene_io::write_film(&args.output, &all.header, &all.film)?;
+    formats::film::write(&args.output, &all.header, &all.film)?;
     if let Some(image) = &args.image {
         write_image(image, &all.header, &all.film)?;
     }
@@ -135,7 +135,7 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
 /// The sum of films.
 struct Merged {
     all: FilmFile,
-    /// How many of them the output, which is one of them, had before.
+    /// The number of them that the output, which is one of the files, had before.
     known: usize,
 }
 
@@ -243,7 +243,7 @@ fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
     Ok(())
 }
 
-/// What is still to do.
+/// The missing passes.
 #[derive(Serialize)]
 struct Missing {
     /// Ranges of passes, as `--passes` takes them.

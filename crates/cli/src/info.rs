@@ -16,10 +16,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
 
-/// How many there are of each kind.
+/// Counts by kind.
 type Counts = BTreeMap<&'static str, usize>;
 
-/// What is in a scene.
+/// The contents of a scene.
 #[derive(Debug, Serialize)]
 struct Info {
     scene: String,
@@ -38,7 +38,7 @@ struct Info {
     shared_instances: usize,
     materials: Counts,
     lights: Counts,
-    /// How many lights are in each group.
+    /// The number of lights in each group.
     light_groups: BTreeMap<String, usize>,
     textures: usize,
     /// The two corners of a box around all surfaces. None: there are none.
@@ -47,7 +47,7 @@ struct Info {
     isa: String,
     /// Light paths that estimators do not make, by their names.
     blind_spots: BTreeMap<&'static str, Vec<BlindSpotInfo>>,
-    /// What is not supported, and what stands in for it with `--lenient`.
+    /// Unsupported features, and their substitutes with `--lenient`.
     refused: Vec<String>,
     warnings: Vec<String>,
 }
@@ -75,13 +75,13 @@ struct FilmInfo {
 
 /// Tells what is in a scene.
 pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
-    // What a render would refuse is told with the rest, instead of the first of it alone.
+    // Lenient, so that all unsupported features are listed, and not the first alone.
     let scene = SceneArgs {
         lenient: true,
         ..args.scene.clone()
     };
     let loaded = scene_io::load(&scene, None)?;
-    loaded.tell_warnings(&args.scene, 0, console)?;
+    loaded.print_warnings(&args.scene, 0, console)?;
     let info = Info::new(args.scene.scene.display().to_string(), &loaded);
     if args.json {
         print_json(&info)
@@ -145,7 +145,7 @@ impl Info {
         text
     }
 
-    /// What there is, each with its name.
+    /// The contents, each with its name.
     fn lines(&self) -> [(&'static str, String); 16] {
         let film = &self.film;
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);

@@ -1,10 +1,9 @@
 //! Locks that keep processes from writing the same film file at once.
 //!
-//! The lock is that of the file FILE.lock beside it. The system gives it back where the process is
-//! killed; the file then stays, empty and harmless, until the next writer is done. Who is done
-//! removes the file *while it holds the lock*; who gets a lock looks whether the name still stands
-//! for the file that was locked, and begins anew where it does not. So two that hold a lock hold it
-//! of the same file, which cannot be.
+//! The lock is that of the file FILE.lock beside it. The system releases it where the process is
+//! killed; the file then stays, empty and harmless, until the next writer ends. A writer removes the
+//! file *while it holds the lock*, and one that gets a lock begins anew where the name no longer
+//! stands for the locked file. Hence two processes can never both hold it.
 
 use crate::exit::{Exit, Failure};
 use crate::scene_io;
@@ -12,7 +11,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// How often a lock file may be removed by others while it is being locked.
+/// The most times that others may remove a lock file while it is being locked.
 const ATTEMPTS: u32 = 100;
 
 /// The right to write a film file, as long as it lives.
@@ -25,14 +24,14 @@ pub(crate) struct FilmLock {
 }
 
 impl FilmLock {
-    /// Takes the lock of a film file, and removes what killed writers of it left behind.
+    /// Takes the lock of a film file, and removes temporary files of killed writers.
     ///
     /// Errors: another process has it; no file can be made beside the film file.
     pub(crate) fn take(film: &Path) -> Result<Self, Failure> {
         // The lock is that of the file itself, whatever link leads to it.
         let film = scene_io::target_of(film);
         let name = beside(&film, ".lock");
-        // What is no plain file, such as a device, is written to and not replaced.
+        // Devices and the like are written to and not replaced.
         if film.exists() && !film.is_file() {
             return Ok(Self { name, held: None });
         }
@@ -62,7 +61,7 @@ impl FilmLock {
 impl Drop for FilmLock {
     fn drop(&mut self) {
         if cfg!(unix) && self.held.is_some() {
-            // A file that stays is in nobody's way.
+            // A file that stays is harmless.
             let _ = std::fs::remove_file(&self.name);
         }
     }
@@ -73,7 +72,7 @@ pub(crate) fn previous(film: &Path) -> PathBuf {
     beside(film, ".previous")
 }
 
-/// The files that whoever writes a film file writes: itself, its lock, and the one before it.
+/// The files that a writer of a film file writes: itself, its lock, and the one before it.
 pub(crate) fn files(film: &Path) -> Vec<PathBuf> {
     let target = scene_io::target_of(film);
     let mut files = vec![film.to_owned(), beside(&target, ".lock")];
@@ -99,7 +98,7 @@ fn taken(film: &Path) -> Failure {
     Failure::new(Exit::InputOutput, message).with_hint(hint)
 }
 
-/// The name of a lock is that of a file with something in it, which would be removed with the lock.
+/// The name of the lock is that of a file with content, which would be removed with the lock.
 fn no_lock(name: &Path) -> Failure {
     let message = format!("{} is not an empty lock file", name.display());
     let hint = "rename it, or give the film file another name";
@@ -112,7 +111,7 @@ fn open(name: &Path) -> io::Result<File> {
     options.write(true).create(true).truncate(false).open(name)
 }
 
-/// Does the name still stand for the file? It is opened for that, as network file systems look
+/// True where the name still stands for the file. It is opened for that, as network file systems look
 /// afresh only then.
 #[cfg(unix)]
 fn is_still(file: &File, name: &Path) -> io::Result<bool> {
@@ -148,14 +147,14 @@ mod tests {
         assert_eq!(failure.exit(), Exit::InputOutput);
         drop(lock);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        // What a killed process leaves.
+        // A killed process leaves this.
         File::create(beside(&film, ".lock")).unwrap();
         drop(FilmLock::take(&film).unwrap());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]
-    fn never_have_two_the_lock() {
+    fn two_never_have_the_lock() {
         let folder = tempfile::tempdir().unwrap();
         let film = folder.path().join("a.film");
         let (is_held, taken) = (AtomicBool::new(false), AtomicU64::new(0));

@@ -79,10 +79,10 @@ fn run(command: &Command, console: Console) -> Result<Exit, Failure> {
     }
     match command {
         Command::Render(args) => render::run(args, console)
-            .inspect_err(|failure| progress::tell_failure(args.output.talk, failure)),
+            .inspect_err(|failure| progress::report_failure(args.output.talk, failure)),
         Command::View(args) => view::run(args, console),
         Command::Reference(args) => reference::run(args, console)
-            .inspect_err(|failure| progress::tell_failure(args.talk, failure)),
+            .inspect_err(|failure| progress::report_failure(args.talk, failure)),
         Command::Info(args) => info::run(args, console),
         Command::Compare(args) => compare::run(args, console),
         Command::Experiment(args) => experiment::run(args, console),

@@ -15,7 +15,7 @@ pub(crate) struct Outputs {
     png: Option<PathBuf>,
     /// The counts, as JSON.
     pub(crate) stats: Option<PathBuf>,
-    /// The images of strategies.
+    /// Images of each strategy.
     pub(crate) pyramid: Option<PathBuf>,
 }
 
@@ -99,7 +99,7 @@ impl Outputs {
         metadata: &[(String, MetadataValue)],
     ) -> Result<(), Failure> {
         if let Some(exr) = &self.exr {
-            scene_io::write_exr(exr, film, developed, metadata)?;
+            developed.write_exr(exr, film, metadata)?;
         }
         let png = self.png.as_ref();
         png.map_or(Ok(()), |png| scene_io::write_png(png, &developed.picture))
@@ -122,8 +122,8 @@ pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
         let message = format!("cannot write `{}`: it is a folder", file.display());
         return Err(Failure::new(Exit::InputOutput, message));
     }
-    scene_io::check_writable(file)
-        .map_err(|failure| failure.with_hint(hint(flag, scene_io::folder_of(file))))
+    formats::file::check_replaceable(file)
+        .map_err(|error| Failure::from(error).with_hint(hint(flag, scene_io::folder_of(file))))
 }
 
 /// The EXR, if any, and the PNG that go by the name of an image.

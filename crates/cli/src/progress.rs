@@ -1,8 +1,7 @@
-//! Progress: a bar on a terminal, lines elsewhere. The library has no clock; this has.
+//! Progress: a bar on a terminal, lines elsewhere, by the clock that the library lacks.
 //!
 //! Lines are for people, as JSON, or as Open Job Description has them
-//! [OpenJD23, Stdout/Stderr Messages]; the latter go to stdout, all others to stderr. One is written
-//! now and then, and one at the end where all is done.
+//! [OpenJD23, Stdout/Stderr Messages]; the latter go to stdout, all others to stderr.
 
 use crate::args::{self, TalkArgs};
 use crate::console::{Display, LineFormat, print, say};
@@ -18,43 +17,43 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Lines are at least this far apart.
+/// The least time between two lines.
 const SHORTEST_GAP: Duration = Duration::from_secs(1);
 /// A line is due after this time,
 const LONGEST_GAP: Duration = Duration::from_secs(10);
 /// or this much progress. Unit: percent.
 const STEP: u32 = 10;
-/// What is told where nobody knows how long it takes.
+/// The time left where it is unknown.
 const LONGEST_LEFT: Duration = Duration::from_secs(1 << 30);
-/// A bar is drawn anew so often.
+/// The time between two drawings of a bar.
 const TICK: Duration = Duration::from_millis(200);
 /// The bar's resolution.
 const BAR_LENGTH: u64 = 1000;
-/// What is beside the bar. Its own estimate of the time would count what was there before.
+/// The bar and its text. Its own estimate of the time would count samples of earlier runs.
 const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {prefix}";
 
-/// What progress is measured by.
+/// The measure of progress.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
-    /// When it is enough.
+    /// The end of the render.
     pub(crate) budget: Budget,
     /// The samples of a pass.
     pub(crate) samples_per_pass: u64,
-    /// When the render began, with its training.
+    /// The beginning of the render, with its training.
     pub(crate) start: Instant,
-    /// When the first pass of this run began.
+    /// The beginning of the first pass of this run.
     pub(crate) first_pass: Instant,
 }
 
-/// Tells how far a render is.
+/// Reports the progress of a render.
 pub(crate) struct Reporter<'a> {
     signals: &'a Signals,
     clock: Clock,
-    /// What was there before it was rendered here.
+    /// Samples of earlier runs.
     before: AtomicU64,
     samples: AtomicU64,
-    /// True when it was said that the running pass is the last.
-    is_stop_told: AtomicBool,
+    /// True once a message has said that the running pass is the last.
+    has_said_stop: AtomicBool,
     channel: Channel,
 }
 
@@ -64,7 +63,7 @@ enum Channel {
     Lines(LineFormat, Mutex<LastLine>),
 }
 
-/// When the last line was written, and what it said.
+/// The last line.
 struct LastLine {
     at: Instant,
     percent: u32,
@@ -89,24 +88,24 @@ impl<'a> Reporter<'a> {
             clock,
             before: AtomicU64::new(0),
             samples: AtomicU64::new(0),
-            is_stop_told: AtomicBool::new(false),
+            has_said_stop: AtomicBool::new(false),
             channel,
         }
     }
 
     /// Reports on a render that goes on after so many samples.
     pub(crate) fn after(self, samples: u64) -> Self {
-        self.find(samples);
+        self.add_earlier(samples);
         self
     }
 
-    /// Takes notice of samples that are there already.
-    pub(crate) fn find(&self, samples: u64) {
+    /// Adds samples of earlier runs.
+    pub(crate) fn add_earlier(&self, samples: u64) {
         self.before.fetch_add(samples, Ordering::Relaxed);
         self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 
-    /// Writes that all is done, unless the last line had it.
+    /// Writes the line of the end, unless it is the last one.
     pub(crate) fn complete(&self) {
         if let Channel::Lines(format, last) = &self.channel {
             if last.lock().is_ok_and(|last| last.percent >= 100) {
@@ -150,21 +149,21 @@ impl<'a> Reporter<'a> {
     }
 
     /// Says once that the running pass is the last.
-    fn tell_stop(&self) {
-        if self.signals.exit().is_none() || self.is_stop_told.swap(true, Ordering::Relaxed) {
+    fn say_stop(&self) {
+        if self.signals.exit().is_none() || self.has_said_stop.swap(true, Ordering::Relaxed) {
             return;
         }
         let text = "stopping after the running pass; a second signal stops at once";
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => bar.println(text),
-            Channel::Lines(LineFormat::OpenJd, _) => tell_openjd("status", text),
+            Channel::Lines(LineFormat::OpenJd, _) => write_openjd("status", text),
             Channel::Lines(..) => say(text),
         }
     }
 
     /// Writes a line where one is due.
-    fn tell(&self, format: LineFormat, last: &mut LastLine) {
+    fn write_due(&self, format: LineFormat, last: &mut LastLine) {
         let state = self.state();
         let (percent, gap) = (state.percent(), last.at.elapsed());
         if gap < SHORTEST_GAP || (gap < LONGEST_GAP && percent < last.percent + STEP) {
@@ -181,7 +180,7 @@ impl<'a> Reporter<'a> {
 impl Progress for Reporter<'_> {
     fn advance(&self, samples: u64) {
         self.samples.fetch_add(samples, Ordering::Relaxed);
-        self.tell_stop();
+        self.say_stop();
         match &self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
@@ -194,9 +193,9 @@ impl Progress for Reporter<'_> {
                 }
             }
             Channel::Lines(format, last) => {
-                // Where another thread is writing, there is nothing to add.
+                // A line that another thread is writing is enough.
                 if let Ok(mut last) = last.try_lock() {
-                    self.tell(*format, &mut last);
+                    self.write_due(*format, &mut last);
                 }
             }
         }
@@ -217,7 +216,7 @@ pub(crate) fn bar(template: &str) -> ProgressBar {
     bar
 }
 
-/// Draws a bar anew now and then, so that its time goes on; without a thread it moves with the samples.
+/// Draws a bar at intervals, so that its time goes on; without a thread it moves with the samples.
 fn keep_moving(bar: &ProgressBar) {
     let bar = bar.downgrade();
     let draw = move || {
@@ -232,7 +231,7 @@ fn keep_moving(bar: &ProgressBar) {
     let _ = thread::Builder::new().name("bar".to_owned()).spawn(draw);
 }
 
-/// How far a render is.
+/// The progress of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct State {
     /// The part of the budget that is used. Range: `[0, 1]`.
@@ -301,25 +300,25 @@ impl LineFormat {
                 }
             }
             Self::OpenJd => {
-                tell_openjd("progress", &format!("{:.1}", state.progress * 100.0));
-                tell_openjd("status", &state.pass());
+                write_openjd("progress", &format!("{:.1}", state.progress * 100.0));
+                write_openjd("status", &state.pass());
             }
         }
     }
 }
 
-/// Tells a scheduler why the command fails, where it reads Open Job Description.
-pub(crate) fn tell_failure(args: TalkArgs, failure: &Failure) {
+/// Reports a failure to a scheduler that reads Open Job Description.
+pub(crate) fn report_failure(args: TalkArgs, failure: &Failure) {
     if args.progress != Some(Display::Lines(LineFormat::OpenJd)) {
         return;
     }
     let message = failure.as_diagnostic().map(ToString::to_string);
     let message = message.or_else(|| Some(failure.message()?.0.to_owned()));
-    tell_openjd("fail", &message.unwrap_or_default());
+    write_openjd("fail", &message.unwrap_or_default());
 }
 
-/// Writes a line of Open Job Description. Where nobody listens there is nobody to tell.
-pub(crate) fn tell_openjd(kind: &str, message: &str) {
+/// Writes a line of Open Job Description. A closed stdout is no error.
+pub(crate) fn write_openjd(kind: &str, message: &str) {
     let _ = print(&format!("openjd_{kind}: {}\n", printable(message)));
 }
 
@@ -352,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_there_before_and_training_tell_nothing_of_what_is_left() {
+    fn earlier_samples_and_training_do_not_shorten_the_time_left() {
         let signals = Signals::watch().unwrap();
         let budget = Budget {
             first: 0,

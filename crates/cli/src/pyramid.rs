@@ -3,7 +3,7 @@
 
 use crate::exit::Failure;
 use crate::film_header;
-use crate::scene_io::{self, FilmHeader};
+use crate::scene_io::FilmHeader;
 use bidir::film::Film;
 use std::path::{Path, PathBuf};
 
@@ -24,5 +24,6 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 pub(crate) fn write(file: &Path, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = film_header::metadata(header);
     let developed = lab::pyramid::developed(film);
-    scene_io::write_exr(file, film.settings(), &developed, &metadata)
+    developed.write_exr(file, film.settings(), &metadata)?;
+    Ok(())
 }

@@ -27,7 +27,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     check_folder(&folder)?;
     let film = earlier.as_ref().map(film_of);
     let loaded = scene_io::load(&args.scene, Some(film.as_ref().unwrap_or(&args.film)))?;
-    loaded.tell_warnings(&args.scene, 0, console)?;
+    loaded.print_warnings(&args.scene, 0, console)?;
     if let Some(earlier) = &earlier {
         let same = earlier.check(&folder, &loaded.digest, loaded.scene.film());
         same.map_err(failure)?;
@@ -186,7 +186,7 @@ impl Job<'_> {
         }
     }
 
-    /// How the command ends because of a signal.
+    /// The exit after a signal.
     fn stopped(&self) -> Exit {
         if !has_passes(self.folder) {
             self.say(format_args!("stopped before the first pass"));
@@ -281,15 +281,15 @@ impl Host for Watcher<'_> {
     }
 
     fn found(&self, samples: u64) {
-        self.reporter.find(samples);
+        self.reporter.add_earlier(samples);
     }
 }
 
-/// How the command ends because of an error with a reference.
+/// The failure of an error with a reference.
 pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     match error {
-        Error::File(error) => Failure::diagnostic(Exit::InputOutput, error),
+        Error::File(error) => error.into(),
         Error::Io { .. } => Failure::new(Exit::InputOutput, text),
         Error::Damaged { .. } => {
             let hint = "the `bidir reference` command that made it writes it again from its films";

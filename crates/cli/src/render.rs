@@ -22,14 +22,14 @@ use bidir::integrator::{IntegratorKind, blind_spots};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
-use viewer::{Desk, StageSettings, Status};
+use viewer::{RenderMonitor, RequestQueue, Status};
 
 /// Renders a scene, or repeats one sample.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
-    // First of all: a signal during loading shall not kill what asks to be told of it.
+    // First of all: a signal during loading must not kill the command.
     let signals = Signals::watch()?;
     threads::start_for_render(args.threads.count, console);
-    // What is wrong without a scene is told before hours may have gone into one.
+    // Errors that need no scene come before hours may have gone into one.
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let unused = settings::warn_unused(args, &settings, console);
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
-    loaded.tell_warnings(&args.scene, unused + lost + missing, console)?;
+    loaded.print_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
         // Objects that are to be read have standard output to themselves.
@@ -90,7 +90,7 @@ struct Job<'a> {
     loaded: &'a LoadedScene,
     settings: &'a Settings,
     outputs: &'a Outputs,
-    /// What takes the noise out of images.
+    /// The denoiser of images.
     filter: Option<&'a Filter>,
     signals: &'a Signals,
 }
@@ -100,7 +100,7 @@ impl Job<'_> {
         &self,
         checkpoint: Option<Checkpoint>,
         load: Duration,
-        server: Option<(Server, Desk)>,
+        server: Option<(Server, RequestQueue)>,
     ) -> Result<Exit, Failure> {
         let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
         let name = self.args.scene.scene.display().to_string();
@@ -130,16 +130,9 @@ impl Job<'_> {
         let header = header(session.training());
         let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
         let tev = serve::display(self.args.display_server.as_ref(), &name)?;
-        let mut show = Show::new(
-            server,
-            tev,
-            &session,
-            StageSettings {
-                name: &name,
-                settings: self.settings,
-                target: budget.passes,
-            },
-        );
+        let mut show = Show::new(server, tev, |queue| {
+            RenderMonitor::new(queue, &session, self.settings, budget.passes)
+        });
         let clock = Clock {
             budget,
             samples_per_pass: self.loaded.scene.film().crop.area(),
@@ -196,7 +189,7 @@ impl Job<'_> {
         exit
     }
 
-    /// How the command ends because of a signal after a pass: with a film file the same command goes on.
+    /// The exit after a signal and a pass: with a film file the same command continues.
     fn exit(&self, exit: Exit) -> Exit {
         match self.args.long.checkpoint {
             Some(_) => Exit::Checkpoint,
@@ -269,7 +262,7 @@ impl Job<'_> {
     fn write_image(&self, session: &Session<'_>, header: &FilmHeader) -> Result<(), Failure> {
         let film = session.film();
         let (mut developed, mut metadata) = (Developed::new(film), film_header::metadata(header));
-        // What cannot be denoised is written with its noise.
+        // An image that cannot be denoised is written with its noise.
         let cleaned = self.filter.map_or(Ok(()), |filter| {
             let text = MetadataValue::Text(filter.clean(&mut developed)?);
             metadata.push(("bidir/denoiser".to_owned(), text));
@@ -293,7 +286,10 @@ impl Job<'_> {
         let Some(path) = &self.outputs.stats else {
             return Ok(());
         };
-        scene_io::write_text(path, &(json(report)? + "\n"))
+        Ok(formats::file::replace(
+            path,
+            (json(report)? + "\n").as_bytes(),
+        )?)
     }
 
     /// Writes the last lines.
@@ -350,7 +346,7 @@ impl End {
     }
 }
 
-/// Whether another pass is begun, after so many of them, of which some were rendered in this run, the
+/// Decides about another pass after so many of them, of which some were rendered in this run, by the
 /// time so far, the time that a pass is expected to take, and what a signal asks for. A signal that
 /// comes too late stops nothing.
 fn next_pass(
@@ -371,7 +367,7 @@ fn next_pass(
     }
 }
 
-/// Whether the image's relative error is at most `noise`.
+/// True where the image's relative error is at most `noise`.
 fn is_below(noise: Option<f64>, session: &Session<'_>) -> bool {
     noise.is_some_and(|most| session.noise() <= most)
 }

@@ -1,4 +1,4 @@
-//! `bidir render --replay`: one sample again, told step by step.
+//! `bidir render --replay`: one sample again, reported step by step.
 
 use crate::args::{RenderArgs, ReplayTarget};
 use crate::console::{print, print_json, say};
@@ -45,18 +45,18 @@ pub(crate) fn run(
         Failure::usage(format!("the pixel {x},{y} is not rendered")).with_hint(hint)
     })?;
     let report = SampleReport::new(session, target.pixel, target.pass, &replay);
-    let told = if args.json {
+    let printed = if args.json {
         print_json(&report)
     } else {
         print(&report.to_string())
     };
     let Some(path) = &args.svg else {
-        return told;
+        return printed;
     };
     let name = args.scene.scene.display().to_string();
-    scene_io::write_text(path, &report.drawing(scene, &name))?;
+    formats::file::replace(path, report.drawing(scene, &name).as_bytes())?;
     if !args.output.talk.quiet {
         say(format_args!("wrote {}", path.display()));
     }
-    told
+    printed
 }

@@ -1,10 +1,10 @@
-//! Everything that is read and written by the `formats` library passes here.
+//! Reading and writing by the `formats` library, in terms of the command.
 
 use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
 use bidir::driver::Settings;
-use bidir::film::{self, Film, FilmSettings, Picture};
+use bidir::film::{self, FilmSettings, Picture};
 use bidir::scene::Scene;
 use formats::ErrorKind;
 use formats::image::{ExrImage, ExrLayer, Format};
@@ -20,7 +20,7 @@ pub(crate) use formats::film::{Developed, FilmFile, FilmHeader, Stopping, is_fil
 pub(crate) use formats::image::{Layers, MetadataValue};
 pub(crate) use formats::outputs::is_same;
 
-/// A scene that was read, with what else its file says.
+/// A scene that was read, with the settings of its file.
 pub(crate) struct LoadedScene {
     /// The scene.
     pub(crate) scene: Arc<Scene>,
@@ -30,13 +30,13 @@ pub(crate) struct LoadedScene {
     pub(crate) spp: u64,
     /// The name that the file gives its image.
     pub(crate) output: Option<PathBuf>,
-    /// What is odd but no error, each with its place.
+    /// The warnings, each with its place.
     pub(crate) warnings: Vec<String>,
-    /// Those of them that tell what stands in for what is not supported.
+    /// Those of them that name the substitute of an unsupported feature.
     pub(crate) refused: Vec<String>,
     /// The first lamps that no ray can hit.
     pub(crate) lamps: Vec<Lamp>,
-    /// What the scene is made of.
+    /// The parts of the scene.
     pub(crate) summary: Summary,
     /// A hash of all that was read.
     pub(crate) digest: String,
@@ -81,8 +81,8 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
 }
 
 impl LoadedScene {
-    /// Tells the warnings, of which there are `others` more; with `--strict` they are errors.
-    pub(crate) fn tell_warnings(
+    /// Prints the warnings, of which there are `others` more; with `--strict` they are errors.
+    pub(crate) fn print_warnings(
         &self,
         args: &SceneArgs,
         others: usize,
@@ -113,7 +113,7 @@ fn crop(film: &FilmArgs) -> Option<Crop> {
     })
 }
 
-/// Tells that a crop reaches beyond the film. None: it does not.
+/// The warning of a crop that reaches beyond the film. None: it does not.
 fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
     let asked = args.crop.or(args.pixelbounds)?.0;
     let film = scene.film();
@@ -122,26 +122,26 @@ fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
     (film.crop != asked).then_some(message)
 }
 
-/// Tells that there is nothing to be seen. None: there is a light, though it may be a dark one.
+/// The warning of a scene without light. None: there is a light, though it may be a dark one.
 fn light_warning(scene: &Scene) -> Option<String> {
     let is_dark = scene.lights().is_empty();
     is_dark.then(|| "the scene has no light: the image will be black".to_owned())
 }
 
-/// A crop that does not fit is a fault of the command line; a scene file that cannot be opened is no
-/// fault of the scene, but what it names and is not there is.
+/// The exit of an error with a scene. A crop that does not fit is a fault of the command line; a scene
+/// file that cannot be opened is no fault of the scene, but a missing file that it names is.
 pub(crate) fn exit_of_scene(error: &formats::Error) -> Exit {
     match error.kind() {
         ErrorKind::Options => Exit::Usage,
-        ErrorKind::MissingFile | ErrorKind::Io if error.line().is_none() => Exit::InputOutput,
+        ErrorKind::MissingFile | ErrorKind::Io if !error.has_place() => Exit::InputOutput,
         _ => Exit::Scene,
     }
 }
 
-/// Why a scene cannot be read; for one that is not there, a file with a name near its own.
+/// The failure of a scene that cannot be read; a missing one gets the nearest name as a hint.
 fn refused(scene: &Path, error: formats::Error) -> Failure {
     let exit = exit_of_scene(&error);
-    let is_missing = error.kind() == ErrorKind::MissingFile && error.line().is_none();
+    let is_missing = error.kind() == ErrorKind::MissingFile && !error.has_place();
     match nearest_file(scene).filter(|_| is_missing) {
         Some(near) => Failure::new(exit, error.to_string())
             .with_hint(format!("did you mean `{}`?", near.display())),
@@ -164,9 +164,7 @@ pub(crate) fn nearest_file(path: &Path) -> Option<PathBuf> {
 
 /// Reads an image.
 pub(crate) fn read_image(path: &Path) -> Result<Pixels, Failure> {
-    let image = formats::image::read(path, None)
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))?;
-    Ok(Pixels::from(&image))
+    Ok(Pixels::from(&formats::image::read(path, None)?))
 }
 
 /// A setting, by name, of the render that wrote an image. None: the image does not say.
@@ -175,7 +173,7 @@ pub(crate) fn setting_of(path: &Path, name: &str) -> Option<String> {
     layers.text(&format!("bidir/{name}"))
 }
 
-/// The layers of an image that tell how sure it is. None: it has no such.
+/// The estimated variance of an image. None: it has no such layers.
 pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
     let layers = formats::image::read_layers(path).ok()?;
     let pixels = Pixels {
@@ -190,7 +188,7 @@ pub(crate) fn read_variance(path: &Path) -> Option<Variance> {
     })
 }
 
-/// How sure an image is.
+/// The estimated variance of an image.
 #[derive(Clone, Debug)]
 pub(crate) struct Variance {
     /// The variance of every pixel's mean.
@@ -199,30 +197,16 @@ pub(crate) struct Variance {
     pub(crate) freedom: f64,
 }
 
-/// Writes a picture with its layers as EXR with attributes.
-pub(crate) fn write_exr(
-    path: &Path,
-    film: &FilmSettings,
-    developed: &Developed,
-    metadata: &[(String, MetadataValue)],
-) -> Result<(), Failure> {
-    developed
-        .write_exr(path, film, metadata)
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
-}
-
 /// Writes a picture as PNG.
 pub(crate) fn write_png(path: &Path, picture: &Picture) -> Result<(), Failure> {
     let size = [picture.width as u32, picture.height as u32];
-    formats::image::write_png(path, size, &picture.pixels)
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+    Ok(formats::image::write_png(path, size, &picture.pixels)?)
 }
 
-/// Writes what the screen shows as PNG. Range: `[0, 1]`, linear.
+/// Writes the colours of a screen as PNG. Range: `[0, 1]`, linear.
 pub(crate) fn write_screen(path: &Path, pixels: &Pixels) -> Result<(), Failure> {
     let size = pixels.size.map(|side| side as u32);
-    formats::image::write_png(path, size, &pixels.data)
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+    Ok(formats::image::write_png(path, size, &pixels.data)?)
 }
 
 /// Writes errors as they are to an EXR with the channel Y, or as colours up to `full` to a PNG.
@@ -248,8 +232,7 @@ pub(crate) fn write_error_map(
         layers: &[layer],
         metadata,
     };
-    formats::image::write_exr(path, &image)
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+    Ok(formats::image::write_exr(path, &image)?)
 }
 
 /// Writes a developed film to an image of the kind that its name says; layers to EXR alone.
@@ -260,31 +243,9 @@ pub(crate) fn write_picture(
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
     match image_format(path, IMAGES)? {
-        ImageFormat::Exr => write_exr(path, film, developed, metadata),
+        ImageFormat::Exr => Ok(developed.write_exr(path, film, metadata)?),
         ImageFormat::Png => write_png(path, &developed.picture),
     }
-}
-
-/// Reads all channels of an EXR.
-pub(crate) fn read_layers(path: &Path) -> Result<Layers, Failure> {
-    formats::image::read_layers(path).map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
-}
-
-/// Writes all channels of an EXR, with these and this text among them.
-pub(crate) fn write_layers(
-    path: &Path,
-    layers: &mut Layers,
-    triples: &[([&str; 3], &[[f32; 3]])],
-    (attribute, value): (&str, &str),
-) -> Result<(), Failure> {
-    let mut write = || {
-        for (names, data) in triples {
-            layers.set_triples(*names, data)?;
-        }
-        layers.set_text(attribute, value);
-        formats::image::write_layers(path, layers)
-    };
-    write().map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
 }
 
 /// A format that images are written in.
@@ -292,36 +253,38 @@ pub(crate) fn write_layers(
 pub(crate) enum ImageFormat {
     /// Linear light.
     Exr,
-    /// What the screen shows.
+    /// The colours of a screen.
     Png,
 }
 
 /// All that are written.
 pub(crate) const IMAGES: &[ImageFormat] = &[ImageFormat::Exr, ImageFormat::Png];
 
-/// The format that the name of an image says.
+/// The format that the name of an image stands for.
 ///
-/// Errors: it says none of those in `written`.
+/// Errors: it is none of those in `written`.
 pub(crate) fn image_format(path: &Path, written: &[ImageFormat]) -> Result<ImageFormat, Failure> {
-    let said = match Format::of(path) {
+    let named = match Format::of(path) {
         Some(Format::Exr) => Some(ImageFormat::Exr),
         Some(Format::Png) => Some(ImageFormat::Png),
         _ => None,
     };
-    said.filter(|said| written.contains(said)).ok_or_else(|| {
-        if path.is_dir() {
-            return is_folder(path, written);
-        }
-        let endings = written.iter().map(|format| match format {
-            ImageFormat::Exr => ".exr",
-            ImageFormat::Png => ".png",
-        });
-        let endings = endings.collect::<Vec<_>>().join(" or ");
-        let path = path.display();
-        Failure::usage(format!(
-            "cannot write `{path}`: output images are {endings}"
-        ))
-    })
+    named
+        .filter(|named| written.contains(named))
+        .ok_or_else(|| {
+            if path.is_dir() {
+                return is_folder(path, written);
+            }
+            let endings = written.iter().map(|format| match format {
+                ImageFormat::Exr => ".exr",
+                ImageFormat::Png => ".png",
+            });
+            let endings = endings.collect::<Vec<_>>().join(" or ");
+            let path = path.display();
+            Failure::usage(format!(
+                "cannot write `{path}`: output images are {endings}"
+            ))
+        })
 }
 
 /// The error of an output whose name is that of a folder.
@@ -338,38 +301,7 @@ fn is_folder(path: &Path, written: &[ImageFormat]) -> Failure {
 
 /// Reads a film file.
 pub(crate) fn read_film(path: &Path) -> Result<FilmFile, Failure> {
-    formats::film::read(path).map_err(film_failure)
-}
-
-/// Writes a film file, and calls the one before `previous`.
-pub(crate) fn write_film_keeping(
-    path: &Path,
-    previous: &Path,
-    header: &FilmHeader,
-    film: &Film,
-) -> Result<(), Failure> {
-    formats::film::write_keeping(path, previous, header, film).map_err(film_failure)
-}
-
-/// Writes a film file.
-pub(crate) fn write_film(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
-    formats::film::write(path, header, film).map_err(film_failure)
-}
-
-/// How the command ends where a film file cannot be read or written.
-#[expect(clippy::needless_pass_by_value, reason = "`map_err` gives the value")]
-fn film_failure(error: formats::Error) -> Failure {
-    let exit = match error.kind() {
-        ErrorKind::Memory => Exit::Scene,
-        _ => Exit::InputOutput,
-    };
-    Failure::new(exit, error.to_string())
-}
-
-/// Replaces a file by a text.
-pub(crate) fn write_text(path: &Path, text: &str) -> Result<(), Failure> {
-    formats::file::replace(path, text.as_bytes())
-        .map_err(|error| Failure::diagnostic(Exit::InputOutput, error))
+    Ok(formats::film::read(path)?)
 }
 
 /// Fails where an output, each with the flag that names it, would replace an input or another output.
@@ -386,10 +318,4 @@ pub(crate) fn check_apart<'a>(
         let failure = Failure::new(Exit::InputOutput, error.message());
         failure.with_hint(error.hint().unwrap_or_default())
     })
-}
-
-/// Fails where a file could not be written.
-pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
-    formats::file::check_replaceable(path)
-        .map_err(|error| Failure::new(Exit::InputOutput, error.to_string()))
 }

@@ -1,4 +1,4 @@
-//! `bidir render --serve` and `--display-server`: a render that others watch.
+//! `bidir render --serve` and `--display-server`: a render with viewers.
 
 use crate::args::ServeAddress;
 use crate::console::{Console, print};
@@ -10,7 +10,7 @@ use std::net::{SocketAddr, TcpListener};
 use std::time::Duration;
 use viewer::tev::{Tev, TevAddress};
 use viewer::web::{self, Server};
-use viewer::{Desk, Stage, StageSettings, Status, desk};
+use viewer::{RenderMonitor, RequestQueue, Status, request_queue};
 
 /// Takes the address before anything is read.
 pub(crate) fn listen(address: ServeAddress) -> Result<TcpListener, Failure> {
@@ -32,19 +32,19 @@ pub(crate) fn bind(address: SocketAddr, more: u16) -> Result<TcpListener, Failur
     })
 }
 
-/// Starts a server that tells `first` until there is more to tell, and tells on stdout where it is.
+/// Starts a server with the status `first`, and prints its address.
 pub(crate) fn start(
     listener: TcpListener,
     first: Status,
     warnings: &[String],
-) -> Result<(Server, Desk), Failure> {
-    let (desk, link) = desk(first);
+) -> Result<(Server, RequestQueue), Failure> {
+    let (queue, client) = request_queue(first);
     for warning in warnings {
-        desk.board().log(&format!("warning: {warning}"));
+        queue.state().log(&format!("warning: {warning}"));
     }
-    let server = Server::start(listener, link).map_err(|error| failed(&error))?;
+    let server = Server::start(listener, client).map_err(|error| failed(&error))?;
     print(&format!("{}\n", server.url()))?;
-    Ok((server, desk))
+    Ok((server, queue))
 }
 
 /// The system gives no thread, or no random numbers.
@@ -64,53 +64,52 @@ pub(crate) fn display(address: Option<&TevAddress>, scene: &str) -> Result<Optio
     })
 }
 
-/// A render that is watched, where somebody asked for it.
+/// The viewers of a render that flags ask for.
 pub(crate) struct Show {
-    stage: Option<Stage>,
+    monitor: Option<RenderMonitor>,
     tev: Option<Tev>,
-    /// Serves as long as it is there.
+    /// Serves until it is dropped.
     _server: Option<Server>,
 }
 
 impl Show {
-    /// Shows what `session` is going to render.
+    /// Shows the render that `session` begins.
     pub(crate) fn new(
-        server: Option<(Server, Desk)>,
+        server: Option<(Server, RequestQueue)>,
         tev: Option<Tev>,
-        session: &Session<'_>,
-        settings: StageSettings<'_>,
+        monitor: impl FnOnce(RequestQueue) -> RenderMonitor,
     ) -> Self {
-        let (server, desk) = server.unzip();
+        let (server, queue) = server.unzip();
         Self {
-            stage: desk.map(|desk| Stage::new(desk, session, settings)),
+            monitor: queue.map(monitor),
             tev,
             _server: server,
         }
     }
 
-    /// Shows a pass that took so long.
+    /// Shows a pass that took `time`.
     pub(crate) fn add_pass(
         &mut self,
         session: &Session<'_>,
         time: Duration,
         header: &dyn Fn() -> FilmHeader,
     ) {
-        if let Some(stage) = &mut self.stage {
-            stage.add_pass(session, time, header);
+        if let Some(monitor) = &mut self.monitor {
+            monitor.add_pass(session, time, header);
         }
         if let Some(tev) = &mut self.tev {
             tev.add_pass(session.film());
         }
     }
 
-    /// Shows that all is done.
+    /// Shows the finished render.
     pub(crate) fn end(&mut self, session: &Session<'_>, header: &dyn Fn() -> FilmHeader) {
-        if let Some(stage) = &mut self.stage {
-            stage.end(session, header);
+        if let Some(monitor) = &mut self.monitor {
+            monitor.end(session, header);
         }
     }
 
-    /// Waits a moment until tev has the last image; a warning where it has not. When all files are
+    /// Waits a moment until tev has the last image, or warns that it has not; after all files are
     /// written, as it is no part of the render.
     pub(crate) fn leave(&mut self, session: &Session<'_>, console: Console) {
         let tev = self.tev.take();

@@ -7,10 +7,12 @@ use crate::scene_io::Stopping;
 use crate::settings::Budget;
 use bidir::driver::Session;
 use bidir::film::Film;
+use bidir::stats::{Dropped, StrategyCounts};
 use formats::film::SettingsText;
 use lab::sample::TrainingReport;
-use parts::{BudgetReport, CountsReport, DroppedReport, RayReport, StagesReport, StrategyReport};
+use parts::{BudgetReport, RayReport, StagesReport, StrategyReport};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 pub(crate) use summary::{Summary, listed};
@@ -18,18 +20,18 @@ pub(crate) use summary::{Summary, listed};
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// How a render went.
+/// The course of a render.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     /// Reading and building the scene.
     pub(crate) load: Duration,
     /// Training and rendering.
     pub(crate) render: Duration,
-    /// How the number of passes was decided.
+    /// The reason for the number of passes.
     pub(crate) stopping: Stopping,
 }
 
-/// Everything that is told about a render.
+/// The report of a render.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Report {
     version: &'static str,
@@ -57,17 +59,17 @@ pub(crate) struct Report {
     light_image_blocked: u64,
     candidates: u64,
     strategies: Vec<StrategyReport>,
-    /// Of paths that are too long to be told apart.
-    longer_paths: CountsReport,
+    /// Of paths that are too long for counts of their own.
+    longer_paths: StrategyCounts,
     training: Option<TrainingReport>,
     dropped: u64,
-    dropped_list: Vec<DroppedReport>,
+    dropped_list: BTreeSet<Dropped>,
     film_bytes: u64,
     bvh_bytes: usize,
 }
 
 impl Report {
-    /// The report of what `session` rendered so far of the scene that is called `scene`.
+    /// The report of the passes of `session` so far, of the scene file `scene`.
     pub(crate) fn new(
         scene: String,
         session: &Session<'_>,
@@ -101,21 +103,21 @@ impl Report {
             light_image_blocked: stats.light_image_blocked,
             candidates: stats.candidates,
             strategies: StrategyReport::all(session),
-            longer_paths: CountsReport::from(stats.strategies.longer()),
+            longer_paths: stats.strategies.longer(),
             training: TrainingReport::new(session),
             dropped: stats.dropped,
-            dropped_list: stats.dropped_list.iter().map(DroppedReport::from).collect(),
+            dropped_list: stats.dropped_list.clone(),
             film_bytes: Film::memory(film, &session.settings().layers),
             bvh_bytes: bvh.memory_bytes(),
         }
     }
 
-    /// What each strategy did, as a table to read.
+    /// The counts of each strategy, as a table to read.
     pub(crate) fn strategy_table(&self) -> String {
         parts::strategy_table(&self.strategies, self.samples)
     }
 
-    /// What is said of raw images that lack something. None: they lack nothing.
+    /// The warning of raw images that lack values. None: they lack none.
     pub(crate) fn raw_warning(&self) -> Option<String> {
         let dropped = |strategy: &StrategyReport| strategy.raw_dropped.unwrap_or(0);
         let count: u64 = self.strategies.iter().map(dropped).sum();
@@ -126,7 +128,7 @@ impl Report {
         })
     }
 
-    /// What is said of contributions that were dropped. None: there were none.
+    /// The warning of dropped contributions. None: there were none.
     pub(crate) fn warning(&self) -> Option<String> {
         let first = self.dropped_list.first()?;
         let [x, y] = first.pixel;

@@ -12,65 +12,57 @@ use bidir::driver::Settings;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::time::Duration;
-use viewer::studio::{Studio, StudioSettings};
-use viewer::{Choices, Status};
+use viewer::Status;
+use viewer::interactive::{InteractiveRender, InteractiveSettings};
 
 /// The port where no scene was chosen,
 const PORT: u16 = 8080;
 /// and how many after it are tried.
 const MORE_PORTS: u16 = 10;
-/// How often it is looked for signals.
+/// The time between two looks for signals.
 const GAP: Duration = Duration::from_millis(50);
 
 /// Renders and serves until a signal comes.
 pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     threads::start(args.threads.count, console);
-    // What is wrong without a scene is told before one is read.
+    // Errors that need no scene come before one is read.
     let listener = listen(args)?;
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let settings = args.estimator.apply(&loaded.settings);
     // Every flag may have influence: estimators are switched.
     let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
-    loaded.tell_warnings(&args.scene, lost + missing, console)?;
-    let (server, desk) = serve::start(listener, first_status(args, &loaded), &loaded.warnings)?;
-    let studio = studio_settings(args, loaded, settings);
-    let studio = Studio::open(studio, desk).map_err(|error| serve::failed(&error))?;
+    loaded.print_warnings(&args.scene, lost + missing, console)?;
+    let name = args.scene.scene.display().to_string();
+    let first = Status::interactive(&name, loaded.scene.film());
+    let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
+    let render = interactive_settings(args, loaded, settings);
+    let render = InteractiveRender::open(render, queue).map_err(|error| serve::failed(&error))?;
     if !args.quiet {
         say("open it in a browser; Ctrl-C ends");
     }
-    let exit = wait(&signals, &studio);
+    let exit = wait(&signals, &render);
     drop(server);
-    tell_saved(args, studio.close())?;
+    say_saved(args, render.close())?;
     Ok(exit)
 }
 
-/// What is told before the first lane begins.
-fn first_status(args: &ViewArgs, loaded: &LoadedScene) -> Status {
-    let name = args.scene.scene.display().to_string();
-    Status {
-        controls: true,
-        choices: Choices::all(),
-        ..Status::preparing(&name, loaded.scene.film())
-    }
-}
-
 /// Waits for a signal.
-fn wait(signals: &Signals, studio: &Studio) -> Exit {
+fn wait(signals: &Signals, render: &InteractiveRender) -> Exit {
     loop {
         if let Some(exit) = signals.exit() {
             return exit;
         }
-        if studio.is_finished() {
+        if render.is_finished() {
             return Exit::RenderFailed;
         }
         std::thread::sleep(GAP);
     }
 }
 
-/// Tells what clients had written.
-fn tell_saved(args: &ViewArgs, saved: Option<Vec<String>>) -> Result<(), Failure> {
+/// Prints the names of the files that clients saved.
+fn say_saved(args: &ViewArgs, saved: Option<Vec<String>>) -> Result<(), Failure> {
     let Some(saved) = saved else {
         return Err(Failure::new(Exit::RenderFailed, "the render failed"));
     };
@@ -85,8 +77,12 @@ fn tell_saved(args: &ViewArgs, saved: Option<Vec<String>>) -> Result<(), Failure
     Ok(())
 }
 
-fn studio_settings(args: &ViewArgs, loaded: LoadedScene, settings: Settings) -> StudioSettings {
-    StudioSettings {
+fn interactive_settings(
+    args: &ViewArgs,
+    loaded: LoadedScene,
+    settings: Settings,
+) -> InteractiveSettings {
+    InteractiveSettings {
         name: args.scene.scene.display().to_string(),
         digest: loaded.digest,
         scene: loaded.scene,

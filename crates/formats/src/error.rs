@@ -8,8 +8,9 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Why a file could not be read, understood or written: what, where, and what to do about it.
 ///
-/// Its text is `file:line:column: message; hint`. As a [`miette::Diagnostic`] it also shows the
-/// lines of the file with a mark under the exact place. Both are [`printable`].
+/// Its text is `file:line:column: message; hint`, in glTF `file: meshes[0]: message; hint`. As a
+/// [`miette::Diagnostic`] it also shows the lines of the file with a mark under the exact place. Both
+/// are [`printable`].
 #[derive(Debug)]
 pub struct Error(Box<Details>);
 
@@ -21,11 +22,13 @@ struct Details {
     hint: Option<String>,
     file: Option<PathBuf>,
     place: Option<Place>,
+    /// The way to the value that is at fault, in a file of values.
+    value: Option<String>,
     /// True where the message has the file's name in it, which then does not stand before it.
     names_file: bool,
 }
 
-/// Where in a text an error is.
+/// The place of an error in a text.
 #[derive(Debug)]
 pub(crate) struct Place {
     /// Counted from 1.
@@ -43,7 +46,7 @@ pub enum ErrorKind {
     Syntax,
     /// The scene is well-formed but means nothing valid: mend the scene.
     Scene,
-    /// The format has this, the renderer does not yet: do without, or accept a stand-in.
+    /// The format has this, the renderer does not yet: do without, or accept a substitute.
     Unsupported,
     /// A mesh or an image is broken: write it anew.
     Data,
@@ -68,6 +71,7 @@ impl Error {
             hint: None,
             file: None,
             place: None,
+            value: None,
             names_file: false,
         }))
     }
@@ -105,6 +109,11 @@ impl Error {
         self
     }
 
+    pub(crate) fn at_value(mut self, value: String) -> Self {
+        self.0.value = Some(value);
+        self
+    }
+
     pub(crate) fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.0.hint = Some(hint.into());
         self
@@ -115,12 +124,12 @@ impl Error {
         self.0.kind
     }
 
-    /// What is wrong, without the place and the hint.
+    /// The reason, without the place and the hint.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// What to do about it. None: where the message says all there is to say.
+    /// The remedy. None: where the message says all there is to say.
     pub fn hint(&self) -> Option<&str> {
         self.0.hint.as_deref()
     }
@@ -128,6 +137,11 @@ impl Error {
     /// The file that is at fault.
     pub fn file(&self) -> Option<&Path> {
         self.0.file.as_deref()
+    }
+
+    /// True where the error is at a place within its file, not about the file as a whole.
+    pub fn has_place(&self) -> bool {
+        self.0.place.is_some() || self.0.value.is_some()
     }
 
     /// The line, counted from 1. None: for binary files and where the whole file is at fault.
@@ -148,6 +162,7 @@ impl fmt::Display for Error {
             hint,
             file,
             place,
+            value,
             names_file,
             ..
         } = &*self.0;
@@ -157,6 +172,9 @@ impl fmt::Display for Error {
                 write!(f, "{}:{}:", place.line, place.column)?;
             }
             f.write_str(" ")?;
+        }
+        if let Some(value) = value {
+            write!(f, "{}: ", printable(value))?;
         }
         f.write_str(&printable(message))?;
         match hint {

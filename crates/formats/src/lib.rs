@@ -7,12 +7,9 @@ mod bytes;
 mod error;
 mod files;
 mod foreign;
-mod lamp;
+mod import;
 mod limits;
-mod precision;
-mod reading;
 mod source;
-mod space;
 mod spectra;
 mod text;
 

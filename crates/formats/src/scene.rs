@@ -1,8 +1,7 @@
 //! Scenes of any format: which one a file has, its name says.
 
 pub use crate::files::{Files, InMemory};
-pub use crate::lamp::Lamp;
-pub use crate::pbrt::{Crop, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary};
+pub use crate::import::{Crop, Lamp, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary};
 
 use crate::error::Result;
 use crate::{gltf, pbrt};

@@ -45,34 +45,34 @@ impl Span {
 
 /// Something wrong at a place: becomes an [`Error`] where the texts are at hand.
 #[derive(Debug)]
-pub(crate) struct Fault {
+pub(crate) struct Fault<P = Span> {
     pub(crate) kind: ErrorKind,
-    pub(crate) span: Span,
+    pub(crate) place: P,
     pub(crate) message: String,
     pub(crate) hint: Option<String>,
 }
 
-impl Fault {
-    pub(crate) fn new(kind: ErrorKind, span: Span, message: impl Into<String>) -> Self {
+impl<P> Fault<P> {
+    pub(crate) fn new(kind: ErrorKind, place: P, message: impl Into<String>) -> Self {
         Self {
             kind,
-            span,
+            place,
             message: message.into(),
             hint: None,
         }
     }
 
-    pub(crate) fn syntax(span: Span, message: impl Into<String>) -> Self {
-        Self::new(ErrorKind::Syntax, span, message)
+    pub(crate) fn syntax(place: P, message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Syntax, place, message)
     }
 
-    pub(crate) fn scene(span: Span, message: impl Into<String>) -> Self {
-        Self::new(ErrorKind::Scene, span, message)
+    pub(crate) fn scene(place: P, message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Scene, place, message)
     }
 
-    /// What went wrong with another file, told at the place that names the file.
-    pub(crate) fn from_error(span: Span, error: &Error) -> Self {
-        Self::new(error.kind(), span, error.to_string())
+    /// The error of another file, at the place that names the file.
+    pub(crate) fn from_error(place: P, error: &Error) -> Self {
+        Self::new(error.kind(), place, error.to_string())
     }
 
     pub(crate) fn with_hint(self, hint: impl Into<String>) -> Self {
@@ -102,7 +102,7 @@ pub struct SourceMap {
 }
 
 impl SourceMap {
-    /// The beginning of the first text: where what concerns all of a scene is told.
+    /// The beginning of the first text: the place of errors that concern all of a scene.
     pub(crate) const BEGINNING: Span = Span {
         file: FileId(0),
         start: 0,
@@ -140,9 +140,9 @@ impl SourceMap {
     }
 
     pub(crate) fn error(&self, fault: Fault) -> Error {
-        let (name, text) = &self.files[fault.span.file.0 as usize];
-        let (line, column) = self.line_and_column(fault.span);
-        let marked = fault.span.start as usize..fault.span.end as usize;
+        let (name, text) = &self.files[fault.place.file.0 as usize];
+        let (line, column) = self.line_and_column(fault.place);
+        let marked = fault.place.start as usize..fault.place.end as usize;
         let excerpt = Some(Excerpt::new(name, text, line, marked));
         let error = Error::new(fault.kind, fault.message)
             .in_file(name)
@@ -250,7 +250,7 @@ fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
 }
 
 /// The last place at or before `offset` where a character begins.
-fn boundary_before(text: &str, offset: usize) -> usize {
+pub(crate) fn boundary_before(text: &str, offset: usize) -> usize {
     let offset = offset.min(text.len());
     (0..=offset)
         .rev()

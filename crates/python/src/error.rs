@@ -28,7 +28,7 @@ pub(crate) fn printable_text(text: &str) -> String {
     printable(text).into_owned()
 }
 
-/// Where something is wrong, and what to do about it.
+/// The place of an error, and its remedy.
 struct Details<'a> {
     message: &'a str,
     hint: Option<&'a str>,
@@ -52,13 +52,13 @@ fn detailed(py: Python<'_>, class: &str, text: &str, details: &Details<'_>) -> P
     }
 }
 
-/// What a file of a scene, an image or a film file is refused for.
+/// The exception of an error with a scene, an image or a film file.
 pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
     let class = match error.kind() {
         ErrorKind::Unsupported => "UnsupportedError",
         ErrorKind::Options => "SettingsError",
-        // What a scene names at a place is a matter of the scene.
-        _ if error.line().is_some() => "SceneError",
+        // An error at a place of a scene is a fault of the scene.
+        _ if error.has_place() => "SceneError",
         ErrorKind::Syntax | ErrorKind::Scene | ErrorKind::Limit => "SceneError",
         ErrorKind::Data => "DataError",
         ErrorKind::MissingFile => "MissingFileError",
@@ -75,7 +75,7 @@ pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
     detailed(py, class, &error.to_string(), &details)
 }
 
-/// What keeps an experiment from its results.
+/// The exception of an experiment that fails.
 pub(crate) fn of_experiment(py: Python<'_>, error: &lab::experiment::ExperimentError) -> PyErr {
     use lab::experiment::ExperimentError;
     if let ExperimentError::File(error) = error {

@@ -1,9 +1,9 @@
-//! What a client can ask of a render, as JSON.
+//! Commands of clients, as JSON.
 
 use crate::status::LaneId;
 use serde::Deserialize;
 
-/// What is done with a render.
+/// A command to a render.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "command", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Command {
@@ -17,11 +17,11 @@ pub enum Command {
     Restart {},
     /// Begin a lane anew with another estimator.
     Method {
-        /// Which lane.
+        /// The lane.
         lane: LaneId,
         /// The estimator, by its name on the command line.
         integrator: String,
-        /// Which connections are traced, likewise.
+        /// The selection of shadow rays, likewise.
         #[serde(rename = "shadowRays")]
         shadow_rays: String,
     },
@@ -37,24 +37,24 @@ pub enum Command {
     },
     /// Begin a lane anew with images of strategies.
     Strategies {
-        /// Which lane.
+        /// The lane.
         lane: LaneId,
         /// The most vertices of their paths; 0: without images.
         vertices: usize,
     },
-    /// Move the camera around what it looks at. Unit: radians.
+    /// Move the camera around its target. Unit: radians.
     Orbit {
         /// To the camera's right.
         yaw: f32,
         /// Up.
         pitch: f32,
     },
-    /// Move the camera away from what it looks at.
+    /// Move the camera away from its target.
     Dolly {
-        /// What the distance is multiplied by.
+        /// The factor of the distance.
         factor: f32,
     },
-    /// Move the camera across what it looks at. Unit: the distance.
+    /// Move the camera across its target. Unit: the distance.
     Pan {
         /// To the camera's right.
         right: f32,
@@ -69,13 +69,13 @@ pub enum Command {
     Save {
         /// Its name, which has no folders and ends in `.exr`.
         name: String,
-        /// Which lane.
+        /// The lane.
         #[serde(default)]
         lane: LaneId,
     },
 }
 
-/// A step. Unit: the distance to what the camera looks at; of angles radians.
+/// A step. Unit: the distance to the target; of angles radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Walk {
@@ -100,7 +100,7 @@ impl Command {
         )
     }
 
-    /// True where a pass that is running is not wanted any more.
+    /// True where it makes the running pass useless.
     pub fn ends_pass(&self) -> bool {
         !matches!(self, Self::Resume {} | Self::Save { .. })
     }

@@ -1,9 +1,9 @@
-//! What a render looks like after a pass.
+//! The picture of a render after a pass.
 
 use bidir::film::{Film, FilmSettings};
 use bidir::spectrum::Rgb;
 
-/// A picture between two passes, both film layers composed, which any number of watchers share.
+/// A picture between two passes, both film layers composed, which any number of clients share.
 #[derive(Clone, Debug)]
 pub struct Frame {
     /// The film's geometry: the picture is its crop.
@@ -14,13 +14,13 @@ pub struct Frame {
     pub pixels: Vec<Rgb>,
     /// The estimated variance of each pixel's mean; zero after a single pass.
     pub variance: Vec<Rgb>,
-    /// The noise that is left, as [`Picture::relative_error`](bidir::film::Picture::relative_error)
+    /// The remaining noise, as [`Picture::relative_error`](bidir::film::Picture::relative_error)
     /// has it.
     pub relative_error: f64,
 }
 
 impl Frame {
-    /// What `film` shows now.
+    /// The picture of `film`.
     pub fn new(film: &Film) -> Self {
         let picture = film.develop();
         Self {

@@ -1,4 +1,4 @@
-//! What watchers are told of a render, as JSON.
+//! The status of a render for clients, as JSON.
 
 use bidir::film::FilmSettings;
 use bidir::integrator::IntegratorKind;
@@ -31,16 +31,16 @@ impl LaneId {
     }
 }
 
-/// What a render is doing.
+/// The activity of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum State {
-    /// Something is learnt or built before the first pass.
+    /// Training, or building, before the first pass.
     #[default]
     Preparing,
     /// Passes are rendered.
     Rendering,
-    /// It goes on when it is told to.
+    /// It goes on when a command resumes it.
     Paused,
     /// All passes are done, or it was stopped.
     Done,
@@ -68,13 +68,23 @@ impl From<&FilmSettings> for FilmStatus {
 }
 
 impl Status {
-    /// That of a render which has not begun: of the scene file `name` on `film`, to look at only.
+    /// The status of a render that has not begun, of the scene file `name` on `film`, and that takes no
+    /// commands.
     pub fn preparing(name: &str, film: &FilmSettings) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             scene: scene_name(name),
             film: film.into(),
             ..Self::default()
+        }
+    }
+
+    /// The same of a render that takes commands.
+    pub fn interactive(name: &str, film: &FilmSettings) -> Self {
+        Self {
+            controls: true,
+            choices: Choices::all(),
+            ..Self::preparing(name, film)
         }
     }
 }
@@ -88,7 +98,7 @@ pub(crate) fn scene_name(name: &str) -> String {
     )
 }
 
-/// What a client can ask for by name.
+/// The names that commands accept.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Choices {
@@ -99,8 +109,8 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// All that there are.
-    pub fn all() -> Self {
+    /// All names.
+    fn all() -> Self {
         let names = IntegratorKind::NAMES.iter();
         let rays = [
             ShadowRays::All,
@@ -118,14 +128,14 @@ impl Choices {
     }
 }
 
-/// Where the camera is. Space: world.
+/// The place of the camera. Space: world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CameraStatus {
     /// Its kind in one word.
     pub kind: &'static str,
-    /// Where it stands.
+    /// Its position.
     pub origin: [f32; 3],
-    /// What it moves around.
+    /// The point it moves around.
     pub target: [f32; 3],
     /// The picture's up.
     pub up: [f32; 3],
@@ -147,27 +157,27 @@ pub struct RayRates {
     pub light_image: f64,
 }
 
-/// How far a lane is.
+/// The progress of a lane.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LaneStatus {
-    /// Which one.
+    /// The lane.
     pub lane: LaneId,
     /// Grows whenever the lane begins anew.
     pub generation: u32,
     /// All settings, by the names of flags.
     pub settings: BTreeMap<String, String>,
-    /// The estimator that was asked for: a preview takes one that needs no training, as its settings say.
+    /// The requested estimator; a preview may take another, as its settings say.
     pub integrator: String,
-    /// Which connections are traced, likewise.
+    /// The requested selection of shadow rays, likewise.
     pub shadow_rays: String,
     /// The passes that are done.
     pub passes: u64,
-    /// The passes that are wanted. None: there is no end.
+    /// The number of passes. None: there is no end.
     pub target: Option<u64>,
-    /// The time that they took, without what showing them took.
+    /// The time of the passes, without that of frames.
     pub seconds: f64,
-    /// The time that those to come are expected to take. Unit: seconds.
+    /// The expected time of the other passes. Unit: seconds.
     pub eta: Option<f64>,
     /// Camera samples per second.
     pub samples_per_second: f64,
@@ -175,7 +185,7 @@ pub struct LaneStatus {
     pub rays_per_second: RayRates,
     /// Rays per camera sample.
     pub rays_per_sample: RayRates,
-    /// The noise that was left when the picture was last developed. None: it is not known.
+    /// The noise of the last frame. None: it is not known.
     pub relative_error: Option<f64>,
     /// The same over the seconds.
     pub curve: Vec<[f64; 2]>,
@@ -185,22 +195,22 @@ pub struct LaneStatus {
     pub preview: bool,
 }
 
-/// Everything that is told.
+/// The status of a render.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Status {
-    /// That of the program.
+    /// The version of the program.
     pub version: &'static str,
     /// The name of the scene, without folders.
     pub scene: String,
-    /// What the render is doing.
+    /// The activity of the render.
     pub state: State,
-    /// Why the last command was refused, what it came to, or why the render failed.
+    /// The result or refusal of the last command, or the failure of the render.
     pub message: Option<String>,
-    /// False where one may only look.
+    /// True where commands are accepted.
     pub controls: bool,
     /// The film in full.
     pub film: FilmStatus,
-    /// What can be asked for.
+    /// The names that commands accept.
     pub choices: Choices,
     /// None: it cannot be moved.
     pub camera: Option<CameraStatus>,

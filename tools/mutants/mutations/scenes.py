@@ -6,7 +6,7 @@ SCENES = [
     # --- where a scene is rendered --------------------------------------------------------
     (
         "distant scenes are rendered where they are",
-        "crates/formats/src/space.rs",
+        "crates/formats/src/import/space.rs",
         "_ if is_beyond(centre, FAR * half) => rounded(centre, half),",
         "_ if is_beyond(centre, FAR * half) => DVec3::ZERO,",
         ("bidir-formats", ESTIMATORS, "places::far_away"),

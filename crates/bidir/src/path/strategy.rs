@@ -1,6 +1,7 @@
 //! Strategies (s, t) by name: which way a path is made, and which ways take part.
 
 use crate::names::{as_text, named};
+use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
@@ -30,7 +31,13 @@ impl fmt::Display for Strategy {
     }
 }
 
-/// Where next-event estimation (s = 1) takes its light point from.
+impl Serialize for Strategy {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// The light point of next-event estimation (s = 1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightPointChoice {
     /// Each camera vertex draws its own.
@@ -56,7 +63,7 @@ impl LightPointChoice {
     }
 }
 
-/// How next-event estimation (s = 1) chooses the light of a point of its own.
+/// The choice of the light in next-event estimation (s = 1) with a point of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightChoiceKind {
     /// By power, as light subpaths do.
@@ -94,7 +101,7 @@ impl Rule {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Strategies {
     rules: Vec<Rule>,
-    /// What the rules say of short subpaths, because every weight asks: bit t of number s.
+    /// The rules for short subpaths, because every weight asks: bit t of number s.
     short: [u64; SHORT],
 }
 
@@ -140,7 +147,7 @@ impl Strategies {
     }
 }
 
-/// What the last rule that matches (s, t) says; false where none does.
+/// The last rule that matches (s, t); false where none does.
 fn decide(rules: &[Rule], s: usize, t: usize) -> bool {
     let matches = |rule: &&Rule| {
         rule.s.is_none_or(|only| usize::from(only) == s)

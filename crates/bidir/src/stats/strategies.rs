@@ -2,10 +2,11 @@
 
 use crate::film::fixed::{self, MOMENT_SCALE};
 use crate::path::Strategy;
+use serde::Serialize;
 use std::ops::AddAssign;
 
-/// What became of the contributions of a strategy.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The fate of the contributions of a strategy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StrategyCounts {
     /// Contributions that are not zero, before selection and visibility.
     pub candidates: u64,
@@ -23,7 +24,7 @@ impl AddAssign for StrategyCounts {
     }
 }
 
-/// What is counted of a strategy where the film keeps images of strategies: integers, so that no
+/// The counts of a strategy of which the film keeps images: integers, so that no
 /// order of adding can matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LayerCounts {
@@ -85,7 +86,7 @@ impl<T: Copy + Default + PartialEq> StrategyTable<T> {
         &mut self.rows[i]
     }
 
-    /// The counts of a strategy; together with others where paths are too long to be told apart.
+    /// The counts of a strategy; together with others where paths are too long for counts of their own.
     pub fn get(&self, strategy: Strategy) -> T {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let n = s + t;

@@ -9,12 +9,12 @@ use indicatif::ProgressBar;
 use lab::experiment::{Event, Observer};
 use std::time::{Duration as Time, Instant};
 
-/// Lines are at least this far apart, but for the first and the last.
+/// The least time between two lines, but for the first and the last.
 const GAP: Time = Time::from_secs(10);
-/// What is beside the bar.
+/// The bar and its text.
 const TEMPLATE: &str = "{bar:32} {percent:>3}%  {msg}  {elapsed}  {eta} left";
 
-/// Tells of an experiment, and has its clock.
+/// Reports the progress of an experiment, and has its clock.
 pub(super) struct Watch<'a> {
     console: Console,
     signals: &'a Signals,
@@ -26,7 +26,7 @@ pub(super) struct Watch<'a> {
     done: usize,
     /// Renders in all.
     of: usize,
-    is_stop_told: bool,
+    has_said_stop: bool,
 }
 
 enum Channel {
@@ -51,7 +51,7 @@ impl<'a> Watch<'a> {
             before: 0,
             done: 0,
             of: 0,
-            is_stop_told: false,
+            has_said_stop: false,
         }
     }
 
@@ -62,19 +62,19 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Shows a part of all, and what it is.
-    fn show(&mut self, part: f64, what: &str) {
+    /// Shows the part that is done, with a text.
+    fn show(&mut self, part: f64, text: &str) {
         match &mut self.channel {
             Channel::Silent => {}
             Channel::Bar(bar) => {
-                bar.set_message(printable(what).into_owned());
+                bar.set_message(printable(text).into_owned());
                 bar.set_position((part * 1000.0) as u64);
             }
             Channel::Lines(last) => {
                 let is_due = last.is_none_or(|last| last.elapsed() >= GAP) || part >= 1.0;
                 if is_due {
                     *last = Some(Instant::now());
-                    say(format_args!("Progress: {}% {what}", (part * 100.0) as u32));
+                    say(format_args!("Progress: {}% {text}", (part * 100.0) as u32));
                 }
             }
         }
@@ -143,8 +143,8 @@ impl Observer for Watch<'_> {
 
     fn should_stop(&mut self) -> bool {
         let is_asked = self.signals.exit().is_some();
-        if is_asked && !self.is_stop_told {
-            self.is_stop_told = true;
+        if is_asked && !self.has_said_stop {
+            self.has_said_stop = true;
             if let Channel::Lines(_) = self.channel {
                 say("stopping after the running pass; a second signal stops at once");
             }

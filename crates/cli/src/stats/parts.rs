@@ -3,9 +3,8 @@
 use crate::settings::Budget;
 use bidir::driver::{Session, Training};
 use bidir::path::Strategy;
-use bidir::stats::{Dropped, Stage, StageTimes, Stats, StrategyCounts};
+use bidir::stats::{RayCounts, Stage, StageTimes, Stats, StrategyCounts};
 use lab::pyramid::Figures;
-use lab::sample::RaysByKind;
 use serde::Serialize;
 
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -27,7 +26,7 @@ impl From<Budget> for BudgetReport {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct RayReport {
     #[serde(flatten)]
-    pub(super) of_image: RaysByKind,
+    pub(super) of_image: RayCounts,
     /// Not in the sum.
     pub(super) training: u64,
 }
@@ -35,13 +34,13 @@ pub(super) struct RayReport {
 impl RayReport {
     pub(super) fn new(stats: &Stats, training: Option<&Training>) -> Self {
         Self {
-            of_image: RaysByKind::from(stats.rays),
+            of_image: stats.rays,
             training: training.map_or(0, |training| training.rays.total()),
         }
     }
 }
 
-/// Where the time of samples goes, by those that were measured.
+/// The time of samples by stage, from those that were measured.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct StagesReport {
     measured_samples: u64,
@@ -79,45 +78,24 @@ impl StagesReport {
     }
 }
 
-/// What became of contributions that are not zero.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct CountsReport {
-    /// Before selection and visibility.
-    candidates: u64,
-    /// Of those, shadow rays; s = 0 needs none.
-    traced: u64,
-    /// Of those, in vain.
-    blocked: u64,
-}
-
-impl From<StrategyCounts> for CountsReport {
-    fn from(counts: StrategyCounts) -> Self {
-        Self {
-            candidates: counts.candidates,
-            traced: counts.traced,
-            blocked: counts.blocked,
-        }
-    }
-}
-
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct StrategyReport {
     s: u16,
     t: u16,
     #[serde(flatten)]
-    counts: CountsReport,
+    counts: StrategyCounts,
     /// The blocked part of the traced rays.
     blocked_share: Option<f64>,
-    /// Of the luminance of its weighted image; where the film keeps one, as all that follows.
+    /// Of the luminance of its weighted image; where the film keeps one, as the fields below.
     mean: Option<f64>,
-    /// Of what a pass adds to a pixel, in the mean pixel.
+    /// Of the value that a pass adds to a pixel, in the mean pixel.
     variance: Option<f64>,
     /// Values that are in the weighted image, but too large for the raw one.
     pub(super) raw_dropped: Option<u64>,
 }
 
 impl StrategyReport {
-    /// All strategies that something was counted of, shorter paths first.
+    /// All strategies with counts, shorter paths first.
     pub(super) fn all(session: &Session<'_>) -> Vec<Self> {
         let all = Figures::all(session);
         all.iter().map(Self::from).collect()
@@ -130,7 +108,7 @@ impl From<&Figures> for StrategyReport {
         Self {
             s: figures.strategy.s,
             t: figures.strategy.t,
-            counts: CountsReport::from(figures.counts),
+            counts: figures.counts,
             blocked_share: figures.blocked_share(),
             mean: images.map(|images| images.mean),
             variance: images.and_then(|images| images.variance),
@@ -153,21 +131,4 @@ pub(super) fn strategy_table(strategies: &[StrategyReport], samples: u64) -> Str
         let name = name.to_string();
         table + &format!("{name:<8} {rays:>12.3} {blocked:>8} {mean:>11} {variance:>11}\n")
     })
-}
-
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct DroppedReport {
-    pub(super) pass: u64,
-    pub(super) pixel: [u32; 2],
-    pub(super) strategy: String,
-}
-
-impl From<&Dropped> for DroppedReport {
-    fn from(dropped: &Dropped) -> Self {
-        Self {
-            pass: dropped.pass,
-            pixel: dropped.pixel,
-            strategy: dropped.strategy.to_string(),
-        }
-    }
 }

@@ -6,57 +6,27 @@ use super::mesh::Surface;
 use super::node::Nodes;
 use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
-use super::{light, mesh, view};
+use super::{SETTINGS, light, mesh, view};
 use crate::error::ErrorKind;
-use crate::lamp::{self, Placed};
+use crate::import::{self, Size, VertexError};
 use crate::limits;
-use crate::pbrt::Summary;
-use crate::precision::{self, VertexError, VertexErrors};
-use crate::space::{Layout, Survey};
 use bidir::light::Light;
 use bidir::math::Affine3A;
-use bidir::scene::{ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Shape};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// A scene that was built, with where its lamps are in the file.
-pub(super) struct Built {
-    pub(super) scene: Scene,
-    pub(super) lamps: Vec<Placed<Place>>,
-    pub(super) summary: Summary,
-}
+type Assembly = import::Assembly<Place>;
 
-/// A scene in the making.
-pub(super) struct Assembly<'a> {
+/// Puts the parts of a document into an assembly.
+pub(super) struct Builder<'a> {
     document: &'a Document,
     nodes: Nodes,
-    builder: SceneBuilder,
+    assembly: Assembly,
     materials: Materials,
-    /// The places of the shapes in the file, in the order of addition; of instances likewise.
-    shape_places: Vec<Place>,
-    instance_places: Vec<Place>,
-    /// The same of lamps, with the numbers of their lights.
-    lamps: Vec<Placed<Place>>,
-    /// Of everything in its place, and of each shared object in its own space.
-    survey: Survey,
-    objects: Vec<Survey>,
-    vertex_errors: VertexErrors<Place>,
     /// Of all shapes.
     extent: Extent,
-    most: Most,
-    /// Of all meshes as they are kept.
-    vertices: u64,
-    /// Of all meshes.
-    places: u64,
-    summary: Summary,
-}
-
-/// The most that a scene may have.
-struct Most {
-    /// Primitives, and vertices.
-    primitives: u64,
-    shapes: u64,
+    /// Places of meshes.
     places: u64,
 }
 
@@ -64,112 +34,44 @@ struct Most {
 struct MeshUse<'a> {
     /// The places in the world.
     places: Vec<DAffine3>,
-    /// Its node, and where that is named.
-    node: (usize, Place),
+    /// That of its first node.
+    node: Place,
     weights: &'a [f32],
 }
 
-/// What makes two uses of a mesh the same: the mesh, and weights of morph targets.
+/// The key of uses of a mesh that are the same: the mesh, and weights of morph targets.
 type MeshKey = (usize, Vec<u32>);
 
-impl<'a> Assembly<'a> {
-    /// Builds the scene that a document shows, in the world or where its layout puts it.
-    pub(super) fn build(
-        context: &mut Context<'_>,
-        document: &'a Document,
-    ) -> Result<Built, GltfFault> {
-        let mut again = context.clone();
-        let mut assembly = Self::gather(context, document)?;
-        assembly.check_vertices()?;
-        let layout = Layout::of(&assembly.survey, &assembly.objects);
-        if layout != Layout::default() {
-            drop(assembly);
-            again.layout = layout;
-            document.start_counting(&again);
-            *context = again;
-            assembly = Self::gather(context, document)?;
-        }
-        if let Some((place, message)) = assembly.vertex_errors.warning() {
-            context.warn(&place, message);
-        }
-        assembly.finish(context)
-    }
-
-    /// Refuses a scene of which the vertices leave nothing.
-    fn check_vertices(&self) -> Result<(), GltfFault> {
-        match self.vertex_errors.refusal(self.survey.reach()) {
-            None => Ok(()),
-            Some((place, message)) => {
-                let fault = place.fault(ErrorKind::Limit, message);
-                Err(fault.with_hint(precision::HINT))
-            }
-        }
-    }
-
+impl<'a> Builder<'a> {
     /// Reads everything and puts it in its place.
-    fn gather(context: &mut Context<'_>, document: &'a Document) -> Result<Self, GltfFault> {
+    pub(super) fn gather(context: &mut Context<'a>) -> Result<Assembly, GltfFault> {
+        let document = context.document;
+        document.start_counting(context.log.stored());
         let nodes = Nodes::of(document, context.layout.render_from_world())?;
-        let view = view::find(context, document, &nodes)?;
+        let view = view::find(context, &nodes)?;
         let film = view.film(context)?;
         let resolution = film.resolution;
-        let mut builder = SceneBuilder::new(film);
-        builder.space(context.layout.space);
-        if let Some(isa) = context.options.isa {
-            builder.isa(isa);
-        }
-        let mut assembly = Self {
+        let mut builder = Self {
             document,
             nodes,
-            builder,
+            assembly: Assembly::new(context, film, SETTINGS, view.eye()),
             materials: Materials::default(),
-            shape_places: Vec::new(),
-            instance_places: Vec::new(),
-            lamps: Vec::new(),
-            survey: Survey::new(view.eye()),
-            objects: Vec::new(),
-            vertex_errors: VertexErrors::default(),
             extent: Extent::NONE,
-            most: Most {
-                primitives: context.options.most_primitives(context.reading.stored()),
-                shapes: limits::SHAPES.of(context.reading.stored()),
-                places: limits::INSTANCES.of(context.reading.stored()),
-            },
-            vertices: 0,
             places: 0,
-            summary: Summary::default(),
         };
         if !document.root.animations.is_empty() {
-            let place = Place::TOP.key("animations");
-            context.warn(
-                &place,
-                "animations have no effect: nodes keep their own transformations",
-            );
+            let message = "animations have no effect: nodes keep their own transformations";
+            context.warn(Place::TOP.key("animations"), message);
         }
-        assembly.add_meshes(context)?;
-        let world_from_camera = view.placed(context, resolution, &assembly.extent);
-        assembly.add_lights(context, &world_from_camera)?;
-        assembly.summary.materials = assembly.materials.count();
+        builder.add_meshes(context)?;
+        let world_from_camera = view.placed(context, resolution, &builder.extent);
+        builder.add_lights(context, &world_from_camera)?;
+        let mut assembly = builder.assembly;
+        assembly.summary.materials = builder.materials.count();
         assembly.summary.textures = document.root.textures.len();
         let camera = view.camera(resolution, world_from_camera)?;
         assembly.builder.camera(camera);
         Ok(assembly)
-    }
-
-    /// Builds the scene.
-    fn finish(self, context: &mut Context<'_>) -> Result<Built, GltfFault> {
-        let scene = self.builder.build();
-        let scene = scene
-            .map_err(|error| scene_fault(&error, &self.shape_places, &self.instance_places))?;
-        for (place, lights) in &self.lamps {
-            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
-                context.warn(place, message);
-            }
-        }
-        Ok(Built {
-            scene,
-            lamps: self.lamps,
-            summary: self.summary,
-        })
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.
@@ -197,12 +99,12 @@ impl<'a> Assembly<'a> {
                 weights.iter().map(|weight| weight.to_bits()).collect(),
             );
             let places = self.world_places(context, index, &place)?;
-            self.count_places(places.len(), &place)?;
+            self.count_places(context, places.len(), &place)?;
             let of_mesh = uses.entry(key.clone()).or_insert_with(|| {
                 order.push(key);
                 MeshUse {
                     places: Vec::new(),
-                    node: (index, place),
+                    node: place,
                     weights,
                 }
             });
@@ -214,7 +116,7 @@ impl<'a> Assembly<'a> {
         Ok(())
     }
 
-    /// Where a node has its mesh, but for places that leave nothing of it.
+    /// The places of a node's mesh, but for those that leave nothing of it.
     fn world_places(
         &self,
         context: &mut Context<'_>,
@@ -231,52 +133,48 @@ impl<'a> Assembly<'a> {
         let count = places.len();
         places.retain(|map| map.matrix3.determinant() != 0.0);
         if places.len() < count {
-            context.warn(place, "a mesh that is scaled to zero is left out");
+            context.warn(place.clone(), "a mesh that is scaled to zero is left out");
         }
         Ok(places)
     }
 
-    /// Adds a mesh at all its places: as an object where there are several.
+    /// Adds a mesh at all its places: as an object where there are several, but for its lamps.
     fn add_mesh(
         &mut self,
         context: &mut Context<'_>,
         mesh: usize,
         of_mesh: &MeshUse<'_>,
     ) -> Result<(), GltfFault> {
-        let is_shared = of_mesh.places.len() > 1;
+        let places = &of_mesh.places;
         let mut object = None;
-        let mut survey = Survey::new(None);
-        let origin = context.layout.object_origin(self.objects.len());
-        let at_origin = DAffine3::from_translation(-origin);
-        let places = of_mesh.places.iter();
-        let places: Vec<_> = places.map(|map| *map * at_origin.inverse()).collect();
         for (surface, material, place) in self.surfaces(context, mesh, of_mesh.weights)? {
-            if let Some(first) = of_mesh.places.first() {
+            if let Some(first) = places.first() {
                 self.measure(context, &surface, first, &place);
             }
-            if is_shared && material.emission.is_none() {
-                let object = *object.get_or_insert_with(|| self.builder.object());
-                let shape = surface.place(&at_origin, (&material.uv, &mut survey), &place)?;
-                self.add_to_object((object, &places), shape, &material, &place)?;
+            if places.len() > 1 && material.emission.is_none() {
+                let object = *object.get_or_insert_with(|| self.assembly.begin_object(context));
+                let user = (&material.uv, self.assembly.object_survey());
+                let shape = surface.place(&object.kept_from_own(), user, &place)?;
+                self.count(context, &shape, &place)?;
+                self.include(&shape, places.iter().map(|map| object.place_kept(map)));
+                let (shape, alpha) = (Shape::Mesh(shape), material.coverage.as_ref());
+                let assembly = &mut self.assembly;
+                assembly.add_to_object(object, shape, material.id, alpha, &place);
                 continue;
             }
-            for map in &of_mesh.places {
-                let shape = surface.place(map, (&material.uv, &mut self.survey), &place)?;
-                self.add_to_world(shape, &material, &place)?;
+            for map in places {
+                let user = (&material.uv, &mut self.assembly.survey);
+                let shape = surface.place(map, user, &place)?;
+                self.add_to_world(context, shape, &material, &place)?;
             }
         }
         let Some(object) = object else {
             return Ok(());
         };
-        self.summary.instances += of_mesh.places.len();
+        self.assembly.summary.instances += places.len();
         for map in places {
-            if let Some(corners) = survey.corners() {
-                self.survey.include_box(corners, &map);
-            }
-            self.builder.instance(object, map);
-            self.instance_places.push(of_mesh.node.1.clone());
+            self.assembly.add_instance(object, map, &of_mesh.node);
         }
-        self.objects.push(survey);
         Ok(())
     }
 
@@ -291,13 +189,11 @@ impl<'a> Assembly<'a> {
         let primitives = &self.document.root.meshes[mesh].primitives;
         for (i, primitive) in primitives.iter().enumerate() {
             let place = Place::of("meshes", mesh).key("primitives").index(i);
-            let read = Surface::read(context, self.document, (primitive, &place), weights)?;
+            let read = Surface::read(context, (primitive, &place), weights)?;
             let Some(surface) = read else { continue };
             let user = (primitive.material, &place);
-            let tools = (&mut *context, &mut self.builder);
-            let material = self
-                .materials
-                .get(tools, self.document, user, surface.color)?;
+            let tools = (&mut *context, &mut self.assembly.builder);
+            let material = self.materials.get(tools, user, surface.color)?;
             surfaces.push((surface, material, place));
         }
         Ok(surfaces)
@@ -314,20 +210,25 @@ impl<'a> Assembly<'a> {
         let joints = mesh::joints(self.document, render_from_node, skin, &place)?;
         let whole = context.layout.render_from_world();
         for (surface, material, place) in self.surfaces(context, mesh, weights)? {
-            let user = (&material.uv, &mut self.survey);
+            let user = (&material.uv, &mut self.assembly.survey);
             let shape = if surface.joints.is_empty() {
                 surface.place(&whole, user, &place)?
             } else {
                 surface.skinned(&joints, user, &place)?
             };
-            self.add_to_world(shape, &material, &place)?;
+            self.add_to_world(context, shape, &material, &place)?;
         }
         Ok(())
     }
 
-    fn count_places(&mut self, count: usize, place: &Place) -> Result<(), GltfFault> {
+    fn count_places(
+        &mut self,
+        context: &Context<'_>,
+        count: usize,
+        place: &Place,
+    ) -> Result<(), GltfFault> {
         self.places += count as u64;
-        let most = self.most.places;
+        let most = limits::INSTANCES.of(context.log.stored());
         if self.places <= most {
             return Ok(());
         }
@@ -335,74 +236,45 @@ impl<'a> Assembly<'a> {
         Err(place.fault(ErrorKind::Limit, message))
     }
 
-    fn count(&mut self, shape: &Mesh, place: &Place) -> Result<(), GltfFault> {
-        self.summary.shapes += 1;
-        self.summary.primitives += shape.triangles.len() as u64;
-        self.vertices += shape.positions.len() as u64;
-        let limit = |message| Err(place.fault(ErrorKind::Limit, message));
-        let most = self.most.primitives;
-        if self.summary.primitives.max(self.vertices) > most {
-            return limit(format!(
-                "the scene has more than {most} triangles or vertices"
-            ));
+    fn count(
+        &mut self,
+        context: &Context<'_>,
+        shape: &Mesh,
+        place: &Place,
+    ) -> Result<(), GltfFault> {
+        let size = Size {
+            primitives: shape.triangles.len() as u64,
+            vertices: shape.positions.len() as u64,
+            shapes: 1,
+        };
+        self.assembly.count(context, size, place)
+    }
+
+    /// Widens the extent by a shape at each place.
+    fn include(&mut self, shape: &Mesh, places: impl IntoIterator<Item = DAffine3>) {
+        let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
+        let own = Extent::of(&shape.positions, triangles);
+        for map in places {
+            self.extent.include(&own, &map);
         }
-        let most = self.most.shapes;
-        if self.summary.shapes as u64 > most {
-            return limit(format!(
-                "the scene has more than {most} shapes, counted at each place"
-            ));
-        }
-        Ok(())
     }
 
     fn add_to_world(
         &mut self,
+        context: &Context<'_>,
         shape: Mesh,
         material: &BuiltMaterial,
         place: &Place,
     ) -> Result<(), GltfFault> {
-        self.count(&shape, place)?;
-        self.extent.include(&extent_of(&shape), &DAffine3::IDENTITY);
-        self.summary.area_lights += usize::from(material.emission.is_some());
-        let shape = Shape::Mesh(shape);
-        let first_light = self.builder.next_light();
-        let number = self
-            .builder
-            .shape(shape, material.id, material.emission.clone());
-        self.shape_places.push(place.clone());
-        if material.emission.is_some() {
-            let lights = first_light..self.builder.next_light();
-            self.lamps.push((place.clone(), lights));
-        }
-        if let Some(coverage) = &material.coverage {
-            self.builder.coverage(number, coverage.clone());
-        }
+        self.count(context, &shape, place)?;
+        self.include(&shape, [DAffine3::IDENTITY]);
+        let parts = vec![(Shape::Mesh(shape), material.emission.clone())];
+        let alpha = material.coverage.as_ref();
+        self.assembly.add_shape(parts, material.id, alpha, place);
         Ok(())
     }
 
-    fn add_to_object(
-        &mut self,
-        (object, places): (ObjectId, &[DAffine3]),
-        shape: Mesh,
-        material: &BuiltMaterial,
-        place: &Place,
-    ) -> Result<(), GltfFault> {
-        self.count(&shape, place)?;
-        let own = extent_of(&shape);
-        for map in places {
-            self.extent.include(&own, map);
-        }
-        let number = self
-            .builder
-            .object_shape(object, Shape::Mesh(shape), material.id);
-        self.shape_places.push(place.clone());
-        if let Some(coverage) = &material.coverage {
-            self.builder.coverage(number, coverage.clone());
-        }
-        Ok(())
-    }
-
-    /// Takes note of what the vertices of a primitive lose, which `render_from_mesh` puts in place.
+    /// Notes the rounding of a primitive's vertices, which `render_from_mesh` puts in place.
     fn measure(
         &mut self,
         context: &Context<'_>,
@@ -412,7 +284,7 @@ impl<'a> Assembly<'a> {
     ) {
         let linear = render_from_mesh.matrix3 * context.layout.space.unit;
         let error = VertexError::of(&surface.positions, &linear);
-        self.vertex_errors.add(place, error);
+        self.assembly.add_error(place, error);
     }
 
     /// Adds the lights that are no shapes; a soft one from behind the viewer where there is no light.
@@ -421,36 +293,16 @@ impl<'a> Assembly<'a> {
         context: &mut Context<'_>,
         world_from_camera: &Affine3A,
     ) -> Result<(), GltfFault> {
-        let mut lights = light::all(context, self.document, &self.nodes)?;
-        if lights.is_empty() && self.summary.area_lights == 0 {
+        let mut lights = light::all(context, &self.nodes)?;
+        if lights.is_empty() && self.assembly.summary.area_lights == 0 {
             let message = "the scene has no light; using a soft one from behind the viewer";
-            context.warn(&Place::TOP, message);
+            context.warn(Place::TOP, message);
             let sky = Light::Infinite(outside::surroundings(world_from_camera));
             lights.push((Place::TOP, sky));
         }
-        self.summary.other_lights = lights.len();
         for (place, light) in lights {
-            let number = self.builder.light(light);
-            self.lamps.push((place, number..number + 1));
+            self.assembly.add_light(light, place);
         }
         Ok(())
     }
-}
-
-fn extent_of(shape: &Mesh) -> Extent {
-    let triangles = (0..shape.triangles.len()).map(|i| shape.triangle(i));
-    Extent::of(&shape.positions, triangles)
-}
-
-/// Says where in the file the builder's error is.
-fn scene_fault(error: &SceneError, shapes: &[Place], instances: &[Place]) -> GltfFault {
-    let place = match error {
-        SceneError::Instance { instance } => instances.get(*instance),
-        error => error.shape().and_then(|shape| shapes.get(shape)),
-    };
-    let kind = match error {
-        SceneError::Intersector(_) => ErrorKind::Limit,
-        _ => ErrorKind::Scene,
-    };
-    place.unwrap_or(&Place::TOP).fault(kind, error.to_string())
 }

@@ -1,7 +1,6 @@
-//! What a glTF file is made of: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
+//! The parts of a glTF file: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
 
 use super::place::{GltfFault, Place};
-use crate::bytes::FileBytes;
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
 use crate::foreign;
@@ -10,7 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
 
-/// What a `.glb` begins with.
+/// The beginning of a `.glb`.
 const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: [u8; 4] = *b"JSON";
 const BINARY_CHUNK: [u8; 4] = *b"BIN\0";
@@ -99,18 +98,19 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
     Ok(Container { json, binary })
 }
 
-/// What a URI stands for.
+/// The bytes of a URI.
 pub(super) struct Resource {
     pub(super) bytes: Vec<u8>,
-    /// The file that they are of, and its size on the disk. None: they stand in the URI.
-    pub(super) file: Option<(PathBuf, u64)>,
+    /// The file that they are of. None: they stand in the URI.
+    pub(super) file: Option<PathBuf>,
 }
 
-/// Reads what `uri`, found at `place`, stands for; relative names are of files in `folder`.
+/// The resource of `uri`, which stands at `place`; relative names are of files in `folder`.
 pub(super) fn resource(
-    (folder, files): (&Path, &Files),
+    folder: &Path,
     uri: &str,
     place: &Place,
+    read: impl FnOnce(&Path) -> Result<Vec<u8>>,
 ) -> Result<Resource, GltfFault> {
     if let Some(data) = uri.strip_prefix("data:") {
         let bytes = data_uri(data, place)?;
@@ -123,9 +123,8 @@ pub(super) fn resource(
         );
         return Err(fault.with_hint("save it beside the file"));
     };
-    let read = files.read(&path, LARGEST_GLTF);
-    let FileBytes { bytes, stored } = read.map_err(|error| GltfFault::from_error(place, &error))?;
-    let file = Some((path, stored));
+    let bytes = read(&path).map_err(|error| GltfFault::from_error(place.clone(), &error))?;
+    let file = Some(path);
     Ok(Resource { bytes, file })
 }
 

@@ -1,18 +1,16 @@
-//! A glTF file with the bytes it refers to, and what building of it knows throughout.
+//! A glTF file with the bytes it refers to.
 
 use super::container::{self, Container, Resource};
 use super::json::Root;
-use super::place::{GltfFault, Place, describe};
+use super::place::{GltfFault, Place};
 use super::texture::IMAGES_TO_EXPORT;
 use crate::error::{Error, ErrorKind, Result};
+use crate::file::folder_of;
 use crate::files::Files;
-use crate::limits::{self, FURTHER_WARNINGS, MOST_WARNINGS};
-use crate::pbrt::{Content, DigestBuilder, LoadOptions};
-use crate::reading::Reading;
-use crate::source::{Fault, FileId, SourceMap, Span};
-use crate::space::Layout;
+use crate::import::{self, Content, Document as _, LoadOptions};
+use crate::limits::{self, LARGEST_GLTF};
+use crate::source::{Fault, SourceMap, Span, boundary_before};
 use std::cell::Cell;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Extensions that are understood, as docs/reference/gltf.md says how far.
@@ -36,239 +34,94 @@ pub(super) const EXTENSIONS: [&str; 17] = [
     "KHR_xmp_json_ld",
 ];
 
+pub(super) type Context<'a> = import::Context<'a, Document>;
+pub(super) type Log = import::Log<Place>;
+
 /// A file that was read, with its buffers.
 pub(super) struct Document {
+    path: PathBuf,
     pub(super) root: Root,
-    /// The folder that files are named from.
-    pub(super) folder: PathBuf,
-    /// Where they are looked for.
+    /// The source of files.
     files: Files,
     buffers: Vec<Vec<u8>>,
     /// Components that accessors may still read.
     components_left: Cell<u64>,
 }
 
-/// Whether something simpler may replace what is not supported.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StandIns {
-    Accepted,
-    Refused,
-}
+impl import::Document for Document {
+    type Place = Place;
+    const TOP: Place = Place::TOP;
 
-/// What building knows beside the document: warnings, what was read, what the caller wants.
-#[derive(Clone)]
-pub(super) struct Context<'a> {
-    pub(super) options: &'a LoadOptions,
-    /// Where everything goes.
-    pub(super) layout: Layout,
-    stand_ins: StandIns,
-    sources: SourceMap,
-    file: FileId,
-    warnings: Vec<(Place, String, usize)>,
-    /// The messages of those warnings that tell of stand-ins.
-    refused: BTreeSet<String>,
-    pub(super) digest: DigestBuilder,
-    /// The names of the files that were read.
-    pub(super) files: Vec<PathBuf>,
-    pub(super) reading: Reading,
-    /// The names of the files that buffers and images are in.
-    named: Vec<PathBuf>,
-}
+    fn files(&self) -> &Files {
+        &self.files
+    }
 
-impl<'a> Context<'a> {
-    /// Reads the container at `path`.
-    pub(super) fn open(
-        path: &Path,
-        options: &'a LoadOptions,
-        files: &Files,
-    ) -> Result<(Self, Option<Vec<u8>>)> {
-        let container = container::read(path, files)?;
-        let reading = Reading::new(container.size());
-        let Container { json, binary } = container;
-        let mut digest = DigestBuilder::new();
-        digest.add(Content::Text, json.as_bytes());
-        if let Some(binary) = &binary {
-            digest.add(Content::Mesh, binary);
+    fn named_files(&self) -> Vec<PathBuf> {
+        let buffers = self.root.buffers.iter().map(|buffer| &buffer.uri);
+        let uris = buffers.chain(self.root.images.iter().map(|image| &image.uri));
+        let file = |uri: &String| container::file(folder_of(&self.path), uri);
+        uris.flatten().filter_map(file).collect()
+    }
+
+    fn text(&self, place: &Place) -> String {
+        let file = self.path.display();
+        if *place == Place::TOP {
+            return file.to_string();
         }
-        let mut sources = SourceMap::default();
-        let file = sources.add(path, json)?;
-        let stand_ins = if options.lenient {
-            StandIns::Accepted
-        } else {
-            StandIns::Refused
-        };
-        let context = Self {
-            options,
-            layout: Layout::default(),
-            stand_ins,
-            sources,
-            file,
-            warnings: Vec::new(),
-            refused: BTreeSet::new(),
-            digest,
-            files: vec![path.to_owned()],
-            reading,
-            named: Vec::new(),
-        };
-        Ok((context, binary))
+        format!("{file}: {place}")
     }
 
-    /// Every file on the disk that was read or is named.
-    pub(super) fn inputs(&self, files: &Files) -> Vec<PathBuf> {
-        let all: BTreeSet<_> = self.files.iter().chain(&self.named).collect();
-        let here = all.into_iter().filter(|path| files.is_from_disk(path));
-        here.cloned().collect()
-    }
-
-    /// The JSON as a tree. Errors: where it is none, with line and column.
-    pub(super) fn parse(&self) -> Result<Root> {
-        let text = self.sources.text(self.file);
-        serde_json::from_str(&text).map_err(|error| self.json_error(&text, &error))
-    }
-
-    fn json_error(&self, text: &str, error: &serde_json::Error) -> Error {
-        let line_start: usize = text
-            .split_inclusive('\n')
-            .take(error.line().saturating_sub(1))
-            .map(str::len)
-            .sum();
-        let mut start = (line_start + error.column().saturating_sub(1)).min(text.len());
-        while !text.is_char_boundary(start) {
-            start -= 1;
+    fn error(&self, fault: GltfFault) -> Error {
+        let mut error = Error::new(fault.kind, fault.message).in_file(&self.path);
+        if fault.place != Place::TOP {
+            error = error.at_value(fault.place.to_string());
         }
-        let message = error.to_string();
-        let message = message.split(" at line ").next().unwrap_or_default();
-        let span = Span::new(self.file, start..start);
-        self.sources.error(Fault::syntax(span, message))
-    }
-
-    pub(super) fn error(&self, fault: GltfFault) -> Error {
-        fault.in_text(&self.sources, self.file)
-    }
-
-    /// Something odd that is no error; what is said twice is counted.
-    pub(super) fn warn(&mut self, place: &Place, message: impl Into<String>) {
-        let mut message = message.into();
-        let is_new = self.warnings.iter().all(|(_, known, _)| *known != message);
-        if is_new && self.warnings.len() >= MOST_WARNINGS {
-            FURTHER_WARNINGS.clone_into(&mut message);
+        match fault.hint {
+            Some(hint) => error.with_hint(hint),
+            None => error,
         }
-        let known = self
-            .warnings
-            .iter_mut()
-            .find(|(_, known, _)| *known == message);
-        match known {
-            Some((_, _, count)) => *count += 1,
-            None => self.warnings.push((place.clone(), message, 1)),
-        }
-    }
-
-    /// Something that the format has and the renderer has not: an error, or a warning that says
-    /// what stands in.
-    pub(super) fn unsupported(
-        &mut self,
-        place: &Place,
-        what: &str,
-        stand_in: &str,
-    ) -> Result<(), GltfFault> {
-        if self.stand_ins == StandIns::Accepted {
-            let message = format!("{what} is not supported: {stand_in}");
-            self.refused.insert(message.clone());
-            self.warn(place, message);
-            return Ok(());
-        }
-        let message = format!("{what} is not supported");
-        let fault = place.fault(ErrorKind::Unsupported, message);
-        Err(fault.with_hint(format!("with --lenient, {stand_in}")))
-    }
-
-    /// All warnings, each as `file:line:column: message`.
-    pub(super) fn told_warnings(&self) -> Vec<String> {
-        self.told(|_| true)
-    }
-
-    /// Those of them that tell what stands in for what is not supported.
-    pub(super) fn told_refusals(&self) -> Vec<String> {
-        self.told(|message| self.refused.contains(message))
-    }
-
-    /// A place as `file:line:column`.
-    pub(super) fn text_of(&self, place: &Place) -> String {
-        let span = place.span(self.file, &self.sources.text(self.file));
-        let (line, column) = self.sources.line_and_column(span);
-        let file = self.sources.name(self.file).display();
-        format!("{file}:{line}:{column}")
-    }
-
-    fn told(&self, is_meant: impl Fn(&str) -> bool) -> Vec<String> {
-        let tell = |(place, message, count): &(Place, String, usize)| {
-            let times = match count {
-                1 => String::new(),
-                count => format!(" ({count} times)"),
-            };
-            let at = self.text_of(place);
-            format!("{at}: {}{times}", describe(place, message))
-        };
-        let meant = self
-            .warnings
-            .iter()
-            .filter(|(_, message, _)| is_meant(message));
-        meant.map(tell).collect()
     }
 }
 
 impl Document {
-    /// Checks what the file says of itself, and reads its buffers.
-    pub(super) fn new(
-        context: &mut Context<'_>,
-        root: Root,
-        (folder, files): (&Path, &Files),
-        binary: Option<Vec<u8>>,
-    ) -> Result<Self, GltfFault> {
-        check_version(&root)?;
-        check_extensions(context, &root)?;
-        let uris = root.buffers.iter().map(|buffer| &buffer.uri);
-        let uris = uris.chain(root.images.iter().map(|image| &image.uri));
-        let named = uris
-            .flatten()
-            .filter_map(|uri| container::file(folder, uri));
-        context.named = named.collect();
+    /// Reads the file at `path`, checks its version and extensions, and reads its buffers.
+    pub(super) fn open(path: &Path, options: &LoadOptions, files: &Files) -> Result<(Self, Log)> {
+        let container = container::read(path, files)?;
+        let mut log = Log::new(options, vec![path.to_owned()], container.size());
+        let Container { json, mut binary } = container;
+        log.add(Content::Text, json.as_bytes(), []);
+        if let Some(binary) = &binary {
+            log.add(Content::Mesh, binary, []);
+        }
         let mut document = Self {
-            root,
-            folder: folder.to_owned(),
+            path: path.to_owned(),
+            root: parse(path, json)?,
             files: files.clone(),
             buffers: Vec::new(),
             components_left: Cell::new(0),
         };
-        let mut binary = binary;
-        for index in 0..document.root.buffers.len() {
-            let buffer = document.read_buffer(context, index, &mut binary)?;
-            document.buffers.push(buffer);
-        }
-        document.start_counting(context);
-        Ok(document)
+        let read = check_version(&document.root)
+            .and_then(|()| check_extensions(&mut log, &document.root))
+            .and_then(|()| document.read_buffers(&mut log, &mut binary));
+        document.buffers = read.map_err(|fault| document.error(fault))?;
+        Ok((document, log))
     }
 
-    /// Lets accessors read as much as they may, once more.
-    pub(super) fn start_counting(&self, context: &Context<'_>) {
-        let components = limits::COMPONENTS.of(context.reading.stored());
-        self.components_left.set(components);
+    /// Lets accessors read as much as files of `stored` bytes allow, once more.
+    pub(super) fn start_counting(&self, stored: u64) {
+        self.components_left.set(limits::COMPONENTS.of(stored));
     }
 
-    /// Reads what `uri`, found at `place`, stands for.
+    /// Reads the resource of `uri`, which stands at `place`.
     pub(super) fn resource(
         &self,
-        context: &mut Context<'_>,
+        log: &mut Log,
         uri: &str,
         place: &Place,
     ) -> Result<Resource, GltfFault> {
-        let resource = container::resource((&self.folder, &self.files), uri, place)?;
-        if let Some((file, stored)) = &resource.file {
-            let (identity, length) = (self.files.identity(file), resource.bytes.len() as u64);
-            let counted = context.reading.file(identity, *stored, length);
-            counted.map_err(|error| GltfFault::from_error(place, &error))?;
-        }
-        Ok(resource)
+        container::resource(folder_of(&self.path), uri, place, |file| {
+            log.read(&self.files, file, LARGEST_GLTF)
+        })
     }
 
     /// Counts components that an accessor at `place` reads: many may read the same.
@@ -281,19 +134,29 @@ impl Document {
         Ok(())
     }
 
+    fn read_buffers(
+        &self,
+        log: &mut Log,
+        binary: &mut Option<Vec<u8>>,
+    ) -> Result<Vec<Vec<u8>>, GltfFault> {
+        let indices = 0..self.root.buffers.len();
+        indices
+            .map(|index| self.read_buffer(log, index, binary))
+            .collect()
+    }
+
     fn read_buffer(
         &self,
-        context: &mut Context<'_>,
+        log: &mut Log,
         index: usize,
         binary: &mut Option<Vec<u8>>,
     ) -> Result<Vec<u8>, GltfFault> {
         let buffer = &self.root.buffers[index];
         let place = Place::of("buffers", index);
         let mut bytes = if let Some(uri) = &buffer.uri {
-            let resource = self.resource(context, uri, &place.key("uri"))?;
-            if let Some((file, _)) = resource.file {
-                context.digest.add(Content::Mesh, &resource.bytes);
-                context.files.push(file);
+            let resource = self.resource(log, uri, &place.key("uri"))?;
+            if let Some(file) = resource.file {
+                log.add(Content::Mesh, &resource.bytes, [file]);
             }
             resource.bytes
         } else {
@@ -305,7 +168,7 @@ impl Document {
             let message = format!("it has {have} bytes instead of {wanted}");
             return Err(place.fault(ErrorKind::Data, message));
         }
-        // What follows is padding.
+        // The rest is padding.
         bytes.truncate(buffer.byte_length);
         Ok(bytes)
     }
@@ -339,6 +202,30 @@ impl Document {
     }
 }
 
+/// Parses the JSON of `path`. Errors: it is malformed, with line and column.
+fn parse(path: &Path, json: String) -> Result<Root> {
+    let root = serde_json::from_str(&json);
+    root.or_else(|error| {
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default();
+        let start = offset(&json, &error);
+        let mut sources = SourceMap::default();
+        let file = sources.add(path, json)?;
+        let span = Span::new(file, start..start);
+        Err(sources.error(Fault::syntax(span, message)))
+    })
+}
+
+/// The byte of `text` that an error is at.
+fn offset(text: &str, error: &serde_json::Error) -> usize {
+    let lines = text.split_inclusive('\n');
+    let before: usize = lines
+        .take(error.line().saturating_sub(1))
+        .map(str::len)
+        .sum();
+    boundary_before(text, before + error.column().saturating_sub(1))
+}
+
 fn check_version(root: &Root) -> Result<(), GltfFault> {
     let place = Place::TOP.key("asset");
     let asset = &root.asset;
@@ -358,7 +245,7 @@ fn check_version(root: &Root) -> Result<(), GltfFault> {
     Err(fault.with_hint("convert it to glTF 2.0"))
 }
 
-fn check_extensions(context: &mut Context<'_>, root: &Root) -> Result<(), GltfFault> {
+fn check_extensions(log: &mut Log, root: &Root) -> Result<(), GltfFault> {
     let is_known = |name: &String| EXTENSIONS.contains(&name.as_str());
     for (i, name) in root.extensions_required.iter().enumerate() {
         if is_known(name) {
@@ -379,8 +266,8 @@ fn check_extensions(context: &mut Context<'_>, root: &Root) -> Result<(), GltfFa
     for (i, name) in root.extensions_used.iter().enumerate() {
         if !is_known(name) {
             let place = Place::TOP.key("extensionsUsed").index(i);
-            context.warn(
-                &place,
+            log.warn(
+                place,
                 format!("the unknown extension `{name}` has no effect"),
             );
         }

@@ -1,7 +1,7 @@
 //! Lights of KHR_lights_punctual. Their units are those of light that is seen: candela and lux count
 //! as radiant intensity and irradiance, as everywhere in the file.
 
-use super::document::{Context, Document};
+use super::document::Context;
 use super::json::Light as Described;
 use super::node::Nodes;
 use super::place::{GltfFault, Place};
@@ -12,9 +12,9 @@ use glam::{DAffine3, DVec3};
 /// The lights of the scene with their places, in the order of its nodes.
 pub(super) fn all(
     context: &mut Context<'_>,
-    document: &Document,
     nodes: &Nodes,
 ) -> Result<Vec<(Place, Light)>, GltfFault> {
+    let document = context.document;
     let mut lights = Vec::new();
     for &index in &nodes.order {
         let node = &document.root.nodes[index];
@@ -25,7 +25,7 @@ pub(super) fn all(
             .key("extensions")
             .key("KHR_lights_punctual");
         let render_from_node = nodes.render_from_node[index].unwrap_or(DAffine3::IDENTITY);
-        let light = build(context, document, (light, &place), &render_from_node)?;
+        let light = build(context, (light, &place), &render_from_node)?;
         lights.push((place, light));
     }
     Ok(lights)
@@ -33,11 +33,10 @@ pub(super) fn all(
 
 fn build(
     context: &mut Context<'_>,
-    document: &Document,
     (index, user): (usize, &Place),
     render_from_node: &DAffine3,
 ) -> Result<Light, GltfFault> {
-    let all = document.root.extensions.lights.as_ref();
+    let all = context.document.root.extensions.lights.as_ref();
     let described = all.and_then(|all| all.lights.get(index));
     let described = described.ok_or_else(|| user.scene(format!("there is no light {index}")))?;
     let place = Place::TOP
@@ -49,7 +48,7 @@ fn build(
     let intensity = power.map(|channel| context.layout.space.intensity(channel));
     if described.range.is_some() {
         context.warn(
-            &place,
+            place.clone(),
             "the `range` of a light has no effect: light falls off with the square of the distance",
         );
     }

@@ -2,7 +2,7 @@
 
 mod reader;
 
-use super::document::{Context, Document};
+use super::document::Context;
 use super::json::{Material as Described, TextureInfo};
 use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// How much of the surface is there. None: all of it.
+    /// The alpha of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
-    /// What meshes of it have for parameters.
+    /// The parameters of its meshes.
     pub(super) uv: UvMap,
 }
 
@@ -39,7 +39,6 @@ impl Materials {
     pub(super) fn get(
         &mut self,
         (context, builder): (&mut Context<'_>, &mut SceneBuilder),
-        document: &Document,
         (index, user): (Option<usize>, &Place),
         color: [f32; 4],
     ) -> Result<Built, GltfFault> {
@@ -50,8 +49,8 @@ impl Materials {
         let default = Described::default();
         let described = match index {
             None => &default,
-            Some(index) => document.root.materials.get(index).ok_or_else(|| {
-                let count = document.root.materials.len();
+            Some(index) => context.document.root.materials.get(index).ok_or_else(|| {
+                let count = context.document.root.materials.len();
                 user.key("material").scene(format!(
                     "there is no material {index}: the file has {count}"
                 ))
@@ -61,7 +60,6 @@ impl Materials {
         let mut reader = Reader {
             baked: baked(described),
             context,
-            document,
             textures: &mut self.textures,
             described,
             place,
@@ -77,7 +75,7 @@ impl Materials {
         Ok(built)
     }
 
-    /// How many there are.
+    /// The number of materials.
     pub(super) fn count(&self) -> usize {
         self.built.len()
     }
@@ -113,8 +111,8 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
     all.into_iter().flatten().collect()
 }
 
-/// What meshes of a material have for parameters: the map that all its textures share, else the set
-/// of the first one.
+/// The parameters of a material's meshes: the map that all its textures share, else the set of the
+/// first one.
 fn baked(described: &Described) -> UvMap {
     let mut maps = infos(described).into_iter().map(uv_map);
     let Some(first) = maps.next() else {

@@ -21,13 +21,13 @@ pub(super) struct Surface {
     /// Two sets; empty where there are none.
     pub(super) uvs: [Vec<[f32; 2]>; 2],
     pub(super) triangles: Vec<[u32; 3]>,
-    /// What all vertices multiply the base colour by: red, green, blue, alpha.
+    /// The factor of the base colour, from the vertices: red, green, blue, alpha.
     pub(super) color: [f32; 4],
     /// Joints and their weights, by vertex. Empty: there are none.
     pub(super) joints: Vec<[(u32, f32); 4]>,
 }
 
-/// How texture coordinates become those of the built mesh.
+/// The map from texture coordinates to those of the built mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvMap {
     /// Which set.
@@ -53,18 +53,24 @@ impl Surface {
     /// Reads a primitive. None: it has no triangles, of which a warning says why.
     pub(super) fn read(
         context: &mut Context<'_>,
-        document: &Document,
         (primitive, place): (&Primitive, &Place),
         weights: &[f32],
     ) -> Result<Option<Self>, GltfFault> {
+        let document = context.document;
         let attributes = place.key("attributes");
         let Some(&position) = primitive.attributes.get("POSITION") else {
-            context.warn(place, "the primitive has no POSITION and is left out");
+            context.warn(
+                place.clone(),
+                "the primitive has no POSITION and is left out",
+            );
             return Ok(None);
         };
         let mode = primitive.mode.unwrap_or(4);
         if mode < 4 {
-            context.warn(place, "points and lines have no surface and are left out");
+            context.warn(
+                place.clone(),
+                "points and lines have no surface and are left out",
+            );
             return Ok(None);
         }
         let mut surface = Self {
@@ -73,7 +79,7 @@ impl Surface {
             ..Self::default()
         };
         surface.triangles = triangles(document, primitive, place, surface.positions.len())?;
-        surface.read_attributes(context, document, (primitive, &attributes))?;
+        surface.read_attributes(context, (primitive, &attributes))?;
         surface.morph(document, (primitive, place), weights)?;
         Ok(Some(surface).filter(|surface| !surface.triangles.is_empty()))
     }
@@ -81,9 +87,9 @@ impl Surface {
     fn read_attributes(
         &mut self,
         context: &mut Context<'_>,
-        document: &Document,
         (primitive, place): (&Primitive, &Place),
     ) -> Result<(), GltfFault> {
+        let document = context.document;
         let find = |name: &str| {
             primitive
                 .attributes
@@ -93,7 +99,7 @@ impl Surface {
         if let Some((index, place)) = find("NORMAL") {
             self.normals = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
         }
-        // Where normals are missing the format wants tangents to be passed over.
+        // Without normals the format ignores tangents.
         let is_smooth = !self.normals.is_empty();
         if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
             let tangents = document.finite_vectors::<4>(index, &place)?;
@@ -106,13 +112,13 @@ impl Surface {
             }
         }
         if let Some((index, place)) = find("COLOR_0") {
-            self.read_color(context, document, index, &place)?;
+            self.read_color(context, index, &place)?;
         }
         if let (Some(joints), Some(weights)) = (find("JOINTS_0"), find("WEIGHTS_0")) {
             self.joints = self.read_joints(document, joints, weights)?;
             if find("JOINTS_1").is_some() {
                 context.warn(
-                    place,
+                    place.clone(),
                     "joints beyond the first four of a vertex have no effect",
                 );
             }
@@ -133,10 +139,10 @@ impl Surface {
     fn read_color(
         &mut self,
         context: &mut Context<'_>,
-        document: &Document,
         index: usize,
         place: &Place,
     ) -> Result<(), GltfFault> {
+        let document = context.document;
         let colors: Vec<[f32; 4]> = if document.components(index, place)? == 3 {
             let opaque = |[r, g, b]: [f32; 3]| [r, g, b, 1.0];
             document
@@ -161,7 +167,7 @@ impl Surface {
         };
         if !colors.iter().all(is_near) {
             context.warn(
-                place,
+                place.clone(),
                 "vertex colours are not interpolated: their mean is used",
             );
         }

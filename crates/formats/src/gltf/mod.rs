@@ -2,11 +2,11 @@
 //!
 //! The JSON becomes plain structures (`json`) whose extensions have names and types; accessors are
 //! checked against the bytes they lie in before anything is taken for them; and what is built is a
-//! scene like any other. What is wrong is told with line, column and the way to it in the JSON.
+//! scene like any other. Faults name their place by the way to it in the JSON.
 //!
-//! The format lets programs leave out extensions that a file does not require. What is left out, or
-//! replaced by something simpler, is a warning; what the format itself demands and the renderer has
-//! not is refused, and [`LoadOptions::lenient`] lets something stand in. docs/reference/gltf.md has it all.
+//! The format lets programs leave out extensions that a file does not require: that is a warning.
+//! Features that the format itself demands are refused where the renderer lacks them, and
+//! [`LoadOptions::lenient`] accepts a substitute. docs/reference/gltf.md lists all.
 //!
 //! A file without a camera is seen as a whole, and one without light is lit from behind the viewer
 //! (`outside`). Units are taken as they are: nothing is divided by 683 lm/W.
@@ -29,17 +29,15 @@ mod view;
 mod tests;
 
 use crate::error::Result;
-use crate::file::folder_of;
 use crate::files::Files;
-use crate::lamp;
-use crate::pbrt::{LoadOptions, Loaded, SceneSettings};
-use assembly::{Assembly, Built};
+use crate::import::{self, LoadOptions, Loaded, SceneSettings};
+use assembly::Builder;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
-use document::{Context, Document};
+use document::Document;
 use std::path::Path;
 
-/// How a file is rendered unless the caller says otherwise: the format says nothing of it.
+/// The default settings of a render: the format has none.
 const SETTINGS: SceneSettings = SceneSettings {
     integrator: IntegratorKind::Auto,
     max_depth: 12,
@@ -67,24 +65,6 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
 
 /// The same as [`load`], with files from where `files` says.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
-    let (mut context, binary) = Context::open(path, options, files)?;
-    let root = context.parse()?;
-    let built = Document::new(&mut context, root, (folder_of(path), files), binary)
-        .and_then(|document| Assembly::build(&mut context, &document));
-    let Built {
-        scene,
-        lamps,
-        summary,
-    } = built.map_err(|fault| context.error(fault))?;
-    Ok(Loaded {
-        lamps: lamp::unhittable(&scene, &lamps, |place| context.text_of(place)),
-        scene,
-        settings: SETTINGS,
-        warnings: context.told_warnings(),
-        refused: context.told_refusals(),
-        summary,
-        inputs: context.inputs(files),
-        digest: context.digest.finish(),
-        files: context.files,
-    })
+    let (document, log) = Document::open(path, options, files)?;
+    import::load(&document, options, log, Builder::gather)
 }

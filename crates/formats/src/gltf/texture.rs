@@ -7,15 +7,15 @@ use super::mesh::UvMap;
 use super::place::{GltfFault, Place};
 use crate::error::ErrorKind;
 use crate::image::{self, Encoding, Format, ImageData};
-use crate::pbrt::Content;
+use crate::import::Content;
 use bidir::math::{Vec2, sin_cos};
 use bidir::texture::{
     self, Beyond, ColorTexture, FloatTexture, Image, ImageFilter, ImageMap, Mapping, Wrap,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What is taken of an image.
+/// A channel of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Red,
@@ -25,7 +25,7 @@ pub(super) enum Part {
     Alpha,
 }
 
-/// What a number of an image becomes.
+/// A change of an image's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
     /// Itself.
@@ -53,8 +53,8 @@ pub(super) struct Textures {
     numbers: BTreeMap<(usize, String), Arc<Image<1>>>,
     /// The image that was decoded last: its channels are often asked for one after the other.
     last: Option<((usize, bool), ImageData)>,
-    /// Bytes that the digest has.
-    told: Vec<usize>,
+    /// Images that the log has.
+    logged: BTreeSet<usize>,
 }
 
 /// The part of a texture's coordinates that is not in the mesh.
@@ -62,7 +62,7 @@ pub(super) struct Textures {
 pub(super) struct Lookup<'a> {
     pub(super) info: &'a TextureInfo,
     pub(super) place: &'a Place,
-    /// What the mesh has of it.
+    /// The part in the mesh.
     pub(super) baked: UvMap,
 }
 
@@ -90,14 +90,13 @@ impl Textures {
     pub(super) fn color(
         &mut self,
         context: &mut Context<'_>,
-        document: &Document,
         lookup: Lookup<'_>,
         encoding: Encoding,
     ) -> Result<ColorTexture, GltfFault> {
-        let (source, sampler) = source(document, lookup)?;
+        let (source, sampler) = source(context.document, lookup)?;
         let key = (source, encoding == Encoding::Srgb);
         if !self.colors.contains_key(&key) {
-            let data = self.decode(context, document, source, encoding)?;
+            let data = self.decode(context, source, encoding)?;
             let image = Image::new(data.width, data.rgb().collect());
             let image =
                 image.ok_or_else(|| Place::of("images", source).scene("it has no pixels"))?;
@@ -112,14 +111,13 @@ impl Textures {
     pub(super) fn number(
         &mut self,
         context: &mut Context<'_>,
-        document: &Document,
         lookup: Lookup<'_>,
         (part, change): (Part, Change),
     ) -> Result<FloatTexture, GltfFault> {
-        let (source, sampler) = source(document, lookup)?;
+        let (source, sampler) = source(context.document, lookup)?;
         let key = (source, format!("{part:?} {change:?}"));
         if !self.numbers.contains_key(&key) {
-            let data = self.decode(context, document, source, Encoding::Linear)?;
+            let data = self.decode(context, source, Encoding::Linear)?;
             let numbers = channel(data, part).map(|value| [change.apply(value)]);
             let image = Image::new(data.width, numbers.collect());
             let image =
@@ -134,7 +132,6 @@ impl Textures {
     fn decode(
         &mut self,
         context: &mut Context<'_>,
-        document: &Document,
         source: usize,
         encoding: Encoding,
     ) -> Result<&ImageData, GltfFault> {
@@ -142,17 +139,14 @@ impl Textures {
         let is_known = self.last.as_ref().is_some_and(|(known, _)| *known == key);
         if !is_known {
             let place = Place::of("images", source);
-            let Resource { bytes, file } = resource((&mut *context, document), source, &place)?;
-            let file = file.map(|(file, _)| file);
-            if let Some(file) = file.filter(|_| !self.told.contains(&source)) {
-                self.told.push(source);
-                context.digest.add(Content::Image, &bytes);
-                context.files.push(file);
+            let Resource { bytes, file } = resource(context, source, &place)?;
+            if let Some(file) = file.filter(|_| self.logged.insert(source)) {
+                context.log.add(Content::Image, &bytes, [file]);
             }
             let format = format_of(&bytes, &place)?;
             let data = image::decode_stored(format, &bytes, encoding);
-            let data = data.and_then(|data| context.reading.image(data));
-            let data = data.map_err(|error| GltfFault::from_error(&place, &error))?;
+            let data = data.and_then(|data| context.log.image(data));
+            let data = data.map_err(|error| GltfFault::from_error(place, &error))?;
             self.last = Some((key, data));
         }
         let (_, data) = self.last.as_ref().expect("it was just stored");
@@ -217,13 +211,14 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
 
 /// The bytes of an image.
 fn resource(
-    (context, document): (&mut Context<'_>, &Document),
+    context: &mut Context<'_>,
     source: usize,
     place: &Place,
 ) -> Result<Resource, GltfFault> {
+    let document = context.document;
     let image = &document.root.images[source];
     match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => document.resource(context, uri, &place.key("uri")),
+        (Some(uri), _) => document.resource(&mut context.log, uri, &place.key("uri")),
         (None, Some(view)) => {
             let (bytes, _) = document.view(view, &place.key("bufferView"))?;
             let bytes = bytes.to_vec();
@@ -233,7 +228,7 @@ fn resource(
     }
 }
 
-/// What its first bytes say that an image is.
+/// The format of an image, by its first bytes.
 fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
@@ -311,7 +306,7 @@ fn map<const N: usize>(
     })
 }
 
-/// What a sampler has beyond the borders that one coordinate crosses.
+/// The wrap mode of one coordinate.
 fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
     match wrap.unwrap_or(10497) {
         33071 => Ok(Beyond::Clamp),
@@ -329,12 +324,12 @@ fn remaining(
 ) -> Result<(Vec2, Vec2), GltfFault> {
     if wanted.set != lookup.baked.set {
         let what = "a material with textures of several sets of coordinates";
-        context.unsupported(lookup.place, what, "one set is used for all")?;
+        context.unsupported(lookup.place.clone(), what, "one set is used for all")?;
     }
     let [[su, across, ou], [down, sv, ov]] = wanted.rows;
     if across.abs().max(down.abs()) > 1e-6 {
         let what = "a material with textures that are rotated by different angles";
-        context.unsupported(lookup.place, what, "they are not rotated")?;
+        context.unsupported(lookup.place.clone(), what, "they are not rotated")?;
     }
     // Parameters of the mesh go up where those of the file go down.
     Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))

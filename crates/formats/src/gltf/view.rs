@@ -5,9 +5,6 @@ use super::json;
 use super::node::Nodes;
 use super::outside::Extent;
 use super::place::{GltfFault, Place};
-use crate::error::ErrorKind;
-use crate::limits::LARGEST_SIDE;
-use crate::pbrt::Crop;
 use crate::text::number;
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter, FilterKind};
@@ -15,17 +12,17 @@ use bidir::math::{Affine3A, Vec2};
 use glam::{DAffine3, DVec3};
 use std::ops::RangeInclusive;
 
-/// Rows of the film where nothing says how many.
+/// Rows of the film.
 const HEIGHT: u32 = 720;
-/// Columns where no camera says its proportions.
+/// Columns of the film without a camera of given proportions.
 const WIDTH: u32 = 1280;
-/// The vertical angle of the view where no camera says one. Unit: radians.
+/// The vertical angle of the view without a camera. Unit: radians.
 const ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
 /// Width over height of what cameras see.
 const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// How a camera sees, and half the height of what it sees.
+/// The projection of a camera, and half the height of its picture.
 #[derive(Clone, Copy)]
 enum Screen {
     /// At distance 1.
@@ -34,7 +31,7 @@ enum Screen {
     Orthographic(f64),
 }
 
-/// What is looked from.
+/// The view of a scene.
 pub(super) struct View {
     /// x right, y up, z forward. None: so that all is in view.
     world_from_camera: Option<Affine3A>,
@@ -45,11 +42,8 @@ pub(super) struct View {
 }
 
 /// Finds the first camera of the scene.
-pub(super) fn find(
-    context: &mut Context<'_>,
-    document: &Document,
-    nodes: &Nodes,
-) -> Result<View, GltfFault> {
+pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, GltfFault> {
+    let document = context.document;
     let cameras: Vec<(usize, usize)> = nodes
         .order
         .iter()
@@ -65,7 +59,7 @@ pub(super) fn find(
     };
     if cameras.len() > 1 {
         let message = format!("the scene has {} cameras; using the first", cameras.len());
-        context.warn(&Place::of("nodes", node), message);
+        context.warn(Place::of("nodes", node), message);
     }
     let render_from_node = nodes.render_from_node[node].unwrap_or(DAffine3::IDENTITY);
     let mut view = read(document, camera, &render_from_node)?;
@@ -106,7 +100,7 @@ fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Resul
     })
 }
 
-/// What a perspective camera sees, and width over height of it.
+/// The screen of a perspective camera, and its width over height.
 fn perspective(
     camera: &json::Perspective,
     place: &Place,
@@ -158,7 +152,7 @@ pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
 }
 
 impl View {
-    /// Where the camera of the file stands, in the space that is rendered in.
+    /// The position of the file's camera, in the space that is rendered in.
     pub(super) fn eye(&self) -> Option<DVec3> {
         let place = self.world_from_camera?;
         Some(place.translation.as_dvec3())
@@ -173,27 +167,15 @@ impl View {
                 HEIGHT,
             ],
         };
-        let [width, height] = context.options.resolution.unwrap_or(own);
-        let sides = 1..=LARGEST_SIDE;
-        if !sides.contains(&width) || !sides.contains(&height) {
-            let message = format!(
-                "the film has {width} × {height} pixels; each side can have 1 to {LARGEST_SIDE}"
-            );
-            return Err(self.place.fault(ErrorKind::Limit, message));
-        }
+        let options = context.options;
+        let resolution = options.resolution(own, self.place.clone())?;
         let filter = Filter::new(FilterKind::Gaussian { sigma: 0.5 }, Vec2::splat(1.5));
-        let mut film = FilmSettings::new([width, height], filter);
-        if let Some(crop) = context.options.crop {
-            film.crop = Crop::pixels(crop, [width, height]);
-        }
-        if film.crop.area() > 0 {
-            return Ok(film);
-        }
-        let message = format!("the crop lies outside the film of {width} × {height} pixels");
-        Err(Place::TOP.fault(ErrorKind::Options, message))
+        let mut film = FilmSettings::new(resolution, filter);
+        film.crop = options.crop(None, resolution, Place::TOP)?;
+        Ok(film)
     }
 
-    /// Where the camera is: where the file has it, else where it sees all of `extent`.
+    /// The place of the camera: that of the file, else one that sees all of `extent`.
     pub(super) fn placed(
         &self,
         context: &mut Context<'_>,
@@ -204,7 +186,7 @@ impl View {
             let viewpoint = extent.viewpoint();
             let name = viewpoint.name;
             let message = format!("the scene has no camera; using one {name} that sees everything");
-            context.warn(&Place::TOP, message);
+            context.warn(Place::TOP, message);
             viewpoint.camera(extent, self.half(resolution))
         })
     }

@@ -1,5 +1,4 @@
-//! The files that a scene names: those that were read, and those of parts that are not used or that a
-//! stand-in replaces.
+//! The files that a scene names, also in parts that are not used or that a substitute replaces.
 
 use super::parameters::Values;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
@@ -7,14 +6,11 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 impl SceneDescription {
-    /// Every file on the disk that was read, which `read` lists, or that a parameter may name, without
-    /// the film's, whose file is written. Names with a dot in them are taken for those of files.
-    pub(super) fn inputs(&self, read: &[PathBuf]) -> Vec<PathBuf> {
+    /// The files that parameters may name, without the film's, which is written. A text with a dot
+    /// in it is taken for the name of a file.
+    pub(super) fn inputs(&self) -> Vec<PathBuf> {
         let named: BTreeSet<_> = self.entities().flat_map(strings).collect();
-        let named = named.into_iter().map(|name| self.resolve(name));
-        let all: BTreeSet<_> = read.iter().cloned().chain(named).collect();
-        let here = all.into_iter().filter(|path| self.files.is_from_disk(path));
-        here.collect()
+        named.into_iter().map(|name| self.resolve(name)).collect()
     }
 
     /// All that can have parameters with names of files in them.

@@ -11,7 +11,6 @@
 
 mod build;
 mod definitions;
-mod digest;
 mod directives;
 mod inclusion;
 mod inputs;
@@ -27,9 +26,8 @@ mod v3;
 #[cfg(test)]
 mod tests;
 
-pub use build::{Crop, LoadOptions, Loaded, SceneSettings, Summary, build, load, load_from};
-pub use digest::SceneDigest;
-pub(crate) use digest::{Content, DigestBuilder};
+pub use crate::import::{Crop, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary, Warning};
+pub use build::{build, load, load_from};
 pub(crate) use known::is_directive;
 pub use parameters::{Parameter, ParameterList, ParameterType, Values};
 pub use parser::{parse_file, parse_file_from, parse_text};
@@ -37,6 +35,5 @@ pub use scene::{
     CameraDescription, ColorSpace, Entity, FilmDescription, InstanceDescription, LightDescription,
     MaterialDescription, MediumDescription, MediumInterface, MediumReference, ObjectDescription,
     OptionDescription, SceneDescription, ShapeDescription, TextureDescription, TextureKind,
-    Warning,
 };
 pub use transform::Transforms;

@@ -1,9 +1,9 @@
-//! What a scene's text says, as plain data: nothing is built, no mesh or image is read.
+//! The text of a scene as plain data: nothing is built, no mesh or image is read.
 
 use super::parameters::{Parameter, ParameterList};
 use super::transform::Transforms;
 use crate::files::Files;
-use crate::limits::{FURTHER_WARNINGS, MOST_WARNINGS};
+use crate::import::Warning;
 use crate::source::{SourceMap, Span};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,12 +11,12 @@ use std::sync::Arc;
 /// A parsed scene.
 ///
 /// References are indices into the vectors here; all of them are valid. Every item keeps the place
-/// it came from, so that what building finds wrong can be told with file, line and column.
+/// it came from, so that errors of building have file, line and column.
 #[derive(Clone, Debug, Default)]
 pub struct SceneDescription {
     /// The texts that spans point into.
     pub sources: SourceMap,
-    /// Where files are looked for.
+    /// The source of files.
     pub files: Files,
     /// The files that the texts are of, by each name that they were asked for.
     pub texts: Vec<PathBuf>,
@@ -52,7 +52,7 @@ pub struct SceneDescription {
     pub objects: Vec<ObjectDescription>,
     /// The places of objects.
     pub instances: Vec<InstanceDescription>,
-    /// What is odd but no error.
+    /// The warnings.
     pub warnings: Vec<Warning>,
 }
 
@@ -121,7 +121,7 @@ pub struct MaterialDescription {
     pub entity: Option<Entity>,
 }
 
-/// What a texture gives.
+/// The values of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TextureKind {
     /// Numbers.
@@ -135,7 +135,7 @@ pub enum TextureKind {
 pub struct TextureDescription {
     /// Its name: numbers and colours have separate names.
     pub name: String,
-    /// What it gives.
+    /// Its values.
     pub kind: TextureKind,
     /// Class and parameters.
     pub entity: Entity,
@@ -176,7 +176,7 @@ pub struct ShapeDescription {
     pub reverse_orientation: bool,
     /// An index into [`SceneDescription::materials`].
     pub material: usize,
-    /// What it emits. None: where it does not.
+    /// Its emission. None: where it does not emit.
     pub area_light: Option<Arc<Entity>>,
     /// The media on its sides.
     pub medium: MediumInterface,
@@ -222,37 +222,7 @@ pub struct MediumReference {
     pub span: Span,
 }
 
-/// Something odd that is no error.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Warning {
-    /// What is odd.
-    pub message: String,
-    /// Where it is; of several, the first.
-    pub span: Span,
-    /// How often it occurred.
-    pub count: usize,
-}
-
-/// Counts a warning: the same words occur once in the list.
-pub(crate) fn warn(warnings: &mut Vec<Warning>, span: Span, message: impl Into<String>) {
-    let mut message = message.into();
-    if warnings.len() >= MOST_WARNINGS && warnings.iter().all(|known| known.message != message) {
-        FURTHER_WARNINGS.clone_into(&mut message);
-    }
-    match warnings
-        .iter_mut()
-        .find(|warning| warning.message == message)
-    {
-        Some(warning) => warning.count += 1,
-        None => warnings.push(Warning {
-            message,
-            span,
-            count: 1,
-        }),
-    }
-}
-
-/// What `Attribute` directives say, by target.
+/// The parameters of `Attribute` directives, by target.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AttributeDefaults {
     pub(super) shape: Arc<Vec<Parameter>>,

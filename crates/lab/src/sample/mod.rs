@@ -1,5 +1,5 @@
-//! One sample, told: both subpaths, what every strategy gave, which shadow rays were chosen, and what
-//! was in their way.
+//! The report of one sample: both subpaths, the contribution of every strategy, the chosen shadow rays,
+//! and their visibility.
 //!
 //! A [`SampleReport`] is made of a [`Replay`](bidir::driver::Replay) of the driver. It is written as
 //! JSON, as a text (`Display`), and as a [picture](SampleReport::drawing).
@@ -12,7 +12,7 @@ mod text;
 mod training;
 
 pub use report::SampleReport;
-pub use training::{RaysByKind, TrainingReport};
+pub use training::TrainingReport;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! All that is told of a sample.
+//! The report of a sample.
 
 use super::TrainingReport;
 use super::subpath::{SubpathReport, View};
@@ -8,7 +8,7 @@ use bidir::spectrum::{ColorModel, Rgb, Spectrum, Wavelengths};
 use formats::film::SettingsText;
 use serde::Serialize;
 
-/// A sample, told. Numbers that are not finite are null in JSON.
+/// The report of a sample. Numbers that are not finite are null in JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct SampleReport {
     pub(super) pixel: [u32; 2],
@@ -25,21 +25,21 @@ pub struct SampleReport {
     pub(super) zeros: Vec<String>,
     /// t = 1: splats.
     pub(super) light_image: Vec<SplatReport>,
-    /// What splats are divided by.
+    /// The divisor of splats.
     pub(super) light_paths: u64,
-    /// How many light subpaths the pass has: fewer, where samples share them.
+    /// The light subpaths of the pass: fewer, where samples share them.
     pub(super) light_subpaths: u64,
-    /// What was added to the pixel.
+    /// The value that was added to the pixel.
     pub(super) value: Rgb,
     pub(super) value_of_hits: Rgb,
     pub(super) value_of_candidates: Rgb,
-    /// What candidates would have added, had all been traced: what a selection is to expect.
+    /// The value of candidates if all were traced: the expectation of every selection.
     pub(super) value_of_all_candidates: Rgb,
     pub(super) rays: u64,
     pub(super) dropped: u64,
 }
 
-/// How light is told: as linear Rec. 709.
+/// The conversion of light to linear Rec. 709.
 pub(super) struct Color {
     model: ColorModel,
     wavelengths: Wavelengths,
@@ -52,7 +52,7 @@ impl Color {
 }
 
 impl SampleReport {
-    /// The report of what `session` repeated: the sample of `pixel` in `pass`.
+    /// The report of a repeated sample: that of `pixel` in `pass`.
     pub fn new(session: &Session<'_>, pixel: [u32; 2], pass: u64, replay: &Replay) -> Self {
         let (scene, workspace) = (session.scene(), &replay.workspace);
         let color = Color {
@@ -91,7 +91,7 @@ impl SampleReport {
     }
 }
 
-/// The terms of a sample, by what is told of them.
+/// The terms of a sample, by their reports.
 #[derive(Default)]
 struct Terms {
     hits: Vec<TermReport>,

@@ -28,7 +28,7 @@ pub(super) struct VertexReport {
     pub(super) pdf_rev: f32,
 }
 
-/// Where something is.
+/// A point or a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Place {
     /// In the space of the scene's numbers, which drawings are made in.
@@ -37,13 +37,13 @@ pub(super) struct Place {
     /// In the world. The direction towards it where it is at infinity.
     pub(super) position: [f32; 3],
     pub(super) is_infinite: bool,
-    /// Where the sample's lens point sees it on the film, or beyond its edges, whatever is in between.
+    /// Its image on the film through the sample's lens point, or beyond the edges, whatever is in between.
     /// None: it is behind the camera, or the camera itself. Unit: pixels, from the top left.
     pub(super) raster: Option<[f32; 2]>,
 }
 
 impl Place {
-    /// What a picture shows of the camera where there is no camera subpath.
+    /// The camera in a drawing without a camera subpath.
     pub(super) fn eye(camera: &Camera) -> Self {
         let lens = middle_of_lens(camera);
         Self {
@@ -72,7 +72,7 @@ fn middle_of_lens(camera: &Camera) -> LensSample {
     camera.sample_lens(|| Vec2::splat(0.5))
 }
 
-/// From where a sample looks.
+/// The lens point of a sample.
 pub(super) struct View<'a> {
     space: RenderSpace,
     camera: &'a Camera,

@@ -1,4 +1,4 @@
-//! What each strategy gave.
+//! The contribution of each strategy.
 
 use super::report::Color;
 use super::subpath::Place;
@@ -7,7 +7,7 @@ use bidir::integrator::Fate;
 use bidir::spectrum::Rgb;
 use serde::Serialize;
 
-/// What all strategies have in common.
+/// The report that all strategies have.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct TermReport {
     pub(super) s: u16,
@@ -19,7 +19,7 @@ pub(super) struct TermReport {
     /// w C.
     pub(super) value: Rgb,
     pub(super) is_dropped: bool,
-    /// What it added to a pixel of an image of one pass.
+    /// The value that it added to a pixel of an image of one pass.
     pub(super) added: Rgb,
 }
 
@@ -27,17 +27,17 @@ pub(super) struct TermReport {
 pub(super) struct CandidateReport {
     #[serde(flatten)]
     pub(super) term: TermReport,
-    /// Where the light subpath ends: for s = 1 a light point of its own, in `lvc` a vertex of another
+    /// The end of the light subpath: for s = 1 a light point of its own, in `lvc` a vertex of another
     /// sample. The other end is vertex t - 1 of the camera subpath.
     pub(super) light_end: Place,
-    /// What candidates are compared by; null where none are chosen.
+    /// The selection score; null where none are chosen.
     pub(super) score: Option<f32>,
     /// The probability of being chosen.
     pub(super) prob: f64,
     pub(super) is_chosen: bool,
     /// Traced or not.
     pub(super) is_visible: bool,
-    /// How much of it arrives.
+    /// The part of it that arrives.
     pub(super) transmittance: f32,
 }
 
@@ -45,12 +45,12 @@ pub(super) struct CandidateReport {
 pub(super) struct SplatReport {
     #[serde(flatten)]
     pub(super) term: TermReport,
-    /// What is seen: vertex s - 1 of the light subpath.
+    /// The visible point: vertex s - 1 of the light subpath.
     pub(super) light_end: Place,
     pub(super) is_visible: bool,
-    /// How much of it arrives.
+    /// The part of it that arrives.
     pub(super) transmittance: f32,
-    /// Where it lands, or would.
+    /// The place where it lands, or would.
     pub(super) raster: [f32; 2],
     /// The pixel that the filter drew; null where it is not rendered.
     pub(super) landed: Option<[u32; 2]>,
@@ -85,7 +85,7 @@ impl CandidateReport {
         }
     }
 
-    /// What it is worth behind what lies in its way.
+    /// Its value times its transmittance.
     pub(super) fn arriving(&self) -> Rgb {
         self.term.value.map(|channel| channel * self.transmittance)
     }

@@ -1,4 +1,4 @@
-//! A told sample as a text: tables of the subpaths, of each kind of strategy, and the sums.
+//! The report of a sample as a text: tables of the subpaths, of each kind of strategy, and the sums.
 
 use super::SampleReport;
 use super::subpath::{SubpathReport, VertexReport};
@@ -50,7 +50,9 @@ impl SampleReport {
         writeln!(
             f,
             "training: {} samples with {} rays found an image mean of {:.4e}",
-            training.samples, training.rays.total, training.mean_luminance
+            training.samples,
+            training.rays.total(),
+            training.mean_luminance
         )?;
         match training.threshold {
             Some(threshold) => writeln!(
@@ -195,7 +197,7 @@ impl Display for TermReport {
     }
 }
 
-/// What a term added.
+/// The value that a term added.
 struct Added<'a>(&'a TermReport);
 
 impl Display for Added<'_> {
@@ -210,7 +212,7 @@ impl Display for Added<'_> {
     }
 }
 
-/// What a shadow ray finds, traced or not: true where the way is clear.
+/// The visibility of a connection, traced or not: true where the way is clear.
 struct Way(bool);
 
 impl Display for Way {

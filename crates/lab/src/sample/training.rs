@@ -1,35 +1,8 @@
-//! What was learnt before the first pass.
+//! The training before the first pass.
 
 use bidir::driver::Session;
 use bidir::stats::RayCounts;
 use serde::Serialize;
-
-/// Rays by kind.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct RaysByKind {
-    /// Of camera walks.
-    pub camera: u64,
-    /// Of light walks.
-    pub light: u64,
-    /// Shadow rays of connections.
-    pub connection: u64,
-    /// Shadow rays of the light image.
-    pub light_image: u64,
-    /// The sum of those above.
-    pub total: u64,
-}
-
-impl From<RayCounts> for RaysByKind {
-    fn from(rays: RayCounts) -> Self {
-        Self {
-            camera: rays.camera,
-            light: rays.light,
-            connection: rays.connection,
-            light_image: rays.light_image,
-            total: rays.total(),
-        }
-    }
-}
 
 /// The render before the first pass. Numbers that are not finite are null in JSON.
 #[derive(Clone, Debug, Serialize)]
@@ -38,11 +11,11 @@ pub struct TrainingReport {
     pub samples: u64,
     /// Of the image.
     pub mean_luminance: f32,
-    /// The score from which on a candidate is sure to be traced.
+    /// The score from which a candidate is certainly traced.
     pub threshold: Option<f32>,
     /// Its rays.
-    pub rays: RaysByKind,
-    /// What `auto` renders with.
+    pub rays: RayCounts,
+    /// The plan of `auto`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<String>,
 }
@@ -56,7 +29,7 @@ impl TrainingReport {
             samples: training.samples,
             mean_luminance: training.mean_luminance,
             threshold: rule.threshold(training.mean_luminance),
-            rays: RaysByKind::from(training.rays),
+            rays: training.rays,
             plan: training.plan.map(|plan| plan.to_string()),
         })
     }
@@ -72,7 +45,7 @@ mod tests {
             samples: 1,
             mean_luminance: f32::NAN,
             threshold: Some(f32::INFINITY),
-            rays: RayCounts::default().into(),
+            rays: RayCounts::default(),
             plan: None,
         };
         let json = serde_json::to_value(report).unwrap();

@@ -1,5 +1,4 @@
-//! Who may ask: pages of this server alone, and elsewhere than on this machine those who know the
-//! token.
+//! Access of clients: pages of this server alone, and on other machines those that have the token.
 //!
 //! A page of another site could send requests here from a browser on this machine. It cannot read
 //! answers, but WebSockets know no such rule, and a name that is made to point here (DNS rebinding)
@@ -16,7 +15,7 @@ use subtle::ConstantTimeEq;
 /// Bytes of a token.
 const TOKEN: usize = 16;
 
-/// What requests have to show.
+/// The credentials of requests.
 #[derive(Debug)]
 pub(super) struct Access {
     address: SocketAddr,
@@ -34,7 +33,7 @@ impl Access {
         Ok(Self { address, token })
     }
 
-    /// What a user opens. An address that stands for all of this machine is named as the loopback.
+    /// The address that a user opens. An address that stands for all of this machine is named as the loopback.
     pub(super) fn url(&self) -> String {
         let mut address = self.address;
         if address.ip().is_unspecified() {
@@ -63,7 +62,7 @@ impl Access {
                 return Err(forbidden("the Origin is another site"));
             }
         }
-        // What is embedded is no secret, and modules ask for each other without a token.
+        // Embedded files are no secret, and modules load each other without a token.
         if super::assets::is_asset(uri.path()) || self.has_token(uri.query().unwrap_or_default()) {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! Connections: how they are answered, and how long a peer may do nothing.
+//! Connections: answers, and the time that a peer may do nothing.
 
 use super::places::{Place, Places};
 use super::{Site, routes};
@@ -41,8 +41,8 @@ pub(super) async fn serve(
         Ok(listener) => listener,
         Err(error) => {
             return site
-                .link
-                .board()
+                .client
+                .state()
                 .log(&format!("the server failed: {error}"));
         }
     };

@@ -21,7 +21,7 @@ use tokio::sync::oneshot;
 /// The most that a tile is made brighter or darker. Unit: stops.
 const MOST_STOPS: f32 = 40.0;
 
-/// What the film shows, as `bidir render` writes PNG.
+/// The picture of the film, as `bidir render` writes PNG.
 pub(super) async fn png(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
@@ -43,7 +43,7 @@ pub(super) async fn exr(
     let Ok(_place) = site.large.acquire().await else {
         return Err(Refusal::bug("no image is encoded any more"));
     };
-    let developed = site.look(lane, |subject| {
+    let developed = site.query(lane, |subject| {
         let film = subject.session.film();
         let is_empty = film.passes().is_empty();
         let file = || {
@@ -88,7 +88,7 @@ pub(super) struct OfStrategies {
     kind: KindName,
     s: u16,
     t: u16,
-    /// How much brighter a strategy is shown. Unit: stops.
+    /// The exposure of a strategy. Unit: stops.
     #[serde(default)]
     exposure: f32,
 }
@@ -123,7 +123,7 @@ pub(super) async fn strategies(
         let message = format!("the exposure is a number of stops up to {MOST_STOPS}");
         return Err(Refusal::query(message));
     }
-    let pixels = site.look(asked.lane, move |subject| {
+    let pixels = site.query(asked.lane, move |subject| {
         check_strategies(subject.session)?;
         let film = subject.session.film();
         let image = pyramid::strategy_image(film, kind, strategy);

@@ -1,10 +1,10 @@
-//! What is in a picture: a pixel, the strategies.
+//! Queries about a picture: pixels, strategies, samples.
 
 use super::Site;
 use super::error::Refusal;
 use super::query::{Asked, OfLane, OfPixel, OfSample};
 use super::routes::json;
-use crate::board::{Request, Shown, Subject};
+use crate::shared::{Request, SentFrame, Subject};
 use crate::status::LaneId;
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -18,24 +18,24 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
 
-/// How long the renderer is waited for, which answers between passes.
+/// The time that the renderer has for an answer, which it gives between passes.
 const PASS_TIME: Duration = Duration::from_secs(60);
 
 impl Site {
-    /// Has `look` look at a lane between two passes.
-    pub(super) async fn look<T: Send + 'static>(
+    /// The answer of `query` about a lane between two passes.
+    pub(super) async fn query<T: Send + 'static>(
         &self,
         lane: LaneId,
-        look: impl FnOnce(&Subject<'_>) -> T + Send + 'static,
+        query: impl FnOnce(&Subject<'_>) -> T + Send + 'static,
     ) -> Result<T, Refusal> {
         let (send, receive) = oneshot::channel();
-        let look = move |subject: Option<&Subject<'_>>| {
-            // Who has gone away meanwhile is spared the work.
+        let query = move |subject: Option<&Subject<'_>>| {
+            // A client that has left needs no answer.
             if !send.is_closed() {
-                let _ = send.send(subject.map(look));
+                let _ = send.send(subject.map(query));
             }
         };
-        self.ask(Request::Look(lane, Box::new(look)))?;
+        self.ask(Request::Query(lane, Box::new(query)))?;
         let busy = || {
             Refusal::new(
                 StatusCode::SERVICE_UNAVAILABLE,
@@ -48,20 +48,20 @@ impl Site {
     }
 
     /// The newest frame of a lane.
-    pub(super) async fn frame(&self, lane: LaneId) -> Result<Arc<Shown>, Refusal> {
-        let board = self.link.board();
-        let status = board.status();
-        let told = status.lanes.iter().find(|told| told.lane == lane);
-        let told = told.ok_or_else(|| Refusal::now("there is no such lane now"))?;
-        let is_newest = |shown: &Arc<Shown>| {
-            shown.generation == told.generation && shown.frame.passes == told.passes
+    pub(super) async fn frame(&self, lane: LaneId) -> Result<Arc<SentFrame>, Refusal> {
+        let state = self.client.state();
+        let status = state.status();
+        let newest = status.lanes.iter().find(|newest| newest.lane == lane);
+        let newest = newest.ok_or_else(|| Refusal::now("there is no such lane now"))?;
+        let is_newest = |shown: &Arc<SentFrame>| {
+            shown.generation == newest.generation && shown.frame.passes == newest.passes
         };
-        if let Some(shown) = board.shown(lane).filter(is_newest) {
+        if let Some(shown) = state.shown(lane).filter(is_newest) {
             return Ok(shown);
         }
         self.ask(Request::Show(lane))?;
-        self.look(lane, |_| ()).await?;
-        board
+        self.query(lane, |_| ()).await?;
+        state
             .shown(lane)
             .ok_or_else(|| Refusal::now("no pass is done yet"))
     }
@@ -73,11 +73,11 @@ impl Site {
                 "too many requests are waiting",
             )
         };
-        self.link.ask(request).map_err(busy)
+        self.client.ask(request).map_err(busy)
     }
 }
 
-/// What is known of a pixel.
+/// The report of a pixel.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 struct PixelReport {
@@ -99,7 +99,7 @@ pub(super) async fn pixel(
     Asked(OfPixel { lane, x, y }): Asked<OfPixel>,
 ) -> Result<Response, Refusal> {
     let shown = site.frame(lane).await?;
-    let [width, height] = site.link.board().status().film.resolution;
+    let [width, height] = site.client.state().status().film.resolution;
     let frame = &shown.frame;
     let [small_width, small_height] = frame.film.resolution;
     let scaled =
@@ -136,13 +136,13 @@ struct SampleOfLane {
     report: SampleReport,
 }
 
-/// What a sample did, as `bidir render --replay --json` tells it.
+/// The report of a sample, as `bidir render --replay --json` prints it.
 pub(super) async fn sample(
     State(site): State<Arc<Site>>,
     Asked(OfSample { lane, x, y, pass }): Asked<OfSample>,
 ) -> Result<Response, Refusal> {
-    let resolution = site.link.board().status().film.resolution;
-    let report = site.look(lane, move |subject| {
+    let resolution = site.client.state().status().film.resolution;
+    let report = site.query(lane, move |subject| {
         let session = subject.session;
         if session.scene().film().resolution != resolution {
             return Err(Refusal::now(
@@ -194,7 +194,7 @@ pub(super) async fn strategies(
     State(site): State<Arc<Site>>,
     Asked(OfLane { lane }): Asked<OfLane>,
 ) -> Result<Response, Refusal> {
-    let report = site.look(lane, |subject| {
+    let report = site.query(lane, |subject| {
         let session = subject.session;
         check_strategies(session)?;
         Ok(StrategiesReport {
@@ -208,7 +208,7 @@ pub(super) async fn strategies(
     json(&report.await??)
 }
 
-/// Refuses to tell of strategies where none are kept.
+/// Refuses queries about strategies where no images of them are kept.
 pub(super) fn check_strategies(session: &Session<'_>) -> Result<(), Refusal> {
     if session.film().layers().strategy_vertices() > 0 {
         return Ok(());

@@ -3,8 +3,8 @@
 
 use super::Site;
 use super::error::Refusal;
-use crate::board::{Request, Shown};
 use crate::command::Command;
+use crate::shared::{Request, SentFrame};
 use crate::status::{LaneId, Status};
 use axum::body::Bytes;
 use axum::extract::State;
@@ -62,12 +62,12 @@ pub(super) async fn live(
     Ok(upgrade.on_upgrade(move |socket| Client::new(socket, site, place).talk()))
 }
 
-/// Who watches.
+/// A client.
 struct Client {
     socket: WebSocket,
     site: Arc<Site>,
     status: watch::Receiver<Arc<Status>>,
-    frames: [watch::Receiver<Option<Arc<Shown>>>; 2],
+    frames: [watch::Receiver<Option<Arc<SentFrame>>>; 2],
     _place: OwnedSemaphorePermit,
 }
 
@@ -76,15 +76,15 @@ enum End {
     /// The client ended it, or cannot be reached.
     Gone,
     /// The server does, for this reason.
-    Told(CloseFrame),
+    Refused(CloseFrame),
 }
 
 impl Client {
     fn new(socket: WebSocket, site: Arc<Site>, place: OwnedSemaphorePermit) -> Self {
-        let board = site.link.board();
-        let mut status = board.watch_status();
-        let mut frames = LaneId::ALL.map(|lane| board.watch_frames(lane));
-        // What is there now is new to it.
+        let state = site.client.state();
+        let mut status = state.watch_status();
+        let mut frames = LaneId::ALL.map(|lane| state.watch_frames(lane));
+        // The present status and frames are new to it.
         status.mark_changed();
         frames.iter_mut().for_each(watch::Receiver::mark_changed);
         Self {
@@ -99,18 +99,18 @@ impl Client {
     async fn talk(mut self) {
         for lane in LaneId::ALL {
             // A renderer that is too busy for it shows its next frame anyway.
-            let _ = self.site.link.ask(Request::Show(lane));
+            let _ = self.site.client.ask(Request::Show(lane));
         }
-        if let Err(End::Told(reason)) = self.exchange().await {
-            // Where it cannot be told, the connection is closed all the same.
+        if let Err(End::Refused(reason)) = self.exchange().await {
+            // A client that cannot receive the reason is disconnected all the same.
             let _ = self.socket.send(Message::Close(Some(reason))).await;
-            // What is still on its way here would otherwise throw the reason away.
+            // Messages on their way here would otherwise discard the reason.
             let rest = async { while let Some(Ok(_)) = self.socket.recv().await {} };
             let _ = timeout(FAREWELL, rest).await;
         }
     }
 
-    /// Sends what is new, and does what is asked for, to the end.
+    /// Sends statuses and frames, and passes commands on, to the end.
     async fn exchange(&mut self) -> Result<(), End> {
         let mut status_due = Instant::now();
         let mut ping = interval(PING_GAP);
@@ -163,7 +163,7 @@ impl Client {
         }
         for _ in 0..TRIES {
             let request = Request::Command(command.clone());
-            if self.site.link.ask(request).is_ok() {
+            if self.site.client.ask(request).is_ok() {
                 return Ok(());
             }
             sleep(TRY_GAP).await;
@@ -203,7 +203,7 @@ fn command(text: &str) -> Result<Command, End> {
     })
 }
 
-/// What a client is told whose message cannot be read.
+/// The reason for a client whose message cannot be read.
 fn broken(error: axum::Error) -> End {
     use tungstenite::Error;
     match error.into_inner().downcast_ref::<Error>() {
@@ -225,7 +225,7 @@ fn close(code: u16, reason: &str) -> End {
         end -= 1;
     }
     let reason = reason[..end].into();
-    End::Told(CloseFrame { code, reason })
+    End::Refused(CloseFrame { code, reason })
 }
 
 /// The renderer is gone.

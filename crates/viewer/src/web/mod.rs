@@ -1,9 +1,8 @@
 //! The server: a page, the state of the render, its picture and what is in it, over HTTP and a
 //! WebSocket. It serves what is embedded or rendered, and reads no file.
 //!
-//! It binds to the address that it is told; on any that others can reach, a random token is asked
-//! for. A client that does not read is forgotten after a while: it costs one encoded frame until
-//! then, and nobody waits for it.
+//! On an address that other machines can reach, clients need a random token. A client that does not
+//! read is disconnected after a while: it costs one encoded frame until then, and nobody waits for it.
 
 mod access;
 mod assets;
@@ -16,7 +15,7 @@ mod places;
 mod query;
 mod routes;
 
-use crate::board::Link;
+use crate::shared::ClientHandle;
 use access::Access;
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -28,9 +27,9 @@ use tokio::sync::{Semaphore, watch};
 /// Threads that encode images.
 const ENCODERS: usize = 2;
 
-/// What the answers to all clients have in common.
+/// The state that the answers to all clients share.
 pub(crate) struct Site {
-    link: Link,
+    client: ClientHandle,
     access: Access,
     live: live::Clients,
     /// Answers at once that take the memory of a film.
@@ -48,10 +47,10 @@ pub struct Server {
 }
 
 impl Server {
-    /// Serves what `link` leads to on `listener`, in a thread of its own.
+    /// Serves the renderer behind `client` on `listener`, in a thread of its own.
     ///
     /// Errors: the system gives no thread, no random numbers, or not the listener's address.
-    pub fn start(listener: TcpListener, link: Link) -> io::Result<Self> {
+    pub fn start(listener: TcpListener, client: ClientHandle) -> io::Result<Self> {
         listener.set_nonblocking(true)?;
         let access = Access::new(listener.local_addr()?)?;
         let url = access.url();
@@ -60,7 +59,7 @@ impl Server {
             .enable_time()
             .build()?;
         let site = Arc::new(Site {
-            link,
+            client,
             access,
             live: live::Clients::default(),
             large: Semaphore::new(ENCODERS),
@@ -77,7 +76,7 @@ impl Server {
         })
     }
 
-    /// Where it is, with the token where there is one.
+    /// The address, with the token where there is one.
     pub fn url(&self) -> &str {
         &self.url
     }

@@ -1,4 +1,4 @@
-//! Places of connections: how many there are, and who leaves when they are taken.
+//! Places of connections: their number, and the connection that leaves when all are taken.
 //!
 //! A connection is idle while its peer has sent no whole request, or none since the last answer. Where
 //! a new one finds no place, the one that was idle for longest makes room, of the peers that have the

@@ -78,12 +78,12 @@ async fn dress(request: Request, next: Next) -> Response {
 }
 
 async fn status(State(site): State<Arc<Site>>) -> Result<Response, Refusal> {
-    json(&*site.link.board().status())
+    json(&*site.client.state().status())
 }
 
 async fn log(State(site): State<Arc<Site>>) -> Response {
     let kind = [(header::CONTENT_TYPE, "text/plain; charset=utf-8")];
-    (kind, site.link.board().log_text()).into_response()
+    (kind, site.client.state().log_text()).into_response()
 }
 
 /// An answer in JSON.

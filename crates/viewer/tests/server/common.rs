@@ -3,9 +3,9 @@
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
-use bidir_viewer::studio::{Studio, StudioSettings};
+use bidir_viewer::interactive::{InteractiveRender, InteractiveSettings};
 use bidir_viewer::web::{Server, listen};
-use bidir_viewer::{Status, desk};
+use bidir_viewer::{Status, request_queue};
 use serde_json::Value;
 use std::fs;
 use std::io::{Read, Write};
@@ -61,13 +61,13 @@ pub fn scene(size: Option<[u32; 2]>) -> (Scene, String) {
     (loaded.scene, loaded.digest.to_string())
 }
 
-/// A studio with its server.
+/// A render with its server.
 pub struct Place {
     pub folder: TempDir,
     pub address: SocketAddr,
     pub url: String,
     server: Option<Server>,
-    studio: Option<Studio>,
+    render: Option<InteractiveRender>,
 }
 
 impl Place {
@@ -86,12 +86,10 @@ impl Place {
         let listener: TcpListener = listen(address.parse().unwrap(), 0).unwrap();
         let port = listener.local_addr().unwrap().port();
         let (scene, digest) = scene(size);
-        let (desk, link) = desk(Status {
-            controls: true,
-            ..Status::preparing("somewhere/room.pbrt", scene.film())
-        });
-        let server = Server::start(listener, link).unwrap();
-        let studio = StudioSettings {
+        let (queue, client) =
+            request_queue(Status::interactive("somewhere/room.pbrt", scene.film()));
+        let server = Server::start(listener, client).unwrap();
+        let render = InteractiveSettings {
             name: "somewhere/room.pbrt".into(),
             digest,
             scene: scene.into(),
@@ -106,14 +104,14 @@ impl Place {
             address: SocketAddr::new([127, 0, 0, 1].into(), port),
             url: server.url().to_owned(),
             server: Some(server),
-            studio: Some(Studio::open(studio, desk).unwrap()),
+            render: Some(InteractiveRender::open(render, queue).unwrap()),
         }
     }
 
     /// Ends it. Tells which files were saved.
     pub fn close(mut self) -> Vec<String> {
         self.server = None;
-        self.studio.take().unwrap().close().unwrap()
+        self.render.take().unwrap().close().unwrap()
     }
 
     /// The answer to a request as it stands.

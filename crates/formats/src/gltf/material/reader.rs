@@ -1,6 +1,6 @@
 //! One material of a file.
 
-use crate::gltf::document::{Context, Document};
+use crate::gltf::document::Context;
 use crate::gltf::json::{Material as Described, TextureInfo};
 use crate::gltf::mesh::UvMap;
 use crate::gltf::place::{GltfFault, Place};
@@ -22,7 +22,6 @@ use std::sync::Arc;
 /// A material that is being read.
 pub(super) struct Reader<'a, 'b> {
     pub(super) context: &'a mut Context<'b>,
-    pub(super) document: &'a Document,
     pub(super) textures: &'a mut Textures,
     pub(super) described: &'a Described,
     pub(super) place: Place,
@@ -44,8 +43,7 @@ impl Reader<'_, '_> {
             place: &self.place,
             baked: self.baked,
         };
-        self.textures
-            .color(self.context, self.document, lookup, encoding)
+        self.textures.color(self.context, lookup, encoding)
     }
 
     /// A number in one channel.
@@ -72,8 +70,7 @@ impl Reader<'_, '_> {
             place: &self.place,
             baked: self.baked,
         };
-        self.textures
-            .number(self.context, self.document, lookup, (part, change))
+        self.textures.number(self.context, lookup, (part, change))
     }
 
     /// The material, under its relief where it has one.
@@ -107,7 +104,7 @@ impl Reader<'_, '_> {
         self.read_dielectric(&mut material)?;
         self.read_transmission(&mut material)?;
         self.read_layers(&mut material)?;
-        self.tell_departures();
+        self.warn_of_departures();
         Ok(material)
     }
 
@@ -175,7 +172,7 @@ impl Reader<'_, '_> {
             let is_finite = volume.attenuation_distance.is_some_and(f32::is_finite);
             if is_finite && color.iter().any(|&channel| channel < 1.0) {
                 let message = "absorption in volumes has no effect: the inside is clear";
-                self.context.warn(&self.place, message);
+                self.context.warn(self.place.clone(), message);
             }
         }
         Ok(())
@@ -193,7 +190,7 @@ impl Reader<'_, '_> {
             if coat.clearcoat_normal_texture.is_some() {
                 let message = "the normal texture of a clear coat has no effect: the coat has \
                      the normals of its base";
-                self.context.warn(&self.place, message);
+                self.context.warn(self.place.clone(), message);
             }
         }
         if let Some(sheen) = &extensions.sheen {
@@ -206,8 +203,8 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// What the material has and the renderer has not, though the format lets it be left out.
-    fn tell_departures(&mut self) {
+    /// Warns of features that the renderer lacks and that the format lets be left out.
+    fn warn_of_departures(&mut self) {
         let extensions = &self.described.extensions;
         let departures = [
             (
@@ -225,7 +222,7 @@ impl Reader<'_, '_> {
         ];
         for (is_there, message) in departures {
             if is_there {
-                self.context.warn(&self.place, message);
+                self.context.warn(self.place.clone(), message);
             }
         }
     }
@@ -266,7 +263,7 @@ impl Reader<'_, '_> {
         }))
     }
 
-    /// How much of the surface is there, with vertices of alpha `vertex`.
+    /// The alpha of the surface, with vertices of alpha `vertex`.
     pub(super) fn coverage(&mut self, vertex: f32) -> Result<Option<FloatTexture>, GltfFault> {
         let pbr = &self.described.pbr_metallic_roughness;
         let factor = pbr.base_color_factor.map_or(1.0, |color| color[3]) * vertex;

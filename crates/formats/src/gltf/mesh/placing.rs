@@ -3,7 +3,7 @@
 use super::{Surface, UvMap};
 use crate::error::ErrorKind;
 use crate::gltf::place::{GltfFault, Place};
-use crate::space::Survey;
+use crate::import::Survey;
 use bidir::math::Vec3;
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
@@ -102,7 +102,7 @@ fn unit(v: DVec3) -> Vec3 {
     v.normalize_or_zero().as_vec3()
 }
 
-/// What normals are mapped by, up to scale: the matrix of cofactors, which is there for flat maps too.
+/// The map of normals, up to scale: the matrix of cofactors, which exists for flat maps too.
 fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
     let m = map.matrix3;
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };

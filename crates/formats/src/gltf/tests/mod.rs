@@ -7,7 +7,7 @@ mod refusals;
 
 use super::load;
 use crate::error::{Error, Result};
-use crate::pbrt::{LoadOptions, Loaded};
+use crate::import::{LoadOptions, Loaded};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use bidir::math::Vec3;

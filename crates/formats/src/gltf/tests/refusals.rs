@@ -1,8 +1,8 @@
-//! What is wrong is told with its place and a hint.
+//! Errors name their place and give a hint.
 
 use super::{Draft, F32, U8, floats, load_bytes};
 use crate::error::ErrorKind;
-use crate::pbrt::LoadOptions;
+use crate::import::LoadOptions;
 use serde_json::json;
 
 #[track_caller]
@@ -10,7 +10,7 @@ fn check(draft: &Draft, kind: ErrorKind, words: &[&str]) {
     let error = draft.error();
     let text = error.to_string();
     assert_eq!(error.kind(), kind, "{text}");
-    assert!(error.line().is_some_and(|line| line > 0), "{text}");
+    assert!(error.has_place() && text.contains("a.gltf: "), "{text}");
     for word in words {
         assert!(text.contains(word), "`{word}` is not in: {text}");
     }
@@ -210,7 +210,9 @@ fn versions_and_missing_files() {
     let error = load_bytes("a.gltf", &text, &LoadOptions::default()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::MissingFile);
     assert!(
-        error.to_string().contains("not there.bin") && error.line().is_some(),
+        error
+            .to_string()
+            .contains("a.gltf: buffers[0].uri: cannot open `"),
         "{error}"
     );
 }
@@ -272,7 +274,7 @@ fn what_is_named_again_and_again_has_limits() {
     draft.json["accessors"] = json!([zeros]);
     let primitive = json!({ "attributes": { "POSITION": 0 } });
     draft.json["meshes"] = json!([{ "primitives": vec![primitive.clone(); 4] }]);
-    check(&draft, ErrorKind::Limit, &["triangles or vertices"]);
+    check(&draft, ErrorKind::Limit, &["primitives or vertices"]);
     // Positions that are not used are read all the same.
     let indexed = json!({ "attributes": { "POSITION": 0 }, "indices": 1 });
     let corners = draft.accessor(&[0, 0, 0], (U8, "SCALAR", 3));

@@ -17,7 +17,7 @@ use glam::DVec3;
 pub(super) struct CameraSettings {
     /// Seconds between opening and closing of the shutter.
     pub(super) exposure_time: f32,
-    /// Where it stands. Space: world.
+    /// Its position. Space: world.
     pub(super) eye: DVec3,
     /// To the space that is rendered in.
     render_from_camera: Affine3A,
@@ -25,7 +25,7 @@ pub(super) struct CameraSettings {
     pub(super) span: Span,
 }
 
-/// What a camera sees.
+/// The view of a camera.
 enum View {
     /// The angle `fov` spans the screen from -1 to 1. Unit: degrees.
     Perspective {
@@ -47,7 +47,7 @@ struct Screen {
 
 /// Reads the camera; without one it is the format's default.
 pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
-    let Some(camera) = &context.description.camera else {
+    let Some(camera) = &context.document.camera else {
         let place = (&*context, &Transforms::default());
         return Ok(CameraSettings::default_at(SourceMap::BEGINNING, place));
     };

@@ -1,75 +1,55 @@
-//! What building knows throughout: the description, what the caller wants, warnings, what was read.
+//! The context of building: reads the files that parameters name.
 
-use super::LoadOptions;
-use crate::bytes::FileBytes;
-use crate::error::{Error, ErrorKind};
+use crate::error::Error;
+use crate::files::Files;
 use crate::image::{self, Encoding, ImageData};
+use crate::import::{self, Content, Document};
 use crate::limits;
-use crate::pbrt::digest::{Content, DigestBuilder};
-use crate::pbrt::scene::{SceneDescription, Warning, warn};
+use crate::pbrt::scene::SceneDescription;
 use crate::pbrt::transform::Transforms;
 use crate::ply::{self, PlyMesh};
-use crate::reading::Reading;
-use crate::source::{Fault, Span};
-use crate::space::Layout;
+use crate::source::{Fault, SourceMap, Span};
 use crate::spectra::Spectrum;
 use glam::DAffine3;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const INSTANCES_SHARE: &str = "instances share the memory of their object, unless it emits";
+pub(super) type Context<'a> = import::Context<'a, SceneDescription>;
+pub(super) type Log = import::Log<Span>;
 
-/// Whether something simpler may replace what is not supported yet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StandIns {
-    Accepted,
-    Refused,
-}
+impl Document for SceneDescription {
+    type Place = Span;
+    const TOP: Span = SourceMap::BEGINNING;
 
-pub(super) struct Context<'a> {
-    pub(super) description: &'a SceneDescription,
-    pub(super) options: &'a LoadOptions,
-    /// Where everything goes.
-    pub(super) layout: Layout,
-    stand_ins: StandIns,
-    pub(super) warnings: Vec<Warning>,
-    /// The messages of those warnings that tell of stand-ins.
-    pub(super) refused: BTreeSet<String>,
-    /// Of the texts and of every file that was read since.
-    pub(super) digest: DigestBuilder,
-    /// Their names.
-    pub(super) files: Vec<PathBuf>,
-    reading: Reading,
-}
-
-impl<'a> Context<'a> {
-    pub(super) fn new(
-        description: &'a SceneDescription,
-        options: &'a LoadOptions,
-        layout: Layout,
-    ) -> Self {
-        let stand_ins = if options.lenient {
-            StandIns::Accepted
-        } else {
-            StandIns::Refused
-        };
-        let mut digest = DigestBuilder::new();
-        for text in description.sources.texts() {
-            digest.add(Content::Text, text.as_bytes());
-        }
-        Self {
-            description,
-            options,
-            layout,
-            stand_ins,
-            warnings: description.warnings.clone(),
-            refused: BTreeSet::new(),
-            digest,
-            files: description.texts.clone(),
-            reading: Reading::new(description.stored),
-        }
+    fn files(&self) -> &Files {
+        &self.files
     }
 
+    fn named_files(&self) -> Vec<PathBuf> {
+        self.inputs()
+    }
+
+    fn text(&self, span: &Span) -> String {
+        let (line, column) = self.sources.line_and_column(*span);
+        let file = self.sources.name(span.file).display();
+        format!("{file}:{line}:{column}")
+    }
+
+    fn error(&self, fault: Fault) -> Error {
+        self.sources.error(fault)
+    }
+}
+
+/// The log that begins with the texts of `description`.
+pub(super) fn log(description: &SceneDescription, options: &import::LoadOptions) -> Log {
+    let mut log = Log::new(options, description.texts.clone(), description.stored);
+    log.warnings.clone_from(&description.warnings);
+    for text in description.sources.texts() {
+        log.add(Content::Text, text.as_bytes(), []);
+    }
+    log
+}
+
+impl Context<'_> {
     /// The map from the space of something in the world, at the first time, to where it goes.
     pub(super) fn place(&self, world_from_local: &Transforms) -> DAffine3 {
         self.layout.render_from_world() * world_from_local.start
@@ -93,27 +73,8 @@ impl<'a> Context<'a> {
         let format = image::named_format(path).map_err(refuse)?;
         let bytes = self.read(path, limits::LARGEST_IMAGE, Content::Image, span)?;
         let decoded = image::decode(format, &bytes, encoding);
-        let decoded = decoded.and_then(|image| self.reading.image(image));
+        let decoded = decoded.and_then(|image| self.log.image(image));
         decoded.map_err(|error| refuse(error.in_file(path)))
-    }
-
-    /// Reads a file of the scene.
-    fn read(
-        &mut self,
-        path: &Path,
-        limit: u64,
-        content: Content,
-        span: Span,
-    ) -> Result<Vec<u8>, Fault> {
-        let refuse = |error: Error| Fault::from_error(span, &error);
-        let files = &self.description.files;
-        let FileBytes { bytes, stored } = files.read(path, limit).map_err(refuse)?;
-        let length = bytes.len() as u64;
-        let counted = self.reading.file(files.identity(path), stored, length);
-        counted.map_err(|error| refuse(error.in_file(path)))?;
-        self.digest.add(content, &bytes);
-        self.files.push(path.to_owned());
-        Ok(bytes)
     }
 
     /// Reads a spectrum, which `span` names.
@@ -128,64 +89,17 @@ impl<'a> Context<'a> {
         Spectrum::parse(text).map_err(|error| refuse(error.to_string()))
     }
 
-    pub(super) fn warn(&mut self, span: Span, message: impl Into<String>) {
-        warn(&mut self.warnings, span, message);
-    }
-
-    /// Something that the format has and the renderer has not: an error, or a warning that says
-    /// what stands in.
-    pub(super) fn unsupported(
+    /// Reads a file of the scene.
+    fn read(
         &mut self,
+        path: &Path,
+        limit: u64,
+        content: Content,
         span: Span,
-        what: &str,
-        stand_in: &str,
-    ) -> Result<(), Fault> {
-        if self.stand_ins == StandIns::Accepted {
-            let message = format!("{what} is not supported: {stand_in}");
-            self.refused.insert(message.clone());
-            self.warn(span, message);
-            return Ok(());
-        }
-        let message = format!("{what} is not supported");
-        let fault = Fault::new(ErrorKind::Unsupported, span, message);
-        Err(fault.with_hint(format!("with --lenient, {stand_in}")))
-    }
-
-    /// Refuses more primitives, or vertices of meshes, than the caller wants, or than the files have
-    /// the bytes for.
-    pub(super) fn check_size(&self, count: u64, span: Span) -> Result<(), Fault> {
-        let most = self.options.most_primitives(self.reading.stored());
-        if count <= most {
-            return Ok(());
-        }
-        let message = format!("the scene has more than {most} primitives or vertices");
-        let fault = Fault::new(ErrorKind::Limit, span, message);
-        Err(fault.with_hint(INSTANCES_SHARE))
-    }
-
-    /// Refuses more shapes than the files have the bytes for: those that emit are kept at each place.
-    pub(super) fn check_shapes(&self, count: u64, span: Span) -> Result<(), Fault> {
-        let most = limits::SHAPES.of(self.reading.stored());
-        if count <= most {
-            return Ok(());
-        }
-        let message = format!("the scene has more than {most} shapes, counted at each place");
-        let fault = Fault::new(ErrorKind::Limit, span, message);
-        Err(fault.with_hint(INSTANCES_SHARE))
-    }
-
-    /// Builds something that nobody uses: it must not be wrong, but what is not supported is no
-    /// reason to refuse a scene, and nothing has to stand in for it. None: it is not supported.
-    pub(super) fn unused<T>(
-        &mut self,
-        build: impl FnOnce(&mut Self) -> Result<T, Fault>,
-    ) -> Result<Option<T>, Fault> {
-        let stand_ins = std::mem::replace(&mut self.stand_ins, StandIns::Refused);
-        let built = build(self);
-        self.stand_ins = stand_ins;
-        match built {
-            Err(fault) if fault.kind == ErrorKind::Unsupported => Ok(None),
-            built => built.map(Some),
-        }
+    ) -> Result<Vec<u8>, Fault> {
+        let read = self.log.read(&self.document.files, path, limit);
+        let bytes = read.map_err(|error| Fault::from_error(span, &error))?;
+        self.log.add(content, &bytes, [path.to_owned()]);
+        Ok(bytes)
     }
 }

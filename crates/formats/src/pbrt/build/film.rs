@@ -5,41 +5,12 @@ use super::context::Context;
 use super::filter;
 use super::reader::Reader;
 use super::sensor;
-use crate::error::ErrorKind;
-use crate::limits::LARGEST_SIDE;
+use crate::import::Crop;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterList, ParameterType, Values};
 use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
-use bidir::film::{Aov, FilmSettings, PixelRect};
-
-/// The part of a film that is rendered.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Crop {
-    /// Left, right, top and bottom as fractions of the film.
-    Fractions([f32; 4]),
-    /// Left, right (exclusive), top and bottom (exclusive). Unit: pixels.
-    Pixels([u32; 4]),
-}
-
-impl Crop {
-    const WHOLE: Self = Self::Fractions([0.0, 1.0, 0.0, 1.0]);
-
-    pub(crate) fn pixels(self, [width, height]: [u32; 2]) -> PixelRect {
-        let [left, right, top, bottom] = match self {
-            Self::Pixels(bounds) => bounds,
-            Self::Fractions([x0, x1, y0, y1]) => {
-                let [x0, x1] = [x0, x1].map(|x| (x * width as f32).ceil() as u32);
-                let [y0, y1] = [y0, y1].map(|y| (y * height as f32).ceil() as u32);
-                [x0, x1, y0, y1]
-            }
-        };
-        PixelRect {
-            min: [left, top],
-            max: [right.min(width), bottom.min(height)],
-        }
-    }
-}
+use bidir::film::{Aov, FilmSettings};
 
 /// A film with what its description says beside.
 pub(super) struct BuiltFilm {
@@ -61,7 +32,7 @@ pub(super) fn build(
 ) -> Result<BuiltFilm, Fault> {
     let filter = filter::build(context, camera)?;
     let default = default_film();
-    let film = context.description.film.as_ref().unwrap_or(&default);
+    let film = context.document.film.as_ref().unwrap_or(&default);
     let span = film.entity.span;
     let mut reader = Reader::new(&film.entity);
     if film.color_space != ColorSpace::Srgb {
@@ -75,9 +46,10 @@ pub(super) fn build(
         reader.integer("xresolution", 1280, 1)?,
         reader.integer("yresolution", 720, 1)?,
     ];
-    let resolution = resolution(context, span, own)?;
+    let resolution = context.options.resolution(own, span)?;
     let mut settings = FilmSettings::new(resolution, filter);
-    settings.crop = crop(context, &mut reader, own, resolution)?;
+    let described = read_crop(&mut reader, own, resolution)?;
+    settings.crop = context.options.crop(described, resolution, span)?;
     settings.exposure = exposure(&mut reader, camera)?;
     settings.sensor = sensor::build(context, &mut reader, settings.exposure)?;
     let output = reader.string("filename")?.map(|(name, _)| name.to_owned());
@@ -105,19 +77,7 @@ fn default_film() -> FilmDescription {
     }
 }
 
-/// Width and height: those that the caller asks for, else the file's `own`.
-fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 2], Fault> {
-    let [width, height] = context.options.resolution.unwrap_or(own);
-    let sides = 1..=LARGEST_SIDE;
-    if sides.contains(&width) && sides.contains(&height) {
-        return Ok([width, height]);
-    }
-    let message =
-        format!("the film has {width} × {height} pixels; each side can have 1 to {LARGEST_SIDE}");
-    Err(Fault::new(ErrorKind::Limit, span, message))
-}
-
-/// What light is multiplied by.
+/// The factor of light.
 fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fault> {
     let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
     let exposure = camera.exposure_time * iso / 100.0;
@@ -130,31 +90,6 @@ fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fau
     let message =
         format!("the exposure is not a finite number: {time:e} seconds · iso {iso:e} / 100");
     Err(Fault::scene(span, message))
-}
-
-/// The pixels that are rendered: those that the caller asks for, else the file's.
-fn crop(
-    context: &Context<'_>,
-    reader: &mut Reader<'_>,
-    own: [u32; 2],
-    resolution: [u32; 2],
-) -> Result<PixelRect, Fault> {
-    let described = read_crop(reader, own, resolution)?;
-    let asked = context.options.crop;
-    let crop = asked
-        .or(described)
-        .unwrap_or(Crop::WHOLE)
-        .pixels(resolution);
-    if crop.area() > 0 {
-        return Ok(crop);
-    }
-    if asked.is_none() {
-        let message = "the crop leaves no pixels of the film";
-        return Err(Fault::scene(reader.span(), message));
-    }
-    let [width, height] = resolution;
-    let message = format!("the crop lies outside the film of {width} × {height} pixels");
-    Err(Fault::new(ErrorKind::Options, reader.span(), message))
 }
 
 /// Says so where another size than the file's has another shape: its pixels are not square.
@@ -171,7 +106,7 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     }
 }
 
-/// What a film of `gbuffer` keeps beside the picture.
+/// The images of a `gbuffer` film beside the picture.
 const GBUFFER: [Aov; 5] = [
     Aov::Albedo,
     Aov::Position,

@@ -24,7 +24,7 @@ const NARROW: f32 = 0.25;
 /// a box of one pixel.
 pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Result<Filter, Fault> {
     let pixel = Filter::new(FilterKind::Box, Vec2::splat(0.5));
-    let Some(entity) = &context.description.filter else {
+    let Some(entity) = &context.document.filter else {
         if camera.sees_all_around() {
             return Ok(pixel);
         }

@@ -56,7 +56,7 @@ impl ImageSettings {
         let filter = read_filter(context, reader)?;
         reader.ignore(context, ParameterType::Float, "maxanisotropy");
         let file = ImageFile {
-            path: context.description.resolve(name),
+            path: context.document.resolve(name),
             span,
             encoding,
         };
@@ -74,7 +74,7 @@ impl ImageSettings {
     pub(super) fn of_normals(context: &Context<'_>, name: &str, span: Span) -> Self {
         Self {
             file: ImageFile {
-                path: context.description.resolve(name),
+                path: context.document.resolve(name),
                 span,
                 encoding: Some(Encoding::Linear),
             },
@@ -150,7 +150,7 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
     }
 }
 
-/// What makes two image textures share their texels: the file, and what its bytes mean.
+/// The key of image textures that share texels: the file, and the meaning of its bytes.
 type Key = (PathBuf, String);
 
 /// Images that are read already: each file once for colours and once for numbers.

@@ -14,8 +14,8 @@ use bidir::spectrum::{Rgb, luminance};
 use bidir::texture::Image;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Builds a light, with the name of its group if it has one. None: something else stands in for it,
-/// namely nothing.
+/// Builds a light, with the name of its group if it has one. None: its substitute
+/// is nothing.
 pub(super) fn build(
     context: &mut Context<'_>,
     light: &LightDescription,
@@ -111,7 +111,7 @@ fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, 
         .as_vec3())
 }
 
-/// Where the light stands and the world direction from there to where it points.
+/// The position of the light, and the world direction from there to its target.
 fn aim(reader: &mut Reader<'_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
     let from = vector(reader.point3("from", [0.0; 3])?);
     let to = vector(reader.point3("to", [0.0, 0.0, 1.0])?);
@@ -204,7 +204,7 @@ pub(super) fn radiance_image(
     name: &str,
     span: Span,
 ) -> Result<Image<3>, Fault> {
-    let path = context.description.resolve(name);
+    let path = context.document.resolve(name);
     let data = context.read_image(&path, None, span)?;
     let is_radiance = |&channel: &f32| channel.is_finite() && channel >= 0.0;
     let mut texels: Vec<Rgb> = data.rgb().collect();

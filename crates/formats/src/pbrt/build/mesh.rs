@@ -24,7 +24,7 @@ pub(super) fn ply_mesh(
     let flat = "the mesh stays as it is";
     reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
     reader.ignore(context, ParameterType::Float, "edgelength");
-    let path = context.description.resolve(name);
+    let path = context.document.resolve(name);
     let mesh = context.read_mesh(&path, span)?;
     if mesh.skipped_faces > 0 {
         let count = mesh.skipped_faces;
@@ -35,7 +35,7 @@ pub(super) fn ply_mesh(
     Ok(mesh)
 }
 
-/// What vertices have; the lists are empty, or as long as that of the positions.
+/// The attributes of vertices; the lists are empty, or as long as that of the positions.
 struct Vertices {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -107,7 +107,7 @@ pub(super) fn patch_mesh(
         uvs: vertices.uvs,
         patches,
     };
-    context.check_size(mesh.vertices(), reader.span())?;
+    context.check_size(mesh.vertices(), &reader.span())?;
     Ok(mesh.triangulated())
 }
 
@@ -124,7 +124,7 @@ pub(super) fn subdivided_mesh(
         return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
     }
     let count = (triangles.len() as u64) << (2 * levels);
-    context.check_size(count, reader.span())?;
+    context.check_size(count, &reader.span())?;
     let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
     let control = ControlMesh {
         points: points.collect(),

@@ -5,16 +5,15 @@
 //! emit are lights of the world, one for each place; the format leaves undefined what they do.
 
 use super::context::Context;
-use super::{Assembly, Destination, shape};
+use super::{Builder, Destination, shape};
 use crate::pbrt::scene::{InstanceDescription, ObjectDescription};
 use crate::source::Fault;
-use crate::space::Survey;
 use glam::DAffine3;
 
-impl Assembly<'_> {
+impl Builder<'_> {
     pub(super) fn add_objects(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {
-        let description = context.description;
-        self.summary.instances = description.instances.len();
+        let description = context.document;
+        self.assembly.summary.instances = description.instances.len();
         for instance in &description.instances {
             if instance.transforms.is_animated() {
                 let stand_in = "its first position is used";
@@ -40,11 +39,7 @@ impl Assembly<'_> {
         let places = instances.iter();
         let places: Vec<DAffine3> = places.map(|it| context.place(&it.transforms)).collect();
         let everywhere = Destination::World(&places);
-        let shared = (instances.len() > 1).then(|| self.builder.object());
-        let origin = context.layout.object_origin(self.objects.len());
-        if shared.is_some() {
-            self.objects.push(Survey::new(None));
-        }
+        let shared = (instances.len() > 1).then(|| self.assembly.begin_object(context));
         for shape in &object.shapes {
             if let Some(light) = &shape.area_light {
                 let message = "a shape of an object emits: it becomes a light at every instance";
@@ -53,7 +48,7 @@ impl Assembly<'_> {
             match shared {
                 _ if instances.is_empty() => {}
                 Some(object) if shape.area_light.is_none() => {
-                    self.add_shape(context, shape, Destination::Object(object, origin))?;
+                    self.add_shape(context, shape, Destination::Object(object))?;
                 }
                 _ => self.add_shape(context, shape, everywhere)?,
             }
@@ -61,16 +56,14 @@ impl Assembly<'_> {
         let Some(object) = shared else {
             return Ok(());
         };
-        let corners = self.objects.last().and_then(Survey::corners);
+        let corners = self.assembly.object_survey().corners();
+        let world_from_render = context.layout.render_from_world().inverse();
         for (instance, place) in instances.iter().zip(&places) {
-            let place = *place * DAffine3::from_translation(origin);
             if let Some(corners) = corners {
-                self.survey.include_box(corners, &place);
-                let world_from_object = self.world_from_render * place;
+                let world_from_object = world_from_render * object.place_kept(place);
                 shape::check_instance(instance.span, &world_from_object, corners)?;
             }
-            self.builder.instance(object, place);
-            self.instance_spans.push(instance.span);
+            self.assembly.add_instance(object, place, &instance.span);
         }
         Ok(())
     }

@@ -3,32 +3,13 @@
 use super::context::Context;
 use super::film::BuiltFilm;
 use super::reader::Reader;
+use crate::import::SceneSettings;
 use crate::pbrt::parameters::ParameterType;
 use crate::pbrt::scene::SceneDescription;
 use crate::source::Fault;
-use bidir::film::Aov;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::TextureFiltering;
-
-/// What a scene file says about how it is rendered.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SceneSettings {
-    /// The estimator.
-    pub integrator: IntegratorKind,
-    /// The largest number of scattering events: 0 shows lights only, 1 adds direct light.
-    pub max_depth: u32,
-    /// The random numbers.
-    pub sampler: SamplerKind,
-    /// Samples per pixel.
-    pub samples_per_pixel: u32,
-    /// The seed. None: where the file gives none.
-    pub seed: Option<u64>,
-    /// The name of the image, as the file has it. None: where it gives none.
-    pub output: Option<String>,
-    /// The images that its film has beside the picture.
-    pub aovs: Vec<Aov>,
-}
 
 /// Everything that is neither scene nor film.
 pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {
@@ -47,7 +28,7 @@ pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<Scene
     Ok(settings)
 }
 
-/// Whether textures are averaged over pixels.
+/// The averaging of textures over pixels.
 pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
     let mut filtering = TextureFiltering::AsAsked;
     let options = description.options.iter();
@@ -65,7 +46,7 @@ pub(super) fn texture_filtering(description: &SceneDescription) -> Result<Textur
 }
 
 fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
-    for option in &context.description.options {
+    for option in &context.document.options {
         match (option.name.as_str(), option.value.as_str()) {
             ("seed", value) => {
                 let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
@@ -87,7 +68,7 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
 }
 
 fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<(), Fault> {
-    let Some(entity) = &context.description.sampler else {
+    let Some(entity) = &context.document.sampler else {
         return Ok(());
     };
     let mut reader = Reader::new(entity);
@@ -122,7 +103,7 @@ fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
 }
 
 fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault> {
-    let Some(entity) = &context.description.integrator else {
+    let Some(entity) = &context.document.integrator else {
         return Ok((IntegratorKind::Path, 5));
     };
     let mut reader = Reader::new(entity);
@@ -132,7 +113,7 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
         "bdpt" => IntegratorKind::Bdpt,
         "lightpath" => IntegratorKind::Light,
         name => {
-            // The parameters of another method say nothing about the one that stands in.
+            // The parameters of another method do not apply to the substitute.
             let stand_in = match name {
                 "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
                 _ => ("`path` is used instead", IntegratorKind::Path),

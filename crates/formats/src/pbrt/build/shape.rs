@@ -5,11 +5,10 @@ use super::mesh;
 use super::reader::Reader;
 use super::texture::Textures;
 use crate::error::ErrorKind;
+use crate::import::{Survey, VertexError, box_corners};
 use crate::pbrt::scene::ShapeDescription;
 use crate::ply::PlyMesh;
-use crate::precision::VertexError;
 use crate::source::{Fault, Span};
-use crate::space::{Survey, box_corners};
 use bidir::math::{Vec2, Vec3};
 use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
@@ -27,8 +26,7 @@ pub(super) enum Geometry {
 }
 
 impl Geometry {
-    /// Reads a shape, and how much of it is there (None: all). None: something else stands in for it,
-    /// namely nothing.
+    /// Reads a shape with its alpha (None: it is opaque). None: its substitute is nothing.
     pub(super) fn read(
         context: &mut Context<'_>,
         textures: &mut Textures<'_>,
@@ -213,7 +211,7 @@ fn place_mesh(
     }
 }
 
-/// What the file says of the front, whatever the shape's place.
+/// The front of a shape by the file, whatever its place.
 pub(super) fn orientation(shape: &ShapeDescription) -> Orientation {
     if shape.reverse_orientation {
         Orientation::Reversed

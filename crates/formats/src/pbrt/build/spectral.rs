@@ -13,7 +13,7 @@ use bidir::spectrum::Rgb;
 /// Temperatures beyond which light is all outside of the visible. Unit: K.
 const TEMPERATURES: [f32; 2] = [100.0, 1e8];
 
-/// The D line of helium, at which glasses are told apart. Unit: nm.
+/// The D line of helium, at which glasses are measured. Unit: nm.
 const D_LINE: f64 = 587.56;
 
 /// Reads a parameter given as `spectrum` or `blackbody`. None: where the file gives none.
@@ -64,7 +64,7 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
         return Ok(spectrum);
     }
     let span = parameter.value_span;
-    let path = context.description.resolve(name);
+    let path = context.document.resolve(name);
     if path.is_file() {
         return context.read_spectrum(&path, span);
     }

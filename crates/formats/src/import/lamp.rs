@@ -4,13 +4,13 @@ use bidir::light::Light;
 use bidir::scene::Scene;
 use std::ops::Range;
 
-/// So many lamps have their places found: to find one takes as long as the text is.
+/// The most lamps with places: to find one takes as long as the text is.
 const MOST: usize = 3;
 
 /// A lamp of a file that no ray can hit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lamp {
-    /// Where the file describes it, as `file:line:column`.
+    /// Its place in the file, such as `file:line:column`.
     pub place: String,
     /// The first of its lights, by index.
     pub light: u32,
@@ -37,7 +37,7 @@ pub(crate) fn unhittable<P>(
     found.take(MOST).map(lamp).collect()
 }
 
-/// Says that the lamp with these lights gives no light. None: it does.
+/// The warning of a lamp whose lights are dark. None: one is not.
 pub(crate) fn dark_warning(scene: &Scene, lights: Range<u32>) -> Option<String> {
     let lights = &scene.lights()[lights.start as usize..lights.end as usize];
     let context = scene.light_context();

@@ -1,4 +1,4 @@
-//! How much was read for a scene, against the limits.
+//! The amount that was read for a scene, against the limits.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{self, ImageData};

@@ -1,7 +1,7 @@
-//! A lane as watchers see it: its frames, as often as they cost next to nothing, and its numbers.
+//! The view that clients have of a lane: frames, as often as they are cheap, and numbers.
 
-use crate::board::{Board, Shown};
 use crate::frame::Frame;
+use crate::shared::{SentFrame, SharedState};
 use crate::status::{LaneId, LaneStatus, RayRates};
 use bidir::driver::{Session, Settings};
 use bidir::film::Aov;
@@ -11,21 +11,21 @@ use formats::film::SettingsText;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Frames are at least this far apart: nobody sees more.
+/// The least time between two frames: nobody sees more.
 const SHORTEST_GAP: Duration = Duration::from_millis(125);
-/// As long as a lane is younger, nothing else keeps frames apart.
+/// The rendering time of a lane until which nothing else keeps frames apart.
 const YOUTH: Duration = Duration::from_secs(3);
-/// Later, a frame is developed when this many times as long was rendered as the last one took.
+/// The rendering time between two later frames. Unit: the time that developing the last one took.
 const RENDERING_PER_FRAME: u32 = 40;
-/// Points of the error curve; where there would be more, every other one is left out.
+/// The most points of the error curve; of more, every other one is left out.
 const CURVE_POINTS: usize = 256;
 
-/// A lane as it is shown.
+/// The view of a lane.
 #[derive(Debug)]
-pub struct Exhibit {
+pub(crate) struct RenderView {
     lane: LaneId,
     course: Course,
-    /// The estimator and the selection of shadow rays, as they were asked for.
+    /// The requested estimator and selection of shadow rays.
     method: [String; 2],
     /// The time of all passes.
     rendered: Duration,
@@ -40,32 +40,32 @@ struct Last {
     passes: u64,
     /// The time that developing took.
     cost: Duration,
-    /// What was rendered by then.
+    /// The rendering time by then.
     rendered: Duration,
     relative_error: f64,
 }
 
-/// How much there is to a lane beside its session.
+/// The course of a lane's render.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Course {
+pub(crate) struct Course {
     /// Grows whenever the lane begins anew.
-    pub generation: u32,
+    pub(crate) generation: u32,
     /// True for the low resolution of a moving camera.
-    pub preview: bool,
-    /// The passes that are wanted. None: there is no end.
-    pub target: Option<u64>,
+    pub(crate) preview: bool,
+    /// The number of passes. None: there is no end.
+    pub(crate) target: Option<u64>,
 }
 
-/// The names of the integrator and of the choice of shadow rays.
+/// The names of the integrator and of the selection of shadow rays.
 pub(crate) fn method_of(settings: &Settings) -> [String; 2] {
     let chosen = Request::of(settings).shadow_rays;
     let rays = chosen.map_or_else(|| settings.shadow_rays.to_string(), |rays| rays.to_string());
     [settings.integrator.to_string(), rays]
 }
 
-impl Exhibit {
-    /// A lane that nothing was rendered of; `settings` are those that were asked for.
-    pub fn new(lane: LaneId, course: Course, settings: &Settings) -> Self {
+impl RenderView {
+    /// The view of an empty lane, for which `settings` were requested.
+    pub(crate) fn new(lane: LaneId, course: Course, settings: &Settings) -> Self {
         Self {
             lane,
             course,
@@ -77,26 +77,26 @@ impl Exhibit {
     }
 
     /// Grows whenever the lane begins anew.
-    pub fn generation(&self) -> u32 {
+    pub(crate) fn generation(&self) -> u32 {
         self.course.generation
     }
 
     /// The time of all passes.
-    pub fn rendered(&self) -> Duration {
+    pub(crate) fn rendered(&self) -> Duration {
         self.rendered
     }
 
     /// True where all passes are done.
-    pub fn is_complete(&self, session: &Session<'_>) -> bool {
+    pub(crate) fn is_complete(&self, session: &Session<'_>) -> bool {
         let passes = session.film().passes().len();
         self.course.target.is_some_and(|target| passes >= target)
     }
 
-    /// Takes notice of a pass that took so long; shows it where somebody looks and it is time.
-    pub fn add_pass(&mut self, session: &Session<'_>, time: Duration, board: &Board) {
+    /// Counts a pass that took `time`; shares a frame of it where a client watches and it is due.
+    pub(crate) fn add_pass(&mut self, session: &Session<'_>, time: Duration, state: &SharedState) {
         self.rendered += time;
-        if board.is_watched() && (self.course.preview || self.is_due()) {
-            self.show(session, board);
+        if state.is_watched() && (self.course.preview || self.is_due()) {
+            self.show(session, state);
         }
     }
 
@@ -108,8 +108,8 @@ impl Exhibit {
         })
     }
 
-    /// Shows what the film has, where that is not what is shown.
-    pub fn show(&mut self, session: &Session<'_>, board: &Board) {
+    /// Shares a frame of the film, unless the last one has the same passes.
+    pub(crate) fn show(&mut self, session: &Session<'_>, state: &SharedState) {
         let passes = session.film().passes().len();
         let is_shown = self.last.is_some_and(|last| last.passes == passes);
         if passes == 0 || is_shown {
@@ -119,8 +119,8 @@ impl Exhibit {
         let frame = Frame::new(session.film());
         let relative_error = frame.relative_error;
         let rays = session.film().cost(Aov::Rays);
-        let shown = Shown::new(self.lane, self.course.generation, frame, rays);
-        board.show(self.lane, Some(Arc::new(shown)));
+        let shown = SentFrame::new(self.lane, self.course.generation, frame, rays);
+        state.show(self.lane, Some(Arc::new(shown)));
         self.last = Some(Last {
             at: Instant::now(),
             passes,
@@ -131,7 +131,7 @@ impl Exhibit {
         self.add_point();
     }
 
-    /// Notes the error that is left; a single pass does not tell it.
+    /// Adds the remaining error to the curve; that of a single pass is unknown.
     fn add_point(&mut self) {
         if let Some(error) = self.relative_error() {
             self.curve.push([self.rendered.as_secs_f64(), error]);
@@ -150,8 +150,8 @@ impl Exhibit {
         Some(last.relative_error).filter(|error| error.is_finite())
     }
 
-    /// What is told of it.
-    pub fn status(&self, session: &Session<'_>) -> LaneStatus {
+    /// The status of the lane.
+    pub(crate) fn status(&self, session: &Session<'_>) -> LaneStatus {
         let (stats, settings) = (session.stats(), session.settings());
         let [integrator, shadow_rays] = self.method.clone();
         let passes = session.film().passes().len();
@@ -184,7 +184,7 @@ impl Exhibit {
     }
 }
 
-/// A count by seconds or samples; nothing of nothing is nothing.
+/// A count by seconds or samples; 0 where there are none.
 fn ratio(count: u64, whole: f64) -> f64 {
     if whole > 0.0 {
         count as f64 / whole

@@ -21,7 +21,7 @@ impl Saved {
         Self { folder, names }
     }
 
-    /// What was written.
+    /// The names of the files that were written.
     pub(super) fn into_names(self) -> Vec<String> {
         self.names.into_iter().collect()
     }

@@ -1,9 +1,9 @@
-//! Which scene it is: a hash of everything that was read.
+//! The identity of a scene: a hash of everything that was read.
 
 use sha2::{Digest, Sha256};
 use std::fmt;
 
-/// The beginning of what is hashed: another layout has another number.
+/// The first bytes of the hash: another layout has another number.
 const VERSION: &[u8] = b"bidir scene digest 1\n";
 
 /// The identity of a scene: SHA-256 of all texts, then all meshes, images and spectra, in the
@@ -11,7 +11,7 @@ const VERSION: &[u8] = b"bidir scene digest 1\n";
 ///
 /// Bytes are hashed as they are after unpacking, each file's with its kind and length before them;
 /// names and times are not. So a copied or packed scene is the same, and one with another byte is
-/// another. What was not read, such as the images of textures that nobody uses, is not part of it,
+/// another. Unread files, such as the images of unused textures, are not part of it,
 /// and neither are [`LoadOptions`](super::LoadOptions).
 ///
 /// Its text is lower-case hexadecimal.
@@ -24,7 +24,7 @@ impl fmt::Display for SceneDigest {
     }
 }
 
-/// What a file is to the scene. The numbers are hashed.
+/// The part of a scene that a file is. The numbers are hashed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Content {
     Text = 0,
@@ -79,7 +79,7 @@ mod tests {
             digest(&[(Text, "a"), (Text, "bc")]),
             digest(&[(Text, "bc"), (Text, "a")]),
             digest(&[(Text, "a"), (Mesh, "bc")]),
-            // What stands between two texts may stand in one.
+            // The bytes between two texts may stand in one.
             digest(&[(Text, "a\0bc")]),
             digest(&[(Text, "a\0\x02\0\0\0\0\0\0\0bc")]),
         ];

@@ -1,7 +1,7 @@
-//! What a renderer and those who watch it share. Whoever renders puts the newest of everything on
-//! the [`Board`], and takes requests between passes at its [`Desk`]; who watches looks at the board,
-//! and asks through a [`Link`]. Nobody waits for anybody: what is not looked at is replaced, and a
-//! request that finds no room is refused.
+//! The state that a renderer shares with its clients. The renderer replaces the newest status and
+//! frames of the [`SharedState`], and takes requests from its [`RequestQueue`] between passes; clients
+//! read the state, and ask through a [`ClientHandle`]. Nobody waits: frames that no client took are
+//! replaced, and a request that finds no room is refused.
 
 use crate::command::Command;
 use crate::frame::Frame;
@@ -16,27 +16,27 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// Requests that wait; more are refused.
+/// The most requests that wait; more are refused.
 const REQUESTS: usize = 64;
-/// Lines that are kept of what was told.
+/// The most lines of the log.
 const LOG_LINES: usize = 1000;
 
-/// A frame of a lane, shared by all who look at it.
+/// A frame of a lane, shared by all clients.
 #[derive(Debug)]
-pub struct Shown {
-    /// Which lane.
+pub struct SentFrame {
+    /// The lane.
     pub lane: LaneId,
-    /// The lane's, when it was made.
+    /// The generation of the lane.
     pub generation: u32,
     /// The picture.
     pub frame: Frame,
     /// The rays of all samples of each pixel. None: the film does not keep them.
     pub rays: Option<Vec<f32>>,
-    /// What clients are sent, when the first of them has asked for it.
+    /// The message to clients, once the first of them gets it.
     message: OnceLock<Bytes>,
 }
 
-impl Shown {
+impl SentFrame {
     /// A frame of a lane.
     pub(crate) fn new(lane: LaneId, generation: u32, frame: Frame, rays: Option<Vec<f32>>) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl Shown {
         }
     }
 
-    /// What clients are sent: `BDF1`, then as u32 the lane, its generation, the passes, width and
+    /// The message to clients: `BDF1`, then as u32 the lane, its generation, the passes, width and
     /// height of the whole film, left, top, width and height of the crop, then red, green and blue of
     /// each pixel as f32, row by row from the top left; all little endian.
     pub(crate) fn message(&self) -> Bytes {
@@ -80,41 +80,41 @@ impl Shown {
     }
 }
 
-/// A lane as it is between two passes.
+/// A lane between two passes.
 pub struct Subject<'a> {
-    /// What renders it.
+    /// Its render.
     pub session: &'a Session<'a>,
     /// Grows whenever the lane begins anew.
     pub generation: u32,
-    /// What files say of it.
+    /// Makes the header of its files.
     pub header: &'a dyn Fn() -> FilmHeader,
 }
 
-/// Looks at a lane between two passes; None: there is no such lane now.
-pub(crate) type Look = Box<dyn FnOnce(Option<&Subject<'_>>) + Send>;
+/// Reads a lane between two passes; None: there is no such lane now.
+pub(crate) type Query = Box<dyn FnOnce(Option<&Subject<'_>>) + Send>;
 
-/// What a renderer is asked for.
+/// A request to a renderer.
 pub(crate) enum Request {
-    /// To do something.
+    /// Execute a command.
     Command(Command),
-    /// To put the newest frame of a lane on the board.
+    /// Share the newest frame of a lane.
     Show(LaneId),
-    /// To let somebody look.
-    Look(LaneId, Look),
-    /// To end.
+    /// Answer a query about a lane.
+    Query(LaneId, Query),
+    /// End.
     Close,
 }
 
-/// The newest of everything.
+/// The newest status, frames and log lines.
 #[derive(Debug)]
-pub struct Board {
+pub struct SharedState {
     status: watch::Sender<Arc<Status>>,
-    frames: [watch::Sender<Option<Arc<Shown>>>; 2],
+    frames: [watch::Sender<Option<Arc<SentFrame>>>; 2],
     log: Mutex<VecDeque<String>>,
     start: Instant,
 }
 
-impl Board {
+impl SharedState {
     fn new(first: Status) -> Self {
         Self {
             status: watch::Sender::new(Arc::new(first)),
@@ -124,42 +124,43 @@ impl Board {
         }
     }
 
-    /// Replaces what is told.
-    pub(crate) fn tell(&self, status: Status) {
+    /// Replaces the status by one that is made of it.
+    pub(crate) fn update(&self, make: impl FnOnce(Status) -> Status) {
+        let status = make(Status::clone(&self.status()));
         self.status.send_replace(Arc::new(status));
     }
 
-    /// What is told.
+    /// The status.
     pub(crate) fn status(&self) -> Arc<Status> {
         self.status.borrow().clone()
     }
 
-    /// Tells of every change of the status, but not of those that were replaced meanwhile.
+    /// Receives every status that is not replaced before it is read.
     pub(crate) fn watch_status(&self) -> watch::Receiver<Arc<Status>> {
         self.status.subscribe()
     }
 
     /// Replaces the frame of a lane. None: the lane is gone.
-    pub(crate) fn show(&self, lane: LaneId, shown: Option<Arc<Shown>>) {
+    pub(crate) fn show(&self, lane: LaneId, shown: Option<Arc<SentFrame>>) {
         self.frames[lane.index()].send_replace(shown);
     }
 
     /// The frame of a lane.
-    pub(crate) fn shown(&self, lane: LaneId) -> Option<Arc<Shown>> {
+    pub(crate) fn shown(&self, lane: LaneId) -> Option<Arc<SentFrame>> {
         self.frames[lane.index()].borrow().clone()
     }
 
-    /// Tells of every new frame of a lane, but not of those that were replaced meanwhile.
-    pub(crate) fn watch_frames(&self, lane: LaneId) -> watch::Receiver<Option<Arc<Shown>>> {
+    /// Receives every frame of a lane that is not replaced before it is read.
+    pub(crate) fn watch_frames(&self, lane: LaneId) -> watch::Receiver<Option<Arc<SentFrame>>> {
         self.frames[lane.index()].subscribe()
     }
 
-    /// Whether anybody looks at frames.
+    /// True where a client receives frames.
     pub(crate) fn is_watched(&self) -> bool {
         self.frames[0].receiver_count() > 0
     }
 
-    /// Adds a line to what was told; the oldest are forgotten.
+    /// Adds a line to the log, which loses the oldest.
     pub fn log(&self, line: &str) {
         let seconds = self.start.elapsed().as_secs_f64();
         let mut log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
@@ -169,14 +170,14 @@ impl Board {
         }
     }
 
-    /// Everything that was told, a line each, with the seconds since the start.
+    /// The log, each line with the seconds since the start.
     pub(crate) fn log_text(&self) -> String {
         let log = self.log.lock().unwrap_or_else(PoisonError::into_inner);
         log.iter().map(String::as_str).collect()
     }
 }
 
-/// Why a pass that is running is not wanted any more.
+/// The reasons to give up the running pass.
 #[derive(Debug, Default)]
 pub(crate) struct Interrupts {
     moved: AtomicBool,
@@ -184,17 +185,17 @@ pub(crate) struct Interrupts {
 }
 
 impl Interrupts {
-    /// True where the camera was moved since the last [`Self::clear`].
+    /// True where the camera moved since the last [`Self::clear`].
     pub(crate) fn is_moved(&self) -> bool {
         self.moved.load(Ordering::Relaxed)
     }
 
-    /// True where anything else was asked for that ends a pass.
+    /// True where another command ends the pass.
     pub(crate) fn is_changed(&self) -> bool {
         self.changed.load(Ordering::Relaxed)
     }
 
-    /// Forgets all, before requests are taken: what comes later sets it again.
+    /// Forgets all, before requests are taken: later commands set it again.
     pub(crate) fn clear(&self) {
         self.moved.store(false, Ordering::Relaxed);
         self.changed.store(false, Ordering::Relaxed);
@@ -209,58 +210,55 @@ impl Interrupts {
     }
 }
 
-/// Where a renderer takes requests.
-pub struct Desk {
+/// The requests to a renderer.
+pub struct RequestQueue {
     requests: Receiver<Request>,
-    /// That leads here.
-    link: Link,
+    handle: ClientHandle,
 }
 
-/// Through which a renderer is asked.
+/// The access of clients to a renderer.
 #[derive(Clone, Debug)]
-pub struct Link {
-    board: Arc<Board>,
+pub struct ClientHandle {
+    state: Arc<SharedState>,
     requests: SyncSender<Request>,
     interrupts: Arc<Interrupts>,
 }
 
-/// A desk with the link to it.
-///
-/// `first` is told until the renderer tells more.
-pub fn desk(first: Status) -> (Desk, Link) {
+/// A queue with the handle of its clients; `first` is the status until the renderer has more.
+pub fn request_queue(first: Status) -> (RequestQueue, ClientHandle) {
     let (sender, receiver) = sync_channel(REQUESTS);
-    let link = Link {
-        board: Arc::new(Board::new(first)),
+    let handle = ClientHandle {
+        state: Arc::new(SharedState::new(first)),
         requests: sender,
         interrupts: Arc::default(),
     };
-    let desk = Desk {
+    let queue = RequestQueue {
         requests: receiver,
-        link: link.clone(),
+        handle: handle.clone(),
     };
-    (desk, link)
+    (queue, handle)
 }
 
-impl Desk {
-    /// What is shared.
-    pub fn board(&self) -> &Board {
-        &self.link.board
+impl RequestQueue {
+    /// The shared state.
+    pub fn state(&self) -> &SharedState {
+        &self.handle.state
     }
 
-    pub(crate) fn link(&self) -> Link {
-        self.link.clone()
+    pub(crate) fn handle(&self) -> ClientHandle {
+        self.handle.clone()
     }
 
     pub(crate) fn interrupts(&self) -> &Interrupts {
-        &self.link.interrupts
+        &self.handle.interrupts
     }
 
-    /// The next request that waits.
+    /// The next request.
     pub(crate) fn take(&self) -> Option<Request> {
         self.requests.try_recv().ok()
     }
 
-    /// The next request, which is waited for so long. None: there was none.
+    /// Waits this long for the next request. None: there was none.
     pub(crate) fn wait(&self, at_most: Duration) -> Option<Request> {
         self.requests.recv_timeout(at_most).ok()
     }
@@ -270,29 +268,29 @@ impl Desk {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refused;
 
-impl Link {
-    /// What is shared.
-    pub fn board(&self) -> &Board {
-        &self.board
+impl ClientHandle {
+    /// The shared state.
+    pub fn state(&self) -> &SharedState {
+        &self.state
     }
 
     pub(crate) fn ask(&self, request: Request) -> Result<(), Refused> {
         let ends = match &request {
             Request::Command(command) => Some(command.clone()),
-            Request::Show(_) | Request::Look(..) | Request::Close => None,
+            Request::Show(_) | Request::Query(..) | Request::Close => None,
         };
         self.requests.try_send(request).map_err(|_| Refused)?;
-        // Only now: who sees it finds the command.
+        // Only now: a renderer that sees it finds the command.
         if let Some(command) = ends {
             self.interrupts.note(&command);
         }
         Ok(())
     }
 
-    /// Asks the renderer to end, and waits until there is room for it.
+    /// Asks the renderer to end; waits until the request finds room.
     pub(crate) fn close(&self) {
         self.interrupts.note(&Command::Stop {});
-        // Where the renderer is gone there is nobody to end.
+        // A renderer that is gone has ended.
         let _ = self.requests.send(Request::Close);
     }
 }

@@ -1,7 +1,7 @@
-//! A render among those that are shown side by side.
+//! The render of a lane.
 
-use crate::board::{Board, Interrupts, Look, Subject};
-use crate::exhibit::Exhibit;
+use crate::shared::{Interrupts, Query, SharedState, Subject};
+use crate::view::RenderView;
 use bidir::driver::{Progress, Session, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathRoulette;
@@ -9,19 +9,18 @@ use bidir::settings::{Choice, Request};
 use formats::film::{FilmHeader, Stopping, of_run};
 use std::time::{Duration, Instant};
 
-/// A render with what is shown of it.
-pub(super) struct Lane {
+/// The render of a lane with its view.
+pub(super) struct RenderSlot {
     pub(super) session: Session<'static>,
-    pub(super) exhibit: Exhibit,
-    /// That of its empty film.
+    pub(super) view: RenderView,
+    /// The header of its empty film.
     pub(super) header: FilmHeader,
 }
 
-/// Gives a pass up where a request ends it.
+/// Gives a pass up where a command ends it.
 struct Watch<'a> {
     interrupts: &'a Interrupts,
-    /// True where a moving camera is let finish its first pass, so that something is seen of a move
-    /// that goes on.
+    /// True for the first pass of a moving camera, which ends: clients see a move that goes on.
     is_patient: bool,
     start: Instant,
 }
@@ -38,13 +37,13 @@ impl Progress for Watch<'_> {
     }
 }
 
-impl Lane {
-    /// Renders the next pass, and shows it where it is time. The time that it took; None: it was
-    /// given up.
+impl RenderSlot {
+    /// Renders the next pass, and shares a frame where it is due. Returns its time; None: it was given
+    /// up.
     pub(super) fn step(
         &mut self,
         interrupts: &Interrupts,
-        board: &Board,
+        state: &SharedState,
         is_preview: bool,
     ) -> Option<Duration> {
         let watch = Watch {
@@ -57,43 +56,43 @@ impl Lane {
         if !is_done {
             return None;
         }
-        self.exhibit.add_pass(&self.session, time, board);
+        self.view.add_pass(&self.session, time, state);
         Some(time)
     }
 
     pub(super) fn is_complete(&self) -> bool {
-        self.exhibit.is_complete(&self.session)
+        self.view.is_complete(&self.session)
     }
 
-    /// Shows what there is.
-    pub(super) fn show(&mut self, board: &Board) {
-        self.exhibit.show(&self.session, board);
+    /// Shares the newest frame.
+    pub(super) fn show(&mut self, state: &SharedState) {
+        self.view.show(&self.session, state);
     }
 
-    /// What files say of what was rendered so far.
+    /// The header of files of the passes so far.
     pub(super) fn header(&self) -> FilmHeader {
         let stopping = if self.is_complete() {
             Stopping::Fixed
         } else {
             Stopping::Time
         };
-        let header = of_run(&self.header, &self.session, self.exhibit.rendered());
+        let header = of_run(&self.header, &self.session, self.view.rendered());
         FilmHeader { stopping, ..header }.of(self.session.film())
     }
 
-    /// Lets somebody look.
-    pub(super) fn let_look(&self, look: Look) {
+    pub(super) fn answer(&self, query: Query) {
         let header = || self.header();
-        look(Some(&Subject {
+        query(Some(&Subject {
             session: &self.session,
-            generation: self.exhibit.generation(),
+            generation: self.view.generation(),
             header: &header,
         }));
     }
 }
 
-/// What a preview is rendered with: no camera would stand still for as long as `auto` tries estimators.
-/// Bidirectional path tracing finds whatever the others do. `roulette` is the one that was asked for.
+/// The settings of a preview, which needs no training: no camera would stand still for as long as
+/// `auto` tries estimators. Bidirectional path tracing samples all light paths of the others.
+/// `roulette` is the requested one.
 pub(super) fn without_training(
     wanted: &Settings,
     roulette: Option<Choice<PathRoulette>>,

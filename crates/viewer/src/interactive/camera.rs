@@ -1,4 +1,4 @@
-//! Where the camera is, and how large the film: quarter sides while it moves.
+//! The camera that clients move, and the size of the film: quarter sides while it moves.
 
 use crate::command::Walk;
 use crate::status::CameraStatus;
@@ -9,36 +9,36 @@ use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, RenderSpace, Scene};
 use std::time::{Duration, Instant};
 
-/// A camera that has not moved for so long stands still.
+/// The time after which a camera that does not move stands still.
 const REST: Duration = Duration::from_millis(500);
-/// How many times fewer pixels a side has while the camera moves.
+/// The factor by which a side has fewer pixels while the camera moves.
 const COARSENESS: u32 = 4;
 /// The nearest and the farthest that the camera comes to its target. Unit: the scene's radius.
 const REACH: [f32; 2] = [1e-4, 1e3];
 
-/// The view of a scene.
+/// The camera and film of a scene that is looked at.
 #[derive(Debug)]
-pub(super) struct View {
+pub(super) struct CameraControl {
     space: RenderSpace,
     home: Camera,
     film: FilmSettings,
     camera: Camera,
-    /// What the middle of the scene's own picture sees, in the axes of the camera.
+    /// The point in the middle of the scene's own picture, in the axes of the camera.
     home_target: Vec3,
-    /// What the camera moves around, likewise.
+    /// The point that the camera moves around, likewise.
     target: Vec3,
     /// Up in the world.
     vertical: Vec3,
     /// The radius of the scene.
     radius: f32,
-    /// When it was moved last. None: it stands still.
+    /// The time of the last move. None: it stands still.
     moved: Option<Instant>,
 }
 
-/// A camera cannot be moved so.
+/// The reason why a camera cannot move so.
 pub(super) type Refusal = String;
 
-impl View {
+impl CameraControl {
     /// The scene's own view.
     pub(super) fn new(scene: &Scene) -> Self {
         let (camera, film) = (*scene.camera(), scene.film().clone());
@@ -56,11 +56,6 @@ impl View {
         }
     }
 
-    /// The film in full.
-    pub(super) fn full_film(&self) -> &FilmSettings {
-        &self.film
-    }
-
     /// True while the camera moves.
     pub(super) fn is_preview(&self) -> bool {
         self.moved.is_some()
@@ -71,7 +66,7 @@ impl View {
         self.rest() == Some(Duration::ZERO) && self.moved.take().is_some()
     }
 
-    /// How long it still has to stand. None: it does not move.
+    /// The time that it still has to stand. None: it does not move.
     pub(super) fn rest(&self) -> Option<Duration> {
         let moved = self.moved?;
         Some(REST.saturating_sub(moved.elapsed()))
@@ -88,7 +83,7 @@ impl View {
         (self.camera.resized(new / old), film)
     }
 
-    /// What is told of it.
+    /// The status of the camera.
     pub(super) fn status(&self) -> CameraStatus {
         let pose = self.camera.pose();
         CameraStatus {
@@ -128,7 +123,7 @@ impl View {
     pub(super) fn orbit(&mut self, yaw: f32, pitch: f32) -> Result<(), Refusal> {
         self.check_is_flat("orbit")?;
         let pose = self.camera.pose();
-        // Who goes to the right around something looks to the left.
+        // A camera that moves right around its target turns left.
         let turn = Turn {
             right: -yaw,
             up: -pitch,
@@ -210,7 +205,7 @@ impl View {
     }
 }
 
-/// What the middle of the picture sees, in the axes of the camera; where that is nothing, a point as far
+/// The point in the middle of the picture, in the axes of the camera; where nothing is there, one as far
 /// as the middle of the scene.
 fn target(scene: &Scene) -> Vec3 {
     let (camera, film) = (scene.camera(), scene.film());
@@ -261,11 +256,11 @@ mod tests {
     }
 
     /// The view of nothing but a sky.
-    fn view(camera: Camera) -> View {
+    fn view(camera: Camera) -> CameraControl {
         let mut builder = SceneBuilder::new(film());
         builder.camera(camera);
         builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-        View::new(&builder.build().unwrap())
+        CameraControl::new(&builder.build().unwrap())
     }
 
     #[test]
@@ -314,7 +309,7 @@ mod tests {
         let pose = Affine3A::from_translation(Vec3::new(1.0, 2.0, 3.0));
         builder.camera(Camera::Spherical(camera(pose)));
         builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-        let status = View::new(&builder.build().unwrap()).status();
+        let status = CameraControl::new(&builder.build().unwrap()).status();
         let moved = [1e6 + 4.0, 8.0, 12.0];
         assert_eq!(status.origin.map(f32::to_bits), moved.map(f32::to_bits));
         assert!(status.target[2] > 12.0, "{:?}", status.target);

@@ -1,63 +1,57 @@
 //! The thread that renders: requests, a pass of the lane that is behind, requests, …
 
-use super::StudioSettings;
-use super::lane::{Lane, without_training};
+use super::InteractiveSettings;
+use super::camera::CameraControl;
 use super::save::Saved;
-use super::view::View;
-use crate::board::{Desk, Request};
-use crate::exhibit::{Course, Exhibit};
-use crate::status::{Choices, LaneId, State, Status, scene_name};
+use super::slot::{RenderSlot, without_training};
+use crate::shared::{Request, RequestQueue};
+use crate::status::{LaneId, State, Status};
+use crate::view::{Course, RenderView};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
 use bidir::settings::Choice;
 use formats::film::{FilmHeader, SceneIdentity, program};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The status is told no more often than this, however short passes are.
+/// The least time between two statuses, however short passes are.
 const STATUS_GAP: Duration = Duration::from_millis(50);
-/// How long a thread with nothing to do sleeps; requests wake it.
+/// The time that an idle thread sleeps; requests wake it.
 const NAP: Duration = Duration::from_secs(60);
 
-/// What renders, and all that it knows.
-pub(super) struct Painter {
-    pub(super) desk: Desk,
+/// The state of the thread.
+pub(super) struct RenderController {
+    pub(super) queue: RequestQueue,
     name: String,
     digest: String,
     scene: Arc<Scene>,
     resources: Resources,
     target: Option<u64>,
     pub(super) roulette: Option<Choice<PathRoulette>>,
-    pub(super) view: View,
-    /// How each lane is to be rendered.
+    pub(super) camera: CameraControl,
+    /// The requested settings of each lane.
     pub(super) wanted: Vec<Settings>,
-    /// Those that are; none where they could not begin.
-    pub(super) lanes: Vec<Lane>,
+    /// The lanes that render; none where they could not begin.
+    pub(super) slots: Vec<RenderSlot>,
     generation: u32,
     pub(super) state: State,
     pub(super) message: Option<String>,
     pub(super) saved: Saved,
     /// True where lanes have to begin anew.
     pub(super) is_stale: bool,
-    told: Instant,
+    published: Instant,
 }
 
-/// Whether the thread goes on.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Next {
-    GoOn,
-    Close,
-}
-
-impl Painter {
-    pub(super) fn new(settings: StudioSettings, desk: Desk) -> Self {
+impl RenderController {
+    pub(super) fn new(settings: InteractiveSettings, queue: RequestQueue) -> Self {
         let mut first = settings.settings;
         first.layers = with_inspected(&first.layers);
         Self {
-            desk,
-            view: View::new(&settings.scene),
+            queue,
+            camera: CameraControl::new(&settings.scene),
             name: settings.name,
             digest: settings.digest,
             scene: settings.scene,
@@ -68,101 +62,98 @@ impl Painter {
             target: settings.target,
             roulette: settings.roulette,
             wanted: vec![first],
-            lanes: Vec::new(),
+            slots: Vec::new(),
             generation: 0,
             state: State::Preparing,
             message: None,
             saved: Saved::new(settings.folder),
             is_stale: true,
-            told: Instant::now(),
+            published: Instant::now(),
         }
     }
 
-    /// Renders until it is told to close. Tells which files were saved.
+    /// Renders until a request closes it. Returns the names of the saved files.
     pub(super) fn run(mut self) -> Vec<String> {
-        while self.take_requests() == Next::GoOn {
-            self.is_stale |= self.view.settle();
-            if self.is_stale {
-                self.begin();
-            } else if let Some(lane) = self.lane_behind() {
-                self.render(lane);
-            } else if self.rest() == Next::Close {
-                break;
-            }
-        }
+        while self.step().is_continue() {}
         self.saved.into_names()
     }
 
-    /// Does all that waits to be done.
-    fn take_requests(&mut self) -> Next {
-        self.desk.interrupts().clear();
-        while let Some(request) = self.desk.take() {
-            if self.serve(request) == Next::Close {
-                return Next::Close;
-            }
+    /// Takes the requests, and renders a pass or rests.
+    fn step(&mut self) -> ControlFlow<()> {
+        self.queue.interrupts().clear();
+        while let Some(request) = self.queue.take() {
+            self.answer(request)?;
         }
-        Next::GoOn
+        self.is_stale |= self.camera.settle();
+        if self.is_stale {
+            self.begin();
+        } else if let Some(number) = self.slot_behind() {
+            self.render(number);
+        } else {
+            return self.rest();
+        }
+        ControlFlow::Continue(())
     }
 
-    fn serve(&mut self, request: Request) -> Next {
+    fn answer(&mut self, request: Request) -> ControlFlow<()> {
         match request {
             Request::Command(command) => {
-                self.obey(command);
-                // Lanes that begin anew tell so themselves: those that are there are not what is wanted.
+                self.execute(command);
+                // Lanes that are about to begin anew have no status that anybody wants.
                 if !self.is_stale {
-                    self.tell();
+                    self.publish();
                 }
             }
             Request::Show(lane) => {
-                if let Some(lane) = self.lanes.get_mut(lane.index()) {
-                    lane.show(self.desk.board());
+                if let Some(slot) = self.slots.get_mut(lane.index()) {
+                    slot.show(self.queue.state());
                 }
             }
-            Request::Look(lane, look) => match self.lanes.get(lane.index()) {
-                Some(lane) => lane.let_look(look),
-                None => look(None),
+            Request::Query(lane, query) => match self.slots.get(lane.index()) {
+                Some(slot) => slot.answer(query),
+                None => query(None),
             },
-            Request::Close => return Next::Close,
+            Request::Close => return ControlFlow::Break(()),
         }
-        Next::GoOn
+        ControlFlow::Continue(())
     }
 
     /// Waits for a request, or for the camera to stand still.
-    fn rest(&mut self) -> Next {
+    fn rest(&mut self) -> ControlFlow<()> {
         if self.state == State::Rendering {
             self.state = State::Done;
             self.log("done");
         }
-        if self.desk.board().is_watched() {
-            for lane in &mut self.lanes {
-                lane.show(self.desk.board());
+        if self.queue.state().is_watched() {
+            for slot in &mut self.slots {
+                slot.show(self.queue.state());
             }
         }
-        self.tell();
-        let nap = self.view.rest().unwrap_or(NAP);
-        match self.desk.wait(nap) {
-            Some(request) => self.serve(request),
-            None => Next::GoOn,
+        self.publish();
+        let nap = self.camera.rest().unwrap_or(NAP);
+        match self.queue.wait(nap) {
+            Some(request) => self.answer(request),
+            None => ControlFlow::Continue(()),
         }
     }
 
-    /// The lane that passes took the least time of, and that is not complete.
-    fn lane_behind(&self) -> Option<usize> {
+    /// The number of the slot that rendered for the least time, of those that are not complete.
+    fn slot_behind(&self) -> Option<usize> {
         if self.state != State::Rendering {
             return None;
         }
-        let lanes = self.lanes.iter().enumerate();
-        let open = lanes.filter(|(_, lane)| !lane.is_complete());
-        let behind = open.min_by_key(|(_, lane)| lane.exhibit.rendered());
+        let slots = self.slots.iter().enumerate();
+        let open = slots.filter(|(_, slot)| !slot.is_complete());
+        let behind = open.min_by_key(|(_, slot)| slot.view.rendered());
         behind.map(|(number, _)| number)
     }
 
-    fn render(&mut self, lane: usize) {
-        let (interrupts, board) = (self.desk.interrupts(), self.desk.board());
-        let time = self.lanes[lane].step(interrupts, board, self.view.is_preview());
+    fn render(&mut self, number: usize) {
+        let (interrupts, state) = (self.queue.interrupts(), self.queue.state());
+        let time = self.slots[number].step(interrupts, state, self.camera.is_preview());
         let is_long = time.is_some_and(|time| time >= STATUS_GAP);
-        if is_long || self.told.elapsed() >= STATUS_GAP {
-            self.tell();
+        if is_long || self.published.elapsed() >= STATUS_GAP {
+            self.publish();
         }
     }
 
@@ -170,16 +161,16 @@ impl Painter {
     pub(super) fn begin(&mut self) {
         self.is_stale = false;
         self.generation += 1;
-        // They share the scene, which is to be changed.
-        self.lanes.clear();
+        // They share the scene, which changes.
+        self.slots.clear();
         if self.wanted.len() == 1 {
-            self.desk.board().show(LaneId::B, None);
+            self.queue.state().show(LaneId::B, None);
         }
         self.state = State::Preparing;
-        self.tell();
-        match self.make_lanes() {
-            Ok(lanes) => {
-                self.lanes = lanes;
+        self.publish();
+        match self.make_slots() {
+            Ok(slots) => {
+                self.slots = slots;
                 self.state = State::Rendering;
                 self.log_begin();
             }
@@ -189,25 +180,25 @@ impl Painter {
                 self.state = State::Failed;
             }
         }
-        self.tell();
+        self.publish();
     }
 
-    fn make_lanes(&mut self) -> Result<Vec<Lane>, String> {
-        let (camera, film) = self.view.current();
+    fn make_slots(&mut self) -> Result<Vec<RenderSlot>, String> {
+        let (camera, film) = self.camera.current();
         let scene = Arc::get_mut(&mut self.scene).ok_or("the scene is in use")?;
         scene
             .set_view(camera, film)
             .map_err(|error| error.to_string())?;
         let wanted = LaneId::ALL.into_iter().zip(&self.wanted);
         wanted
-            .map(|(lane, wanted)| self.lane(lane, wanted))
+            .map(|(lane, wanted)| self.slot(lane, wanted))
             .collect()
     }
 
-    fn lane(&self, lane: LaneId, wanted: &Settings) -> Result<Lane, String> {
+    fn slot(&self, lane: LaneId, wanted: &Settings) -> Result<RenderSlot, String> {
         let course = Course {
             generation: self.generation,
-            preview: self.view.is_preview(),
+            preview: self.camera.is_preview(),
             target: self.target,
         };
         let settings = if course.preview {
@@ -217,10 +208,10 @@ impl Painter {
         };
         let session = Session::new(Arc::clone(&self.scene), settings.clone(), &self.resources)
             .map_err(|error| error.to_string())?;
-        Ok(Lane {
+        Ok(RenderSlot {
             header: self.header(&settings, &session),
             session,
-            exhibit: Exhibit::new(lane, course, wanted),
+            view: RenderView::new(lane, course, wanted),
         })
     }
 
@@ -232,7 +223,7 @@ impl Painter {
             film: self.scene.film(),
         };
         let header = identity.header(wanted, session.training());
-        let Some(view) = self.view.text() else {
+        let Some(view) = self.camera.text() else {
             return header;
         };
         let mut settings = header.settings;
@@ -240,45 +231,37 @@ impl Painter {
         FilmHeader::new(&program(), header.scene, settings)
     }
 
-    /// Tells how everything is.
-    pub(super) fn tell(&mut self) {
-        self.told = Instant::now();
-        let lanes: Vec<_> = self
-            .lanes
-            .iter()
-            .map(|lane| lane.exhibit.status(&lane.session))
-            .collect();
-        let board = self.desk.board();
-        board.tell(Status {
-            version: env!("CARGO_PKG_VERSION"),
-            scene: scene_name(&self.name),
+    /// Replaces the status that clients see.
+    fn publish(&mut self) {
+        self.published = Instant::now();
+        let slots = self.slots.iter();
+        let lanes: Vec<_> = slots.map(|slot| slot.view.status(&slot.session)).collect();
+        self.queue.state().update(|before| Status {
             state: self.state,
             message: self.message.clone(),
-            controls: true,
-            film: self.view.full_film().into(),
-            choices: Choices::all(),
-            camera: Some(self.view.status()),
+            camera: Some(self.camera.status()),
             split: self.wanted.len() > 1,
-            // Where there are none for the moment, those before tell more than nothing.
+            // None for the moment: the last ones say more than nothing.
             lanes: if lanes.is_empty() {
-                board.status().lanes.clone()
+                before.lanes
             } else {
                 lanes
             },
+            ..before
         });
     }
 
     pub(super) fn log(&self, line: &str) {
-        self.desk.board().log(line);
+        self.queue.state().log(line);
     }
 
     fn log_begin(&self) {
-        let names = self.lanes.iter().map(|lane| {
-            let status = lane.exhibit.status(&lane.session);
+        let names = self.slots.iter().map(|slot| {
+            let status = slot.view.status(&slot.session);
             format!("{} {}", status.integrator, status.shadow_rays)
         });
         let names: Vec<_> = names.collect();
-        let kind = if self.view.is_preview() {
+        let kind = if self.camera.is_preview() {
             "preview"
         } else {
             "rendering"
@@ -287,7 +270,7 @@ impl Painter {
     }
 }
 
-/// The layers, with those that an inspector asks for.
+/// The layers with those that queries about pixels need.
 fn with_inspected(layers: &Layers) -> Layers {
     let aovs = [layers.aovs(), &[Aov::Samples, Aov::Variance, Aov::Rays]].concat();
     Layers::new(&aovs, layers.light_groups(), layers.strategy_vertices())

@@ -1,18 +1,18 @@
-//! What commands do.
+//! The effects of commands.
 
-use super::painter::Painter;
-use super::view::View;
+use super::camera::CameraControl;
+use super::controller::RenderController;
 use crate::command::Command;
-use crate::exhibit::method_of;
 use crate::status::{LaneId, State};
+use crate::view::method_of;
 use bidir::driver::Settings;
 use bidir::film::Layers;
 use bidir::settings::Request;
 use formats::film::{Developed, metadata};
 
-impl Painter {
-    /// Does what `command` says; what is refused is told why.
-    pub(super) fn obey(&mut self, command: Command) {
+impl RenderController {
+    /// Executes a command; the status gets the reason of a refusal.
+    pub(super) fn execute(&mut self, command: Command) {
         match self.apply(command) {
             Ok(message) => self.message = message,
             Err(refusal) => {
@@ -22,7 +22,7 @@ impl Painter {
         }
     }
 
-    /// Does it; what there is to tell of it.
+    /// Applies a command. Returns a message about it, if there is one.
     fn apply(&mut self, command: Command) -> Result<Option<String>, String> {
         match command {
             Command::Pause {} => self.pause()?,
@@ -45,7 +45,7 @@ impl Painter {
             Command::Pan { right, up } => self.moved(|view| view.pan(right, up))?,
             Command::Walk(walk) => self.moved(|view| view.walk(walk))?,
             Command::Home {} => {
-                self.view.go_home();
+                self.camera.go_home();
                 self.is_stale = true;
             }
             Command::Save { name, lane } => return self.save(&name, lane).map(Some),
@@ -68,7 +68,7 @@ impl Painter {
         Ok(())
     }
 
-    /// Refuses what has no meaning after the end.
+    /// Refuses commands that have no meaning after the end.
     fn check_runs(&self) -> Result<(), String> {
         match self.state {
             State::Rendering | State::Paused => Ok(()),
@@ -78,7 +78,7 @@ impl Painter {
         }
     }
 
-    /// Begins lanes that are to begin anew: they would render, whatever the state was before.
+    /// Begins stale lanes anew: they would render, whatever the state was before.
     fn catch_up(&mut self) {
         if self.is_stale {
             self.begin();
@@ -106,8 +106,8 @@ impl Painter {
     ) -> Result<(), String> {
         if !on {
             self.wanted.truncate(1);
-            self.lanes.truncate(1);
-            self.desk.board().show(LaneId::B, None);
+            self.slots.truncate(1);
+            self.queue.state().show(LaneId::B, None);
             return Ok(());
         }
         let first = self.wanted(LaneId::A)?;
@@ -135,25 +135,28 @@ impl Painter {
         Ok(())
     }
 
-    fn moved(&mut self, go: impl FnOnce(&mut View) -> Result<(), String>) -> Result<(), String> {
-        go(&mut self.view)?;
+    fn moved(
+        &mut self,
+        go: impl FnOnce(&mut CameraControl) -> Result<(), String>,
+    ) -> Result<(), String> {
+        go(&mut self.camera)?;
         self.is_stale = true;
         Ok(())
     }
 
     fn save(&mut self, name: &str, lane: LaneId) -> Result<String, String> {
-        let lane = self.lanes.get(lane.index());
-        let lane = lane.filter(|lane| !lane.session.film().passes().is_empty());
-        let lane = lane.ok_or("nothing is saved: no pass is done yet")?;
-        let film = lane.session.film();
+        let slot = self.slots.get(lane.index());
+        let slot = slot.filter(|slot| !slot.session.film().passes().is_empty());
+        let slot = slot.ok_or("nothing is saved: no pass is done yet")?;
+        let film = slot.session.film();
         self.saved.save(name, |path| {
-            let metadata = metadata(&lane.header());
+            let metadata = metadata(&slot.header());
             let written = Developed::new(film).write_exr(path, film.settings(), &metadata);
             written.map_err(|error| error.to_string())
         })?;
-        let told = format!("wrote {name} with {} spp", film.passes().len());
-        self.log(&told);
-        Ok(told)
+        let message = format!("wrote {name} with {} spp", film.passes().len());
+        self.log(&message);
+        Ok(message)
     }
 
     /// The settings of a lane.

@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 /// The largest error that is passed over, as a part of half the longest side of the mesh.
 const NOTICED: f64 = 0.01;
-/// The largest error that is rendered, as a part of [`Survey::reach`](crate::space::Survey::reach).
+/// The largest error that is rendered, as a part of [`Survey::reach`](super::Survey::reach).
 const ACCEPTED: f64 = 0.25;
 
 /// The error of the vertices of a mesh.
@@ -42,7 +42,7 @@ impl VertexError {
     }
 }
 
-/// How much longer a map makes vectors at most.
+/// The most that a map stretches vectors.
 fn stretch(linear: &DMat3) -> f64 {
     let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
     columns.map(DVec3::length).into_iter().fold(0.0, f64::max)
@@ -51,7 +51,7 @@ fn stretch(linear: &DMat3) -> f64 {
 /// The errors of all meshes of a scene, each with the place `P` in the file that names it.
 #[derive(Clone, Debug)]
 pub(crate) struct VertexErrors<P> {
-    /// How many meshes have one.
+    /// The number of meshes with one.
     count: usize,
     /// That of the largest part of its mesh.
     worst: Option<(P, VertexError)>,

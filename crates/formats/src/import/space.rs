@@ -20,16 +20,16 @@
 use bidir::scene::RenderSpace;
 use glam::{DAffine3, DVec3};
 
-/// How many half widths the middle of everything is from an origin that is moved: below it points are
-/// off by less than 10⁻⁴ of the half width.
+/// The distance of the middle of everything from an origin that moves. Unit: half widths; below it
+/// points are off by less than 10⁻⁴ of the half width.
 const FAR: f64 = 64.0;
-/// How many distances to the nearest vertex a camera is from an origin that is moved. It is larger, as
-/// that vertex may be a single one.
+/// The distance of a camera from an origin that moves. Unit: distances to the nearest vertex; it is
+/// larger, as that vertex may be a single one.
 const FAR_FROM_VIEW: f64 = 1024.0;
 /// The exponents of two of the sizes that are left as they are.
 const RANGE: i32 = 20;
 
-/// Where everything of a scene is placed.
+/// The spaces that a scene is placed in.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Layout {
     /// The space of the world's shapes, of lights and of the camera.

@@ -1,0 +1,232 @@
+//! A scene in the making: shapes and lights, each with its place in the file.
+
+use super::lamp::{self, Placed};
+use super::precision::{self, VertexErrors};
+use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexError};
+use crate::error::ErrorKind;
+use crate::source::Fault;
+use bidir::film::FilmSettings;
+use bidir::light::Light;
+use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
+use bidir::shape::Shape;
+use bidir::texture::FloatTexture;
+use glam::{DAffine3, DVec3};
+
+/// A scene with the places `P` of its parts in the file.
+pub(crate) struct Assembly<P> {
+    pub(crate) builder: SceneBuilder,
+    pub(crate) summary: Summary,
+    settings: SceneSettings,
+    /// Of everything but shared objects.
+    pub(crate) survey: Survey,
+    /// Of each shared object, in its own space.
+    objects: Vec<Survey>,
+    vertex_errors: VertexErrors<P>,
+    /// Of all meshes as they are kept.
+    vertices: u64,
+    /// By number.
+    shapes: Vec<P>,
+    /// By number.
+    instances: Vec<P>,
+    lamps: Vec<Placed<P>>,
+}
+
+/// The numbers of a shape that limits are for, summed over its copies.
+#[derive(Clone, Copy)]
+pub(crate) struct Size {
+    pub(crate) primitives: u64,
+    pub(crate) vertices: u64,
+    pub(crate) shapes: u64,
+}
+
+/// An object that several instances share.
+#[derive(Clone, Copy)]
+pub(crate) struct SharedObject {
+    id: ObjectId,
+    /// Of the space that its shapes are kept in.
+    origin: DVec3,
+}
+
+impl SharedObject {
+    /// The map from the object's own space to that of the shapes that are kept.
+    pub(crate) fn kept_from_own(&self) -> DAffine3 {
+        DAffine3::from_translation(-self.origin)
+    }
+
+    /// The map of the shapes that are kept to where `map` takes the object's own space.
+    pub(crate) fn place_kept(&self, map: &DAffine3) -> DAffine3 {
+        *map * DAffine3::from_translation(self.origin)
+    }
+}
+
+/// A scene that was built.
+pub(super) struct Built<P> {
+    pub(super) scene: Scene,
+    pub(super) settings: SceneSettings,
+    pub(super) lamps: Vec<Placed<P>>,
+    pub(super) summary: Summary,
+}
+
+impl<P: Clone> Assembly<P> {
+    /// An empty scene, seen from `eye`. None: where the camera stands depends on the scene.
+    pub(crate) fn new<D: Document>(
+        context: &Context<'_, D>,
+        film: FilmSettings,
+        settings: SceneSettings,
+        eye: Option<DVec3>,
+    ) -> Self {
+        let mut builder = SceneBuilder::new(film);
+        builder.space(context.layout.space);
+        if let Some(isa) = context.options.isa {
+            builder.isa(isa);
+        }
+        Self {
+            builder,
+            summary: Summary::default(),
+            settings,
+            survey: Survey::new(eye),
+            objects: Vec::new(),
+            vertex_errors: VertexErrors::default(),
+            vertices: 0,
+            shapes: Vec::new(),
+            instances: Vec::new(),
+            lamps: Vec::new(),
+        }
+    }
+
+    /// Counts a shape against the limits, before it is added.
+    pub(crate) fn count<D: Document<Place = P>>(
+        &mut self,
+        context: &Context<'_, D>,
+        size: Size,
+        place: &P,
+    ) -> Result<(), Fault<P>> {
+        self.summary.primitives += size.primitives;
+        self.vertices += size.vertices;
+        context.check_size(self.summary.primitives.max(self.vertices), place)?;
+        context.check_shapes(self.summary.shapes as u64 + size.shapes, place)
+    }
+
+    /// Notes the error of a mesh's vertices.
+    pub(crate) fn add_error(&mut self, place: &P, error: Option<VertexError>) {
+        self.vertex_errors.add(place, error);
+    }
+
+    /// Adds the parts of a shape, which emit each for itself and are one lamp of the file.
+    pub(crate) fn add_shape(
+        &mut self,
+        parts: Vec<(Shape, Option<Emission>)>,
+        material: MaterialId,
+        coverage: Option<&FloatTexture>,
+        place: &P,
+    ) {
+        let first_light = self.builder.next_light();
+        for (part, emission) in parts {
+            self.summary.area_lights += usize::from(emission.is_some());
+            let number = self.builder.shape(part, material, emission);
+            self.note_shape(number, coverage, place);
+        }
+        let lights = first_light..self.builder.next_light();
+        if !lights.is_empty() {
+            self.lamps.push((place.clone(), lights));
+        }
+    }
+
+    fn note_shape(&mut self, number: usize, coverage: Option<&FloatTexture>, place: &P) {
+        self.summary.shapes += 1;
+        self.shapes.push(place.clone());
+        if let Some(coverage) = coverage {
+            self.builder.coverage(number, coverage.clone());
+        }
+    }
+
+    /// Begins an object that instances share.
+    pub(crate) fn begin_object<D: Document>(&mut self, context: &Context<'_, D>) -> SharedObject {
+        let origin = context.layout.object_origin(self.objects.len());
+        self.objects.push(Survey::new(None));
+        let id = self.builder.object();
+        SharedObject { id, origin }
+    }
+
+    /// The survey of the last object.
+    pub(crate) fn object_survey(&mut self) -> &mut Survey {
+        self.objects.last_mut().expect("an object was begun")
+    }
+
+    /// Adds a shape to an object.
+    pub(crate) fn add_to_object(
+        &mut self,
+        object: SharedObject,
+        shape: Shape,
+        material: MaterialId,
+        coverage: Option<&FloatTexture>,
+        place: &P,
+    ) {
+        let number = self.builder.object_shape(object.id, shape, material);
+        self.note_shape(number, coverage, place);
+    }
+
+    /// Adds an instance of the last object, whose own space `map` takes to where it is rendered.
+    pub(crate) fn add_instance(&mut self, object: SharedObject, map: &DAffine3, place: &P) {
+        let map = object.place_kept(map);
+        if let Some(corners) = self.object_survey().corners() {
+            self.survey.include_box(corners, &map);
+        }
+        self.builder.instance(object.id, map);
+        self.instances.push(place.clone());
+    }
+
+    /// Adds a light that is no shape.
+    pub(crate) fn add_light(&mut self, light: Light, place: P) {
+        self.summary.other_lights += 1;
+        let number = self.builder.light(light);
+        self.lamps.push((place, number..number + 1));
+    }
+
+    pub(super) fn layout(&self) -> Layout {
+        Layout::of(&self.survey, &self.objects)
+    }
+
+    /// Refuses a scene of which the vertices leave nothing.
+    pub(super) fn check_vertices(&self) -> Result<(), Fault<P>> {
+        match self.vertex_errors.refusal(self.survey.reach()) {
+            None => Ok(()),
+            Some((place, message)) => {
+                Err(Fault::new(ErrorKind::Limit, place, message).with_hint(precision::HINT))
+            }
+        }
+    }
+
+    /// Builds the scene.
+    pub(super) fn finish<D: Document<Place = P>>(
+        self,
+        context: &mut Context<'_, D>,
+    ) -> Result<Built<P>, Fault<P>> {
+        if let Some((place, message)) = self.vertex_errors.warning() {
+            context.warn(place, message);
+        }
+        let scene = self.builder.build();
+        let scene = scene.map_err(|error| {
+            let place = match error {
+                SceneError::Instance { instance } => self.instances.get(instance),
+                ref error => error.shape().and_then(|shape| self.shapes.get(shape)),
+            };
+            let kind = match error {
+                SceneError::Intersector(_) => ErrorKind::Limit,
+                _ => ErrorKind::Scene,
+            };
+            Fault::new(kind, place.cloned().unwrap_or(D::TOP), error.to_string())
+        })?;
+        for (place, lights) in &self.lamps {
+            if let Some(message) = lamp::dark_warning(&scene, lights.clone()) {
+                context.warn(place.clone(), message);
+            }
+        }
+        Ok(Built {
+            scene,
+            settings: self.settings,
+            lamps: self.lamps,
+            summary: self.summary,
+        })
+    }
+}

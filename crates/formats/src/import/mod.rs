@@ -1,0 +1,241 @@
+//! The part of reading a scene that all formats share.
+//!
+//! A reader has its own [`Document`]: the contents of the file, with a type for places in it. It
+//! hands a function to [`load`] that puts all of the document into an [`Assembly`], by means of a
+//! [`Context`]: the options, the [`Layout`] and the [`Log`] of warnings and files.
+//!
+//! A feature that the format has and the renderer lacks is refused where it stands. With
+//! [`LoadOptions::lenient`] a substitute takes its place, and a warning names it.
+
+mod assembly;
+mod digest;
+mod lamp;
+mod log;
+mod options;
+mod precision;
+mod reading;
+mod space;
+
+pub(crate) use assembly::{Assembly, SharedObject, Size};
+pub(crate) use digest::Content;
+pub use digest::SceneDigest;
+pub use lamp::Lamp;
+pub use log::Warning;
+pub(crate) use log::{Log, warn};
+pub use options::{Crop, LoadOptions};
+pub(crate) use precision::VertexError;
+pub(crate) use space::{Layout, Survey, box_corners};
+
+use crate::error::{Error, ErrorKind, Result};
+use crate::files::Files;
+use crate::limits;
+use crate::source::Fault;
+use assembly::Built;
+use bidir::film::Aov;
+use bidir::integrator::IntegratorKind;
+use bidir::sampler::SamplerKind;
+use bidir::scene::Scene;
+use log::Strictness;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+/// The contents of a scene file.
+pub(crate) trait Document {
+    /// A place in the file.
+    type Place: Clone;
+
+    /// The place of an error that concerns all of the scene.
+    const TOP: Self::Place;
+
+    /// The source of the scene's files.
+    fn files(&self) -> &Files;
+
+    /// Every file that the document may name, whether it is read or not.
+    fn named_files(&self) -> Vec<PathBuf>;
+
+    /// The text of a place, which begins with the name of the file.
+    fn text(&self, place: &Self::Place) -> String;
+
+    /// The error of a fault.
+    fn error(&self, fault: Fault<Self::Place>) -> Error;
+}
+
+/// A scene that was read, with its warnings and files.
+#[derive(Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub scene: Scene,
+    /// The settings of a render, by the file.
+    pub settings: SceneSettings,
+    /// The warnings, each as `place: message`. Places are `file:line:column` in pbrt,
+    /// and `file: meshes[0]` in glTF.
+    pub warnings: Vec<String>,
+    /// Those of the warnings that name the substitute of an unsupported feature.
+    pub refused: Vec<String>,
+    /// The parts of the scene.
+    pub summary: Summary,
+    /// The first lamps that no ray can hit.
+    pub lamps: Vec<Lamp>,
+    /// The identity of the scene.
+    pub digest: SceneDigest,
+    /// Every file that was read, by each name that it was asked for; the scene file is the first.
+    pub files: Vec<PathBuf>,
+    /// Every file on the disk that the scene reads or names: no output may replace it
+    /// ([`outputs`](crate::outputs)).
+    pub inputs: Vec<PathBuf>,
+}
+
+/// The settings of a render in a scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneSettings {
+    /// The estimator.
+    pub integrator: IntegratorKind,
+    /// The largest number of scattering events: 0 shows lights only, 1 adds direct light.
+    pub max_depth: u32,
+    /// The random numbers.
+    pub sampler: SamplerKind,
+    /// Samples per pixel.
+    pub samples_per_pixel: u32,
+    /// The seed. None: where the file gives none.
+    pub seed: Option<u64>,
+    /// The name of the image, as the file has it. None: where it gives none.
+    pub output: Option<String>,
+    /// The images that its film has beside the picture.
+    pub aovs: Vec<Aov>,
+}
+
+/// The parts of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Shapes as they are kept: those of shared objects count once.
+    pub shapes: usize,
+    /// Triangles, spheres and disks as they are kept: those of shared objects count once.
+    pub primitives: u64,
+    /// Places of objects.
+    pub instances: usize,
+    /// Materials.
+    pub materials: usize,
+    /// Textures.
+    pub textures: usize,
+    /// Shapes that emit.
+    pub area_lights: usize,
+    /// Lights that are no shapes.
+    pub other_lights: usize,
+}
+
+/// The means of a reader that fills an [`Assembly`].
+pub(crate) struct Context<'a, D: Document> {
+    pub(crate) document: &'a D,
+    pub(crate) options: &'a LoadOptions,
+    /// The space that everything is placed in.
+    pub(crate) layout: Layout,
+    pub(crate) log: Log<D::Place>,
+}
+
+impl<D: Document> Context<'_, D> {
+    /// Warns of something odd; the same message is counted.
+    pub(crate) fn warn(&mut self, place: D::Place, message: impl Into<String>) {
+        self.log.warn(place, message);
+    }
+
+    /// Refuses a feature that the renderer lacks, or accepts `substitute` with a warning.
+    pub(crate) fn unsupported(
+        &mut self,
+        place: D::Place,
+        feature: &str,
+        substitute: &str,
+    ) -> Result<(), Fault<D::Place>> {
+        self.log.unsupported(place, feature, substitute)
+    }
+
+    /// Builds something that nobody uses: it must not be wrong, but an unsupported feature is no
+    /// reason to refuse the scene, and needs no substitute. None: it is not supported.
+    pub(crate) fn unused<T>(
+        &mut self,
+        build: impl FnOnce(&mut Self) -> Result<T, Fault<D::Place>>,
+    ) -> Result<Option<T>, Fault<D::Place>> {
+        let strictness = self.log.set_strictness(Strictness::Strict);
+        let built = build(self);
+        self.log.set_strictness(strictness);
+        match built {
+            Err(fault) if fault.kind == ErrorKind::Unsupported => Ok(None),
+            built => built.map(Some),
+        }
+    }
+
+    /// Refuses more primitives, or vertices of meshes, than the caller wants, or than the files have
+    /// the bytes for.
+    pub(crate) fn check_size(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
+        let most = self.options.most_primitives(self.log.stored());
+        let message = format!("the scene has more than {most} primitives or vertices");
+        check(count <= most, place, message)
+    }
+
+    /// Refuses more shapes than the files have the bytes for: those that emit are kept at each place.
+    fn check_shapes(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
+        let most = limits::SHAPES.of(self.log.stored());
+        let message = format!("the scene has more than {most} shapes, counted at each place");
+        check(count <= most, place, message)
+    }
+}
+
+fn check<P: Clone>(is_within: bool, place: &P, message: String) -> Result<(), Fault<P>> {
+    if is_within {
+        return Ok(());
+    }
+    let fault = Fault::new(ErrorKind::Limit, place.clone(), message);
+    Err(fault.with_hint("instances share the memory of their object, unless it emits"))
+}
+
+/// Builds the scene that `gather` puts together.
+pub(crate) fn load<'a, D: Document>(
+    document: &'a D,
+    options: &'a LoadOptions,
+    log: Log<D::Place>,
+    gather: impl Fn(&mut Context<'a, D>) -> Result<Assembly<D::Place>, Fault<D::Place>>,
+) -> Result<Loaded> {
+    let mut context = Context {
+        document,
+        options,
+        layout: Layout::default(),
+        log,
+    };
+    let built = build(&mut context, gather).map_err(|fault| document.error(fault))?;
+    let text = |place: &D::Place| document.text(place);
+    let log = context.log;
+    let names: BTreeSet<_> = document
+        .named_files()
+        .into_iter()
+        .chain(log.files.clone())
+        .collect();
+    let is_from_disk = |name: &PathBuf| document.files().is_from_disk(name);
+    Ok(Loaded {
+        lamps: lamp::unhittable(&built.scene, &built.lamps, text),
+        scene: built.scene,
+        settings: built.settings,
+        warnings: log.texts(text, |_| true),
+        refused: log.texts(text, |message| log.substitutes.contains(message)),
+        summary: built.summary,
+        digest: log.digest.finish(),
+        inputs: names.into_iter().filter(is_from_disk).collect(),
+        files: log.files,
+    })
+}
+
+/// Gathers everything in the world, or once more where the layout of the scene places it.
+fn build<'a, D: Document>(
+    context: &mut Context<'a, D>,
+    gather: impl Fn(&mut Context<'a, D>) -> Result<Assembly<D::Place>, Fault<D::Place>>,
+) -> Result<Built<D::Place>, Fault<D::Place>> {
+    let log = context.log.clone();
+    let mut assembly = gather(context)?;
+    assembly.check_vertices()?;
+    let layout = assembly.layout();
+    if layout != context.layout {
+        drop(assembly);
+        context.layout = layout;
+        context.log = log;
+        assembly = gather(context)?;
+    }
+    assembly.finish(context)
+}

@@ -1,0 +1,75 @@
+//! A render that clients command: one thread renders one lane, or two side by side in equal time, pass
+//! by pass, and executes commands between passes. A command that makes a lane begin anew gives the
+//! running pass up at once.
+//!
+//! A lane has the picture that `bidir render` makes with the same settings, bit for bit: seeds are
+//! kept, and neither frames nor queries have influence.
+
+mod camera;
+mod controller;
+mod execute;
+mod save;
+mod slot;
+
+use crate::shared::{ClientHandle, RequestQueue};
+use bidir::driver::Settings;
+use bidir::path::PathRoulette;
+use bidir::scene::Scene;
+use bidir::settings::Choice;
+use controller::RenderController;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+/// The first settings of a lane, and those that stay as they are.
+#[derive(Debug)]
+pub struct InteractiveSettings {
+    /// The name of the scene file.
+    pub name: String,
+    /// The digest of the scene.
+    pub digest: String,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The settings of the first lane.
+    pub settings: Settings,
+    /// Russian roulette for any estimator. None: the default of each.
+    pub roulette: Option<Choice<PathRoulette>>,
+    /// Threads; 0 is one per processor.
+    pub threads: usize,
+    /// The number of passes. None: there is no end.
+    pub target: Option<u64>,
+    /// The folder that images are saved in.
+    pub folder: PathBuf,
+}
+
+/// A thread that renders.
+#[derive(Debug)]
+pub struct InteractiveRender {
+    thread: JoinHandle<Vec<String>>,
+    client: ClientHandle,
+}
+
+impl InteractiveRender {
+    /// Begins to render, as the requests of `queue` ask.
+    ///
+    /// Errors: no thread can be started.
+    pub fn open(settings: InteractiveSettings, queue: RequestQueue) -> std::io::Result<Self> {
+        let client = queue.handle();
+        let thread = std::thread::Builder::new()
+            .name("render".to_owned())
+            .spawn(move || RenderController::new(settings, queue).run())?;
+        Ok(Self { thread, client })
+    }
+
+    /// True where the thread has ended by itself, which is a bug.
+    pub fn is_finished(&self) -> bool {
+        self.thread.is_finished()
+    }
+
+    /// Gives the running pass up, and ends. Returns the names of the saved files; None: the thread
+    /// failed.
+    pub fn close(self) -> Option<Vec<String>> {
+        self.client.close();
+        self.thread.join().ok()
+    }
+}

@@ -1,0 +1,310 @@
+//! A render in the image viewer tev, by its protocol over TCP.
+//!
+//! A thread connects, again and again where nobody listens, and always sends the newest frame. The
+//! renderer develops a frame only where the thread waits for one and it is cheap; it never waits
+//! before the end, and then not long.
+
+use crate::frame::Frame;
+use crate::status::scene_name;
+use bidir::film::Film;
+use std::fmt;
+use std::io;
+use std::net::{Ipv6Addr, TcpStream, ToSocketAddrs};
+use std::num::NonZeroU16;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+use tev_client::{PacketCloseImage, PacketCreateImage, PacketUpdateImage, TevClient};
+use thiserror::Error;
+
+/// The port of tev.
+const PORT: u16 = 14158;
+/// The rendering time between two frames. Unit: the time that developing the last one took.
+const RENDERING_PER_FRAME: u32 = 50;
+/// The time that the last frame has to be sent.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// The time that each address of a host has to answer.
+const CONNECTING: Duration = Duration::from_millis(500);
+/// The addresses of a host that are tried.
+const ADDRESSES: usize = 4;
+/// The time until a host is tried again.
+const RETRY: Duration = Duration::from_secs(2);
+/// The time that tev may read nothing.
+const STALLED: Duration = Duration::from_secs(1);
+/// The least time between two frames.
+const SHORTEST_GAP: Duration = Duration::from_millis(250);
+/// The rest of the thread after a frame, as it takes time from the render. Unit: the time of sending.
+const REST_PER_FRAME: u32 = 40;
+/// The most numbers of a packet: large pictures go in bands of rows.
+const BAND: usize = 1 << 20;
+const CHANNELS: [&str; 3] = ["R", "G", "B"];
+
+/// The reason why tev does not show the last frame.
+#[derive(Debug, Error)]
+pub enum TevError {
+    /// There is no such host, or nobody listens.
+    #[error("cannot connect to {address}: {source}")]
+    Absent {
+        /// The address.
+        address: TevAddress,
+        /// The reason of the system.
+        source: io::Error,
+    },
+    /// The connection broke, or tev did not read.
+    #[error("{address} does not accept images: {source}")]
+    Broken {
+        /// The address.
+        address: TevAddress,
+        /// The reason of the system.
+        source: io::Error,
+    },
+    /// The last frame was not taken in time.
+    #[error("{address} did not take the last image within {} seconds", PATIENCE.as_secs())]
+    Late {
+        /// The address.
+        address: TevAddress,
+    },
+}
+
+/// A render that tev shows.
+pub struct Tev {
+    address: TevAddress,
+    frames: Sender<Frame>,
+    /// True where the thread waits for a frame.
+    is_wanted: Arc<AtomicBool>,
+    result: Receiver<Result<(), TevError>>,
+    /// Before this no frame is developed.
+    next: Instant,
+}
+
+impl Tev {
+    /// Begins to show a render of the scene file `scene` at `address`.
+    ///
+    /// Errors: the system gives no thread.
+    pub fn start(address: TevAddress, scene: &str) -> io::Result<Self> {
+        let (frames, received) = channel();
+        let (report, result) = channel();
+        let is_wanted = Arc::<AtomicBool>::default();
+        let mut thread = Thread {
+            address: address.clone(),
+            // Names end with a zero on their way.
+            image: scene_name(scene).replace('\0', "\u{fffd}"),
+            frames: received,
+            is_wanted: Arc::clone(&is_wanted),
+            next: None,
+            is_over: false,
+        };
+        thread::Builder::new()
+            .name("tev".to_owned())
+            // Without a receiver nobody is interested.
+            .spawn(move || drop(report.send(thread.run())))?;
+        Ok(Self {
+            address,
+            frames,
+            is_wanted,
+            result,
+            next: Instant::now(),
+        })
+    }
+
+    /// Shows `film` after a pass, where a frame is wanted and cheap.
+    pub fn add_pass(&mut self, film: &Film) {
+        let start = Instant::now();
+        if start >= self.next && self.is_wanted.swap(false, Ordering::Relaxed) {
+            // A thread that is gone has reported why.
+            let _ = self.frames.send(Frame::new(film));
+            let end = Instant::now();
+            self.next = end + (end - start) * RENDERING_PER_FRAME;
+        }
+    }
+
+    /// Shows the last frame, and waits a moment until it is sent.
+    ///
+    /// Errors: it is not.
+    pub fn end(self, film: &Film) -> Result<(), TevError> {
+        if film.passes().is_empty() {
+            return Ok(());
+        }
+        let _ = self.frames.send(Frame::new(film));
+        drop(self.frames);
+        let address = self.address;
+        let sent = self.result.recv_timeout(PATIENCE);
+        sent.unwrap_or(Err(TevError::Late { address }))
+    }
+}
+
+/// The thread that sends frames. It ends with [`Tev`], or with the program: nobody waits for a host
+/// that does not answer.
+struct Thread {
+    address: TevAddress,
+    image: String,
+    frames: Receiver<Frame>,
+    is_wanted: Arc<AtomicBool>,
+    /// A frame that is not sent yet.
+    next: Option<Frame>,
+    /// True where no frame will follow `next`.
+    is_over: bool,
+}
+
+impl Thread {
+    /// Sends frames until none will follow.
+    fn run(&mut self) -> Result<(), TevError> {
+        loop {
+            // A try that begins after the end is the last.
+            let is_last = self.is_over;
+            match self.connect().and_then(|stream| self.show(stream)) {
+                Err(_) if !is_last => self.rest(RETRY),
+                result => return result,
+            }
+        }
+    }
+
+    fn connect(&self) -> Result<TcpStream, TevError> {
+        let absent = |source| TevError::Absent {
+            address: self.address.clone(),
+            source,
+        };
+        let TevAddress { host, port } = &self.address;
+        let addresses = (host.as_str(), *port).to_socket_addrs().map_err(absent)?;
+        let mut failure = io::ErrorKind::AddrNotAvailable.into();
+        for address in addresses.take(ADDRESSES) {
+            match TcpStream::connect_timeout(&address, CONNECTING) {
+                Ok(stream) => return Ok(stream),
+                Err(error) => failure = error,
+            }
+        }
+        Err(absent(failure))
+    }
+
+    /// Sends frames to a connection until none will follow.
+    fn show(&mut self, stream: TcpStream) -> Result<(), TevError> {
+        self.send_all(stream).map_err(|source| TevError::Broken {
+            address: self.address.clone(),
+            source,
+        })
+    }
+
+    fn send_all(&mut self, stream: TcpStream) -> io::Result<()> {
+        stream.set_write_timeout(Some(STALLED))?;
+        let mut client = TevClient::wrap(stream);
+        let mut is_new = true;
+        while let Some(frame) = self.take() {
+            let start = Instant::now();
+            if let Err(error) = send(&mut client, &self.image, &frame, is_new) {
+                self.next = Some(frame);
+                return Err(error);
+            }
+            is_new = false;
+            self.rest((start.elapsed() * REST_PER_FRAME).max(SHORTEST_GAP));
+        }
+        Ok(())
+    }
+
+    /// Waits for a frame. None: no frame will come.
+    fn take(&mut self) -> Option<Frame> {
+        if self.next.is_none() && !self.is_over {
+            self.is_wanted.store(true, Ordering::Relaxed);
+            self.next = self.frames.recv().ok();
+        }
+        self.next.take()
+    }
+
+    /// Waits this long, or until the last frame comes: no other comes unasked.
+    fn rest(&mut self, at_most: Duration) {
+        if self.is_over {
+            return;
+        }
+        let last = self.frames.recv_timeout(at_most);
+        self.is_over = !matches!(last, Err(RecvTimeoutError::Timeout));
+        self.next = last.ok().or(self.next.take());
+    }
+}
+
+/// Sends a frame; the first one of a connection makes its image anew.
+fn send(client: &mut TevClient, image_name: &str, frame: &Frame, is_new: bool) -> io::Result<()> {
+    let [width, height] = frame.film.resolution;
+    if is_new {
+        client.send(PacketCloseImage { image_name })?;
+        client.send(PacketCreateImage {
+            image_name,
+            grab_focus: true,
+            width,
+            height,
+            channel_names: &CHANNELS,
+        })?;
+    }
+    let crop = &frame.film.crop;
+    let row = crop.width() as usize;
+    let rows = (BAND / (CHANNELS.len() * row)).max(1);
+    let mut y = crop.min[1];
+    for band in frame.pixels.chunks(rows * row) {
+        let height = (band.len() / row) as u32;
+        client.send(PacketUpdateImage {
+            image_name,
+            grab_focus: false,
+            channel_names: &CHANNELS,
+            channel_offsets: &[0, 1, 2],
+            channel_strides: &[3; 3],
+            x: crop.min[0],
+            y,
+            width: crop.width(),
+            height,
+            data: band.as_flattened(),
+        })?;
+        y += height;
+    }
+    Ok(())
+}
+
+/// The host and the port of tev: `127.0.0.1:14158`, `desk.example`, `[::1]:14158`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TevAddress {
+    host: String,
+    port: u16,
+}
+
+/// A text that is no address.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("expected HOST or HOST:PORT, such as 127.0.0.1:{PORT} or [::1]:{PORT}")]
+pub struct InvalidAddress;
+
+impl FromStr for TevAddress {
+    type Err = InvalidAddress;
+
+    fn from_str(text: &str) -> Result<Self, InvalidAddress> {
+        let is_v6 = |host: &str| host.parse::<Ipv6Addr>().is_ok();
+        let bracketed = text.strip_prefix('[').and_then(|rest| rest.split_once(']'));
+        let (host, port) = match bracketed.filter(|(host, _)| is_v6(host)) {
+            Some(parts) => parts,
+            // Without brackets colons are those of an address of version 6, or precede the port.
+            None if is_v6(text) => (text, ""),
+            None => text.split_at(text.find(':').unwrap_or(text.len())),
+        };
+        let is_part = |c: char| c.is_alphanumeric() || "-._%".contains(c);
+        let is_name = !host.is_empty() && host.chars().all(is_part);
+        let port = match port.strip_prefix(':') {
+            Some(number) => number.parse().map(NonZeroU16::get).ok(),
+            None => Some(PORT).filter(|_| port.is_empty()),
+        };
+        let host = Some(host).filter(|host| is_name || is_v6(host));
+        let (host, port) = host.zip(port).ok_or(InvalidAddress)?;
+        let host = host.to_owned();
+        Ok(Self { host, port })
+    }
+}
+
+impl fmt::Display for TevAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.host.contains(':') {
+            write!(f, "[{}]:{}", self.host, self.port)
+        } else {
+            write!(f, "{}:{}", self.host, self.port)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
