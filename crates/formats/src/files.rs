@@ -58,11 +58,6 @@ impl Files {
         }
     }
 
-    /// True where every name is looked for on the disk.
-    pub fn are_on_disk(&self) -> bool {
-        self.memory.is_empty() && self.others == Others::OnDisk
-    }
-
     /// True where this name is in memory.
     pub fn has_in_memory(&self, path: &Path) -> bool {
         self.memory.contains_key(path)

@@ -17,10 +17,13 @@ use bidir::names::nearest;
 use bidir::settings::Request;
 use claims::Names;
 use formats::scene::Files;
+use std::cell::Cell;
 use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
+/// The most bytes that repetition makes: a small file must not fill the memory.
+const MOST_REPEATED: usize = 64 << 20;
 /// Where no number of seeds is given.
 const SEEDS: u64 = 10;
 /// The keys of the whole description.
@@ -70,7 +73,13 @@ impl Experiment {
 
     /// The same, with scenes that may be in memory.
     pub(super) fn read_with(text: &str, file: &Path, memory: &Files) -> Result<Self> {
-        let mut top = Source { file, text }.parse()?;
+        let room = Cell::new(MOST_REPEATED);
+        let mut top = Source {
+            file,
+            text,
+            room: &room,
+        }
+        .parse()?;
         top.only(&TOP, &[])?;
         let mut defaults = Request::default();
         for (i, mut section) in top.sections("settings")?.into_iter().enumerate() {

@@ -13,6 +13,9 @@ use toml::de::{DeTable, DeValue};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
+/// The most combinations of one key: texts of a few bytes must not fill the memory.
+const MOST: usize = 10_000;
+
 /// Texts by the names that stand for them.
 pub(super) type Binding = Vec<(String, String)>;
 
@@ -20,19 +23,25 @@ impl Section<'_> {
     /// The tables that this one stands for: itself, where it has no `for`.
     pub(super) fn expanded(mut self) -> Result<Vec<Self>> {
         let bindings = self.bindings("for")?;
-        Ok(bindings.iter().map(|binding| self.bound(binding)).collect())
+        bindings.iter().map(|binding| self.bound(binding)).collect()
     }
 
     /// Every combination that the key `key` lists; a single empty one where there is no such key.
+    ///
+    /// Errors: there are more than [`MOST`].
     pub(super) fn bindings(&mut self, key: &str) -> Result<Vec<Binding>> {
         let Some(entry) = self.take(key) else {
             return Ok(vec![Binding::new()]);
         };
+        let too_many = entry.fault(format!("`{key}` makes more than {MOST} combinations"));
         let mut all = vec![Binding::new()];
         for (name, list) in entry.section()?.ordered() {
             let elements = list.list("a list")?;
             let elements = elements.into_iter().map(|element| binding(&name, element));
             let elements = elements.collect::<Result<Vec<_>>>()?;
+            if all.len() * elements.len() > MOST {
+                return Err(too_many);
+            }
             let with = |binding: &Binding| {
                 let more = elements.iter().map(|more| [binding.clone(), more.clone()]);
                 more.map(|parts| parts.concat()).collect::<Vec<_>>()
@@ -43,10 +52,15 @@ impl Section<'_> {
     }
 
     /// A copy with the texts of a binding in place of their names.
-    pub(super) fn bound(&self, binding: &Binding) -> Self {
+    ///
+    /// Errors: the copies of a description have more bytes than it may have.
+    pub(super) fn bound(&self, binding: &Binding) -> Result<Self> {
         let mut bound = self.clone();
         bound.table = bound_table(&self.table, binding);
-        bound
+        let room = &self.source.room;
+        let left = room.get().checked_sub(table_size(&bound.table));
+        room.set(left.ok_or_else(|| self.fault("repetition makes this description too large"))?);
+        Ok(bound)
     }
 }
 
@@ -78,6 +92,24 @@ fn bound_value<'a>(value: &Spanned<DeValue<'a>>, binding: &Binding) -> Spanned<D
     Spanned::new(value.span(), bound)
 }
 
+/// About the bytes that a table takes.
+fn table_size(table: &DeTable<'_>) -> usize {
+    let values = table.iter();
+    values
+        .map(|(key, value)| key.get_ref().len() + value_size(value.get_ref()))
+        .sum()
+}
+
+fn value_size(value: &DeValue<'_>) -> usize {
+    let content: usize = match value {
+        DeValue::String(text) => text.len(),
+        DeValue::Array(list) => list.iter().map(|one| value_size(one.get_ref())).sum(),
+        DeValue::Table(table) => table_size(table),
+        _ => 0,
+    };
+    size_of::<Spanned<DeValue<'_>>>() + content
+}
+
 fn bound_text<'a>(text: &Cow<'a, str>, binding: &Binding) -> Cow<'a, str> {
     let mut text = text.clone();
     for (name, value) in binding {
@@ -87,4 +119,53 @@ fn bound_text<'a>(text: &Cow<'a, str>, binding: &Binding) -> Cow<'a, str> {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::experiment::Experiment;
+    use std::path::Path;
+
+    fn read(method: &str) -> Result<Experiment, String> {
+        let head = "[[scene]]\nfile = \"a.pbrt\"\nreference-spp = 1\n[[budget]]\nsamples = 1\n";
+        let text = [head, "[[method]]\n", method].concat();
+        Experiment::read(&text, Path::new("a.toml")).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_table_stands_for_every_combination() {
+        let text =
+            "for.b = [\"x\", { b = \"y\", c = 3 }]\nfor.a = [1, 2]\nname = \"{b}{a}{c} {d}\"";
+        let experiment = read(text).unwrap();
+        let names: Vec<_> = experiment.methods.iter().map(|m| m.name.as_str()).collect();
+        assert_eq!(names, ["x1{c} {d}", "x2{c} {d}", "y13 {d}", "y23 {d}"]);
+    }
+
+    #[test]
+    fn copies_are_limited() {
+        let numbers: Vec<_> = (0..9000).map(|n| n.to_string()).collect();
+        let text = format!(
+            "for.a = [{}]\nname = \"{{a}}{}\"",
+            numbers.join(", "),
+            "x".repeat(9000)
+        );
+        let error = read(&text).unwrap_err();
+        assert!(
+            error.ends_with("repetition makes this description too large"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn combinations_are_limited_and_lists_are_lists() {
+        let list = "[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]";
+        let keys = ["a", "b", "c", "d", "e"].map(|key| format!("for.{key} = {list}\n"));
+        let error = read(&keys.concat()).unwrap_err();
+        assert!(
+            error.ends_with("`for` makes more than 10000 combinations"),
+            "{error}"
+        );
+        let error = read("for.a = 3\nname = \"{a}\"").unwrap_err();
+        assert!(error.ends_with("a.toml:7:9: expected a list"), "{error}");
+    }
 }

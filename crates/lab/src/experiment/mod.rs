@@ -156,8 +156,8 @@ pub struct SceneSpec {
     pub file: String,
     /// Where the file is.
     pub path: PathBuf,
-    /// Where files are looked for: on the disk, or in memory.
-    pub files: Files,
+    /// Where its files come from.
+    pub source: SceneSource,
     /// Width and height of its images, instead of those of the experiment or of the scene.
     pub size: Option<[u32; 2]>,
     /// What its images are compared with.
@@ -166,6 +166,17 @@ pub struct SceneSpec {
     pub presence: Presence,
     /// Where a description names the file, and the reference that is there. None: it does not.
     pub places: [Option<Place>; 2],
+}
+
+/// Where the files of a scene come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneSource {
+    /// The disk.
+    Disk,
+    /// Memory.
+    Memory(Files),
+    /// A room, which is made when the scene is loaded.
+    Room(Room),
 }
 
 /// Whether a scene may be left out.

@@ -14,6 +14,7 @@ use crate::results::{Pyramid, StrategyInfo};
 use bidir::driver::Session;
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
+use formats::scene::Files;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
@@ -144,7 +145,7 @@ impl Work<'_> {
             size: Some(resolution.map(|side| small(side) as u32)),
             ..self.stage.spec.clone()
         };
-        let stage = Stage::load(self.experiment, &spec, &spec.files)?;
+        let stage = Stage::load(self.experiment, &spec, &Files::default())?;
         Work {
             stage: &stage,
             ..*self

@@ -5,6 +5,7 @@
 
 use super::error::{ExperimentError, Fault, Place};
 use bidir::names::nearest;
+use std::cell::Cell;
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
@@ -18,6 +19,8 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
     pub(super) text: &'a str,
+    /// Bytes that repetition may still make.
+    pub(super) room: &'a Cell<usize>,
 }
 
 impl<'a> Source<'a> {
@@ -58,7 +61,7 @@ impl<'a> Source<'a> {
 /// A table.
 #[derive(Clone, Debug)]
 pub(super) struct Section<'a> {
-    source: Source<'a>,
+    pub(super) source: Source<'a>,
     /// Its head.
     place: Range<usize>,
     /// The entries that nobody has taken.

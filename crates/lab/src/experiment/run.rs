@@ -14,6 +14,7 @@ use super::{Absent, Experiment, MethodSpec, contributions};
 use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
 use bidir::integrator::{LostLight, lost_light};
 use bidir::scene::Isa;
+use formats::scene::Files;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -197,7 +198,7 @@ pub(super) fn begin<'a>(
     let stages = experiment
         .scenes
         .iter()
-        .map(|spec| Stage::load(experiment, spec, &spec.files));
+        .map(|spec| Stage::load(experiment, spec, &Files::default()));
     let stages = stages.collect::<Result<Vec<_>>>()?;
     for warning in stages.iter().flat_map(|stage| &stage.warnings) {
         observer.tell(Event::Warning(warning));

@@ -2,7 +2,7 @@
 
 use super::error::{ExperimentError, Place};
 use super::run::{Event, Observer};
-use super::{Experiment, MethodSpec, SceneSpec};
+use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
@@ -55,12 +55,13 @@ impl<'a> Stage<'a> {
         spec: &'a SceneSpec,
         files: &Files,
     ) -> Result<Self, ExperimentError> {
-        // Files in memory are the same on every machine.
-        let files = if spec.files.are_on_disk() {
-            files
-        } else {
-            &spec.files
+        // A room and files in memory are the same on every machine.
+        let own = match &spec.source {
+            SceneSource::Disk => None,
+            SceneSource::Memory(files) => Some(files.clone()),
+            SceneSource::Room(room) => Some(room.files()),
         };
+        let files = own.as_ref().unwrap_or(files);
         let options = LoadOptions {
             resolution: spec.size.or(experiment.size),
             ..LoadOptions::default()
@@ -86,7 +87,7 @@ impl<'a> Stage<'a> {
 
     /// The files that another machine needs to be given: none of those in memory.
     pub(super) fn shared_files(&self) -> Vec<PathBuf> {
-        if self.spec.files.are_on_disk() {
+        if self.spec.source == SceneSource::Disk {
             self.files.clone()
         } else {
             Vec::new()

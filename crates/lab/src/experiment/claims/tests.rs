@@ -1,7 +1,7 @@
 //! Claims and tables of made-up records.
 
 use super::*;
-use crate::experiment::{BUILTIN, ExperimentError};
+use crate::experiment::{BUILTIN, ExperimentError, SceneSource, SceneSpec};
 use crate::results::{
     BudgetInfo, Cell, Contributions, FORMAT, Machine, Rays, Record, Results, SceneInfo, Table,
     Verdict,
@@ -395,7 +395,8 @@ fn built_in_descriptions_are_whole() {
         (paper.methods.len(), paper.scenes.len(), paper.claims.len()),
         (27, 17, 41)
     );
-    assert!(paper.scenes.iter().all(|scene| !scene.files.are_on_disk()));
+    let is_inside = |scene: &SceneSpec| scene.source != SceneSource::Disk;
+    assert!(paper.scenes.iter().all(is_inside));
     let expected: BTreeSet<_> = paper.claims.iter().map(|claim| &claim.id).collect();
     assert_eq!(expected.len(), 41);
     assert_eq!(beyond.claims.len(), 8 + 2 + 9);

@@ -158,7 +158,7 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
 
 /// A number of a claim, with its name.
 fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(String, Quantity)> {
-    let mut section = section.bound(binding);
+    let mut section = section.bound(binding)?;
     let name = text_of(&mut section, "part")?;
     let quantity = quantity(&mut section, names)?;
     let usual = || format!("{}, {}", quantity.method, quantity.scene);
@@ -202,7 +202,7 @@ fn table(section: &mut Section<'_>, names: &Names, claims: &[ClaimSpec]) -> Resu
     let mut rows = Vec::new();
     for binding in &bindings {
         let (heads, cells): (Vec<_>, Vec<_>) =
-            row(section.bound(binding), names)?.into_iter().unzip();
+            row(section.bound(binding)?, names)?.into_iter().unzip();
         columns = heads;
         rows.push(cells);
     }

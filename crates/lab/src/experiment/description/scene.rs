@@ -3,7 +3,7 @@
 use super::super::error::{ExperimentError, Place};
 use super::super::names::value_of;
 use super::super::reader::{Entry, Section};
-use super::super::{Absent, Lamp, Presence, ReferenceSpec, Room, SceneSpec};
+use super::super::{Absent, Lamp, Presence, ReferenceSpec, Room, SceneSource, SceneSpec};
 use super::{or, size, text_of};
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
@@ -41,7 +41,7 @@ pub(super) fn all(
     let read = |section: &mut Section<'_>| {
         let mut scene = scene(section, folder, defaults)?;
         if memory.has_in_memory(&scene.path) {
-            scene.files = memory.clone();
+            scene.source = SceneSource::Memory(memory.clone());
         }
         Ok(scene)
     };
@@ -66,7 +66,7 @@ fn absence(scene: &SceneSpec) -> Option<String> {
     if let Some(variable) = variable(&scene.path) {
         return Some(format!("{variable} is not set"));
     }
-    let is_there = !scene.files.are_on_disk() || scene.path.is_file();
+    let is_there = scene.source != SceneSource::Disk || scene.path.is_file();
     (!is_there).then(|| format!("there is no file {}", scene.path.display()))
 }
 
@@ -85,12 +85,12 @@ fn with_variable(file: &str) -> PathBuf {
     }
 }
 
-/// Where a scene comes from.
+/// The file of a scene, or the room in its place.
 struct Source {
     /// The file, as messages and results call it.
     file: String,
     path: PathBuf,
-    files: Files,
+    source: SceneSource,
     /// Where the description names the file. None: it is a room.
     place: Option<Place>,
 }
@@ -101,7 +101,7 @@ impl Source {
         Ok(Self {
             file: room.name().display().to_string(),
             path: room.name(),
-            files: room.files(),
+            source: SceneSource::Room(room),
             place: None,
         })
     }
@@ -119,7 +119,7 @@ impl Source {
         Ok(Self {
             file,
             path,
-            files: Files::default(),
+            source: SceneSource::Disk,
             place: Some(entry.at()),
         })
     }
@@ -143,7 +143,7 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result
     Ok(SceneSpec {
         name,
         path: source.path,
-        files: source.files,
+        source: source.source,
         size,
         reference,
         file: source.file,
