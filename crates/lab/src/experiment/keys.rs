@@ -1,6 +1,7 @@
 //! Every key of a description, as docs/reference/experiments.md lists them. Tests compare the list with the
 //! reader and with the page.
 
+use super::claims::figure_names;
 use super::{Experiment, ExperimentError, names as settings};
 use crate::metric::Metric;
 use std::fmt::Write;
@@ -126,6 +127,7 @@ const PAGE: &str = concat!(
     "/../../docs/reference/experiments.md"
 );
 const BEGIN: &str = "<!-- generated: experiment keys -->\n";
+const MEASURES: &str = "<!-- generated: measures -->\n";
 const END: &str = "<!-- end -->\n";
 
 /// A description with a line more in one of its tables.
@@ -239,15 +241,28 @@ fn list() -> String {
     text + "\n"
 }
 
-/// `BIDIR_WRITE_PAGES=1` writes the list into the page.
+/// The measures that are no metric, as the page has them.
+fn measures() -> String {
+    let names = figure_names()
+        .into_iter()
+        .map(|name| format!("- `{name}`\n"));
+    format!("\n{}\n", names.collect::<String>())
+}
+
 #[test]
-fn the_page_lists_every_key() {
+fn the_page_lists_every_key_and_measure() {
+    check_page(BEGIN, &list());
+    check_page(MEASURES, &measures());
+}
+
+/// Compares a generated part of the page with its source; `BIDIR_WRITE_PAGES=1` writes it.
+#[track_caller]
+fn check_page(begin: &str, expected: &str) {
     let text = fs::read_to_string(PAGE).unwrap();
-    let (before, rest) = text.split_once(BEGIN).unwrap();
+    let (before, rest) = text.split_once(begin).unwrap();
     let (found, after) = rest.split_once(END).unwrap();
-    let expected = list();
     if env::var_os("BIDIR_WRITE_PAGES").is_some() {
-        fs::write(PAGE, [before, BEGIN, &expected, END, after].concat()).unwrap();
+        fs::write(PAGE, [before, begin, expected, END, after].concat()).unwrap();
     } else {
         let how = "BIDIR_WRITE_PAGES=1 cargo test --release -p bidir-lab --lib keys";
         assert!(

@@ -168,6 +168,15 @@ impl FromStr for Measure {
     }
 }
 
+/// The names of all measures that are no metric.
+#[cfg(test)]
+pub(in super::super) fn figure_names() -> Vec<String> {
+    let all = all().into_iter();
+    let figures = all
+        .filter(|(_, measure)| matches!(measure, Measure::Figure(_) | Measure::Contributions(_)));
+    figures.map(|(name, _)| name).collect()
+}
+
 /// All measures with their names.
 fn all() -> Vec<(String, Measure)> {
     let metrics = Metric::NAMES.into_iter().flat_map(|(name, metric)| {

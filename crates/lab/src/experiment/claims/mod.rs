@@ -31,6 +31,8 @@ mod table;
 mod tests;
 
 pub use judge::Findings;
+#[cfg(test)]
+pub(super) use measure::figure_names;
 pub use measure::{Cost, Measure};
 
 use super::Experiment;
