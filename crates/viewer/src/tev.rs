@@ -193,7 +193,12 @@ impl Thread {
         let mut is_new = true;
         while let Some(frame) = self.take() {
             let start = Instant::now();
-            if let Err(error) = send(&mut client, &self.image, &frame, is_new) {
+            let made = if is_new {
+                make_image(&mut client, &self.image, &frame)
+            } else {
+                Ok(())
+            };
+            if let Err(error) = made.and_then(|()| send(&mut client, &self.image, &frame)) {
                 self.next = Some(frame);
                 return Err(error);
             }
@@ -223,19 +228,21 @@ impl Thread {
     }
 }
 
-/// Sends a frame; the first one of a connection makes its image anew.
-fn send(client: &mut TevClient, image_name: &str, frame: &Frame, is_new: bool) -> io::Result<()> {
+/// Makes the image of `frame` anew.
+fn make_image(client: &mut TevClient, image_name: &str, frame: &Frame) -> io::Result<()> {
     let [width, height] = frame.film.resolution;
-    if is_new {
-        client.send(PacketCloseImage { image_name })?;
-        client.send(PacketCreateImage {
-            image_name,
-            grab_focus: true,
-            width,
-            height,
-            channel_names: &CHANNELS,
-        })?;
-    }
+    client.send(PacketCloseImage { image_name })?;
+    client.send(PacketCreateImage {
+        image_name,
+        grab_focus: true,
+        width,
+        height,
+        channel_names: &CHANNELS,
+    })
+}
+
+/// Sends the pixels of `frame`, in bands.
+fn send(client: &mut TevClient, image_name: &str, frame: &Frame) -> io::Result<()> {
     let crop = &frame.film.crop;
     let row = crop.width() as usize;
     let rows = (BAND / (CHANNELS.len() * row)).max(1);

@@ -9,7 +9,7 @@
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Where something stands in one of the file's arrays.
+/// An index into one of the arrays of the file.
 pub(super) type Index = usize;
 
 macro_rules! object {

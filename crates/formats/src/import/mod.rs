@@ -167,22 +167,22 @@ impl<D: Document> Context<'_, D> {
     /// the bytes for.
     pub(crate) fn check_size(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
         let most = self.options.most_primitives(self.log.stored());
-        let message = format!("the scene has more than {most} primitives or vertices");
-        check(count <= most, place, message)
+        check(count, most, "primitives or vertices", place)
     }
 
     /// Refuses more shapes than the files have the bytes for: those that emit are kept at each place.
     fn check_shapes(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
         let most = limits::SHAPES.of(self.log.stored());
-        let message = format!("the scene has more than {most} shapes, counted at each place");
-        check(count <= most, place, message)
+        check(count, most, "shapes, counted at each place", place)
     }
 }
 
-fn check<P: Clone>(is_within: bool, place: &P, message: String) -> Result<(), Fault<P>> {
-    if is_within {
+/// Refuses a scene that has more than `most` of something.
+fn check<P: Clone>(count: u64, most: u64, things: &str, place: &P) -> Result<(), Fault<P>> {
+    if count <= most {
         return Ok(());
     }
+    let message = format!("the scene has more than {most} {things}");
     let fault = Fault::new(ErrorKind::Limit, place.clone(), message);
     Err(fault.with_hint("instances share the memory of their object, unless it emits"))
 }

@@ -209,6 +209,7 @@ fn versions_and_missing_files() {
     let text = serde_json::to_vec(&draft.json).unwrap();
     let error = load_bytes("a.gltf", &text, &LoadOptions::default()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::MissingFile);
+    assert!(error.has_place(), "{error}");
     assert!(
         error
             .to_string()

@@ -77,7 +77,7 @@ impl<'a> Materials<'a> {
                 reader.finish()?;
                 return Ok(None);
             }
-            _ => return stand_in(context, textures, entity),
+            _ => return substitute(context, textures, entity),
         };
         let relief = relief(context, textures, &mut reader)?;
         reader.finish()?;
@@ -356,13 +356,13 @@ fn roughness(
 
 /// What is accepted in place of a material that is not built yet. Its own parameters are not
 /// looked through.
-fn stand_in(
+fn substitute(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
     entity: &Entity,
 ) -> Result<Option<Material>, Fault> {
     let what = format!("the material `{}`", entity.kind);
-    let mut accept = |stand_in| context.unsupported(entity.span, &what, stand_in);
+    let mut accept = |substitute| context.unsupported(entity.span, &what, substitute);
     let mut reader = Reader::new(entity);
     if entity.kind == "subsurface" {
         accept("`diffuse` with its reflectance is used instead")?;

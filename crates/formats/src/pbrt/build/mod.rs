@@ -31,7 +31,7 @@ use crate::error::Result;
 use crate::files::Files;
 use crate::import::{self, LoadOptions, Loaded, SharedObject, Size, Survey};
 use crate::source::{Fault, Span};
-use bidir::scene::MaterialId;
+use bidir::scene::{Emission, MaterialId};
 use bidir::shape::Shape;
 use context::Context;
 use emission::AreaEmission;
@@ -147,17 +147,8 @@ impl<'a> Builder<'a> {
             Some(entity) => Some(self.emission(context, entity)?),
             None => None,
         };
-        let copies = match destination {
-            Destination::World(places) => places.len() as u64,
-            Destination::Object(_) => 1,
-        };
         let emission = emission.as_deref();
-        let parts = emission.map_or(1, |emission| emission.part_count(&geometry));
-        let size = Size {
-            primitives: geometry.primitives() * copies,
-            vertices: geometry.vertices() * copies,
-            shapes: parts * copies,
-        };
+        let size = size(&geometry, emission, destination);
         self.assembly.count(context, size, &span)?;
         let error = geometry.vertex_error(&shape.transforms.start.matrix3);
         self.assembly.add_error(&span, error);
@@ -188,15 +179,20 @@ impl<'a> Builder<'a> {
         &mut self,
         shape: Shape,
         emission: Option<&AreaEmission>,
-    ) -> Result<Vec<(Shape, Option<bidir::scene::Emission>)>, Fault> {
+    ) -> Result<Vec<(Shape, Option<Emission>)>, Fault> {
         let Some(emission) = emission else {
             return Ok(vec![(shape, None)]);
         };
         self.assembly.builder.light_group(emission.group.as_deref());
-        let parts = emission.parts(shape).into_iter();
-        let with_emission =
-            parts.map(|part| emission.of(&part).map(|of_part| (part, Some(of_part))));
-        with_emission.collect()
+        let with_emission = |part| {
+            let emission = emission.of(&part)?;
+            Ok((part, Some(emission)))
+        };
+        emission
+            .parts(shape)
+            .into_iter()
+            .map(with_emission)
+            .collect()
     }
 
     /// Reads the emission of a shape. Shapes that follow an `AreaLightSource` share it, and its image.
@@ -224,6 +220,24 @@ impl<'a> Builder<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// The size of a shape with its copies.
+fn size(
+    geometry: &Geometry,
+    emission: Option<&AreaEmission>,
+    destination: Destination<'_>,
+) -> Size {
+    let copies = match destination {
+        Destination::World(places) => places.len() as u64,
+        Destination::Object(_) => 1,
+    };
+    let parts = emission.map_or(1, |emission| emission.part_count(geometry));
+    Size {
+        primitives: geometry.primitives() * copies,
+        vertices: geometry.vertices() * copies,
+        shapes: parts * copies,
     }
 }
 

@@ -16,8 +16,8 @@ impl Builder<'_> {
         self.assembly.summary.instances = description.instances.len();
         for instance in &description.instances {
             if instance.transforms.is_animated() {
-                let stand_in = "its first position is used";
-                context.unsupported(instance.span, "a moving object", stand_in)?;
+                let substitute = "its first position is used";
+                context.unsupported(instance.span, "a moving object", substitute)?;
             }
         }
         let mut instances = vec![Vec::new(); description.objects.len()];

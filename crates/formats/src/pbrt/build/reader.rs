@@ -196,13 +196,13 @@ impl<'a> Reader<'a> {
         &mut self,
         context: &mut Context<'_>,
         (kind, name): (ParameterType, &'static str),
-        stand_in: &str,
+        substitute: &str,
     ) -> Result<(), Fault> {
         match self.find(kind, name) {
             None => Ok(()),
             Some(parameter) => {
                 let what = format!("the parameter `{} {name}`", kind.word());
-                context.unsupported(parameter.span, &what, stand_in)
+                context.unsupported(parameter.span, &what, substitute)
             }
         }
     }

@@ -114,12 +114,16 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
         "lightpath" => IntegratorKind::Light,
         name => {
             // The parameters of another method do not apply to the substitute.
-            let stand_in = match name {
+            let substitute = match name {
                 "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
                 _ => ("`path` is used instead", IntegratorKind::Path),
             };
-            context.unsupported(entity.span, &format!("the integrator `{name}`"), stand_in.0)?;
-            return Ok((stand_in.1, max_depth));
+            context.unsupported(
+                entity.span,
+                &format!("the integrator `{name}`"),
+                substitute.0,
+            )?;
+            return Ok((substitute.1, max_depth));
         }
     };
     if entity.kind != "lightpath" {

@@ -112,7 +112,7 @@ struct Class<'t, 'a> {
 }
 
 impl Class<'_, '_> {
-    /// None: something else stands in for what is not supported.
+    /// None: the class is not supported, and has a substitute.
     fn source<T: Element>(
         &mut self,
         context: &mut Context<'_>,

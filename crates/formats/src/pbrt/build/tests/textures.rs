@@ -85,7 +85,7 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
 }
 
 #[test]
-fn a_stand_in_is_counted_once_however_often_it_is_used() {
+fn a_substitute_is_counted_once_however_often_it_is_used() {
     let loaded = load_text(
         "WorldBegin\nTexture \"dots\" \"spectrum\" \"ptex\"\n\
          Material \"diffuse\" \"texture reflectance\" \"dots\" Shape \"sphere\"\n\
