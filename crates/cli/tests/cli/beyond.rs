@@ -126,3 +126,32 @@ fn an_extent_stands_for_that_of_a_description() {
             .contains("32 samples")
     );
 }
+
+/// Small: nothing can be concluded, but every claim whose scenes are rendered is judged.
+#[test]
+fn the_paper_is_judged_claim_by_claim() {
+    let place = Workplace::new();
+    let mut command = place.command(
+        "experiment paper -o out --quick --size 8x6 --seeds 2 --rays 20 --reference-spp 16 --threads 2",
+    );
+    let scenes = "A,B,apartment,albedo 0.3,albedo 0.5,albedo 0.7,albedo 0.8";
+    command.args(["--scenes", scenes]);
+    Ran::of(&mut command).expect(0).prints("Verdicts.");
+    let results: Value = serde_json::from_str(&place.read("out/results.json")).unwrap();
+    let claims = results["claims"].as_array().unwrap();
+    let open = claims
+        .iter()
+        .filter(|claim| claim["verdict"] == "not-measured");
+    let open: Vec<_> = open.map(|claim| claim["id"].as_str().unwrap()).collect();
+    let expected = [
+        "section-4-complexity-direct",
+        "section-4-complexity-indirect",
+    ];
+    assert_eq!((claims.len(), &open[..]), (41, &expected[..]));
+    let shown = results["pyramids"].as_array().unwrap().iter();
+    let shown: Vec<_> = shown
+        .map(|found| found["scene"].as_str().unwrap())
+        .collect();
+    assert_eq!(shown, ["A", "B", "apartment"]);
+    assert_eq!(results["contributions"].as_array().unwrap().len(), 6);
+}
