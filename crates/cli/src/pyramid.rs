@@ -1,5 +1,5 @@
-//! `bidir render --pyramid DIR`: what each strategy (s, t) does, weighted and raw, as layers of one
-//! EXR and as contact sheets ([`lab::pyramid`]).
+//! `bidir render --pyramid DIR`: the image of each strategy (s, t), weighted and raw, as layers of one EXR
+//! and as contact sheets ([`lab::pyramid`]).
 
 use crate::exit::Failure;
 use crate::film_header;
@@ -17,20 +17,20 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// The files in `folder`.
+    /// Returns the files in `folder`.
     pub(crate) fn new(folder: &Path) -> Self {
         let [exr, weighted, raw] =
             ["pyramid.exr", "weighted.png", "raw.png"].map(|name| folder.join(name));
         Self { exr, weighted, raw }
     }
 
-    /// All of them.
+    /// Returns all files.
     pub(crate) fn all(&self) -> [&PathBuf; 3] {
         [&self.exr, &self.weighted, &self.raw]
     }
 }
 
-/// Makes the folder of a pyramid where there is none; the one that it is in has to be there.
+/// Creates the folder of a pyramid if it does not exist; its parent has to exist.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     if folder.is_dir() {
         return Ok(());
@@ -38,7 +38,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir(folder).map_err(|error| Failure::io(folder, "make", &error))
 }
 
-/// Writes what `film`, which has this header, keeps of strategies.
+/// Writes the images of strategies in `film`, which has this header.
 pub(crate) fn write(files: &Files, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
     let metadata = film_header::metadata(header);
     scene_io::write_exr(&files.exr, film.settings(), &developed(film), &metadata)?;
@@ -49,7 +49,7 @@ pub(crate) fn write(files: &Files, film: &Film, header: &FilmHeader) -> Result<(
     Ok(())
 }
 
-/// The picture with the images of strategies alone.
+/// Returns the picture with the images of strategies as its only layers.
 fn developed(film: &Film) -> Developed {
     let layers = film.layers();
     let names = layers.part_names().enumerate();

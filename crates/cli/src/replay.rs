@@ -1,4 +1,4 @@
-//! `bidir render --replay`: one sample again, told step by step.
+//! `bidir render --replay`: repeats one sample, and prints every step.
 
 use crate::args::{RenderArgs, ReplayTarget};
 use crate::console::{print, print_json, say};
@@ -10,7 +10,7 @@ use bidir::scene::Scene;
 use lab::sample::SampleReport;
 use std::path::PathBuf;
 
-/// Fails now rather than after a scene was read where the drawing could not be written.
+/// Checks, before the scene is read, that the drawing can be written.
 pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
     let Some(path) = &args.svg else {
         return Ok(());
@@ -23,13 +23,13 @@ pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
     output::check_file("--svg", path)
 }
 
-/// Fails where the drawing would replace one of `inputs`.
+/// Checks that the drawing replaces none of `inputs`.
 pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
     let drawing = args.svg.as_deref().map(|path| ("--svg", path));
     scene_io::check_apart(inputs, drawing.as_slice())
 }
 
-/// Repeats a sample and prints what it did.
+/// Repeats a sample and prints its report.
 pub(crate) fn run(
     args: &RenderArgs,
     scene: &Scene,
@@ -45,18 +45,18 @@ pub(crate) fn run(
         Failure::usage(format!("the pixel {x},{y} is not rendered")).with_hint(hint)
     })?;
     let report = SampleReport::new(session, target.pixel, target.pass, &replay);
-    let told = if args.json {
+    let printed = if args.json {
         print_json(&report)
     } else {
         print(&report.to_string())
     };
     let Some(path) = &args.svg else {
-        return told;
+        return printed;
     };
     let name = args.scene.scene.display().to_string();
     scene_io::write_text(path, &report.drawing(scene, &name))?;
     if !args.output.talk.quiet {
         say(format_args!("wrote {}", path.display()));
     }
-    told
+    printed
 }
