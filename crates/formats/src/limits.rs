@@ -1,15 +1,15 @@
-//! The limits of what is read. docs/reference/limits.md has them for users, written by a test.
+//! The limits of readers. A test writes them to docs/reference/limits.md.
 //!
-//! Memory and time follow the bytes that files have on the disk, so that a small file cannot ask for
-//! much. What a few bytes may stand for, such as packed texts, inclusions, subdivision and even
-//! images, has an [`Allowance`]: a part that is free, and so much more for every byte.
+//! Memory and time are bounded by the size of files on the disk, so that a small file cannot demand much.
+//! Features that expand a few bytes, such as packed texts, inclusions, subdivision and even images, have
+//! an [`Allowance`]: a free part, and more for every byte.
 
-/// How much files of a given size may stand for.
+/// A limit that grows with the size of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Allowance {
-    /// For files of any size.
+    /// The limit for files of any size.
     pub(crate) free: u64,
-    /// More for every byte that the files have on the disk, packed.
+    /// The addition for every byte that the files have on the disk, packed.
     pub(crate) per_byte: u64,
 }
 
@@ -18,7 +18,7 @@ impl Allowance {
         Self { free, per_byte }
     }
 
-    /// How much files of `stored` bytes may stand for.
+    /// Returns the limit for files of `stored` bytes.
     pub(crate) const fn of(self, stored: u64) -> u64 {
         self.free
             .saturating_add(self.per_byte.saturating_mul(stored))

@@ -1,4 +1,4 @@
-//! Counts the shapes and vertices of a scene against the limits, before they are made.
+//! Counts the shapes and vertices of a scene, and checks the limits before they are made.
 
 use super::Assembly;
 use super::context::Context;
@@ -9,7 +9,7 @@ use crate::source::{Fault, Span};
 use std::sync::Arc;
 
 impl Assembly<'_> {
-    /// Counts a shape that goes to so many places.
+    /// Counts a shape with its number of places.
     pub(super) fn count(
         &mut self,
         context: &Context<'_>,
@@ -24,7 +24,7 @@ impl Assembly<'_> {
         context.check_shapes(self.summary.shapes as u64 + parts * copies, span)
     }
 
-    /// Reads what a shape emits. Shapes that follow an `AreaLightSource` share it, and its image.
+    /// Reads the emission of a shape. Shapes that follow an `AreaLightSource` share it, and its image.
     pub(super) fn emission(
         &mut self,
         context: &mut Context<'_>,

@@ -13,7 +13,7 @@ use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::film::{Aov, FilmSettings, PixelRect};
 
-/// The part of a film that is rendered.
+/// The rendered part of a film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Crop {
     /// Left, right, top and bottom as fractions of the film.
@@ -41,20 +41,20 @@ impl Crop {
     }
 }
 
-/// A film with what its description says beside.
+/// A film with the other properties of its description.
 pub(super) struct BuiltFilm {
     /// The film.
     pub(super) settings: FilmSettings,
-    /// Width and height as the file has them: the view of the camera goes by them, so that another
-    /// size shows the same picture.
+    /// Width and height in the file, which determine the camera's view, so that another size shows the same
+    /// picture.
     pub(super) own_resolution: [u32; 2],
     /// The name of the image.
     pub(super) output: Option<String>,
-    /// The images that it has beside the picture.
+    /// The layers.
     pub(super) aovs: Vec<Aov>,
 }
 
-/// Builds the film that is exposed by `camera`.
+/// Builds the film of `camera`.
 pub(super) fn build(
     context: &mut Context<'_>,
     camera: &CameraSettings,
@@ -93,7 +93,7 @@ pub(super) fn build(
     })
 }
 
-/// The film of a scene that describes none.
+/// Returns the film of a scene without one.
 fn default_film() -> FilmDescription {
     FilmDescription {
         entity: Entity {
@@ -105,7 +105,7 @@ fn default_film() -> FilmDescription {
     }
 }
 
-/// Width and height: those that the caller asks for, else the file's `own`.
+/// Returns width and height: those of the caller's options, else the file's `own`.
 fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 2], Fault> {
     let [width, height] = context.options.resolution.unwrap_or(own);
     let sides = 1..=LARGEST_SIDE;
@@ -117,7 +117,7 @@ fn resolution(context: &Context<'_>, span: Span, own: [u32; 2]) -> Result<[u32; 
     Err(Fault::new(ErrorKind::Limit, span, message))
 }
 
-/// What light is multiplied by.
+/// Returns the exposure, a factor on light.
 fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fault> {
     let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
     let exposure = camera.exposure_time * iso / 100.0;
@@ -132,7 +132,7 @@ fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fau
     Err(Fault::scene(span, message))
 }
 
-/// The pixels that are rendered: those that the caller asks for, else the file's.
+/// Returns the rendered pixels: those of the caller's options, else the file's.
 fn crop(
     context: &Context<'_>,
     reader: &mut Reader<'_>,
@@ -140,15 +140,15 @@ fn crop(
     resolution: [u32; 2],
 ) -> Result<PixelRect, Fault> {
     let described = read_crop(reader, own, resolution)?;
-    let asked = context.options.crop;
-    let crop = asked
+    let requested = context.options.crop;
+    let crop = requested
         .or(described)
         .unwrap_or(Crop::WHOLE)
         .pixels(resolution);
     if crop.area() > 0 {
         return Ok(crop);
     }
-    if asked.is_none() {
+    if requested.is_none() {
         let message = "the crop leaves no pixels of the film";
         return Err(Fault::scene(reader.span(), message));
     }
@@ -157,7 +157,7 @@ fn crop(
     Err(Fault::new(ErrorKind::Options, reader.span(), message))
 }
 
-/// Says so where another size than the file's has another shape: its pixels are not square.
+/// Warns if the caller's size has another aspect ratio than the file's, so that pixels are not square.
 fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], resolution: [u32; 2]) {
     let aspect = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height);
     let stretch = aspect(own) / aspect(resolution);
@@ -171,7 +171,7 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     }
 }
 
-/// What a film of `gbuffer` keeps beside the picture.
+/// The layers of a film of type `gbuffer`.
 const GBUFFER: [Aov; 5] = [
     Aov::Albedo,
     Aov::Position,
@@ -180,7 +180,7 @@ const GBUFFER: [Aov; 5] = [
     Aov::Variance,
 ];
 
-/// The images that this kind of film has beside the picture.
+/// Returns the layers of this type of film.
 fn film_kind(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -224,8 +224,8 @@ fn film_kind(
     }
 }
 
-/// `cropwindow`, else `pixelbounds`, which count pixels of the film's `own` resolution. None: where
-/// the file gives neither.
+/// Reads `cropwindow`, else `pixelbounds`, which counts pixels of the film's `own` resolution. None: the
+/// file has neither.
 fn read_crop(
     reader: &mut Reader<'_>,
     own: [u32; 2],
@@ -248,7 +248,7 @@ fn read_crop(
     })
 }
 
-/// None: these are no four fractions; so below, no four pixel numbers.
+/// Reads the crop of `cropwindow`. None: it is not four valid fractions.
 fn window_crop(values: &[f32]) -> Option<Crop> {
     let window: [f32; 4] = values.try_into().ok()?;
     let inside = window.iter().all(|edge| (0.0..=1.0).contains(edge));

@@ -11,26 +11,26 @@ use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::TextureFiltering;
 
-/// What a scene file says about how it is rendered.
+/// The settings of a scene file for rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSettings {
     /// The estimator.
     pub integrator: IntegratorKind,
-    /// The largest number of scattering events: 0 shows lights only, 1 adds direct light.
+    /// The maximum number of scattering events: 0 shows lights only, 1 adds direct light.
     pub max_depth: u32,
-    /// The random numbers.
+    /// The sampler.
     pub sampler: SamplerKind,
     /// Samples per pixel.
     pub samples_per_pixel: u32,
-    /// The seed. None: where the file gives none.
+    /// The seed. None: the file has none.
     pub seed: Option<u64>,
-    /// The name of the image, as the file has it. None: where it gives none.
+    /// The name of the image in the file. None: it has none.
     pub output: Option<String>,
-    /// The images that its film has beside the picture.
+    /// The layers of the film.
     pub aovs: Vec<Aov>,
 }
 
-/// Everything that is neither scene nor film.
+/// Builds the settings that belong neither to scene nor to film.
 pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {
     let (integrator, max_depth) = integrator(context)?;
     let mut settings = SceneSettings {
@@ -47,7 +47,7 @@ pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<Scene
     Ok(settings)
 }
 
-/// Whether textures are averaged over pixels.
+/// Returns whether textures are filtered.
 pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
     let mut filtering = TextureFiltering::AsAsked;
     let options = description.options.iter();
@@ -71,8 +71,8 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
                 let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
                 settings.seed = Some(value.parse().map_err(wrong)?);
             }
-            // Choices of precision or of what is recorded, what the scene itself knows, and defaults
-            // spelled out.
+            // Options of precision or recording, information that the scene contains anyway, and explicit
+            // defaults.
             ("rendercoordsys" | "pixelstats" | "wavefront" | "disabletexturefiltering", _)
             | (_, "false") => {}
             (name, _) => {
@@ -132,7 +132,7 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
         "bdpt" => IntegratorKind::Bdpt,
         "lightpath" => IntegratorKind::Light,
         name => {
-            // The parameters of another method say nothing about the one that stands in.
+            // The parameters of an unsupported method do not apply to its replacement.
             let stand_in = match name {
                 "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
                 _ => ("`path` is used instead", IntegratorKind::Path),
