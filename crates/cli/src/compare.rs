@@ -169,10 +169,9 @@ fn sizes_differ(names: [&Path; 2], [[aw, ah], [bw, bh]]: [[usize; 2]; 2]) -> Fai
 /// Returns the metrics to compute: the fast ones always, FLIP only if flags request it.
 fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
     let mapped = args.error_map.as_ref().map(|_| args.metric);
-    let is_requested =
-        move |metric: Metric| metric.is_fast() || args.flip || mapped == Some(metric);
+    let chosen = move |metric: Metric| metric.is_fast() || args.flip || mapped == Some(metric);
     let metrics = Metric::NAMES.into_iter();
-    metrics.filter(move |(_, metric)| is_requested(*metric))
+    metrics.filter(move |(_, metric)| chosen(*metric))
 }
 
 /// Returns the names of the metrics without values, for images that differ in size.

@@ -3,7 +3,7 @@
 use crate::args::RenderArgs;
 use crate::begin::{self, Started, Training};
 use crate::checkpoint::{Checkpoint, CheckpointWriter};
-use crate::console::{Console, Display, json, say};
+use crate::console::{Console, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
@@ -208,21 +208,18 @@ impl Job<'_> {
         writer: &mut CheckpointWriter,
         show: &mut Show,
     ) -> End {
-        let (budget, signals) = (clock.budget, self.signals);
+        let budget = clock.budget;
+        let display = self.console.display(self.args.output.talk);
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
-        let reporter = Reporter::new(self.display(), signals, clock).after(before);
+        let reporter = Reporter::new(display, self.signals, clock).after(before);
         let mut rendered = 0_u64;
         let end = loop {
             let passes = session.next_pass() - budget.first;
             // A pass is expected to take the average time of the earlier ones.
             let expected = clock.first_pass.elapsed().div_f64(rendered.max(1) as f64);
-            let state = State {
-                passes,
-                rendered,
-                elapsed: clock.start.elapsed(),
-                expected,
-            };
-            if let ControlFlow::Break(end) = next_pass(budget, state, signals.exit()) {
+            let (elapsed, signal) = (clock.start.elapsed(), self.signals.exit());
+            let next = next_pass(budget, passes, rendered, elapsed, expected, signal);
+            if let ControlFlow::Break(end) = next {
                 break end;
             }
             if budget.looks_at_noise(passes) && is_below(budget.noise, session) {
@@ -234,7 +231,7 @@ impl Job<'_> {
             show.add_pass(session, begun.elapsed(), &|| {
                 writer.header(session, Stopping::Time)
             });
-            self.write_if_due(session, signals, writer);
+            self.write_if_due(session, writer);
         };
         show.end(session, &|| writer.header(session, end.stopping()));
         if !matches!(end, End::Signal(_)) {
@@ -244,19 +241,10 @@ impl Job<'_> {
         end
     }
 
-    fn display(&self) -> Display {
-        self.console.display(self.args.output.talk)
-    }
-
     /// Writes the film file if it is due, and also the image if a signal requests it. The render continues
     /// after a failure, as a later attempt may succeed.
-    fn write_if_due(
-        &self,
-        session: &Session<'_>,
-        signals: &Signals,
-        writer: &mut CheckpointWriter,
-    ) {
-        let is_requested = signals.take_write_request();
+    fn write_if_due(&self, session: &Session<'_>, writer: &mut CheckpointWriter) {
+        let is_requested = self.signals.take_write_request();
         if !is_requested && !writer.is_due() {
             return;
         }
@@ -361,25 +349,20 @@ impl End {
     }
 }
 
-/// The state of a render between two passes.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    /// The number of passes, those of earlier runs included.
+/// Decides whether to render another pass after `passes`, of which this run `rendered` some, if a pass is
+/// `expected` to take that long. A signal has no effect on a render that is complete.
+fn next_pass(
+    budget: Budget,
     passes: u64,
-    /// The number of passes of this run.
     rendered: u64,
-    /// The time since the start.
     elapsed: Duration,
-    /// The time that the next pass is expected to take.
     expected: Duration,
-}
-
-/// Decides whether to render another pass. A signal has no effect on a render that is complete.
-fn next_pass(budget: Budget, state: State, signal: Option<Exit>) -> ControlFlow<End> {
-    if budget.passes.is_some_and(|most| state.passes >= most) {
+    signal: Option<Exit>,
+) -> ControlFlow<End> {
+    if budget.passes.is_some_and(|most| passes >= most) {
         return ControlFlow::Break(End::Passes);
     }
-    if !budget.has_time(state.rendered, state.elapsed, state.expected) {
+    if !budget.has_time(rendered, elapsed, expected) {
         return ControlFlow::Break(End::Time);
     }
     match signal {
@@ -406,13 +389,9 @@ mod tests {
 
     #[track_caller]
     fn check(passes: u64, elapsed: u64, expected: u64, end: End) {
-        let state = State {
-            passes,
-            rendered: passes,
-            elapsed: Duration::from_secs(elapsed),
-            expected: Duration::from_secs(expected),
-        };
-        let next = next_pass(BUDGET, state, Some(Exit::Interrupted));
+        let [elapsed, expected] = [elapsed, expected].map(Duration::from_secs);
+        let signal = Some(Exit::Interrupted);
+        let next = next_pass(BUDGET, passes, passes, elapsed, expected, signal);
         assert_eq!(next, ControlFlow::Break(end));
     }
 
@@ -427,15 +406,8 @@ mod tests {
 
     #[test]
     fn every_run_renders_a_pass_however_long_training_took() {
-        let next = |passes, rendered| {
-            let state = State {
-                passes,
-                rendered,
-                elapsed: Duration::from_secs(20),
-                expected: Duration::ZERO,
-            };
-            next_pass(BUDGET, state, None)
-        };
+        let (elapsed, expected) = (Duration::from_secs(20), Duration::ZERO);
+        let next = |passes, rendered| next_pass(BUDGET, passes, rendered, elapsed, expected, None);
         assert_eq!(next(5, 0), ControlFlow::Continue(()));
         assert_eq!(next(6, 1), ControlFlow::Break(End::Time));
         assert_eq!(next(9, 0), ControlFlow::Break(End::Passes));

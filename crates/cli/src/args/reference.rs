@@ -69,7 +69,7 @@ pub(crate) struct ReferenceArgs {
     pub(crate) threads: ThreadsArgs,
 }
 
-/// Upper bound of samples per pixel, beyond any practical render.
+/// Maximum number of samples per pixel, beyond any practical render.
 const MOST_SAMPLES: u64 = 1 << 40;
 
 /// An estimator in one argument of the command line, such as `bdpt --strategies s1,-t1`.

@@ -34,7 +34,7 @@ Examples:
   bidir render room.pbrt --replay 17,4,3 --svg sample.svg
       sample 3 of the pixel in column 17, row 4: its terms as text, its paths as a drawing")]
 pub(crate) struct RenderArgs {
-    /// Where results go.
+    /// The files to write, and messages.
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     /// Show progress in the browser, read only.
@@ -107,7 +107,7 @@ pub(crate) struct RenderArgs {
     pub(crate) svg: Option<PathBuf>,
 }
 
-/// Where results go.
+/// The files to write, and messages.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
