@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_that_is_nearer_counts() {
+    fn the_nearer_limit_counts() {
         let budget = budget(10);
         assert!((budget.used(5.0, SECOND) - 0.5).abs() < 1e-9);
         assert!((budget.used(1.0, SECOND * 8) - 0.8).abs() < 1e-9);

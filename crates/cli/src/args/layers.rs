@@ -1,4 +1,4 @@
-//! The flags that ask for images beside the picture.
+//! The flags for layers.
 
 use super::values::named;
 use bidir::film::{Aov, Layers};
@@ -6,7 +6,7 @@ use clap::{Args, ValueHint};
 use lab::pyramid;
 use std::path::PathBuf;
 
-/// Images beside the main one, as layers of the EXR and of film files.
+/// The layers of the EXR and of film files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Layers")]
 pub(crate) struct LayerArgs {
@@ -50,7 +50,7 @@ pub(crate) struct LayerArgs {
     pub(crate) pyramid: Option<PathBuf>,
 }
 
-/// An image to write, or all of them.
+/// A layer, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AovName {
     All,

@@ -72,7 +72,7 @@ pub(crate) struct RenderArgs {
     /// The environment variables among the sources of flags.
     #[arg(skip)]
     pub(crate) sources: Sources,
-    /// Images beside the main one.
+    /// The layers.
     #[command(flatten)]
     pub(crate) layers: LayerArgs,
     /// The film file, and the passes to render.

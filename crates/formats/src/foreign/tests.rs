@@ -68,7 +68,7 @@ fn meshes_and_scenes_of_modellers_are_named() {
 }
 
 #[test]
-fn a_gltf_file_under_another_name_says_which() {
+fn a_gltf_file_with_another_ending_gets_a_hint() {
     let expected = "`a.pbrt` is a glTF file; name it ";
     let said = message("a.pbrt", b"{\"asset\": {\"version\": \"2.0\"}}");
     assert!(

@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn uris_become_names_of_files() {
+    fn uris_are_decoded_to_file_names() {
         for (uri, name) in [
             ("a.bin", "a.bin"),
             ("my%20mesh%2Bb.bin", "my mesh+b.bin"),

@@ -78,7 +78,7 @@ fn parallel_rays() {
     let loaded = open("parallel.pbrt");
     let case = Case::new(&loaded, 1152);
     case.check_bdpt(&case.path());
-    // Light subpaths cannot reach a camera that sees the sky, so only the ground below it is compared.
+    // Only camera rays can see the sky, so the light tracer is compared on the ground below it.
     let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
     let case = Case::new(&ground, 9216);
     case.check_light(&case.path());

@@ -185,8 +185,8 @@ impl CameraSettings {
                 let corners = screen.corners(own).map(|corner| corner * half);
                 self.lens(screen, film, corners)
             }
-            // The rays from the lens meet in focus where the parallel ray crosses the plane of focus, as with
-            // a perspective camera whose film is scaled by the focal distance.
+            // The rays of a film position meet where the parallel ray crosses the plane of focus, as those of a
+            // perspective camera whose film, at z = 1, is divided by the focal distance.
             View::Orthographic(screen) if screen.lens_radius > 0.0 => {
                 let corners = screen.corners(own);
                 self.lens(screen, film, corners.map(|c| c / screen.focal_distance))

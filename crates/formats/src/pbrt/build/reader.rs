@@ -7,18 +7,18 @@ use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use crate::text::number;
 
-/// Reads the parameters of one entity. Parameters that are never requested are unknown, and are errors when
+/// Reads the parameters of one entity. Parameters that are never read are unknown, and are errors when
 /// the reader [finishes](Self::finish).
 pub(super) struct Reader<'a> {
     entity: &'a Entity,
-    requested: Vec<(ParameterType, &'static str)>,
+    read: Vec<(ParameterType, &'static str)>,
 }
 
 impl<'a> Reader<'a> {
     pub(super) fn new(entity: &'a Entity) -> Self {
         Self {
             entity,
-            requested: Vec::new(),
+            read: Vec::new(),
         }
     }
 
@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
         kind: ParameterType,
         name: &'static str,
     ) -> Option<&'a Parameter> {
-        self.requested.push((kind, name));
+        self.read.push((kind, name));
         self.entity.parameters.get(kind, name)
     }
 
@@ -207,27 +207,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Refuses parameters that were not requested.
+    /// Refuses parameters that were not read.
     pub(super) fn finish(self) -> Result<(), Fault> {
-        let is_requested = |p: &&Parameter| {
-            self.requested
-                .iter()
-                .any(|&(k, n)| k == p.kind && n == p.name)
-        };
-        let Some(unknown) = self
-            .entity
-            .parameters
-            .explicit
-            .iter()
-            .find(|p| !is_requested(p))
-        else {
+        let is_read = |p: &&Parameter| self.read.iter().any(|&(k, n)| k == p.kind && n == p.name);
+        let Some(unknown) = self.entity.parameters.explicit.iter().find(|p| !is_read(p)) else {
             return Ok(());
         };
         let (name, word) = (shorten(&unknown.name), unknown.kind.word());
         let types: Vec<&str> = self
-            .requested
+            .read
             .iter()
-            .filter(|(_, requested)| *requested == unknown.name)
+            .filter(|(_, read)| *read == unknown.name)
             .map(|(kind, _)| kind.word())
             .collect();
         if !types.is_empty() {
@@ -239,7 +229,7 @@ impl<'a> Reader<'a> {
             "unknown parameter `{name}` of `{}`",
             shorten(&self.entity.kind)
         );
-        let known = self.requested.iter().map(|(_, name)| *name);
+        let known = self.read.iter().map(|(_, name)| *name);
         Err(Fault::scene(unknown.span, message).with_nearest(&unknown.name, known))
     }
 }

@@ -27,7 +27,7 @@ fn power_goes_to_every_triangle_of_a_mesh() {
 }
 
 #[test]
-fn lights_stand_where_they_are_put() {
+fn lights_have_their_transformations() {
     let scene = world(
         "Translate 1 0 0 LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 2 \"point3 \
          from\" [0 1 0]\n\
