@@ -1,4 +1,4 @@
-//! The beginning of a render: the session, whose training may take longer than its passes.
+//! Starts a render: trains its session, which may take longer than the passes.
 
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
@@ -13,27 +13,27 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Signals are looked at this often.
+/// Interval between checks for signals.
 const GAP: Duration = Duration::from_millis(100);
-/// The gaps without a session after which a message says why.
+/// Number of intervals after which a message says that training is running.
 const LONG: u32 = 20;
-/// So long after the end of the time budget training may still end.
+/// Time beyond the budget after which training is cut short.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// The training of a render.
+/// The effort of training.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Training {
-    /// As long as it takes.
+    /// Full training.
     Whole,
-    /// The same, but cut short where it does not end by then.
+    /// Full training, cut short at this time.
     By(Instant),
-    /// Cut short from the first, as it was when the render began that is gone on with.
+    /// Short training from the start, as in the run that the render continues.
     Short,
 }
 
 impl Training {
-    /// That of a render that begins now with so much time, and goes on with the film of `earlier`: training
-    /// is then what it was.
+    /// Returns the training of a render that starts now with a limit of `time`. A render that continues the
+    /// film of `earlier` repeats its training.
     pub(crate) fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
         let end = time.and_then(|time| Instant::now().checked_add(time.saturating_add(GRACE)));
         match (earlier, end) {
@@ -44,24 +44,25 @@ impl Training {
     }
 }
 
-/// The beginning of a render.
-pub(crate) enum Began {
-    /// A session that is trained.
+/// The result of starting a render.
+pub(crate) enum Started {
+    /// A trained session.
     Session(Box<Session<'static>>),
-    /// Nothing: a signal came before, and asks to end so.
+    /// A signal arrived during training; the command ends with this exit.
     Stopped(Exit),
 }
 
-/// The session of a render, trained. A signal ends that at once: no pass would be lost with it, and there
-/// may be minutes to wait for, which `display` is told of.
+/// Creates and trains the session of a render.
+///
+/// A signal stops training at once: no pass is lost by that, and training may take minutes.
 pub(crate) fn session(
     args: &RenderArgs,
     loaded: &LoadedScene,
     settings: &Settings,
     signals: &Signals,
-    (training, display): (Training, Display),
+    training: Training,
     console: Console,
-) -> Result<Began, Failure> {
+) -> Result<Started, Failure> {
     let (scene, settings) = (Arc::clone(&loaded.scene), settings.clone());
     let resources = resources(args);
     let train = move || {
@@ -75,30 +76,30 @@ pub(crate) fn session(
     };
     let (sender, receiver) = mpsc::channel();
     let in_thread = train.clone();
-    // A training that nobody waits for ends with the process.
+    // After a signal, the thread ends with the process.
     let thread = thread::Builder::new().name("training".to_owned());
     let session = match thread.spawn(move || sender.send(in_thread())) {
-        Ok(_) => match wait(&receiver, signals, display)? {
+        Ok(_) => match wait(&receiver, signals, display(args, console))? {
             Waited::Session(session) => session,
-            Waited::Stopped(exit) => return Ok(Began::Stopped(exit)),
+            Waited::Stopped(exit) => return Ok(Started::Stopped(exit)),
         },
-        // Without a thread, signals are looked at afterwards.
+        // Without a thread, signals are checked after training.
         Err(_) => train(),
     };
     let session = session.map_err(|error| failure(args, loaded, &error))?;
     if let Some(shortage) = session.shortage() {
         console.warning(shortage);
     }
-    Ok(Began::Session(session))
+    Ok(Started::Session(session))
 }
 
-/// Whichever came first: a session, or a signal.
+/// The event that came first: the session, or a signal.
 enum Waited {
     Session(Result<Box<Session<'static>>, SessionError>),
     Stopped(Exit),
 }
 
-/// Waits for a session that another thread trains.
+/// Waits for the session that another thread trains, or for a signal.
 fn wait(
     receiver: &Receiver<Result<Box<Session<'static>>, SessionError>>,
     signals: &Signals,
@@ -115,16 +116,24 @@ fn wait(
             }
         }
         if waited == LONG {
-            tell_training(display);
+            say_training(display);
         }
     }
 }
 
-/// Says why there is no progress yet.
-fn tell_training(display: Display) {
+/// Returns the form of progress. A replay as JSON has stdout to itself.
+fn display(args: &RenderArgs, console: Console) -> Display {
+    match console.display(args.output.talk) {
+        Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
+        display => display,
+    }
+}
+
+/// Says that training is running, while there is no progress.
+fn say_training(display: Display) {
     let text = "training before the first sample";
     match display {
-        // Nothing but objects is expected there.
+        // Readers of NDJSON expect only objects with progress.
         Display::Silent | Display::Lines(LineFormat::Ndjson) => {}
         Display::Lines(LineFormat::OpenJd) => write_openjd("status", text),
         Display::Bar | Display::Lines(LineFormat::Plain) => say(text),
@@ -139,7 +148,7 @@ fn resources(args: &RenderArgs) -> Resources {
     }
 }
 
-/// Why there is no session.
+/// Returns the failure of the command for an error of the session.
 fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Failure {
     if matches!(error, SessionError::NoPath { .. }) {
         return Failure::usage(error.to_string());
@@ -157,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_goes_on_trains_as_before() {
+    fn a_continued_render_repeats_its_training() {
         let header = |settings: &[(&str, &str)]| {
             let settings = settings.iter();
             let settings = settings.map(|&(name, value)| (name.to_owned(), value.to_owned()));

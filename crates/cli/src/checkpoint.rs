@@ -1,4 +1,4 @@
-//! The film file of a running render: what it goes on from, and what is written now and then.
+//! The film file of a running render: continues from it, and writes it at intervals.
 
 use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
@@ -13,28 +13,27 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// A film file that this process alone writes.
+/// A film file that is locked for this process.
 #[derive(Debug)]
 pub(crate) struct Checkpoint {
-    /// The name that was asked for.
+    /// The name given by --checkpoint.
     name: PathBuf,
-    /// The file that it stands for, where it is a link.
+    /// The file itself, if the name is a link.
     path: PathBuf,
     every: Duration,
     written: Instant,
-    /// True where the file is there and can be read.
+    /// True if the file exists and can be read.
     is_whole: bool,
-    /// The film that the render continues, until the session has it.
+    /// The film to continue from, until the session takes it.
     film: Option<FilmFile>,
     _lock: FilmLock,
 }
 
 impl Checkpoint {
-    /// The film file that the flags ask for, if any. It needs no scene: what is wrong is told before
-    /// one is read.
+    /// Opens and locks the film file that the flags name, if any. It needs no scene, so that errors come
+    /// before one is read.
     ///
-    /// Errors: another process writes the same file; it is there and nothing was said of it; it is
-    /// damaged.
+    /// Errors: another process has locked the file; it exists, without --resume or --restart; it is damaged.
     pub(crate) fn open(args: &LongArgs) -> Result<Option<Self>, Failure> {
         let Some(name) = &args.checkpoint else {
             return Ok(None);
@@ -49,7 +48,7 @@ impl Checkpoint {
             None
         };
         Ok(Some(Self {
-            // A damaged file does not replace the whole one before it.
+            // A damaged file must not replace the intact FILE.previous.
             is_whole: film.is_some() || scene_io::read_film(&path).is_ok(),
             name: name.clone(),
             path,
@@ -60,24 +59,24 @@ impl Checkpoint {
         }))
     }
 
-    /// True where there are passes from before.
+    /// Returns true if the render continues from passes in the file.
     pub(crate) fn is_resumed(&self) -> bool {
         self.film.is_some()
     }
 
-    /// The header of the film that is gone on from. None: there is none.
+    /// Returns the header of the film to continue from. None: the render starts anew.
     pub(crate) fn earlier(&self) -> Option<&FilmHeader> {
         self.film.as_ref().map(|file| &file.header)
     }
 
-    /// Checks before training whether the film that is gone on from, if any, can be that of the
-    /// render that `header` describes, and has none but the passes `asked`.
-    pub(crate) fn check(&self, header: &FilmHeader, asked: Range<u64>) -> Result<(), Failure> {
+    /// Checks before training that the film to continue from, if any, belongs to the render of `header` and
+    /// has only passes in `requested`.
+    pub(crate) fn check(&self, header: &FilmHeader, requested: Range<u64>) -> Result<(), Failure> {
         let Some(file) = &self.film else {
             return Ok(());
         };
         self.check_render(header, &film_header::untrained(&file.header))?;
-        let others = file.header.passes.difference(&PassSet::from(asked));
+        let others = file.header.passes.difference(&PassSet::from(requested));
         if others.is_empty() {
             return Ok(());
         }
@@ -87,10 +86,10 @@ impl Checkpoint {
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 
-    /// Fails where `found` is the header of another render than `expected`.
-    fn check_render(&self, expected: &FilmHeader, found: &FilmHeader) -> Result<(), Failure> {
+    /// Checks that `in_file` is a header of the same render as `expected`.
+    fn check_render(&self, expected: &FilmHeader, in_file: &FilmHeader) -> Result<(), Failure> {
         let places = ["in this render", "in the film"];
-        let Some(difference) = expected.difference_between(found, places) else {
+        let Some(difference) = expected.difference_between(in_file, places) else {
             return Ok(());
         };
         let name = self.path.display();
@@ -99,9 +98,9 @@ impl Checkpoint {
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     }
 
-    /// Writes the film, and keeps the file before as FILE.previous.
+    /// Writes the film, and keeps an intact earlier file as FILE.previous.
     fn write(&mut self, header: &FilmHeader, film: &Film) -> Result<(), Failure> {
-        // Set first: a full disk is not tried again after every pass.
+        // Set before writing, so that a full disk is not tried again after every pass.
         self.written = Instant::now();
         if self.is_whole {
             let previous = lock::previous(&self.path);
@@ -114,8 +113,8 @@ impl Checkpoint {
     }
 }
 
-/// True where `folder`, or one below it, has finished passes: in a film file, or as a record of an
-/// experiment, whose first line says only whose the others are.
+/// Returns true if `folder` or one below it has finished passes: a film file, or records of an experiment
+/// beyond their first line, which only identifies the experiment.
 pub(crate) fn has_passes(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).any(|path| {
@@ -133,7 +132,7 @@ pub(crate) fn has_passes(folder: &Path) -> bool {
     })
 }
 
-/// Refuses to replace what is there unasked, and what is no film file at all.
+/// Refuses to replace an existing file without --resume or --restart, and files of another kind.
 fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
     let previous = lock::previous(path);
     let name = path.display();
@@ -161,19 +160,19 @@ fn check_existing(path: &Path, args: &LongArgs) -> Result<(), Failure> {
 }
 
 /// Writes the film file of a running render, if it has one.
-pub(crate) struct Keeper {
+pub(crate) struct CheckpointWriter {
     checkpoint: Option<Checkpoint>,
     header: FilmHeader,
-    /// That of the film that was gone on from.
+    /// The header of the film that the render continues.
     earlier: Option<FilmHeader>,
     start: Instant,
 }
 
-impl Keeper {
-    /// Gives the film that is gone on from to `session`, which is that of `header` and began, with
-    /// its training, at `start`.
+impl CheckpointWriter {
+    /// Adds the film to continue from to `session`, whose header is `header` and whose training began at
+    /// `start`.
     ///
-    /// Errors: the film is of another render.
+    /// Errors: the film belongs to another render.
     pub(crate) fn new(
         mut checkpoint: Option<Checkpoint>,
         header: FilmHeader,
@@ -199,19 +198,19 @@ impl Keeper {
         })
     }
 
-    /// The name of the film file, as it was asked for. None: there is none.
+    /// Returns the name of the film file as given by --checkpoint. None: there is none.
     pub(crate) fn path(&self) -> Option<&Path> {
         Some(&self.checkpoint.as_ref()?.name)
     }
 
-    /// Is it time to write again?
+    /// Returns true if the interval between checkpoints has passed.
     pub(crate) fn is_due(&self) -> bool {
         let is_due = |file: &Checkpoint| file.written.elapsed() >= file.every;
         self.checkpoint.as_ref().is_some_and(is_due)
     }
 
-    /// The header of what `session` has, for its film file and for its image: time and counts are
-    /// those of all runs, but how the number of passes was decided is what the last run says.
+    /// Returns the header of the film of `session`, for film file and image. Time and counts are those of
+    /// all runs, `stopping` is that of the last.
     pub(crate) fn header(&self, session: &Session<'_>, stopping: Stopping) -> FilmHeader {
         if let Some(earlier) = self.unchanged(session) {
             return earlier.clone();
@@ -222,16 +221,16 @@ impl Keeper {
         FilmHeader { stopping, ..all }.of(session.film())
     }
 
-    /// The header of the film that was gone on from, where nothing was added to it: what its file
-    /// says stays true.
+    /// Returns the header of the film that the render continues if no pass was added, so that its file
+    /// stays valid.
     fn unchanged(&self, session: &Session<'_>) -> Option<&FilmHeader> {
         let passes = session.film().passes();
         let earlier = self.earlier.as_ref();
         earlier.filter(|earlier| earlier.passes == *passes)
     }
 
-    /// Writes what `session` has, with this header.
-    pub(crate) fn keep(
+    /// Writes the film of `session` with this header, unless it is unchanged.
+    pub(crate) fn write(
         &mut self,
         session: &Session<'_>,
         header: &FilmHeader,
@@ -244,12 +243,11 @@ impl Keeper {
     }
 }
 
-/// Reads the film file of a render that goes on.
+/// Reads the film file to continue from. The hint of a failure names the previous version.
 fn load(path: &Path) -> Result<FilmFile, Failure> {
     let previous = lock::previous(path);
     scene_io::read_film(path).map_err(|failure| {
         if previous.exists() {
-            // Says which film file was written before the one that cannot be read.
             failure.with_hint(format!("its previous version is {}", previous.display()))
         } else {
             failure

@@ -1,4 +1,4 @@
-//! `bidir compare`: images and a reference, in numbers.
+//! `bidir compare`: error metrics of images against a reference.
 
 mod independence;
 mod noise;
@@ -45,7 +45,7 @@ pub(crate) fn run(args: &CompareArgs, console: Console) -> Result<Exit, Failure>
     Ok(Exit::Done)
 }
 
-/// The images, and the file they are compared with.
+/// Returns the images and the path of the reference.
 fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
     let (images, reference) = match (&args.reference, &args.images[..]) {
         (Some(reference), images) => (images, reference),
@@ -64,7 +64,7 @@ fn files(args: &CompareArgs) -> Result<(&[PathBuf], &Path), Failure> {
     Ok((images, reference))
 }
 
-/// The files of a reference, which may be a folder.
+/// Returns the files of a reference, which may be a folder.
 fn reference_files(reference: &Path) -> Vec<PathBuf> {
     if reference.is_dir() {
         return lab::reference::files(reference);
@@ -72,7 +72,7 @@ fn reference_files(reference: &Path) -> Vec<PathBuf> {
     vec![reference.to_owned()]
 }
 
-/// Compares every image, and warns where images, or pixels of one, share their noise.
+/// Compares every image, and warns if the noise of images, or of the pixels of one, is correlated.
 fn compare_all(
     args: &CompareArgs,
     images: &[PathBuf],
@@ -89,7 +89,7 @@ fn compare_all(
             independence.add(image, &noisy.pixels);
             let correlation = noisy.correlation(image);
             let comparison = compare(args, [image, name], noisy, &reference)?;
-            // Intervals over several images assume nothing of their pixels.
+            // Intervals over several images do not assume independent pixels.
             if images.len() == 1 && comparison.significance.is_some() {
                 warnings.extend(correlation.or_else(|| reference.correlation(name)));
             }
@@ -127,12 +127,12 @@ fn compare(
     })
 }
 
-/// An image and a reference that were brought to one size, where that was asked for.
+/// An image and a reference, resampled to one size if --resample is given.
 struct Fitted {
     image: Pixels,
-    /// None: as it was read.
+    /// The resampled reference. None: it is not resampled.
     reference: Option<Pixels>,
-    /// Which of them was brought to the size of the other.
+    /// The one that was resampled to the size of the other: `A` or `B`.
     resampled: Option<&'static str>,
 }
 
@@ -166,21 +166,21 @@ fn sizes_differ(names: [&Path; 2], [[aw, ah], [bw, bh]]: [[usize; 2]; 2]) -> Fai
     Failure::new(Exit::InputOutput, message).with_hint("average the larger one with --resample")
 }
 
-/// The metrics that are asked for: the fast ones always, and FLIP where it is wanted.
+/// Returns the metrics to compute: the fast ones always, FLIP only if flags request it.
 fn metrics(args: &MetricArgs) -> impl Iterator<Item = (&'static str, Metric)> {
     let mapped = args.error_map.as_ref().map(|_| args.metric);
-    let wanted = move |metric: Metric| metric.is_fast() || args.flip || mapped == Some(metric);
+    let chosen = move |metric: Metric| metric.is_fast() || args.flip || mapped == Some(metric);
     let metrics = Metric::NAMES.into_iter();
-    metrics.filter(move |(_, metric)| wanted(*metric))
+    metrics.filter(move |(_, metric)| chosen(*metric))
 }
 
-/// The names of the numbers, where images have none.
+/// Returns the names of the metrics without values, for images that differ in size.
 fn no_numbers(args: &MetricArgs) -> Vec<Number> {
     let names = metrics(args).map(|(name, _)| name);
     names.chain([MEAN_RATIO]).map(|name| (name, None)).collect()
 }
 
-/// All numbers of a pair; the errors of one metric go to their file.
+/// Computes all metrics of a pair, and writes the error map if one is requested.
 fn numbers(args: &MetricArgs, pair: &Pair<'_>) -> Result<Vec<Number>, Failure> {
     let mut numbers = Vec::new();
     for (name, metric) in metrics(args) {

@@ -1,8 +1,8 @@
-//! Talk on stderr and data on stdout: the only place that writes to either.
+//! Messages on stderr and data on stdout: the only place that writes to either.
 //!
-//! Names and texts come from files of others. What is written here has no character that a terminal
-//! obeys, but for line feeds and tabs of data and the colours of this module: where foreign text is a
-//! part of several lines, it is made [`printable`] before it becomes that.
+//! Names and texts may come from untrusted files. The functions here write no control characters, except
+//! line feeds and tabs of data and the colours of this module. Callers make foreign text [`printable`]
+//! before they join it with other lines.
 
 use crate::args::{ColorArgs, TalkArgs};
 use crate::exit::{Exit, Failure};
@@ -11,30 +11,30 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use std::fmt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
-/// Whether text may be coloured.
+/// The colour of labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Color {
     On,
     Off,
 }
 
-/// How progress is shown.
+/// The form of progress reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Display {
-    /// A bar that is drawn over.
+    /// A progress bar that is redrawn in place.
     Bar,
-    /// A line now and then.
+    /// A line from time to time.
     Lines(LineFormat),
-    /// Not at all.
+    /// No progress.
     Silent,
 }
 
-/// What a line of progress looks like.
+/// The format of a line of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineFormat {
-    /// Words.
+    /// Plain text.
     Plain,
-    /// An object of JSON.
+    /// A JSON object.
     Ndjson,
     /// Messages of Open Job Description, on stdout.
     OpenJd,
@@ -50,7 +50,7 @@ impl Display {
     ];
 }
 
-/// What stderr is, and what the user wants of it.
+/// The properties of stderr: colour, and whether it is a terminal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Console {
     color: Color,
@@ -58,7 +58,7 @@ pub(crate) struct Console {
 }
 
 impl Console {
-    /// The console of this process.
+    /// Returns the console of this process.
     ///
     /// Colour: off by `--no-color`, by a `NO_COLOR` that is not empty, by `TERM=dumb`; else on by
     /// `FORCE_COLOR`; else on where stderr is a terminal.
@@ -76,7 +76,7 @@ impl Console {
         Self { color, is_terminal }
     }
 
-    /// How progress is shown: as it is asked for, but a bar on terminals only.
+    /// Returns the form of progress that the flags request; a bar only on a terminal.
     pub(crate) fn display(self, args: TalkArgs) -> Display {
         let default = if args.quiet {
             Display::Silent
@@ -86,20 +86,20 @@ impl Console {
         self.on_terminal(args.progress.unwrap_or(default))
     }
 
-    /// How progress is shown that is wanted so: a bar on terminals only.
-    pub(crate) fn on_terminal(self, wanted: Display) -> Display {
-        match wanted {
+    /// Returns the `requested` form of progress, with plain lines instead of a bar if there is no terminal.
+    pub(crate) fn on_terminal(self, requested: Display) -> Display {
+        match requested {
             Display::Bar if !self.is_terminal => Display::Lines(LineFormat::Plain),
             display => display,
         }
     }
 
-    /// Tells something odd that does not stop the command.
+    /// Writes a warning.
     pub(crate) fn warning(self, text: impl fmt::Display) {
         self.label("warning", "1;33", text);
     }
 
-    /// Tells why the command stops.
+    /// Writes the error that stops the command, and its hint.
     pub(crate) fn failure(self, failure: &Failure) {
         if let Some(diagnostic) = failure.as_diagnostic() {
             let label = self.paint("error", "1;31");
@@ -113,7 +113,7 @@ impl Console {
         }
     }
 
-    /// Writes a line with a coloured word before it.
+    /// Writes a line after a coloured label.
     fn label(self, word: &str, style: &str, text: impl fmt::Display) {
         let (label, text) = (self.paint(word, style), text.to_string());
         write_line(&format!("{label}: {}", printable(&text)));
@@ -126,19 +126,19 @@ impl Console {
         }
     }
 
-    /// The message of a diagnostic with the lines it is about, which are printable.
+    /// Returns the message of a diagnostic with the lines of the file, which are already printable.
     fn report(self, diagnostic: &dyn miette::Diagnostic) -> String {
         let theme = match self.color {
             Color::On => GraphicalTheme::unicode(),
             Color::Off => GraphicalTheme::unicode_nocolor(),
         };
-        // Unwrapped, so that `file:line:column` stays in one piece.
+        // Lines are not wrapped, so that `file:line:column` stays in one piece.
         let handler = GraphicalReportHandler::new_themed(theme)
             .with_links(false)
             .with_wrap_lines(false);
         let mut text = String::new();
         match handler.render_report(&mut text, diagnostic) {
-            // Only the mark that the theme begins with: the message may begin with a letter like it.
+            // Strip only the theme's mark: a message may begin with `x`.
             Ok(()) => text.trim().trim_start_matches("× ").to_owned(),
             Err(_) => diagnostic.to_string(),
         }
@@ -150,28 +150,28 @@ pub(crate) fn say(line: impl fmt::Display) {
     write_line(&printable(&line.to_string()));
 }
 
-/// Writes a printable line to stderr. Errors are ignored: there is no other place for them.
+/// Writes a printable line to stderr. Errors are ignored, as they cannot be reported anywhere.
 fn write_line(line: &str) {
     let _ = writeln!(io::stderr().lock(), "{line}");
 }
 
-/// Writes data to stdout; a reader that went away has read enough.
+/// Writes data to stdout. A broken pipe is no error: the reader has read enough.
 pub(crate) fn print(text: &str) -> Result<Exit, Failure> {
     let mut stdout = io::stdout().lock();
     printed(stdout.write_all(printable_lines(text).as_bytes()))
 }
 
-/// Writes a help text to stdout, or what is wrong with the command line to stderr.
+/// Writes a help text to stdout, or an error of the command line to stderr.
 pub(crate) fn print_usage(error: &clap::Error) -> Result<Exit, Failure> {
     let written = error.print();
     match error.exit_code() {
         0 => printed(written),
-        // As for any other line of stderr.
+        // Errors of stderr are ignored, as in `write_line`.
         _ => Ok(Exit::Usage),
     }
 }
 
-/// How the command ends after stdout was `written`.
+/// Returns the exit of a command that has `written` to stdout.
 fn printed(written: io::Result<()>) -> Result<Exit, Failure> {
     match written.and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
@@ -187,13 +187,13 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<Exit, Failure>
     print(&(ascii_escaped(&json(value)?) + "\n"))
 }
 
-/// The same JSON with the escapes of strings for what a terminal obeys: serde has them for C0 alone.
+/// Escapes the control characters in the strings of JSON, of which serde escapes only C0.
 fn ascii_escaped(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     for c in json.chars() {
         if is_obeyed(c) && c != '\n' {
             for unit in c.encode_utf16(&mut [0; 2]) {
-                // A string can always be written to.
+                // Writing to a string cannot fail.
                 let _ = fmt::Write::write_fmt(&mut escaped, format_args!("\\u{unit:04x}"));
             }
         } else {
@@ -203,7 +203,7 @@ fn ascii_escaped(json: &str) -> String {
     escaped
 }
 
-/// A value as indented JSON.
+/// Returns a value as indented JSON.
 pub(crate) fn json(value: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(value)
         .map_err(|error| Failure::new(Exit::RenderFailed, format!("not JSON: {error}")))
@@ -214,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn json_has_the_same_strings_without_what_a_terminal_obeys() {
+    fn control_characters_in_json_are_escaped_and_strings_stay_equal() {
         let text = "a\x1b\x7f\u{9b}\u{202e}\u{2069}µ\n";
         let escaped = ascii_escaped(&json(&[text]).unwrap());
         assert!(

@@ -1,8 +1,7 @@
-//! `bidir denoise` and `bidir render --denoise`: a picture loses its noise, and what guides the
-//! filter are its own layers.
+//! `bidir denoise` and `bidir render --denoise`: removes the noise of an image, guided by its layers.
 //!
-//! The filter is Open Image Denoise, which the `denoise` crate looks for. The noisy picture stays in
-//! the file, so that it can be denoised again.
+//! The filter is Open Image Denoise, which the `denoise` crate loads. The file keeps the noisy image, so
+//! that it can be denoised again.
 
 use crate::args::{DenoiseArgs, ThreadsArgs};
 use crate::console::say;
@@ -18,33 +17,33 @@ use std::path::Path;
 const COLOR: [&str; 3] = ["R", "G", "B"];
 const NOISY: [&str; 3] = ["Noisy.R", "Noisy.G", "Noisy.B"];
 const ALBEDO: [&str; 3] = ["Albedo.R", "Albedo.G", "Albedo.B"];
-/// Shading normals, then geometric ones.
+/// The layers of normals, the preferred one first: shading normals, then geometric normals.
 const NORMALS: [(&str, [&str; 3]); 2] = [
     ("Ns", ["Ns.X", "Ns.Y", "Ns.Z"]),
     ("N", ["N.X", "N.Y", "N.Z"]),
 ];
 
-/// The filter, ready to be used.
+/// The loaded filter.
 pub(crate) struct Filter(Denoiser);
 
 impl Filter {
-    /// Finds the library; `threads` is the most that are used, 0 leaves that to the library.
+    /// Loads the library with at most this number of threads; for 0 the library chooses.
     pub(crate) fn load(threads: ThreadsArgs) -> Result<Self, Failure> {
         let threads = match usize::from(threads.count) {
             0 => 0,
-            asked => Threads::new(asked).count(),
+            requested => Threads::new(requested).count(),
         };
         let denoiser = Denoiser::load(threads);
         denoiser.map(Self).map_err(|error| failure(&error))
     }
 
-    /// Denoises a picture by guides of the same shape, albedo and normals; the latter are used with
-    /// albedo alone.
+    /// Denoises a picture with guides of the same size. The library uses normals only together with albedo.
     fn apply(
         &self,
         size: [usize; 2],
         color: &[[f32; 3]],
-        [albedo, normal]: [Option<&[[f32; 3]]>; 2],
+        albedo: Option<&[[f32; 3]]>,
+        normal: Option<&[[f32; 3]]>,
     ) -> Result<Vec<[f32; 3]>, Failure> {
         let input = Input {
             size,
@@ -55,32 +54,32 @@ impl Filter {
         self.0.denoise(&input).map_err(|error| failure(&error))
     }
 
-    /// The denoiser with its version and these guides, in words.
-    fn text(&self, guides: &str) -> String {
+    /// Describes the denoiser: its name and version, and the names of the guides.
+    fn description(&self, guides: &str) -> String {
         format!("Open Image Denoise {}, guides: {guides}", self.0.version())
     }
 
-    /// Takes the noise from a developed film, whose noisy picture becomes a layer. Returns what did
-    /// it.
+    /// Denoises a developed film, whose noisy picture becomes a layer. Returns the description of the
+    /// denoiser.
     pub(crate) fn clean(&self, developed: &mut Developed) -> Result<String, Failure> {
         let guide = |name| {
             let layer = developed.layers.iter().find(|layer| layer.name == name)?;
             Some(layer.data.as_chunks::<3>().0)
         };
-        let guides = [guide("Albedo"), guide("Ns")];
-        let size = [developed.picture.width, developed.picture.height];
-        let clean = self.apply(size, &developed.picture.pixels, guides)?;
+        let picture = &developed.picture;
+        let size = [picture.width, picture.height];
+        let clean = self.apply(size, &picture.pixels, guide("Albedo"), guide("Ns"))?;
         let noisy = std::mem::replace(&mut developed.picture.pixels, clean);
         developed.layers.push(LayerImage {
             name: "Noisy".to_owned(),
             channels: &COLOR,
             data: noisy.into_flattened(),
         });
-        Ok(self.text("Albedo, Ns"))
+        Ok(self.description("Albedo, Ns"))
     }
 }
 
-/// A library that is not there is a file that cannot be read.
+/// Returns the failure of the denoiser. A missing library counts as a file that cannot be read.
 fn failure(error: &DenoiseError) -> Failure {
     let exit = if error.is_missing() {
         Exit::InputOutput
@@ -97,7 +96,7 @@ fn failure(error: &DenoiseError) -> Failure {
 /// The layers that guide the filter.
 struct Guides {
     albedo: Option<Vec<[f32; 3]>>,
-    /// The name of the layer, and the normals.
+    /// The name of the layer of normals, and its pixels.
     normal: Option<(&'static str, Vec<[f32; 3]>)>,
 }
 
@@ -111,7 +110,7 @@ impl Guides {
         Self { albedo, normal }
     }
 
-    /// The names of the layers, for people.
+    /// Returns the names of the layers for messages and metadata.
     fn names(&self) -> String {
         let albedo = self.albedo.as_ref().map(|_| "Albedo");
         let normal = self.normal.as_ref().map(|(name, _)| *name);
@@ -128,7 +127,7 @@ impl Guides {
     }
 }
 
-/// Writes an image without its noise.
+/// Denoises an image file.
 pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let format = scene_io::image_format(&args.output, IMAGES)?;
     scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
@@ -145,8 +144,8 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     }
     let filter = Filter::load(args.threads)?;
     let normal = guides.normal.as_ref().map(|(_, normal)| normal.as_slice());
-    let clean = filter.apply(layers.size(), &noisy, [guides.albedo.as_deref(), normal])?;
-    let by = filter.text(&names);
+    let clean = filter.apply(layers.size(), &noisy, guides.albedo.as_deref(), normal)?;
+    let by = filter.description(&names);
     if format == ImageFormat::Png {
         let picture = Pixels {
             size: layers.size(),
@@ -163,7 +162,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The picture with its noise, also of an image that was denoised before.
+/// Returns the noisy picture, also of an image that was denoised before.
 fn noisy(layers: &Layers, path: &Path) -> Result<Vec<[f32; 3]>, Failure> {
     let noisy = layers.triples(NOISY).or_else(|| layers.triples(COLOR));
     noisy.ok_or_else(|| {

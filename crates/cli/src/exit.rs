@@ -1,13 +1,13 @@
-//! Ends of the command: exit codes, and failures with their remedies.
+//! Exit codes, and failures with hints.
 
 use formats::ErrorKind;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The end of the command; part of its interface, for scripts and schedulers.
+/// The exit of the command. Its code is part of the interface for scripts and schedulers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Exit {
-    /// All was done.
+    /// The command succeeded.
     Done,
     /// The render failed.
     RenderFailed,
@@ -21,16 +21,16 @@ pub(crate) enum Exit {
     FilmMismatch,
     /// A check did not hold.
     Validation,
-    /// Stopped early, with a checkpoint to go on from.
+    /// Stopped early, with a checkpoint to continue from.
     Checkpoint,
-    /// Stopped by Ctrl-C; the image has the passes that were finished.
+    /// Stopped by Ctrl-C; the image has the finished passes.
     Interrupted,
-    /// Stopped by SIGTERM; as above.
+    /// Stopped by SIGTERM; the image has the finished passes.
     Terminated,
 }
 
 impl Exit {
-    /// Every way to end, as the help text lists them.
+    /// Every exit with its meaning, in the order of the help text.
     const ALL: [(Self, &'static str); 10] = [
         (Self::Done, "success"),
         (Self::RenderFailed, "the render failed"),
@@ -70,7 +70,7 @@ impl Exit {
         ),
     ];
 
-    /// The number that the shell sees.
+    /// Returns the exit code.
     pub(crate) fn code(self) -> u8 {
         match self {
             Self::Done => 0,
@@ -86,20 +86,20 @@ impl Exit {
         }
     }
 
-    /// The meaning of another program's code, if it has the same ones.
+    /// Returns the exit that has this code; `RenderFailed` for a code that no exit has.
     pub(crate) fn of_code(code: Option<i32>) -> Self {
         let mut all = Self::ALL.into_iter().map(|(exit, _)| exit);
-        let found = all.find(|exit| Some(i32::from(exit.code())) == code);
-        found.unwrap_or(Self::RenderFailed)
+        let exit = all.find(|exit| Some(i32::from(exit.code())) == code);
+        exit.unwrap_or(Self::RenderFailed)
     }
 
-    /// Every exit code with its meaning.
+    /// Returns every exit code with its meaning.
     pub(crate) fn codes() -> impl Iterator<Item = (u8, &'static str)> {
         let all = Self::ALL.into_iter();
         all.map(|(exit, meaning)| (exit.code(), meaning))
     }
 
-    /// The section of the help text.
+    /// Returns the section on exit codes of the help text.
     pub(crate) fn help() -> String {
         let mut text = String::from("Exit codes:\n");
         for (exit, meaning) in Self::ALL {
@@ -111,7 +111,7 @@ impl Exit {
     }
 }
 
-/// The reason why the command cannot go on.
+/// The error that ends a command.
 #[derive(Debug)]
 pub(crate) struct Failure {
     exit: Exit,
@@ -120,17 +120,17 @@ pub(crate) struct Failure {
 
 #[derive(Debug)]
 enum FailureKind {
-    /// The reason, and a remedy.
+    /// A message, and a hint that says what to do.
     Message {
         message: String,
         hint: Option<String>,
     },
-    /// An error that can show its place in a file.
+    /// An error that shows its place in a file.
     Diagnostic(Box<dyn miette::Diagnostic + Send + Sync>),
 }
 
 impl Failure {
-    /// A failure in words.
+    /// Returns a failure with a message.
     pub(crate) fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self {
             exit,
@@ -141,7 +141,7 @@ impl Failure {
         }
     }
 
-    /// A failure that can show its place in a file.
+    /// Returns a failure that shows its place in a file.
     pub(crate) fn diagnostic(
         exit: Exit,
         error: impl miette::Diagnostic + Send + Sync + 'static,
@@ -152,17 +152,17 @@ impl Failure {
         }
     }
 
-    /// The command line is wrong.
+    /// Returns a failure of the command line.
     pub(crate) fn usage(message: impl Into<String>) -> Self {
         Self::new(Exit::Usage, message)
     }
 
-    /// A file cannot be read or written.
+    /// Returns a failure to read or write a file.
     pub(crate) fn io(path: &Path, action: &str, error: &std::io::Error) -> Self {
         Self::new(Exit::InputOutput, formats::cannot(action, path, error))
     }
 
-    /// Adds a remedy.
+    /// Adds a hint, unless the failure is a diagnostic.
     pub(crate) fn with_hint(mut self, text: impl Into<String>) -> Self {
         if let FailureKind::Message { hint, .. } = &mut self.kind {
             *hint = Some(text.into());
@@ -170,12 +170,12 @@ impl Failure {
         self
     }
 
-    /// The exit of the command.
+    /// Returns the exit of the command.
     pub(crate) fn exit(&self) -> Exit {
         self.exit
     }
 
-    /// The message and the hint. None: it is a diagnostic.
+    /// Returns the message and the hint. None: the failure is a diagnostic.
     pub(crate) fn message(&self) -> Option<(&str, Option<&str>)> {
         match &self.kind {
             FailureKind::Message { message, hint } => Some((message, hint.as_deref())),
@@ -183,7 +183,7 @@ impl Failure {
         }
     }
 
-    /// The error that can show its place. None: it is in words.
+    /// Returns the error that shows its place. None: the failure is a message.
     pub(crate) fn as_diagnostic(&self) -> Option<&dyn miette::Diagnostic> {
         match &self.kind {
             FailureKind::Diagnostic(error) => Some(&**error),

@@ -1,4 +1,4 @@
-//! `bidir experiment`: methods are compared, from a description to a report.
+//! `bidir experiment`: compares methods as a description says, and writes a report.
 
 mod claims;
 mod cluster;
@@ -23,7 +23,7 @@ use lab::results::Machine;
 use std::path::Path;
 use watch::Watch;
 
-/// Runs an experiment, and tells what it found.
+/// Runs an experiment, and prints its results.
 pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     if let Some(address) = &args.ray {
@@ -40,11 +40,11 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     };
     let sections = experiment.sections(results);
     write_page(&args.output, results, &sections, &command(args)).map_err(failure)?;
-    let mut found: Vec<_> = results.claims.iter().map(claims::text).collect();
+    let mut parts: Vec<_> = results.claims.iter().map(claims::text).collect();
     let of_sections = sections.iter().flat_map(|section| &section.tables);
-    found.extend(of_sections.map(table_text));
-    found.extend(claims::summary(&results.claims));
-    print(&found.join("\n"))?;
+    parts.extend(of_sections.map(table_text));
+    parts.extend(claims::summary(&results.claims));
+    print(&parts.join("\n"))?;
     if outcome.end == End::Stopped {
         return Ok(stopped(args, &signals));
     }
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     Ok(Exit::Done)
 }
 
-/// The command that runs the same experiment.
+/// Returns the command that repeats the experiment.
 fn command(args: &ExperimentArgs) -> String {
     let begin = format!("bidir experiment {} -o FOLDER", args.description.display());
     let quick = args.quick.then(|| "--quick".to_owned());
@@ -64,7 +64,7 @@ fn command(args: &ExperimentArgs) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Says how to go on, where anything was finished.
+/// Says how to continue if a render finished, and returns the exit.
 fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
     let (text, exit) = if !has_passes(&args.output) {
         let exit = signals.exit().unwrap_or(Exit::Interrupted);
@@ -84,7 +84,7 @@ fn stopped(args: &ExperimentArgs, signals: &Signals) -> Exit {
     exit
 }
 
-/// Reads a description, or takes the built-in one, with the extent that flags give it.
+/// Returns the experiment of a file or a built-in one, with the extent that the flags give.
 fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     let file = &args.description;
     let builtin = Builtin::named(file).map(Builtin::experiment);
@@ -100,7 +100,7 @@ fn read(args: &ExperimentArgs) -> Result<Experiment, Failure> {
     within.map_err(|error| Failure::usage(format!("--scenes: {error}")))
 }
 
-/// Reads the description in a file, which its results in `folder` must not replace.
+/// Reads a description from a file. Errors: results in `folder` would replace it.
 fn described(file: &Path, folder: &Path) -> Result<Experiment, Failure> {
     let text = std::fs::read_to_string(file);
     let text = text.map_err(|error| unreadable(file, &error))?;
@@ -109,7 +109,7 @@ fn described(file: &Path, folder: &Path) -> Result<Experiment, Failure> {
     Ok(experiment)
 }
 
-/// Why a description cannot be read; a name near a built-in experiment's is probably that.
+/// Returns the failure to read a description. The hint suggests a built-in experiment of a similar name.
 fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
     let action = match error.kind() {
         std::io::ErrorKind::NotFound => "open",
@@ -128,7 +128,7 @@ fn unreadable(file: &Path, error: &std::io::Error) -> Failure {
     }
 }
 
-/// A file that a missing description may be meant to be.
+/// Suggests an existing file for a missing description.
 fn other_file(file: &Path) -> String {
     let listed = Path::new("experiments").join(file).with_extension("toml");
     let listed = Some(listed).filter(|listed| listed.is_file());
@@ -138,16 +138,16 @@ fn other_file(file: &Path) -> String {
     }
 }
 
-/// The threads of each render, as the records have it: the flag, else the description's.
+/// Returns the threads of each render for the records: those of the flag, else of the description.
 fn threads(args: &ExperimentArgs, own: usize, console: Console) -> usize {
     match args.threads.count {
         0 => threads::limited(own, console).count(),
-        // These were warned of when the command began.
-        asked => Threads::new(asked.into()).count(),
+        // `threads::start` has warned already.
+        requested => Threads::new(requested.into()).count(),
     }
 }
 
-/// Renders what is missing, alone in its folder.
+/// Runs the missing renders, with a lock on the folder.
 fn execute(
     args: &ExperimentArgs,
     console: Console,
@@ -167,18 +167,18 @@ fn execute(
         program: formats::film::program(),
         machine: Machine::here(),
     };
-    let wanted = if args.quiet {
+    let display = if args.quiet {
         Display::Silent
     } else {
         Display::Bar
     };
-    let mut watch = Watch::new(console, wanted, signals);
+    let mut watch = Watch::new(console, display, signals);
     let outcome = run(&setup, &mut watch);
     watch.finish();
     outcome.map_err(failure)
 }
 
-/// What an error is to the shell.
+/// Returns the failure of the command for an error of the experiment.
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_)
@@ -198,7 +198,7 @@ fn failure(error: ExperimentError) -> Failure {
             let anew = "make it again with `bidir reference`, or start over with --restart";
             Failure::new(exit, text).with_hint(hint.unwrap_or_else(|| anew.to_owned()))
         }
-        // These can show their lines.
+        // Errors of files show their lines.
         (_, ExperimentError::File(error)) => {
             Failure::diagnostic(scene_io::exit_of_scene(&error), error)
         }

@@ -1,24 +1,23 @@
-//! `bidir farm`: a job file for a scheduler, from which shares of a render are started.
+//! `bidir farm`: prints a job file with which a scheduler starts the parts of a render.
 //!
-//! Share I of N renders its part of the passes and keeps a film file NAME.part-I-of-N.film, from which
-//! it goes on where it is started again; the last step merges them and develops the image. There is
-//! no protocol and no server of our own: the job file is text, made to be read and changed.
+//! Part I of N renders its passes into a film file NAME.part-I-of-N.film, and continues from it when it
+//! is started again; the last step merges the film files and develops the image. There is no protocol and
+//! no server of our own: the job file is a text that users read and change.
 //!
-//! The last step finds the shares by a pattern. No other job's files fit it, as no job has a name with
-//! `.part-` and a digit in it.
+//! The last step finds the parts by a pattern, which matches no file of another job: names of jobs
+//! cannot contain `.part-` and a digit.
 //!
-//! The templates are job files with `{{…}}` where [`Job::value`] puts words in:
+//! The templates are job files with placeholders `{{…}}`, which [`Job::value`] replaces:
 //!
-//! * `slurm.sh` is three things: what `sbatch` reads, a share, and what submits both steps. Two minutes
-//!   before its time is over Slurm sends USR1 to the shell alone, which asks the render to stop with
-//!   TERM, and then gives the share back to the queue. TERM of Slurm's own, at the end of the time,
-//!   before preemption and for scancel, reaches every process: the shell only has to wait, and a
-//!   cancelled share must not come back.
-//! * `hyperqueue.sh` is a share, and what submits them and does the last step. HyperQueue itself repeats
-//!   tasks whose worker was lost, but none that failed.
-//! * `k8s.yaml` has no shell between the pod and the program: Kubernetes puts the index into the words,
-//!   and its TERM reaches the render itself.
-//! * `shell.sh` is for one machine, or several with a folder in common.
+//! * `slurm.sh` has three roles: directives for `sbatch`, a part, and a script that submits both steps. Two
+//!   minutes before its time is over, Slurm sends USR1 to the shell alone, which stops the render with
+//!   TERM and then requeues the part. Slurm's own TERM, at the end of the time, before preemption and by
+//!   scancel, reaches every process: the shell only has to wait, and must not requeue a cancelled part.
+//! * `hyperqueue.sh` is a part, and a script that submits all parts and runs the last step. HyperQueue
+//!   itself repeats tasks whose worker was lost, but not those that failed.
+//! * `k8s.yaml` has no shell between the pod and the program: Kubernetes puts the index into the
+//!   arguments, and its TERM reaches the render itself.
+//! * `shell.sh` is for one machine, or several that share a folder.
 
 mod check;
 mod quote;
@@ -52,26 +51,26 @@ impl<'a> Job<'a> {
     fn new(args: &'a FarmArgs) -> Self {
         let output = args.output.clone();
         let image = output.unwrap_or_else(|| format!("{}.exr", stem(&args.scene)));
-        // No command takes such a name for a flag.
+        // With a folder, commands do not read the name as a flag.
         let folder = if image.starts_with('-') { "./" } else { "" };
         let image = format!("{folder}{image}");
         Self { args, image }
     }
 
-    /// Puts words into the places of a template, in one pass: braces in a name are no place.
+    /// Fills in the placeholders of a template in one pass, so that braces in a name are not replaced.
     fn fill(&self, template: &str) -> String {
         let mut pieces = template.split("{{");
         let start = pieces.next().unwrap_or_default().to_owned();
         pieces.fold(start, |text, piece| {
-            let (name, after) = piece.split_once("}}").expect("a place has an end");
+            let (name, after) = piece.split_once("}}").expect("a placeholder has an end");
             text + &self.value(name) + after
         })
     }
 
-    /// The words of a place: those of shells are quoted, those of `yaml` stand between quotes.
-    fn value(&self, place: &str) -> String {
+    /// Returns the value of a placeholder, quoted for shells, or escaped for the quotes of YAML.
+    fn value(&self, placeholder: &str) -> String {
         let FarmArgs { scene, parts, .. } = self.args;
-        match place {
+        match placeholder {
             "title" => format!("{scene} in {parts} parts of its passes"),
             "job" => self.job(),
             "label" => label(&self.job()),
@@ -90,23 +89,23 @@ impl<'a> Job<'a> {
             "yaml-spp" => items(&self.spp()),
             "yaml-flags" => items(&self.args.flags),
             "yaml-name" => yaml(self.name()),
-            _ => unreachable!("no template has a place for {place}"),
+            _ => unreachable!("no template has the placeholder {placeholder}"),
         }
     }
 
-    /// The samples per pixel as a flag of `bidir render`.
+    /// Returns the samples per pixel as a flag of `bidir render`.
     fn spp(&self) -> Vec<String> {
         let spp = self.args.spp.iter();
         spp.flat_map(|spp| ["--spp".into(), spp.to_string()])
             .collect()
     }
 
-    /// The image without .exr; film files begin with it.
+    /// Returns the image's name without .exr, which the names of film files begin with.
     fn name(&self) -> &str {
         &self.image[..self.image.len() - ".exr".len()]
     }
 
-    /// A name for the job: letters, digits, dashes, dots.
+    /// Returns a name for the job: letters, digits, dashes, underscores and dots.
     fn job(&self) -> String {
         let file = Path::new(&self.image).file_stem().unwrap_or_default();
         let is_plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
@@ -115,8 +114,8 @@ impl<'a> Job<'a> {
     }
 }
 
-/// A name of an object of Kubernetes: small letters, digits and dashes, with room for what is added
-/// for pods.
+/// Returns a name of a Kubernetes object: lower-case letters, digits and dashes, with room for the suffix
+/// of pods.
 fn label(job: &str) -> String {
     let small = job.to_ascii_lowercase().replace(['.', '_'], "-");
     or_bidir(small.get(..40).unwrap_or(&small).trim_matches('-'))
@@ -127,7 +126,7 @@ fn or_bidir(name: &str) -> String {
     name.to_owned()
 }
 
-/// The scene's name without folder and endings.
+/// Returns the scene's name without folder and endings.
 fn stem(scene: &str) -> String {
     let name = Path::new(scene)
         .file_name()
@@ -175,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_objects_are_labels() {
+    fn names_of_kubernetes_objects_are_valid_labels() {
         assert_eq!(label("Room_1.final"), "room-1-final");
         assert_eq!(label("-.-"), "bidir");
         assert_eq!(

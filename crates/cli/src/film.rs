@@ -1,4 +1,4 @@
-//! `bidir film`, `bidir merge` and `bidir missing`: what can be done with film files.
+//! `bidir film`, `bidir merge` and `bidir missing`: the commands for film files.
 
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
@@ -12,7 +12,7 @@ use formats::printable;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Tells, develops or checks film files.
+/// Describes, develops or verifies film files.
 pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failure> {
     match command {
         FilmCommand::Info { file, json } => {
@@ -20,7 +20,7 @@ pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failu
             if *json {
                 print_json(&header)
             } else {
-                tell(&header)
+                print_header(&header)
             }
         }
         FilmCommand::Develop { file, output } => develop(file, output),
@@ -28,8 +28,8 @@ pub(crate) fn run(command: &FilmCommand, console: Console) -> Result<Exit, Failu
     }
 }
 
-/// Prints one value per line.
-fn tell(header: &FilmHeader) -> Result<Exit, Failure> {
+/// Prints a header, one value per line.
+fn print_header(header: &FilmHeader) -> Result<Exit, Failure> {
     let [left, top, right, bottom] = header.crop;
     let [width, height] = header.resolution;
     let passes = format!("{} ({})", header.passes, header.passes.len());
@@ -80,7 +80,7 @@ fn write_image(
     scene_io::write_picture(output, film.settings(), &developed, &metadata)
 }
 
-/// Reads every file to its end; checksums are compared by the way.
+/// Reads every file to its end, which compares its checksums.
 fn verify(files: &[PathBuf], console: Console) -> Exit {
     let mut last = None;
     for file in files {
@@ -99,14 +99,14 @@ fn verify(files: &[PathBuf], console: Console) -> Exit {
     last.unwrap_or(Exit::Done)
 }
 
-/// A film file was to replace `path`, which `flag` names and which is none.
+/// Returns the failure to replace `path`, which `flag` names, because it is not a film file.
 pub(crate) fn not_a_film(path: &Path, flag: &str) -> Failure {
     let name = path.display();
     let message = format!("{name} is not a film file, and is not replaced by one");
     Failure::usage(message).with_hint(format!("name another file with {flag}"))
 }
 
-/// Adds films of the same render and different passes.
+/// Merges film files of one render with different passes.
 pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     check_outputs(args)?;
     let _lock = FilmLock::take(&args.output)?;
@@ -132,15 +132,15 @@ pub(crate) fn merge(args: &MergeArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// The sum of films.
+/// The sum of film files.
 struct Merged {
     all: FilmFile,
-    /// The number of them that the output, which is one of the files, had before.
+    /// The number of films whose passes the output already had.
     known: usize,
 }
 
-/// Adds the films. Where the output is among them, it comes first, and a film whose passes it has was
-/// merged into it before: passes of one render have the same bits wherever they are rendered.
+/// Adds the films. If the output is one of them, it comes first, and films whose passes it has are skipped:
+/// they were merged into it before, as passes of one render have the same bits on any machine.
 fn merged(args: &MergeArgs) -> Result<Merged, Failure> {
     let is_output = |file: &&PathBuf| scene_io::is_same(file, &args.output);
     let (own, others): (Vec<_>, Vec<_>) = args.files.iter().partition(is_output);
@@ -165,14 +165,14 @@ fn merged(args: &MergeArgs) -> Result<Merged, Failure> {
     Ok(Merged { all, known })
 }
 
-/// True where `film` has passes, and none but those that are held.
+/// Returns true if `film` has passes, and all of them are in `held`.
 fn is_held(held: Option<&PassSet>, film: &FilmFile) -> bool {
     let passes = &film.header.passes;
     held.is_some_and(|held| !passes.is_empty() && passes.difference(held).is_empty())
 }
 
-/// Fails before films are read where a file could not be written, or is no film file to be replaced.
-/// The output may be one of the films.
+/// Checks before films are read that the outputs can be written and replace no file of another kind. The
+/// output may be one of the films.
 fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     let MergeArgs {
         output,
@@ -193,7 +193,7 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
         return Ok(());
     };
     output::check_file("--image", image)?;
-    // An image is no film file, and would replace one.
+    // The image must not replace a film file.
     if scene_io::is_film(image) {
         let message = format!(
             "{} is a film file, and is not replaced by an image",
@@ -204,33 +204,32 @@ fn check_outputs(args: &MergeArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses to replace the film file `output` where passes would be lost by it: those that `all`, the
-/// header of what is to be written, has not.
+/// Refuses to replace the film file `output` if it has passes that `all`, the header of the result, lacks.
 fn check_kept(output: &Path, all: &FilmHeader) -> Result<(), Failure> {
     if !output.is_file() {
         return Ok(());
     }
     let another = "name another file with --output";
-    let there = scene_io::read_film(output).map_err(|failure| failure.with_hint(another))?;
-    let (there, name) = (there.header, output.display());
-    let refused = |message: String, hint: &str| {
+    let existing = scene_io::read_film(output).map_err(|failure| failure.with_hint(another))?;
+    let (existing, name) = (existing.header, output.display());
+    let refuse = |message: String, hint: &str| {
         Err(Failure::new(Exit::FilmMismatch, message).with_hint(hint))
     };
-    if let Some(difference) = there.difference(all) {
+    if let Some(difference) = existing.difference(all) {
         let message =
             format!("{name} is the film of another render, and is not replaced: {difference}");
-        return refused(message, another);
+        return refuse(message, another);
     }
-    let lost = there.passes.difference(&all.passes);
+    let lost = existing.passes.difference(&all.passes);
     if lost.is_empty() {
         return Ok(());
     }
     let message = format!("{name} has the passes {lost}, which would be lost");
     let hint = "name another file with --output, or list this one among the files";
-    refused(message, hint)
+    refuse(message, hint)
 }
 
-/// Adds `other`; else the reason why not.
+/// Adds `other` to `all`. Errors: the reason why they cannot be added.
 fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
     if let Some(difference) = other.header.difference(&all.header) {
         return Err(difference);
@@ -243,16 +242,16 @@ fn add(all: &mut FilmFile, other: &FilmFile) -> Result<(), String> {
     Ok(())
 }
 
-/// The missing passes.
+/// The passes and parts that no film file has.
 #[derive(Serialize)]
 struct Missing {
-    /// Ranges of passes, as `--passes` takes them.
+    /// Ranges of passes in the format of `--passes`.
     passes: Vec<String>,
-    /// Shares, as `--part` takes them.
+    /// Parts in the format of `--part`.
     parts: Vec<String>,
 }
 
-/// The passes of all files that can be merged. What cannot be read has none, and is told.
+/// Returns the passes of all files. Reports files that cannot be read, which have none.
 fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
     let mut first: Option<FilmHeader> = None;
     let mut held = PassSet::default();
@@ -277,15 +276,15 @@ fn held(files: &[PathBuf], console: Console) -> Result<PassSet, Failure> {
     Ok(held)
 }
 
-/// Tells which passes no file has.
+/// Prints the passes that no file has.
 pub(crate) fn missing(args: &MissingArgs, console: Console) -> Result<Exit, Failure> {
     let held = held(&args.files, console)?;
     let lacking = PassSet::from(0..args.spp).difference(&held);
     let parts = (0..args.parts.unwrap_or(0)).filter_map(|index| {
         let of = args.parts?;
-        let share = PassSet::from(Part { index, of }.range(args.spp));
-        let open = !share.intersection(&lacking).is_empty();
-        open.then(|| format!("{index}/{of}"))
+        let part = PassSet::from(Part { index, of }.range(args.spp));
+        let is_missing = !part.intersection(&lacking).is_empty();
+        is_missing.then(|| format!("{index}/{of}"))
     });
     let ranges = lacking.ranges().iter();
     let missing = Missing {

@@ -1,4 +1,4 @@
-//! Whose film it is, by the names of this command; what is said is the library's business.
+//! The headers of film files; their contents are defined in [`formats::film`].
 
 use crate::scene_io::{FilmHeader, LoadedScene};
 use bidir::driver::{Settings, Training};
@@ -6,7 +6,7 @@ use formats::film::SceneIdentity;
 
 pub(crate) use formats::film::{counts_by_name, is_short, metadata, of_run, untrained};
 
-/// The header of an empty film of the scene that is called `name`.
+/// Returns the header of an empty film of the scene `name`.
 pub(crate) fn header(
     name: &str,
     loaded: &LoadedScene,

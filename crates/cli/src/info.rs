@@ -1,4 +1,4 @@
-//! `bidir info`: what is in a scene.
+//! `bidir info`: the contents of a scene.
 
 use crate::args::{InfoArgs, SceneArgs};
 use crate::console::{Console, print, print_json};
@@ -16,7 +16,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write};
 
-/// Counts by kind.
+/// The number of items of each kind.
 type Counts = BTreeMap<&'static str, usize>;
 
 /// The contents of a scene.
@@ -29,9 +29,9 @@ struct Info {
     spp: u64,
     shapes: Counts,
     triangles: usize,
-    /// Those of shared objects count once.
+    /// Primitives; those of shared objects count once.
     primitives: u64,
-    /// Those of shared objects count at every place.
+    /// Primitives; those of shared objects count once per instance.
     placed_primitives: u64,
     instances: usize,
     /// Instances whose object is shared.
@@ -41,21 +41,21 @@ struct Info {
     /// The number of lights in each group.
     light_groups: BTreeMap<String, usize>,
     textures: usize,
-    /// The two corners of a box around all surfaces. None: there are none.
+    /// The two corners of a box around all surfaces. None: the scene has none.
     bounds: Option<[[f32; 3]; 2]>,
     bvh_bytes: usize,
     isa: String,
-    /// Light paths that estimators do not make, by their names.
+    /// The light paths that integrators miss or sample badly, by integrator.
     blind_spots: BTreeMap<&'static str, Vec<BlindSpotInfo>>,
-    /// Unsupported features, and their substitutes with `--lenient`.
+    /// Unsupported features, and their replacements with `--lenient`.
     refused: Vec<String>,
     warnings: Vec<String>,
 }
 
-/// Light paths that an estimator does not make, or by chance only.
+/// Light paths that an integrator misses or samples badly.
 #[derive(Debug, Serialize)]
 struct BlindSpotInfo {
-    /// True where they are missing from pictures, and not only noisy.
+    /// True if the paths are missing from images; false if they are only noisy.
     missing: bool,
     paths: &'static str,
 }
@@ -73,9 +73,9 @@ struct FilmInfo {
     bytes: u64,
 }
 
-/// Tells what is in a scene.
+/// Prints the contents of a scene.
 pub(crate) fn run(args: &InfoArgs, console: Console) -> Result<Exit, Failure> {
-    // Lenient, so that all unsupported features are listed, and not the first alone.
+    // List everything that a render would refuse, instead of failing at the first.
     let scene = SceneArgs {
         lenient: true,
         ..args.scene.clone()
@@ -127,14 +127,14 @@ impl Info {
         }
     }
 
-    /// One line for each thing.
+    /// Returns one line per property.
     fn text(&self) -> String {
         let mut text = String::new();
         for (name, value) in self.lines() {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{name:<12} {}", printable(&value));
         }
-        self.tell_blind_spots(&mut text);
+        self.write_blind_spots(&mut text);
         for refused in &self.refused {
             let _ = writeln!(text, "refused      {}", printable(refused));
         }
@@ -145,7 +145,7 @@ impl Info {
         text
     }
 
-    /// The contents, each with its name.
+    /// Returns the properties with their names.
     fn lines(&self) -> [(&'static str, String); 16] {
         let film = &self.film;
         let ([width, height], [x0, y0, x1, y1]) = (film.resolution, film.crop);
@@ -189,13 +189,13 @@ impl Info {
         ]
     }
 
-    /// A line for what each estimator does not see, the scene's own first.
-    fn tell_blind_spots(&self, text: &mut String) {
+    /// Writes a line for each blind spot, those of the scene's integrator first.
+    fn write_blind_spots(&self, text: &mut String) {
         let integrator = self.settings.request.integrator.map(IntegratorKind::name);
         let own = |name: &str| Some(name) == integrator;
-        let mut estimators: Vec<_> = self.blind_spots.iter().collect();
-        estimators.sort_by_key(|(name, _)| !own(name));
-        for (name, spots) in estimators {
+        let mut integrators: Vec<_> = self.blind_spots.iter().collect();
+        integrators.sort_by_key(|(name, _)| !own(name));
+        for (name, spots) in integrators {
             if spots.is_empty() {
                 let _ = writeln!(text, "{name:<12} makes all light paths");
             }
@@ -277,7 +277,7 @@ fn count<T>(items: &[T], kind: impl Fn(&T) -> &'static str) -> Counts {
     counts
 }
 
-/// `3: 2 disk, 1 mesh`.
+/// Returns counts as text, such as `3: 2 disk, 1 mesh`.
 fn list<K: Display>(counts: &BTreeMap<K, usize>) -> String {
     let kinds: Vec<_> = counts
         .iter()

@@ -1,7 +1,7 @@
-//! The `bidir` command: it reads scenes, renders them, and compares images.
+//! The `bidir` command: reads scenes, renders them, and compares images.
 //!
-//! The command is glue: settings are gathered here, clocks are read here, files are named here; the
-//! light is computed in the `bidir` library. The documentation of the command is its help text.
+//! The command collects settings, reads clocks and names files; the `bidir` library computes the light.
+//! The documentation of the command is its help text.
 
 mod args;
 mod begin;
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
     signals::survive_size_limits();
     let cli = match Cli::read() {
         Ok(cli) => cli,
-        // Help and version are such errors too.
+        // Clap returns help and version as errors, too.
         Err(error) => return ended(print_usage(&error), Console::new(ColorArgs::default())),
     };
     let console = Console::new(cli.color);
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     ended(run(&cli.command, console), console)
 }
 
-/// The exit code, after the last message.
+/// Reports a failure, and returns the exit code.
 fn ended(result: Result<Exit, Failure>, console: Console) -> ExitCode {
     let exit = match result {
         Ok(exit) => exit,

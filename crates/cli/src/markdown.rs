@@ -16,7 +16,7 @@ Results go to stdout, messages and progress to stderr; control characters in nam
 A setting comes from the first of these that has it: the flag, the environment variable, the scene file, the default.
 ";
 
-/// Variables that no flag stands for, with their effect.
+/// Variables without a flag, and their effects.
 const VARIABLES: [(&str, &str); 6] = [
     (
         "BIDIR_EMBREE",
@@ -44,7 +44,7 @@ const VARIABLES: [(&str, &str); 6] = [
     ),
 ];
 
-/// The whole page.
+/// Returns the whole page.
 pub(crate) fn page() -> String {
     let mut root = command(View::Long);
     root.build();
@@ -74,7 +74,7 @@ pub(crate) fn page() -> String {
     page
 }
 
-/// Every command below `command`, with its name from there, such as `film info`.
+/// Returns every command below `command` with its name relative to it, such as `film info`.
 fn all(command: &Command) -> Vec<(String, &Command)> {
     let visible = command
         .get_subcommands()
@@ -88,10 +88,10 @@ fn all(command: &Command) -> Vec<(String, &Command)> {
     with_its_own.collect()
 }
 
-/// The tables that are written, by heading and rows, with the command that has them.
+/// The written tables by heading and rows, with the command that has them.
 type Tables = BTreeMap<(String, String), String>;
 
-/// The section of a command. A table that another command has is a link to that one.
+/// Writes the section of a command. A table that another command has becomes a link to it.
 fn section(page: &mut String, path: &str, command: &Command, tables: &mut Tables) {
     let long = command.get_long_about().or(command.get_about());
     let long = long.map(ToString::to_string).unwrap_or_default();
@@ -136,7 +136,7 @@ fn section(page: &mut String, path: &str, command: &Command, tables: &mut Tables
     }
 }
 
-/// The arguments of a command under their headings, positional ones first.
+/// Returns the arguments of a command under their headings, those without a heading first.
 fn by_heading(command: &Command) -> Vec<(&str, Vec<&Arg>)> {
     let own = || command.get_arguments().filter(|arg| is_own(arg));
     let is_plain = |arg: &&Arg| !arg.is_positional() && arg.get_help_heading().is_none();
@@ -160,19 +160,19 @@ fn by_heading(command: &Command) -> Vec<(&str, Vec<&Arg>)> {
     headings
 }
 
-/// A link to the section of a command.
+/// Returns a link to the section of a command.
 fn link(path: &str) -> String {
     let anchor = format!("bidir {path}").replace(' ', "-");
     format!("[`{path}`](#{anchor})")
 }
 
-/// False for flags of every command, and for hidden ones.
+/// Returns false for the flags of every command, and for hidden flags.
 fn is_own(arg: &Arg) -> bool {
     let is_shared = ["help", "version"].contains(&arg.get_id().as_str());
     !is_shared && !arg.is_global_set() && !arg.is_hide_set()
 }
 
-/// The variables of all flags, and the others.
+/// Writes the section of environment variables: those of flags, and the others.
 fn environment(page: &mut String, root: &Command) {
     let mut variables: BTreeMap<String, String> = VARIABLES
         .map(|(name, effect)| (name.to_owned(), effect.to_owned()))
@@ -209,7 +209,7 @@ fn name(arg: &Arg) -> String {
     format!("{short}{}", code(&format!("--{long}{value}")))
 }
 
-/// The meaning of an argument, and its default, which the help text has in brackets.
+/// Returns the meaning of an argument, and its default, which the help text has in brackets.
 fn meaning(arg: &Arg) -> (String, String) {
     const BRACKET: &str = "[default: ";
     let text = arg.get_long_help().or(arg.get_help());
@@ -239,7 +239,7 @@ fn meaning(arg: &Arg) -> (String, String) {
     (cell(&text), cell(&default))
 }
 
-/// A text with a full stop.
+/// Returns a text with a full stop.
 fn ended(text: &str) -> String {
     let text = text.trim_end();
     let stop = if text.is_empty() || text.ends_with(['.', ':', '!', '?']) {
@@ -254,7 +254,7 @@ fn code(text: &str) -> String {
     format!("`{text}`")
 }
 
-/// A text without the signs that end a cell.
+/// Escapes the character that ends a cell.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }

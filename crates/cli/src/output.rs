@@ -1,4 +1,4 @@
-//! Which files a render writes, and whether they can be written.
+//! The files that a render writes, and checks that they can be written.
 
 use crate::args::RenderArgs;
 use crate::exit::{Exit, Failure};
@@ -13,14 +13,14 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Outputs {
     exr: Option<PathBuf>,
     png: Option<PathBuf>,
-    /// The counts, as JSON.
+    /// The statistics as JSON.
     pub(crate) stats: Option<PathBuf>,
     /// Images of each strategy.
     pub(crate) pyramid: Option<PathBuf>,
 }
 
 impl Outputs {
-    /// The files that flags name: what is known before the scene is read.
+    /// Returns the files that flags name, which are known before the scene is read.
     pub(crate) fn named(args: &RenderArgs) -> Result<Self, Failure> {
         let image = args.output.output.clone();
         let [exr, png] = image.map_or(Ok([None, None]), images)?;
@@ -35,18 +35,19 @@ impl Outputs {
         })
     }
 
-    /// The files of a render; `film` is the name that the scene file gives its image. A share of a
-    /// render has no image but one that is asked for, as all shares would write the same.
+    /// Returns the files of a render; `film` is the name that the scene gives its image.
+    ///
+    /// A part of a render has an image only if a flag names it: by default all parts would write one file.
     pub(crate) fn new(args: &RenderArgs, film: Option<&Path>) -> Result<Self, Failure> {
         let named = Self::named(args)?;
-        if is_share(args) || args.output.output.is_some() {
+        if is_part(args) || args.output.output.is_some() {
             return Ok(named);
         }
         let [exr, png] = images(default_image(&args.scene.scene, film))?;
         Ok(Self { exr, png, ..named })
     }
 
-    /// All files, each with the flag that names it.
+    /// Returns all files, each with the flag that names it.
     fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let images = self.exr.iter().chain(&self.png);
         let images = images.map(|file| ("--output", file));
@@ -56,8 +57,7 @@ impl Outputs {
         all.map(|(flag, file)| (flag, file.as_path()))
     }
 
-    /// Fails now rather than after hours where a file could not be written, or would replace one of
-    /// `inputs`.
+    /// Checks, before hours of rendering, that the files can be written and replace none of `inputs`.
     pub(crate) fn check(&self, args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
         let is_kept = self.exr.is_some() || args.long.checkpoint.is_some();
         if args.layers.need_exr() && self.png.is_some() && !is_kept {
@@ -65,7 +65,7 @@ impl Outputs {
             let hint = "write NAME.exr with --output, or keep a film file with --checkpoint";
             return Err(Failure::usage(message).with_hint(hint));
         }
-        self.check_share(args)?;
+        self.check_part(args)?;
         if let Some(folder) = &args.layers.pyramid {
             pyramid::make_folder(folder)?;
         }
@@ -79,11 +79,11 @@ impl Outputs {
         named.try_for_each(|(flag, file)| check_file(flag, file))
     }
 
-    /// Fails where a share would leave nothing behind.
-    fn check_share(&self, args: &RenderArgs) -> Result<(), Failure> {
+    /// Refuses a part of a render that would write nothing.
+    fn check_part(&self, args: &RenderArgs) -> Result<(), Failure> {
         let is_watched = args.serve.is_some() || args.display_server.is_some();
         let is_kept = args.long.checkpoint.is_some() || self.files().next().is_some();
-        if !is_share(args) || is_watched || is_kept {
+        if !is_part(args) || is_watched || is_kept {
             return Ok(());
         }
         let message = "a part of a render writes no image by default: nothing would be written";
@@ -105,18 +105,18 @@ impl Outputs {
         png.map_or(Ok(()), |png| scene_io::write_png(png, &developed.picture))
     }
 
-    /// The names of the files.
+    /// Returns the names of the files.
     pub(crate) fn names(&self) -> impl Iterator<Item = String> {
         self.files().map(|(_, file)| file.display().to_string())
     }
 }
 
-/// True where others render other passes.
-pub(crate) fn is_share(args: &RenderArgs) -> bool {
+/// Returns true if the command renders a part of the passes.
+pub(crate) fn is_part(args: &RenderArgs) -> bool {
     args.long.passes.is_some() || args.long.part.is_some()
 }
 
-/// Fails where a file that `flag` names could not be written.
+/// Checks that the file named by `flag` can be written.
 pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
     if file.is_dir() {
         let message = format!("cannot write `{}`: it is a folder", file.display());
@@ -126,7 +126,7 @@ pub(crate) fn check_file(flag: &str, file: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::from(error).with_hint(hint(flag, scene_io::folder_of(file))))
 }
 
-/// The EXR, if any, and the PNG that go by the name of an image.
+/// Returns the EXR, if any, and the PNG for the name of an image.
 fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
     Ok(match scene_io::image_format(&image, IMAGES)? {
         ImageFormat::Exr => {
@@ -137,7 +137,7 @@ fn images(image: PathBuf) -> Result<[Option<PathBuf>; 2], Failure> {
     })
 }
 
-/// The image that the scene names, as EXR; else one with the name of the scene.
+/// Returns the image that the scene names, as EXR; else one with the name of the scene file.
 fn default_image(scene: &Path, film: Option<&Path>) -> PathBuf {
     let name = film
         .filter(|film| film.file_stem().is_some())
@@ -160,7 +160,7 @@ mod tests {
     use crate::args::{Cli, Command};
     use clap::Parser;
 
-    /// The outputs of `bidir render scenes/room.pbrt` with more flags.
+    /// Returns the outputs of `bidir render scenes/room.pbrt` with more flags.
     fn outputs(flags: &str, film: Option<&str>) -> Result<Outputs, Failure> {
         let words = "bidir render scenes/room.pbrt".split(' ');
         let cli = Cli::try_parse_from(words.chain(flags.split_whitespace())).unwrap();
@@ -186,13 +186,13 @@ mod tests {
     }
 
     #[test]
-    fn other_endings_are_a_fault_of_the_command_line() {
+    fn other_endings_are_errors_of_the_command_line() {
         assert_eq!(outputs("-o a.jpg", None).unwrap_err().exit(), Exit::Usage);
         assert_eq!(outputs("-o a", None).unwrap_err().exit(), Exit::Usage);
     }
 
     #[test]
-    fn a_share_has_no_image_but_one_that_is_asked_for() {
+    fn a_part_has_an_image_only_if_a_flag_names_it() {
         check("--passes 0..4", Some("film.exr"), "");
         check("--part 0/4 -o a.png", Some("film.exr"), "a.png");
     }

@@ -1,5 +1,5 @@
-//! `bidir render --pyramid DIR`: what each strategy (s, t) does, weighted and raw, as layers of one EXR
-//! ([`lab::pyramid`]).
+//! `bidir render --pyramid DIR`: the image of each strategy (s, t), weighted and raw, as layers of one EXR
+//! and as contact sheets ([`lab::pyramid`]).
 
 use crate::exit::Failure;
 use crate::film_header;
@@ -12,7 +12,7 @@ pub(crate) fn file(folder: &Path) -> PathBuf {
     folder.join("pyramid.exr")
 }
 
-/// Makes the folder of a pyramid where there is none; the one that it is in has to be there.
+/// Creates the folder of a pyramid if it does not exist; its parent has to exist.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     if folder.is_dir() {
         return Ok(());

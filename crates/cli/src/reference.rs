@@ -1,4 +1,4 @@
-//! `bidir reference`: a picture that others can be measured against.
+//! `bidir reference`: renders a reference image.
 
 use crate::args::{FilmArgs, PixelBounds, ReferenceArgs, Size};
 use crate::checkpoint::has_passes;
@@ -16,7 +16,7 @@ use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Makes a reference, goes on with one, or adds samples to one.
+/// Makes a reference, continues one, or adds samples to one.
 pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failure> {
     let signals = Signals::watch()?;
     threads::start(args.threads.count, console);
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     job.run()
 }
 
-/// A folder that is called as the scene is.
+/// Returns the default folder, named after the scene.
 fn default_folder(scene: &Path) -> PathBuf {
     let stem = scene.file_stem().filter(|stem| *stem != "-");
     let mut name = stem.unwrap_or("bidir".as_ref()).to_owned();
@@ -69,7 +69,7 @@ fn default_folder(scene: &Path) -> PathBuf {
     name.into()
 }
 
-/// Refuses a folder that is in use for something else.
+/// Refuses a folder that has other contents than a reference.
 fn check_folder(folder: &Path) -> Result<(), Failure> {
     let is_ours = reference::is_reference(folder) || folder.join(FILMS).is_dir();
     let entries = std::fs::read_dir(folder);
@@ -81,14 +81,14 @@ fn check_folder(folder: &Path) -> Result<(), Failure> {
     Err(Failure::usage(message).with_hint("name another folder with --output"))
 }
 
-/// Refuses a folder with files that the scene reads and the reference would replace.
+/// Refuses a folder in which the reference would replace files that the scene reads.
 fn check_apart(folder: &Path, loaded: &LoadedScene) -> Result<(), Failure> {
     let written = reference::files(folder);
     let written = written.iter().map(|file| ("--output", file.as_path()));
     scene_io::check_apart(&loaded.inputs, &written.collect::<Vec<_>>())
 }
 
-/// The film that a reference has.
+/// Returns the geometry of the film of a reference.
 fn film_of(provenance: &Provenance) -> FilmArgs {
     let [left, top, right, bottom] = provenance.crop;
     FilmArgs {
@@ -102,7 +102,7 @@ fn film_of(provenance: &Provenance) -> FilmArgs {
     }
 }
 
-/// Which estimators make how many samples.
+/// Returns the estimators and the number of samples.
 fn plan(
     args: &ReferenceArgs,
     earlier: Option<&Provenance>,
@@ -131,7 +131,7 @@ fn plan(
     Ok(plan)
 }
 
-/// Tells which settings of an estimator have no influence on it.
+/// Warns of settings that have no effect on their estimator.
 fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
     let flags = [
         ("--estimator", &args.estimator),
@@ -148,7 +148,7 @@ fn warn_unused(args: &ReferenceArgs, plan: &Plan, console: Console) {
     }
 }
 
-/// A reference that can be made.
+/// A reference whose arguments are checked.
 struct Job<'a> {
     args: &'a ReferenceArgs,
     console: Console,
@@ -181,12 +181,12 @@ impl Job<'_> {
         }
         watcher.reporter.finish();
         match made.map_err(failure)? {
-            Made::Whole(reference) => Ok(self.tell(&reference)),
+            Made::Whole(reference) => Ok(self.report(&reference)),
             Made::Stopped => Ok(self.stopped()),
         }
     }
 
-    /// The exit after a signal.
+    /// Says how to continue after a signal, and returns the exit.
     fn stopped(&self) -> Exit {
         if !has_passes(self.folder) {
             self.say(format_args!("stopped before the first pass"));
@@ -199,9 +199,9 @@ impl Job<'_> {
         Exit::Checkpoint
     }
 
-    /// Both estimators are one budget of passes.
+    /// Returns a clock whose budget is the passes of both estimators.
     fn clock(&self) -> Clock {
-        // Each replicate trains anew, so that training is a part of the rate.
+        // Each replicate is trained, so training counts in the rate of passes.
         let start = Instant::now();
         Clock {
             budget: Budget {
@@ -222,8 +222,8 @@ impl Job<'_> {
         }
     }
 
-    /// Tells what was found; exits with 6 where the estimators disagree.
-    fn tell(&self, reference: &Reference) -> Exit {
+    /// Prints the results, and returns the exit: `Validation` if the estimators disagree.
+    fn report(&self, reference: &Reference) -> Exit {
         let provenance = &reference.provenance;
         let (agreement, folder) = (&provenance.agreement, self.folder.display());
         let dropped: u64 = provenance.estimators.iter().map(|e| e.dropped).sum();
@@ -259,7 +259,7 @@ impl Job<'_> {
     }
 }
 
-/// Reports, and passes signals on.
+/// Reports progress, and forwards signals.
 struct Watcher<'a> {
     reporter: Reporter<'a>,
     signals: &'a Signals,
@@ -285,7 +285,7 @@ impl Host for Watcher<'_> {
     }
 }
 
-/// The failure of an error with a reference.
+/// Returns the failure of the command for an error of a reference.
 pub(crate) fn failure(error: Error) -> Failure {
     let text = error.to_string();
     match error {

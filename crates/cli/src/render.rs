@@ -1,9 +1,9 @@
-//! `bidir render`: a scene becomes an image.
+//! `bidir render`: renders a scene to an image.
 
 use crate::args::RenderArgs;
-use crate::begin::{self, Began, Training};
-use crate::checkpoint::{Checkpoint, Keeper};
-use crate::console::{Console, Display, LineFormat, json, say};
+use crate::begin::{self, Started, Training};
+use crate::checkpoint::{Checkpoint, CheckpointWriter};
+use crate::console::{Console, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
 use crate::film_header;
@@ -24,12 +24,12 @@ use std::time::{Duration, Instant};
 use viewer::web::Server;
 use viewer::{RenderMonitor, RequestQueue, Status};
 
-/// Renders a scene, or repeats one sample.
+/// Renders a scene, or repeats one of its samples.
 pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> {
-    // First of all: a signal during loading must not kill the command.
+    // First, so that a signal during loading does not kill the process.
     let signals = Signals::watch()?;
     threads::start_for_render(args.threads.count, console);
-    // Errors that need no scene come before hours may have gone into one.
+    // Checks that need no scene come before loading, which may take long.
     let filter = args.layers.denoise.then(|| Filter::load(args.threads));
     let filter = filter.transpose()?;
     let checkpoint = if args.replay.is_none() {
@@ -52,15 +52,10 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     loaded.print_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
-        // Objects that are to be read have standard output to themselves.
-        let display = match console.display(args.output.talk) {
-            Display::Lines(LineFormat::OpenJd) if args.json => Display::Silent,
-            display => display,
-        };
-        let how = (Training::Whole, display);
-        return match begin::session(args, &loaded, &settings, &signals, how, console)? {
-            Began::Session(session) => replay::run(args, &loaded.scene, &session, target),
-            Began::Stopped(exit) => Ok(exit),
+        let training = Training::Whole;
+        return match begin::session(args, &loaded, &settings, &signals, training, console)? {
+            Started::Session(session) => replay::run(args, &loaded.scene, &session, target),
+            Started::Stopped(exit) => Ok(exit),
         };
     }
     let outputs = Outputs::new(args, loaded.output.as_deref())?;
@@ -83,14 +78,14 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     .run(checkpoint, load, server)
 }
 
-/// A render that nothing but a signal, a full disk or a bug can keep from an image.
+/// A render whose arguments are checked: only a signal, a full disk or a bug can prevent its image.
 struct Job<'a> {
     args: &'a RenderArgs,
     console: Console,
     loaded: &'a LoadedScene,
     settings: &'a Settings,
     outputs: &'a Outputs,
-    /// The denoiser of images.
+    /// The denoiser. None: images are not denoised.
     filter: Option<&'a Filter>,
     signals: &'a Signals,
 }
@@ -112,23 +107,23 @@ impl Job<'_> {
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
         let training = Training::new(budget.time, earlier);
         let start = Instant::now();
-        let began = begin::session(
+        let started = begin::session(
             self.args,
             self.loaded,
             self.settings,
             self.signals,
-            (training, self.display()),
+            training,
             self.console,
         );
-        let mut session = match began? {
-            Began::Session(session) => *session,
-            Began::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
-            Began::Stopped(exit) => return Ok(self.stopped(exit)),
+        let mut session = match started? {
+            Started::Session(session) => *session,
+            Started::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
+            Started::Stopped(exit) => return Ok(self.stopped(exit)),
         };
         self.warn_short(training, &session);
         session.start_at(budget.first);
         let header = header(session.training());
-        let mut keeper = Keeper::new(checkpoint, header, &mut session, start)?;
+        let mut writer = CheckpointWriter::new(checkpoint, header, &mut session, start)?;
         let tev = serve::display(self.args.display_server.as_ref(), &name)?;
         let mut show = Show::new(server, tev, |queue| {
             RenderMonitor::new(queue, &session, self.settings, budget.passes)
@@ -139,7 +134,7 @@ impl Job<'_> {
             start,
             first_pass: Instant::now(),
         };
-        let end = self.render(&mut session, clock, &mut keeper, &mut show);
+        let end = self.render(&mut session, clock, &mut writer, &mut show);
         let course = Course {
             load,
             render: start.elapsed(),
@@ -148,12 +143,12 @@ impl Job<'_> {
         if let (End::Signal(exit), true) = (end, session.film().passes().is_empty()) {
             return Ok(self.stopped(exit));
         }
-        let header = keeper.header(&session, course.stopping);
-        let kept = keeper.keep(&session, &header);
+        let header = writer.header(&session, course.stopping);
+        let saved = writer.write(&session, &header);
         let report = Report::new(name, &session, budget, course);
         let written = self.write(&session, &header, &report);
         show.leave(&session, self.console);
-        kept?;
+        saved?;
         written?;
         let summary = || {
             let is_denoised = self.filter.is_some();
@@ -161,17 +156,17 @@ impl Job<'_> {
                 &session,
                 budget,
                 course,
-                [output::is_share(self.args), is_denoised],
+                [output::is_part(self.args), is_denoised],
             )
         };
-        self.tell(&summary, &report, &keeper, end);
+        self.print_end(&summary, &report, &writer, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
         })
     }
 
-    /// Warns that training did not end in time.
+    /// Warns if training was cut short.
     fn warn_short(&self, training: Training, session: &Session<'_>) {
         let is_short = session.training().is_some_and(|training| training.is_short);
         if is_short && matches!(training, Training::By(_)) {
@@ -182,14 +177,15 @@ impl Job<'_> {
         }
     }
 
-    /// Ends with `exit` where a signal came before there was anything to write.
+    /// Says that nothing was written because of a signal before the first pass, and returns `exit`.
     fn stopped(&self, exit: Exit) -> Exit {
         self.console
             .warning("stopped before the first pass: nothing was written");
         exit
     }
 
-    /// The exit after a signal and a pass: with a film file the same command continues.
+    /// Returns the exit after a signal that came after the first pass: with a film file, the same command
+    /// continues.
     fn exit(&self, exit: Exit) -> Exit {
         match self.args.long.checkpoint {
             Some(_) => Exit::Checkpoint,
@@ -197,24 +193,26 @@ impl Job<'_> {
         }
     }
 
-    /// Renders pass by pass until the budget is used up or a signal comes.
+    /// Renders pass by pass until the budget is used up or a signal arrives.
     fn render(
         &self,
         session: &mut Session<'_>,
         clock: Clock,
-        keeper: &mut Keeper,
+        writer: &mut CheckpointWriter,
         show: &mut Show,
     ) -> End {
-        let (budget, signals) = (clock.budget, self.signals);
+        let budget = clock.budget;
+        let display = self.console.display(self.args.output.talk);
         let before = (session.next_pass() - budget.first) * clock.samples_per_pass;
-        let reporter = Reporter::new(self.display(), signals, clock).after(before);
+        let reporter = Reporter::new(display, self.signals, clock).after(before);
         let mut rendered = 0_u64;
         let end = loop {
             let passes = session.next_pass() - budget.first;
-            // A pass is expected to take as long as those before took on average.
+            // A pass is expected to take the average time of the earlier ones.
             let expected = clock.first_pass.elapsed().div_f64(rendered.max(1) as f64);
-            let (counts, times) = ([passes, rendered], [clock.start.elapsed(), expected]);
-            if let ControlFlow::Break(end) = next_pass(budget, counts, times, signals.exit()) {
+            let (elapsed, signal) = (clock.start.elapsed(), self.signals.exit());
+            let next = next_pass(budget, passes, rendered, elapsed, expected, signal);
+            if let ControlFlow::Break(end) = next {
                 break end;
             }
             if budget.looks_at_noise(passes) && is_below(budget.noise, session) {
@@ -224,11 +222,11 @@ impl Job<'_> {
             session.step(&reporter);
             rendered += 1;
             show.add_pass(session, begun.elapsed(), &|| {
-                keeper.header(session, Stopping::Time)
+                writer.header(session, Stopping::Time)
             });
-            self.keep_now_and_then(session, signals, keeper);
+            self.write_if_due(session, writer);
         };
-        show.end(session, &|| keeper.header(session, end.stopping()));
+        show.end(session, &|| writer.header(session, end.stopping()));
         if !matches!(end, End::Signal(_)) {
             reporter.complete();
         }
@@ -236,25 +234,21 @@ impl Job<'_> {
         end
     }
 
-    fn display(&self) -> Display {
-        self.console.display(self.args.output.talk)
-    }
-
-    /// Writes the film file where it is time, and the image too where a signal asks for it. What
-    /// cannot be written now may be later: the render goes on.
-    fn keep_now_and_then(&self, session: &Session<'_>, signals: &Signals, keeper: &mut Keeper) {
-        let is_asked = signals.take_write_request();
-        if !is_asked && !keeper.is_due() {
+    /// Writes the film file if it is due, and also the image if a signal requests it. The render continues
+    /// after a failure, as a later attempt may succeed.
+    fn write_if_due(&self, session: &Session<'_>, writer: &mut CheckpointWriter) {
+        let is_requested = self.signals.take_write_request();
+        if !is_requested && !writer.is_due() {
             return;
         }
-        let header = keeper.header(session, Stopping::Time);
-        let kept = keeper.keep(session, &header);
-        let written = if is_asked {
+        let header = writer.header(session, Stopping::Time);
+        let saved = writer.write(session, &header);
+        let written = if is_requested {
             self.write_image(session, &header)
         } else {
             Ok(())
         };
-        for failure in [kept, written].into_iter().filter_map(Result::err) {
+        for failure in [saved, written].into_iter().filter_map(Result::err) {
             self.console.failure(&failure);
         }
     }
@@ -262,7 +256,7 @@ impl Job<'_> {
     fn write_image(&self, session: &Session<'_>, header: &FilmHeader) -> Result<(), Failure> {
         let film = session.film();
         let (mut developed, mut metadata) = (Developed::new(film), film_header::metadata(header));
-        // An image that cannot be denoised is written with its noise.
+        // If denoising fails, the noisy image is written before the error is returned.
         let cleaned = self.filter.map_or(Ok(()), |filter| {
             let text = MetadataValue::Text(filter.clean(&mut developed)?);
             metadata.push(("bidir/denoiser".to_owned(), text));
@@ -292,19 +286,25 @@ impl Job<'_> {
         )?)
     }
 
-    /// Writes the last lines.
-    fn tell(&self, summary: &dyn Fn() -> Summary, report: &Report, keeper: &Keeper, end: End) {
+    /// Prints warnings, the names of the written files and the summary.
+    fn print_end(
+        &self,
+        summary: &dyn Fn() -> Summary,
+        report: &Report,
+        writer: &CheckpointWriter,
+        end: End,
+    ) {
         let warnings = report.warning().into_iter().chain(report.raw_warning());
         warnings.for_each(|warning| self.console.warning(warning));
         if !self.args.output.talk.quiet {
-            let film = keeper.path().map(|path| path.display().to_string());
+            let film = writer.path().map(|path| path.display().to_string());
             let names: Vec<_> = self.outputs.names().chain(film).collect();
             say(format_args!("wrote {}", listed(&names)));
             summary().lines().iter().for_each(say);
             if self.outputs.pyramid.is_some() {
                 report.strategy_table().lines().for_each(say);
             }
-            if matches!(end, End::Signal(_)) && keeper.path().is_some() {
+            if matches!(end, End::Signal(_)) && writer.path().is_some() {
                 say("stopped early; the same command with --resume continues");
             }
             if self.may_gain_by_auto() {
@@ -313,8 +313,7 @@ impl Job<'_> {
         }
     }
 
-    /// True where nothing but the scene asks for path tracing, and light paths are there that it misses or
-    /// samples badly.
+    /// Returns true if path tracing is the scene's choice, and misses or undersamples some light paths.
     fn may_gain_by_auto(&self) -> bool {
         let own = self.loaded.settings.integrator;
         self.args.estimator.integrator.is_none()
@@ -323,16 +322,16 @@ impl Job<'_> {
     }
 }
 
-/// Why a render ends.
+/// The reason why a render ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum End {
     /// All passes are done.
     Passes,
     /// The time is used up.
     Time,
-    /// The picture is as good as it has to be.
+    /// The relative error is low enough.
     Noise,
-    /// A signal asked for it, with this exit.
+    /// A signal arrived; the command ends with this exit.
     Signal(Exit),
 }
 
@@ -346,13 +345,14 @@ impl End {
     }
 }
 
-/// Decides about another pass after so many of them, of which some were rendered in this run, by the
-/// time so far, the time that a pass is expected to take, and what a signal asks for. A signal that
-/// comes too late stops nothing.
+/// Decides whether to render another pass after `passes`, of which this run `rendered` some, if a pass is
+/// `expected` to take that long. A signal has no effect on a render that is complete.
 fn next_pass(
     budget: Budget,
-    [passes, rendered]: [u64; 2],
-    [elapsed, expected]: [Duration; 2],
+    passes: u64,
+    rendered: u64,
+    elapsed: Duration,
+    expected: Duration,
     signal: Option<Exit>,
 ) -> ControlFlow<End> {
     if budget.passes.is_some_and(|most| passes >= most) {
@@ -367,7 +367,7 @@ fn next_pass(
     }
 }
 
-/// True where the image's relative error is at most `noise`.
+/// Returns true if the image's relative error is at most `noise`.
 fn is_below(noise: Option<f64>, session: &Session<'_>) -> bool {
     noise.is_some_and(|most| session.noise() <= most)
 }
@@ -384,30 +384,28 @@ mod tests {
     };
 
     #[track_caller]
-    fn check(passes: u64, seconds: [u64; 2], end: End) {
-        let times = seconds.map(Duration::from_secs);
+    fn check(passes: u64, elapsed: u64, expected: u64, end: End) {
+        let [elapsed, expected] = [elapsed, expected].map(Duration::from_secs);
         let signal = Some(Exit::Interrupted);
-        assert_eq!(
-            next_pass(BUDGET, [passes; 2], times, signal),
-            ControlFlow::Break(end)
-        );
+        let next = next_pass(BUDGET, passes, passes, elapsed, expected, signal);
+        assert_eq!(next, ControlFlow::Break(end));
     }
 
     #[test]
-    fn a_signal_stops_what_is_not_complete() {
-        check(0, [0, 0], End::Signal(Exit::Interrupted));
-        check(1, [4, 4], End::Signal(Exit::Interrupted));
-        // Another pass would not have fitted, or is not wanted.
-        check(2, [8, 4], End::Time);
-        check(9, [1, 1], End::Passes);
+    fn a_signal_stops_only_an_incomplete_render() {
+        check(0, 0, 0, End::Signal(Exit::Interrupted));
+        check(1, 4, 4, End::Signal(Exit::Interrupted));
+        // There is no time for another pass, or all are done.
+        check(2, 8, 4, End::Time);
+        check(9, 1, 1, End::Passes);
     }
 
     #[test]
-    fn who_goes_on_makes_a_pass_however_long_training_took() {
-        let times = [Duration::from_secs(20), Duration::ZERO];
-        let next = |counts| next_pass(BUDGET, counts, times, None);
-        assert_eq!(next([5, 0]), ControlFlow::Continue(()));
-        assert_eq!(next([6, 1]), ControlFlow::Break(End::Time));
-        assert_eq!(next([9, 0]), ControlFlow::Break(End::Passes));
+    fn every_run_renders_a_pass_however_long_training_took() {
+        let (elapsed, expected) = (Duration::from_secs(20), Duration::ZERO);
+        let next = |passes, rendered| next_pass(BUDGET, passes, rendered, elapsed, expected, None);
+        assert_eq!(next(5, 0), ControlFlow::Continue(()));
+        assert_eq!(next(6, 1), ControlFlow::Break(End::Time));
+        assert_eq!(next(9, 0), ControlFlow::Break(End::Passes));
     }
 }

@@ -1,4 +1,4 @@
-//! `bidir render --replay`: one sample again, reported step by step.
+//! `bidir render --replay`: repeats one sample, and prints every step.
 
 use crate::args::{RenderArgs, ReplayTarget};
 use crate::console::{print, print_json, say};
@@ -10,7 +10,7 @@ use bidir::scene::Scene;
 use lab::sample::SampleReport;
 use std::path::PathBuf;
 
-/// Fails now rather than after a scene was read where the drawing could not be written.
+/// Checks, before the scene is read, that the drawing can be written.
 pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
     let Some(path) = &args.svg else {
         return Ok(());
@@ -23,13 +23,13 @@ pub(crate) fn check(args: &RenderArgs) -> Result<(), Failure> {
     output::check_file("--svg", path)
 }
 
-/// Fails where the drawing would replace one of `inputs`.
+/// Checks that the drawing replaces none of `inputs`.
 pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), Failure> {
     let drawing = args.svg.as_deref().map(|path| ("--svg", path));
     scene_io::check_apart(inputs, drawing.as_slice())
 }
 
-/// Repeats a sample and prints what it did.
+/// Repeats a sample and prints its report.
 pub(crate) fn run(
     args: &RenderArgs,
     scene: &Scene,

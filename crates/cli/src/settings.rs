@@ -1,5 +1,5 @@
-//! From flags, environment and scene to what is rendered. `clap` puts flags before the environment;
-//! here both come before the scene.
+//! The settings of a render from flags, environment and scene. `clap` gives flags precedence over the
+//! environment; here both take precedence over the scene.
 
 use crate::args::{BudgetArgs, LongArgs, Part, RenderArgs};
 use crate::console::Console;
@@ -13,7 +13,7 @@ use formats::scene::Lamp;
 use std::ops::Range;
 use std::time::Duration;
 
-/// Tells which flags and variables have no influence on this render. Returns how many there are.
+/// Warns of flags and variables that have no effect on this render. Returns the number of warnings.
 pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Console) -> usize {
     let integrator = format!("on the integrator `{}`", settings.integrator);
     let spp = args.budget.spp.filter(|_| args.long.passes.is_some());
@@ -29,10 +29,9 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
         .count()
 }
 
-/// Warns of light that the list of strategies loses; `flag` is what gives the list. Returns the number
-/// of warnings.
+/// Warns of light that the list of strategies, given by `flag`, loses. Returns the number of warnings.
 ///
-/// Errors: a list that makes no path, or an image of nothing but black.
+/// Errors: the list makes no path, so that the image would be black.
 pub(crate) fn check_strategies(
     flag: &str,
     scene: &Scene,
@@ -67,8 +66,8 @@ pub(crate) fn check_strategies(
     }
 }
 
-/// Warns of light that the estimator of `settings` misses with all its strategies, and of which lamps it is.
-/// Returns the number of warnings.
+/// Warns of light that all strategies of the estimator miss, and names its lamps. Returns the number of
+/// warnings.
 pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
     let integrator = settings.integrator;
     let missing = missing_light(&loaded.scene, settings.integrator, &settings.path);
@@ -82,8 +81,8 @@ pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: C
     missing.len()
 }
 
-/// The lamps whose light is missing, as the end of a clause: the first with its place, the others by number.
-/// Nothing where light of all is, whichever they are.
+/// Names the lamps whose light is missing, as the end of a clause: the place of the first, the number of
+/// the others. Empty if the light of every lamp is missing.
 fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
     let lights = loaded.scene.lights();
     let is_concerned = |lamp: &&Lamp| spot.concerns(&lights[lamp.light as usize]);
@@ -101,59 +100,61 @@ fn lamps(loaded: &LoadedScene, spot: BlindSpot) -> String {
     format!(", here of the {kind} light at {}{others}", first.place)
 }
 
-/// When a render is enough: what is reached first.
+/// The limits of a render: the one that is reached first ends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Budget {
     /// The first pass.
     pub(crate) first: u64,
-    /// The most passes from there on.
+    /// The maximum number of passes from `first` on.
     pub(crate) passes: Option<u64>,
-    /// The most time.
+    /// The maximum time.
     pub(crate) time: Option<Duration>,
-    /// The relative error that is enough.
+    /// The relative error at which the render ends.
     pub(crate) noise: Option<f64>,
 }
 
 impl Budget {
-    /// The passes that may be rendered.
+    /// Returns the passes that may be rendered.
     pub(crate) fn range(&self) -> Range<u64> {
         let end = self.passes.map_or(u64::MAX, |passes| self.first + passes);
         self.first..end
     }
 
-    /// The budget of a render; `scene` is the number of samples that the scene file says.
+    /// Returns the budget of a render; `scene` is the scene's number of samples per pixel.
     ///
-    /// Errors: a share that has no passes.
+    /// Errors: a part that has no passes.
     pub(crate) fn new(args: &BudgetArgs, long: &LongArgs, scene: u64) -> Result<Self, Failure> {
         let (time, noise) = (args.time.map(|time| time.0), args.noise);
         let is_open = time.is_some() || noise.is_some();
         let all = args.spp.or((!is_open).then_some(scene));
-        let share = match (&long.passes, long.part) {
+        let part = match (&long.passes, long.part) {
             (Some(range), _) => Some(range.0.clone()),
-            (None, Some(part)) => Some(share(part, all.unwrap_or(scene))?),
+            (None, Some(part)) => Some(passes_of(part, all.unwrap_or(scene))?),
             (None, None) => None,
         };
         Ok(Self {
-            first: share.as_ref().map_or(0, |range| range.start),
-            passes: share.map_or(all, |range| Some(range.end - range.start)),
+            first: part.as_ref().map_or(0, |range| range.start),
+            passes: part.map_or(all, |range| Some(range.end - range.start)),
             time,
             noise,
         })
     }
 
-    /// True where the time allows another pass, which takes about `pass`, after so many of this run:
-    /// without a first one a render that is gone on with might never end.
+    /// Returns true if there is time for another pass, which takes about `pass`.
+    ///
+    /// The first pass of a run always has time: otherwise a render that is continued might never end.
     pub(crate) fn has_time(&self, rendered: u64, elapsed: Duration, pass: Duration) -> bool {
         rendered == 0 || self.time.is_none_or(|time| elapsed + pass <= time)
     }
 
-    /// True where the noise may end the render, and is looked at after so many passes.
+    /// Returns true if noise may end the render and is measured after this number of passes.
     pub(crate) fn looks_at_noise(&self, passes: u64) -> bool {
         self.noise.is_some() && Session::looks_at_noise(passes)
     }
 
-    /// The time that is left after `elapsed`, at the rate of the passes from `before` to `now`, which
-    /// took `rendering`: training before them tells nothing of it. None: there is no limit to reach.
+    /// Estimates the remaining time after `elapsed`, at the rate of the passes from `before` to `now`, which
+    /// took `rendering`. Training before them does not count. None: the budget limits neither passes nor
+    /// time.
     pub(crate) fn left(
         &self,
         [before, now]: [f64; 2],
@@ -169,7 +170,8 @@ impl Budget {
         of_passes.into_iter().chain(of_time).min()
     }
 
-    /// How much of the budget is used up, given passes as a fraction. Range: `[0, 1]`.
+    /// Returns the used fraction of the budget after a number of passes, which may be fractional. Range:
+    /// `[0, 1]`.
     pub(crate) fn used(&self, passes: f64, elapsed: Duration) -> f64 {
         let of_passes = self.passes.map_or(0.0, |most| passes / most as f64);
         let of_time = self.time.map_or(0.0, |most| elapsed.div_duration_f64(most));
@@ -177,8 +179,8 @@ impl Budget {
     }
 }
 
-/// The passes of a share.
-fn share(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
+/// Returns the passes of a part.
+fn passes_of(part: Part, passes: u64) -> Result<Range<u64>, Failure> {
     let range = part.range(passes);
     if !range.is_empty() {
         return Ok(range);
@@ -204,30 +206,30 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_looked_at_after_every_eighth_more() {
-        let looked: Vec<_> = (0..40)
+    fn noise_is_measured_after_every_eighth_more() {
+        let measured: Vec<_> = (0..40)
             .filter(|passes| budget(99).looks_at_noise(*passes))
             .collect();
-        assert_eq!(looked, [16, 18, 20, 22, 24, 26, 28, 30, 32, 36]);
+        assert_eq!(measured, [16, 18, 20, 22, 24, 26, 28, 30, 32, 36]);
     }
 
     #[test]
-    fn a_pass_that_would_overrun_is_not_begun() {
+    fn a_pass_that_would_exceed_the_time_is_not_started() {
         let budget = budget(9);
         assert!(budget.has_time(5, SECOND * 7, SECOND * 3));
         assert!(!budget.has_time(5, SECOND * 8, SECOND * 3));
         assert!(
             budget.has_time(0, SECOND * 20, SECOND),
-            "there is always a first one"
+            "the first pass always has time"
         );
     }
 
     #[test]
-    fn time_is_left_by_the_rate_of_passes_however_long_training_took() {
+    fn the_remaining_time_does_not_depend_on_training() {
         let (trained, open) = (SECOND * 300, None);
         let left = |time| {
             let budget = Budget { time, ..budget(10) };
-            // Six passes were there, and two came in four seconds.
+            // Six passes come from the checkpoint, and two took four seconds.
             budget.left([6.0, 8.0], trained + SECOND * 4, SECOND * 4)
         };
         assert_eq!(left(open), Some(SECOND * 4));
@@ -237,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_knows_when_noise_is_low() {
+    fn the_remaining_time_of_a_noise_limit_is_unknown() {
         let budget = Budget {
             passes: None,
             time: None,
@@ -247,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_reached_first_counts() {
+    fn the_nearer_limit_counts() {
         let budget = budget(10);
         assert!((budget.used(5.0, SECOND) - 0.5).abs() < 1e-9);
         assert!((budget.used(1.0, SECOND * 8) - 0.8).abs() < 1e-9);

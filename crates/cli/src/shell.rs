@@ -1,4 +1,4 @@
-//! Completions and manual pages, made from the same tables as the help text.
+//! Completions and manual pages, generated from the same definitions as the help text.
 
 use crate::args::{CompletionsArgs, ManArgs, View, command};
 use crate::console::print;
@@ -12,7 +12,7 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<Exit, Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints the manual page of the whole, or of one command, `film info` among them; or the reference.
+/// Prints the manual page of `bidir` or of one command, such as `film info`; or the Markdown reference.
 pub(crate) fn man(args: &ManArgs) -> Result<Exit, Failure> {
     if args.markdown {
         return print(&markdown::page());
@@ -31,6 +31,6 @@ pub(crate) fn man(args: &ManArgs) -> Result<Exit, Failure> {
         .source(concat!("bidir ", env!("CARGO_PKG_VERSION")))
         .render(&mut page)
         .map_err(|error| Failure::new(Exit::RenderFailed, format!("no manual page: {error}")))?;
-    // Examples, tables and descriptions keep their lines.
+    // `.nf` keeps the lines of examples and tables.
     print(&String::from_utf8_lossy(&page).replacen(".SH EXTRA\n", ".SH NOTES\n.nf\n", 1))
 }

@@ -1,4 +1,5 @@
-//! Ctrl-C and SIGTERM: the first asks to stop, the second stops. SIGUSR1 asks to write.
+//! Signals: the first Ctrl-C or SIGTERM stops after the running pass, the second at once. SIGUSR1 requests
+//! that files are written.
 
 use crate::exit::{Exit, Failure};
 use signal_hook::consts::{SIGABRT, SIGINT, SIGTERM};
@@ -6,10 +7,10 @@ use signal_hook::flag;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// The signals that end a render, each with how the command then ends.
+/// The signals that end a render, each with its exit.
 const SIGNALS: [(i32, Exit); 2] = [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)];
 
-/// Whether a signal asked to stop.
+/// The signals that have arrived.
 #[derive(Debug)]
 pub(crate) struct Signals {
     received: Arc<AtomicUsize>,
@@ -17,12 +18,12 @@ pub(crate) struct Signals {
 }
 
 impl Signals {
-    /// Watches from now on; a second signal ends the process at once.
+    /// Installs the handlers; a second signal ends the process at once.
     pub(crate) fn watch() -> Result<Self, Failure> {
         let received = Arc::new(AtomicUsize::new(0));
         let again = Arc::new(AtomicBool::new(false));
         for (signal, exit) in SIGNALS {
-            // In this order: the first signal finds `again` unset.
+            // The order matters: `again` is still unset when the first signal arrives.
             flag::register_conditional_shutdown(signal, exit.code().into(), Arc::clone(&again))
                 .and_then(|_| flag::register(signal, Arc::clone(&again)))
                 .and_then(|_| flag::register_usize(signal, Arc::clone(&received), signal as usize))
@@ -34,12 +35,12 @@ impl Signals {
         Ok(Self { received, write })
     }
 
-    /// True where a signal asked to write since this was last asked.
+    /// Returns true if SIGUSR1 arrived since the last call.
     pub(crate) fn take_write_request(&self) -> bool {
         self.write.swap(false, Ordering::Relaxed)
     }
 
-    /// How the command ends because of a signal. None: there was none.
+    /// Returns the exit for the signal that arrived. None: no signal arrived.
     pub(crate) fn exit(&self) -> Option<Exit> {
         let received = self.received.load(Ordering::Relaxed);
         let of = |&&(signal, _): &&(i32, Exit)| signal as usize == received;
@@ -47,17 +48,18 @@ impl Signals {
     }
 }
 
-/// Makes the command end with its exit code where the system refuses memory: the library of the language
-/// then says how many bytes were asked for, and aborts. Nothing else of this program does.
+/// Ends the command with an exit code of its own when the system refuses memory.
+///
+/// The standard library then prints the number of bytes and aborts; nothing else in this program aborts.
 pub(crate) fn end_without_memory() {
     let always = Arc::new(AtomicBool::new(true));
-    // Where it cannot be watched, the abort ends the command.
+    // If this fails, an abort still ends the command.
     let _ = flag::register_conditional_shutdown(SIGABRT, Exit::Scene.code().into(), always);
 }
 
-/// Has a write beyond the limit on the size of files fail, where the system would end the process.
+/// Makes a write beyond the limit on file sizes fail, instead of ending the process.
 pub(crate) fn survive_size_limits() {
-    // Where it cannot be watched, the process ends as it would have.
+    // If this fails, the signal still ends the process.
     #[cfg(unix)]
     let _ = flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
 }

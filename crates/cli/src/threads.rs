@@ -1,24 +1,24 @@
-//! Threads that are started, and what is said where there are fewer than were asked for.
+//! Starts threads, and warns if there are fewer than requested.
 
 use crate::console::Console;
 use bidir::driver::{Shortage, Threads, start_pool};
 
-/// Starts the threads of everything but renders, whose sessions have their own. `asked` is as
-/// `--threads`; 0 is one per processor.
-pub(crate) fn start(asked: impl Into<usize>, console: Console) {
-    if let Some(shortage) = start_for_render(asked, console) {
+/// Starts the threads of all commands but renders, whose sessions have their own. 0: one per processor.
+pub(crate) fn start(requested: impl Into<usize>, console: Console) {
+    if let Some(shortage) = start_for_render(requested, console) {
         console.warning(shortage);
     }
 }
 
-/// The same, where the session that follows warns of a shortage: it comes last, and has the larger one.
-pub(crate) fn start_for_render(asked: impl Into<usize>, console: Console) -> Option<Shortage> {
-    start_pool(limited(asked, console))
+/// Does the same without a warning of a shortage, which the session that follows gives: its shortage is
+/// the larger one.
+pub(crate) fn start_for_render(requested: impl Into<usize>, console: Console) -> Option<Shortage> {
+    start_pool(limited(requested, console))
 }
 
-/// As many as were asked for, with a warning where there are fewer.
-pub(crate) fn limited(asked: impl Into<usize>, console: Console) -> Threads {
-    let threads = Threads::new(asked.into());
+/// Returns the requested number of threads, limited per processor with a warning.
+pub(crate) fn limited(requested: impl Into<usize>, console: Console) -> Threads {
+    let threads = Threads::new(requested.into());
     if let Some(warning) = threads.warning() {
         console.warning(warning);
     }

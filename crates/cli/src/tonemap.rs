@@ -1,9 +1,8 @@
-//! `bidir tonemap`: linear light becomes a picture for the screen.
+//! `bidir tonemap`: converts linear light to an image for the screen.
 //!
 //! out = sRGB(operator(2^stops · in)). An operator maps linear Rec. 709 to linear Rec. 709 in
-//! [0, 1]; the transfer curve of sRGB is that of every PNG of this program. What no screen shows is
-//! brought into range before an operator sees it: a negative channel and NaN become 0, what is beyond
-//! the largest number becomes that number.
+//! [0, 1]; the transfer curve of sRGB is that of every PNG of this program. Values are clamped before an
+//! operator is applied: negative channels and NaN become 0, infinity the largest finite number.
 
 mod agx;
 mod neutral;
@@ -14,7 +13,7 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io::{self, ImageFormat};
 
-/// How light of any strength is brought into [0, 1].
+/// A tone mapping operator, which maps light of any strength to [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Operator {
     /// Clips.
@@ -33,7 +32,7 @@ impl Operator {
         ("neutral", Self::Neutral),
     ];
 
-    /// Brings a colour to the screen.
+    /// Maps a colour to the screen.
     ///
     /// Range: finite and not negative; the result is in `[0, 1]`, linear.
     fn apply(self, color: [f32; 3]) -> [f32; 3] {
@@ -45,9 +44,9 @@ impl Operator {
     }
 }
 
-/// Writes an image for the screen.
+/// Tone maps an image file.
 pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
-    // A picture for the screen is a PNG.
+    // The output is always a PNG.
     scene_io::image_format(&args.output, &[ImageFormat::Png])?;
     scene_io::check_apart([&args.image], &[("--output", &args.output)])?;
     output::check_file("--output", &args.output)?;
@@ -63,7 +62,7 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
     Ok(Exit::Done)
 }
 
-/// What an operator gets of a channel. Range: finite and not negative.
+/// Scales a channel and clamps it to the range of operators. Range: finite and not negative.
 fn expose(channel: f32, scale: f32) -> f32 {
     let exposed = channel * scale;
     if exposed.is_nan() {
@@ -76,7 +75,7 @@ fn expose(channel: f32, scale: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// Greys from nothing to far beyond the screen.
+    /// Returns greys from black to the largest number.
     fn ramp() -> impl Iterator<Item = f32> {
         let stops = (-1600..=4000).map(|step| libm::exp2f(step as f32 / 80.0));
         [0.0].into_iter().chain(stops).chain([f32::MAX])
@@ -122,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_screen_shows_is_brought_into_range() {
+    fn negative_and_infinite_channels_are_clamped() {
         for (channel, expected) in [
             (f32::NAN, 0.0),
             (-1.0, 0.0),

@@ -1,9 +1,9 @@
-//! What the exact film costs: the same contributions into a [`PassBuffer`] and [`Film`], and into
-//! plain `f32` pixels (camera samples added, splats by compare-and-swap, no variance), as a part of
-//! the time that rendering takes.
+//! Measures the cost of the exact film relative to the time of rendering: adds the same contributions to
+//! a [`PassBuffer`] and [`Film`], and to plain `f32` pixels (camera samples added, splats by
+//! compare-and-swap, no variance).
 //!
-//! `cargo bench -p bidir-formats --bench film`, or `just bench-film`. Everything is measured in turn
-//! in every round; the table shows medians over rounds.
+//! `cargo bench -p bidir-formats --bench film`, or `just bench-film`. Every round measures everything in
+//! turn; the table shows medians over rounds.
 
 use bidir::driver::{Progress, Resources, Session, Settings};
 use bidir::film::{Film, FilmSettings, PassBuffer, SplatPlace};
@@ -18,13 +18,13 @@ use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::time::Instant;
 
 const ROUNDS: usize = 9;
-/// Passes that are recorded, and played in turn.
+/// Number of recorded passes, which are played in turn.
 const RECORDED: u64 = 4;
-/// How often the recorded passes are played in one measurement.
+/// Number of times that the recorded passes are played in one measurement.
 const PLAYED: usize = 16;
 const RUN: usize = 256;
 
-/// What a sample leaves: its own pixel's value, and splats with place and the pixel's numbers.
+/// The contributions of a sample: the value of its own pixel, and splats with their places.
 struct Contributions {
     camera: Rgb,
     splats: Vec<(SplatPlace, Rgb)>,
@@ -62,7 +62,7 @@ fn on_all_threads(pool: &ThreadPool, pixels: usize, deposit: impl Fn(usize) + Sy
     });
 }
 
-/// Pixels as simple renderers keep them.
+/// A film of plain floating-point sums.
 struct PlainFilm {
     pixels: Vec<[AtomicU32; 3]>,
 }
@@ -82,7 +82,7 @@ impl PlainFilm {
     }
 }
 
-/// Seconds to put recorded passes into plain pixels.
+/// Measures adding the recorded passes to plain pixels. Unit: seconds.
 fn plain(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions>]) -> f64 {
     let film = PlainFilm::new(passes[0].len());
     let start = Instant::now();
@@ -99,7 +99,7 @@ fn plain(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions
     start.elapsed().as_secs_f64() / (PLAYED * passes.len()) as f64
 }
 
-/// Seconds to put recorded passes into an exact film.
+/// Measures adding the recorded passes to an exact film. Unit: seconds.
 fn exact(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions>]) -> f64 {
     let mut film = Film::new(settings.clone(), u64::MAX).expect("the scene's film");
     let mut buffer = PassBuffer::new(settings, film.layers()).expect("the memory of a pass");
@@ -117,7 +117,7 @@ fn exact(pool: &ThreadPool, settings: &FilmSettings, passes: &[Vec<Contributions
     start.elapsed().as_secs_f64() / (PLAYED * passes.len()) as f64
 }
 
-/// Seconds to render a pass.
+/// Measures rendering a pass. Unit: seconds.
 fn render(session: &mut Session<'_>, progress: &dyn Progress) -> f64 {
     let start = Instant::now();
     for _ in 0..RECORDED {
@@ -131,7 +131,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Measures one estimator with some threads: a row of the table.
+/// Measures one estimator with a number of threads. Returns a row of the table.
 fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) -> String {
     let resources = Resources {
         threads,
@@ -173,8 +173,8 @@ fn main() {
     let scene = load(&file, &options).expect("the project's scene").scene;
     println!("room-indirect, 320x240, milliseconds for each pass, medians of {ROUNDS} rounds");
     println!("estimator  threads  render (exact)      plain      exact      cost");
-    // What `lvc` adds is like what `bdpt` does, and a sample of it cannot be taken alone; `auto` is
-    // one of the others.
+    // `lvc` adds contributions as `bdpt` does, and cannot render a single sample; `auto` chooses one of the
+    // others.
     let estimators = IntegratorKind::NAMES.into_iter();
     for (name, integrator) in
         estimators.filter(|(_, kind)| !matches!(kind, IntegratorKind::Lvc | IntegratorKind::Auto))

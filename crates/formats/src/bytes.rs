@@ -1,4 +1,4 @@
-//! Files as bytes, unpacked.
+//! Reads files as unpacked bytes.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits;
@@ -13,14 +13,14 @@ pub(crate) const STDIN: &str = "-";
 /// The bytes of a file.
 #[derive(Debug)]
 pub(crate) struct FileBytes {
-    /// Unpacked.
+    /// The unpacked bytes.
     pub(crate) bytes: Vec<u8>,
-    /// How many there are on the disk, packed.
+    /// The size on the disk, packed. Unit: bytes.
     pub(crate) stored: u64,
 }
 
-/// The same as [`read`], where [`STDIN`] is standard input: for what the user names, as files that
-/// are named in files must not wait for what is typed.
+/// Does the same as [`read`], but reads standard input for the name [`STDIN`]. For names given by the
+/// user: names within files must not wait for typed input.
 pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<FileBytes> {
     if path.as_os_str() == STDIN {
         return read_plain(std::io::stdin().lock(), path, limit);
@@ -28,22 +28,22 @@ pub(crate) fn read_or_stdin(path: &Path, limit: u64) -> Result<FileBytes> {
     read(path, limit)
 }
 
-/// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
+/// Reads a whole file of at most `limit` bytes, and unpacks it if its name ends in `.gz`.
 ///
 /// Errors: among others, a device, whose bytes may have no end, and a packed file that unpacks to
 /// more than [`limits::UNPACKED`].
 pub(crate) fn read(path: &Path, limit: u64) -> Result<FileBytes> {
     let file = File::open(path).map_err(|error| Error::io(path, "open", &error))?;
-    let refused = |what| {
+    let refuse = |what| {
         let message = format!("cannot read `{}`: it is {what}", path.display());
         Error::naming(path, ErrorKind::Io, message)
     };
     if let Ok(metadata) = file.metadata() {
         if metadata.is_dir() {
-            return Err(refused("a folder"));
+            return Err(refuse("a folder"));
         }
         if is_device(metadata.file_type()) {
-            return Err(refused("a device"));
+            return Err(refuse("a device"));
         }
     }
     let stored = read_plain(file, path, limit)?;
@@ -54,7 +54,7 @@ pub(crate) fn read(path: &Path, limit: u64) -> Result<FileBytes> {
     }
 }
 
-/// The same as [`read`] of a file that has the bytes `stored`.
+/// Does the same as [`read`] for a file with the bytes `stored`.
 pub(crate) fn read_stored(stored: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
     if is_packed(path) {
         unpack(stored, path, limit)
@@ -88,7 +88,7 @@ fn read_plain(reader: impl Read, path: &Path, limit: u64) -> Result<FileBytes> {
     Ok(FileBytes { bytes, stored })
 }
 
-/// Unpacks no more than `limit`, and no more than the packed bytes can honestly stand for.
+/// Unpacks at most `limit` bytes, and at most the allowance of the packed bytes.
 fn unpack(packed: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
     let stored = packed.len() as u64;
     let limit = limit.min(limits::UNPACKED.of(stored));
@@ -101,7 +101,7 @@ fn unpack(packed: &[u8], path: &Path, limit: u64) -> Result<FileBytes> {
     Ok(FileBytes { bytes, stored })
 }
 
-/// All bytes, or the first `most`.
+/// Reads all bytes, or the first `most`.
 fn read_some(reader: impl Read, path: &Path, most: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = reader.take(most).read_to_end(&mut bytes);
@@ -116,7 +116,7 @@ mod tests {
     use std::io::Write;
 
     #[test]
-    fn packed_files_are_unpacked_and_limits_hold_for_what_comes_out() {
+    fn packed_files_are_unpacked_and_limits_apply_to_unpacked_bytes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("zeros.gz");
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
@@ -128,14 +128,14 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn devices_are_refused_and_the_name_of_standard_input_is_a_file_s() {
+    fn devices_are_refused_and_a_hyphen_names_a_file() {
         let kind = |name: &str| read(Path::new(name), 10).unwrap_err().kind();
         assert_eq!(kind("/dev/zero"), ErrorKind::Io);
         assert_eq!(kind(STDIN), ErrorKind::MissingFile);
     }
 
     #[test]
-    fn a_missing_file_is_told_apart() {
+    fn a_missing_file_has_its_own_kind_of_error() {
         let error = read(Path::new("no/such/file"), 10).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::MissingFile);
         assert_eq!(

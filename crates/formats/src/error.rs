@@ -6,15 +6,14 @@ use std::path::{Path, PathBuf};
 /// The crate's result.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why a file could not be read, understood or written: what, where, and what to do about it.
+/// An error of reading or writing a file: a message, its place, and a hint.
 ///
-/// Its text is `file:line:column: message; hint`, in glTF `file: meshes[0]: message; hint`. As a
-/// [`miette::Diagnostic`] it also shows the lines of the file with a mark under the exact place. Both
-/// are [`printable`].
+/// Its text is `file:line:column: message; hint`. As a [`miette::Diagnostic`] it also shows the lines of
+/// the file with a mark under the place. Both are [`printable`].
 #[derive(Debug)]
 pub struct Error(Box<Details>);
 
-/// Boxed, so that the happy path does not carry the size of the unhappy one.
+/// The contents of an error, boxed to keep results small.
 #[derive(Debug)]
 struct Details {
     kind: ErrorKind,
@@ -31,34 +30,34 @@ struct Details {
 /// The place of an error in a text.
 #[derive(Debug)]
 pub(crate) struct Place {
-    /// Counted from 1.
+    /// The line, counted from 1.
     pub(crate) line: usize,
-    /// Counted from 1, in characters.
+    /// The column in characters, counted from 1.
     pub(crate) column: usize,
-    /// The lines around it, where they are worth showing.
+    /// The lines around it, if they are shown.
     pub(crate) excerpt: Option<Excerpt>,
 }
 
-/// Whose fault an [`Error`] is.
+/// The kind of an [`Error`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The scene's text does not follow the format's grammar: mend the text.
+    /// The scene's text does not follow the format's grammar.
     Syntax,
-    /// The scene is well-formed but means nothing valid: mend the scene.
+    /// The scene is well-formed but not valid.
     Scene,
-    /// The format has this, the renderer does not yet: do without, or accept a substitute.
+    /// The renderer does not support a feature of the format.
     Unsupported,
-    /// A mesh or an image is broken: write it anew.
+    /// A mesh or an image is broken.
     Data,
-    /// The caller asks for something that does not fit the scene: ask for something else.
+    /// The caller's options do not fit the scene.
     Options,
-    /// A named file does not exist: check the path.
+    /// A file does not exist.
     MissingFile,
-    /// The system refused to read or write.
+    /// The system cannot read or write a file.
     Io,
-    /// Larger or deeper than what is allowed.
+    /// Something exceeds a limit of size or depth.
     Limit,
-    /// The system does not have the memory: ask for less, or give it more.
+    /// The system does not have enough memory.
     Memory,
 }
 
@@ -76,14 +75,14 @@ impl Error {
         }))
     }
 
-    /// The system refused this many bytes of memory for `what`.
+    /// Returns the error that the system refused this many bytes of memory for `what`.
     pub(crate) fn memory(what: &str, bytes: u64) -> Self {
         let message =
             format!("{what} needs {bytes} bytes of memory, which the system does not have");
         Self::new(ErrorKind::Memory, message)
     }
 
-    /// An error of the system with `file`; a missing file has a kind of its own.
+    /// Returns a system error for `file`; a missing file has its own kind.
     pub(crate) fn io(file: &Path, action: &str, error: &std::io::Error) -> Self {
         let kind = match error.kind() {
             std::io::ErrorKind::NotFound => ErrorKind::MissingFile,
@@ -92,7 +91,7 @@ impl Error {
         Self::naming(file, kind, cannot(action, file, error))
     }
 
-    /// An error about the whole of `file`, whose name is part of `message`.
+    /// Returns an error about the whole of `file`, whose name is part of `message`.
     pub(crate) fn naming(file: &Path, kind: ErrorKind, message: impl Into<String>) -> Self {
         let mut error = Self::new(kind, message).in_file(file);
         error.0.names_file = true;
@@ -119,22 +118,22 @@ impl Error {
         self
     }
 
-    /// Whose fault it is.
+    /// Returns the kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
-    /// The reason, without the place and the hint.
+    /// Returns the message without the place and the hint.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// The remedy. None: where the message says all there is to say.
+    /// Returns the hint, which says what to do. None: there is none.
     pub fn hint(&self) -> Option<&str> {
         self.0.hint.as_deref()
     }
 
-    /// The file that is at fault.
+    /// Returns the file that the error is about.
     pub fn file(&self) -> Option<&Path> {
         self.0.file.as_deref()
     }
@@ -149,7 +148,7 @@ impl Error {
         self.0.place.as_ref().map(|place| place.line)
     }
 
-    /// The column in characters, counted from 1. None: as for [`line`](Self::line).
+    /// Returns the column in characters, counted from 1. None: as for [`line`](Self::line).
     pub fn column(&self) -> Option<usize> {
         self.0.place.as_ref().map(|place| place.column)
     }
@@ -186,11 +185,11 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The one wording for a file that the system refuses: "cannot open `room.pbrt`: no such file".
+/// Returns the message for a system error with a file: "cannot open `room.pbrt`: no such file".
 pub fn cannot(action: &str, file: &Path, error: &std::io::Error) -> String {
     use std::io::ErrorKind::{FileTooLarge, IsADirectory, NotFound, PermissionDenied, StorageFull};
     let reason = match error.kind() {
-        // Writing makes the file, but not its folder.
+        // Writing creates the file, but not its folder.
         NotFound if action == "write" => "no such folder".to_owned(),
         NotFound => "no such file".to_owned(),
         IsADirectory => "it is a folder".to_owned(),
@@ -214,7 +213,7 @@ impl miette::Diagnostic for Error {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
         let excerpt = self.0.place.as_ref()?.excerpt.as_ref()?;
-        // No words at the mark and no `help`: the message already carries both.
+        // The mark has no label, and `help` is not used: the message contains everything.
         let label = miette::LabeledSpan::new_with_span(None, excerpt.marked());
         Some(Box::new(std::iter::once(label)))
     }

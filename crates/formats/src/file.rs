@@ -1,14 +1,13 @@
-//! Files that are replaced as a whole: whatever happens, a name stands for all of the old bytes or
-//! all of the new.
+//! Replaces files atomically: at any time, a name stands for all of the old bytes or all of the new.
 //!
-//! The new bytes go to a temporary file in the same folder, as a rename between file systems is a
-//! copy and not one step. They are on the disk before the rename, else a power cut could leave an
-//! empty file under the name; then the folder is, so that the rename itself lasts.
+//! The new bytes go to a temporary file in the same folder, as a rename between file systems is not
+//! atomic. They are synced to the disk before the rename, as a power cut could otherwise leave an empty
+//! file; then the folder is synced, so that the rename persists.
 //!
-//! The temporary file of `NAME` is called `.NAME.bidir-HOST-PROCESS-RANDOM.tmp`, so that the machines
-//! that write to a shared folder stay apart, and so that what a killed process left behind says what
-//! it was to be and whose it was. Its writer holds its lock, which the system gives back where the
-//! process is killed: so the next writer of `NAME` can [`remove_leftovers`] and nothing else.
+//! The temporary file of `NAME` is called `.NAME.bidir-HOST-PROCESS-RANDOM.tmp`, so that names of
+//! different machines in a shared folder do not collide, and so that a leftover of a killed process shows
+//! its file and its writer. The writer holds a lock on it, which the system releases when the process is
+//! killed: so the next writer of `NAME` can [`remove_leftovers`] without removing files in use.
 
 use crate::error::{Error, Result};
 use std::ffi::OsStr;
@@ -18,37 +17,37 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// No write takes as long: what is older was left behind, on whatever machine.
+/// Age at which a temporary file is a leftover on any machine: no write takes as long.
 const OLD: Duration = Duration::from_secs(24 * 60 * 60);
-/// The most of a name that is part of a temporary file's name. Unit: bytes; file systems take 255.
+/// Maximum length of the part of a name in a temporary file's name. Unit: bytes; file systems allow 255.
 const LONGEST_NAME: usize = 128;
-/// How often a temporary file may be taken for a leftover before its writer has locked it.
+/// Number of attempts to lock a new temporary file before another process removes it as a leftover.
 const ATTEMPTS: u32 = 100;
 
-/// Replaces a file, or makes it where there is none. Readers that have it open keep the old bytes.
-/// What a link stands for is replaced, not the link; what is no plain file is written to.
+/// Replaces or creates a file. Readers that have it open keep the old bytes.
+///
+/// Of a link, the target is replaced. A device or a pipe is written to.
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_with(path, bytes, |_| Ok(()))
 }
 
-/// Replaces a file, and gives the old one the name `previous`. Where anything fails, both names
-/// stand for what they stood for before.
+/// Replaces a file, and renames the old one to `previous`. If anything fails, both names keep their files.
 pub fn replace_keeping(path: &Path, previous: &Path, bytes: &[u8]) -> Result<()> {
     replace_with(path, bytes, |target| {
         if !target.exists() {
             return Ok(());
         }
-        // A second name for the old file, which stays when the first is given to the new bytes.
+        // A second name for the old file, which stays when the new file takes the first name.
         let name = temporary_for(previous)?.into_temp_path();
         std::fs::remove_file(&name)?;
         std::fs::hard_link(target, &name).or_else(|_| std::fs::copy(target, &name).map(drop))?;
-        // Both may be names of one file, where the last writer was killed before its last step: then a
-        // rename does nothing, and what it leaves is removed with `name`.
+        // If the last writer was killed before its last step, both are names of one file. Then the rename
+        // does nothing, and `name` is removed when it is dropped.
         std::fs::rename(&name, previous)
     })
 }
 
-/// Calls `before` with the file that is replaced when the new bytes are on the disk.
+/// Writes a temporary file, calls `before` with the file to replace, and renames.
 fn replace_with(
     path: &Path,
     bytes: &[u8],
@@ -70,19 +69,19 @@ fn replace_with(
     written().map_err(|error| Error::io(path, "write", &error))
 }
 
-/// The file that a name stands for, through links.
+/// Returns the file that a name stands for, with links resolved.
 pub fn target_of(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// Something that is there and no plain file, such as a device, which a rename would destroy.
+/// Returns true for something that a rename would destroy, such as a device or a pipe.
 fn is_special(path: &Path) -> bool {
     path.metadata()
         .is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// Says now whether [`replace`] can make its temporary file. Nothing is left behind, not even by who is
-/// killed here where the file system has files without names.
+/// Checks that [`replace`] can create its temporary file. Leaves nothing behind; on file systems with
+/// unnamed files not even if the process is killed here.
 pub fn check_replaceable(path: &Path) -> Result<()> {
     let target = target_of(path);
     if is_special(&target) {
@@ -93,7 +92,7 @@ pub fn check_replaceable(path: &Path) -> Result<()> {
         .map_err(|error| Error::io(path, "write", &error))
 }
 
-/// The folder that a file is or will be in; `.` for a bare name.
+/// Returns the folder of a file; `.` for a bare name.
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -101,9 +100,9 @@ pub fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Removes the temporary files of `path` that killed writers left behind: those of this machine that
-/// are not locked, and those of others that are older than a day, as locks may not reach other
-/// machines. What cannot be removed stays.
+/// Removes the temporary files of `path` that killed writers left behind: those of this machine that are
+/// not locked, and those of other machines that are older than a day, as locks may not work across
+/// machines. Errors are ignored.
 pub fn remove_leftovers(path: &Path) {
     let target = target_of(path);
     let Some(prefix) = target.file_name().map(prefix) else {
@@ -122,14 +121,14 @@ pub fn remove_leftovers(path: &Path) {
         if writer == host {
             remove_unlocked(&file);
         } else if is_old(&file) {
-            // Whoever else removes it wants the same.
+            // An error means that another process has removed it.
             let _ = std::fs::remove_file(&file);
         }
     }
 }
 
-/// Removes a temporary file of this machine where its writer is gone. It is locked meanwhile, so that
-/// a writer that has just made it does not take it for its own.
+/// Removes a temporary file of this machine if its writer is gone. Locks it first, so that a writer that
+/// has just created it notices.
 fn remove_unlocked(path: &Path) {
     let Ok(file) = OpenOptions::new().write(true).open(path) else {
         return;
@@ -137,7 +136,7 @@ fn remove_unlocked(path: &Path) {
     let is_left = match file.try_lock() {
         Ok(()) => true,
         Err(TryLockError::WouldBlock) => false,
-        // There are no locks here.
+        // The file system has no locks.
         Err(TryLockError::Error(_)) => is_old(path),
     };
     if is_left {
@@ -145,14 +144,14 @@ fn remove_unlocked(path: &Path) {
     }
 }
 
-/// True where a file was last written to so long ago that its writer is gone.
+/// Returns true if a file was last written so long ago that its writer is gone.
 fn is_old(path: &Path) -> bool {
     let changed = path.metadata().and_then(|metadata| metadata.modified());
     let age = changed.ok().and_then(|changed| changed.elapsed().ok());
     age.is_some_and(|age| age > OLD)
 }
 
-/// The beginning of the names of temporary files of `name`: names that begin alike may share it.
+/// Returns the prefix of the names of temporary files of `name`. Long names that begin alike share it.
 fn prefix(name: &OsStr) -> String {
     let name = name.to_string_lossy();
     let mut end = name.len().min(LONGEST_NAME);
@@ -162,7 +161,8 @@ fn prefix(name: &OsStr) -> String {
     format!(".{}.bidir-", &name[..end])
 }
 
-/// The machine that wrote a temporary file. None: the name is no temporary file's with this prefix.
+/// Returns the machine that wrote a temporary file. None: the name is not that of a temporary file with
+/// this prefix.
 fn writer_of<'a>(name: &'a OsStr, prefix: &str) -> Option<&'a str> {
     let rest = name.to_str()?.strip_prefix(prefix)?;
     let (owner, random) = rest.strip_suffix(".tmp")?.rsplit_once('-')?;
@@ -174,13 +174,13 @@ fn writer_of<'a>(name: &'a OsStr, prefix: &str) -> Option<&'a str> {
     is_ours.then_some(host)
 }
 
-/// An empty file beside `target`, locked where that can be, that is removed when it is dropped.
+/// Creates an empty file beside `target`, locked if possible, which is removed when it is dropped.
 fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
     let prefix = target.file_name().map_or_else(|| ".bidir-".into(), prefix);
     let prefix = format!("{prefix}{}-{}-", host(), std::process::id());
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");
-    // A temporary file is private unless told otherwise; an image is as public as any new file.
+    // Temporary files are private by default, but the result has the permissions of any new file.
     #[cfg(unix)]
     let public = std::os::unix::fs::PermissionsExt::from_mode(0o666);
     #[cfg(unix)]
@@ -194,29 +194,29 @@ fn temporary_for(target: &Path) -> io::Result<NamedTempFile> {
     Err(io::ErrorKind::ResourceBusy.into())
 }
 
-/// Locks a temporary file that was just made. False: another process takes it for a leftover.
+/// Locks a new temporary file. False: another process is removing it as a leftover.
 fn is_held(file: &File) -> io::Result<bool> {
     match file.try_lock() {
         Ok(()) => is_linked(file),
         Err(TryLockError::WouldBlock) => Ok(false),
-        // Without locks the name alone keeps writers apart.
+        // Without locks, the random name has to suffice.
         Err(TryLockError::Error(_)) => Ok(true),
     }
 }
 
-/// Does an open file have a name?
+/// Returns true if an open file still has a name.
 #[cfg(unix)]
 fn is_linked(file: &File) -> io::Result<bool> {
     Ok(std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) > 0)
 }
 
-/// Open files keep their names here.
+/// Returns true, as open files keep their names on this system.
 #[cfg(not(unix))]
 fn is_linked(_file: &File) -> io::Result<bool> {
     Ok(true)
 }
 
-/// The name of this machine, as part of a file's name; `host` where it cannot be told.
+/// Returns the name of this machine for file names; `host` if it is unknown.
 fn host() -> String {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname")
         .or_else(|_| std::env::var("COMPUTERNAME"))
@@ -230,12 +230,12 @@ fn host() -> String {
     }
 }
 
-/// May this letter be in a machine's name? No dot is, so that names of files cannot be taken for it.
+/// Returns true for a character allowed in a machine's name. Dots are not, so that no file name matches.
 fn is_plain(letter: char) -> bool {
     letter.is_ascii_alphanumeric() || "-_".contains(letter)
 }
 
-/// Brings a folder's names to the disk, where its file system and its permissions let it be done.
+/// Syncs a folder to the disk if its file system and permissions allow that.
 #[cfg(unix)]
 fn sync_folder(folder: &Path) -> io::Result<()> {
     use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
@@ -247,7 +247,7 @@ fn sync_folder(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Folders cannot be opened here; their names are brought to the disk by the system.
+/// Does nothing: this system cannot open folders, and syncs them itself.
 #[cfg(not(unix))]
 fn sync_folder(_folder: &Path) -> io::Result<()> {
     Ok(())
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fails_leaves_the_old_file_and_no_temporary_one() {
+    fn a_failure_leaves_the_old_file_and_no_temporary_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("taken");
         std::fs::create_dir(&path).unwrap();
@@ -294,7 +294,7 @@ mod tests {
                 kept.map(|b| &b[..])
             );
         }
-        // As a writer leaves them that is killed before its last step.
+        // The state that a writer leaves when it is killed before its last step.
         std::fs::remove_file(&previous).unwrap();
         std::fs::hard_link(&path, &previous).unwrap();
         replace_keeping(&path, &previous, b"4").unwrap();
@@ -305,7 +305,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_and_devices_stay_what_they_are() {
+    fn links_and_devices_are_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let [path, link] = ["a", "link"].map(|name| folder.path().join(name));
         std::fs::write(&path, b"old").unwrap();
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn temporary_names_say_what_and_whose_they_are() {
+    fn temporary_names_have_the_file_and_its_writer() {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("a.film");
         let files = [(); 2].map(|()| temporary_for(&target).unwrap());
@@ -349,13 +349,13 @@ mod tests {
         }
     }
 
-    /// The name of a temporary file of `name` that a killed process of this machine left behind.
+    /// Returns the name of a temporary file of `name` that a killed process of this machine left behind.
     fn leftover(name: &OsStr) -> String {
         format!("{}{}-1-aB3dE6.tmp", prefix(name), host())
     }
 
     #[test]
-    fn the_next_writer_removes_the_files_of_killed_ones_and_of_no_living_one() {
+    fn the_next_writer_removes_only_files_of_killed_writers() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let mut living = temporary_for(&path).unwrap();
@@ -371,7 +371,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn writers_that_remove_leftovers_take_no_file_from_each_other() {
+    fn concurrent_writers_do_not_remove_each_others_files() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
         std::thread::scope(|scope| {
@@ -406,7 +406,7 @@ mod tests {
         let day = std::time::SystemTime::now() - OLD - Duration::from_secs(60);
         make(old).set_modified(day).unwrap();
         let others = [
-            // Another machine's, which may still be written to.
+            // Of another machine, whose writer may be running.
             ".a.film.bidir-HERE-x-17-aB3dE6.tmp.",
             ".a.film.bidir-HERE-y-17-aB3dE6.tmp",
             // Of other files.
@@ -414,7 +414,7 @@ mod tests {
             ".b.film.bidir-HERE-17-aB3dE6.tmp",
             ".a.film.previous.bidir-HERE-17-aB3dE6.tmp",
             ".a.film.bidir-b.bidir-HERE-17-aB3dE6.tmp",
-            // No temporary files.
+            // Not temporary files.
             "a.film",
             ".a.film.bidir-HERE-17-aB3dE6",
             ".a.film.bidir-HERE-x-aB3dE6.tmp",
@@ -434,7 +434,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn the_file_is_as_public_as_any_other() {
+    fn the_file_has_the_permissions_of_any_new_file() {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
         let mode = |name: &str| {

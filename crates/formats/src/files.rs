@@ -1,4 +1,4 @@
-//! Where the files of a scene come from: the disk, or memory.
+//! The source of a scene's files: the disk, or memory.
 
 use crate::bytes::{self, FileBytes};
 use crate::error::{Error, Result};
@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The contents of files by the names that they are asked for.
+/// The contents of files by the names under which they are requested.
 pub type InMemory = BTreeMap<PathBuf, Arc<[u8]>>;
 
-/// Where files are looked for. The default is the disk.
+/// The files of a scene, from memory or the disk. The default is the disk.
 ///
-/// A scene whose files are all here is the same wherever it is read: so scenes are sent to other
-/// machines. Names that share one [`Arc`] are names of one file. Bytes are as on the disk: those of
-/// a name that ends in `.gz` are packed.
+/// A scene whose files are all in memory is the same on any machine, which is how scenes are sent. Names
+/// that share one [`Arc`] are names of one file. Bytes are as on the disk: those of a name that ends in
+/// `.gz` are packed.
 ///
 /// ```
 /// use bidir_formats::scene::{Files, LoadOptions, load_from};
@@ -33,7 +33,7 @@ pub struct Files {
     others: Others,
 }
 
-/// What becomes of names that are not in memory.
+/// The treatment of names that are not in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Others {
     #[default]
@@ -42,7 +42,7 @@ enum Others {
 }
 
 impl Files {
-    /// These files, and no others.
+    /// Returns a source with these files only.
     pub fn only(memory: InMemory) -> Self {
         Self {
             memory: Arc::new(memory),
@@ -50,7 +50,7 @@ impl Files {
         }
     }
 
-    /// These files, and where a name is none of theirs, the disk.
+    /// Returns a source with these files, and the disk for all other names.
     pub fn over_disk(memory: InMemory) -> Self {
         Self {
             memory: Arc::new(memory),
@@ -63,7 +63,7 @@ impl Files {
         self.memory.contains_key(path)
     }
 
-    /// Reads a whole file of at most `limit` bytes, unpacked where its name ends in `.gz`.
+    /// Reads a whole file of at most `limit` bytes, and unpacks it if its name ends in `.gz`.
     pub(crate) fn read(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         match (self.memory.get(path), self.others) {
             (Some(stored), _) => bytes::read_stored(stored, path, limit),
@@ -75,7 +75,7 @@ impl Files {
         }
     }
 
-    /// The same as [`read`](Self::read), where `-` is standard input unless it is in memory.
+    /// Does the same as [`read`](Self::read), but reads standard input for `-` unless it is in memory.
     pub(crate) fn read_or_stdin(&self, path: &Path, limit: u64) -> Result<FileBytes> {
         let is_stdin = path.as_os_str() == bytes::STDIN && self.others == Others::OnDisk;
         if is_stdin && !self.memory.contains_key(path) {
@@ -84,24 +84,24 @@ impl Files {
         self.read(path, limit)
     }
 
-    /// True for a folder on the disk, where names are looked for there.
+    /// Returns true for a folder on the disk, if names are read from there.
     pub(crate) fn is_folder(&self, path: &Path) -> bool {
         !self.memory.contains_key(path) && self.others == Others::OnDisk && path.is_dir()
     }
 
-    /// Is there such a file?
+    /// Returns true if the file exists.
     pub(crate) fn exists(&self, path: &Path) -> bool {
         let is_on_disk = || self.others == Others::OnDisk && path.exists();
         self.memory.contains_key(path) || is_on_disk()
     }
 
-    /// True where a name is that of a file on the disk, or would be one if it were there.
+    /// Returns true if a name stands for a file on the disk, which need not exist.
     pub(crate) fn is_from_disk(&self, path: &Path) -> bool {
         let is_stdin = path.as_os_str() == bytes::STDIN;
         self.others == Others::OnDisk && !is_stdin && !self.memory.contains_key(path)
     }
 
-    /// The name that stands for all names of one file.
+    /// Returns one name for all names of a file.
     pub(crate) fn identity(&self, path: &Path) -> PathBuf {
         let Some(stored) = self.memory.get(path) else {
             return path.canonicalize().unwrap_or_else(|_| path.to_owned());
@@ -162,7 +162,7 @@ mod tests {
         let scene = folder.path().join("s.pbrt");
         let options = LoadOptions::default();
         let there = load(&scene, &options).unwrap();
-        // Each file under every name that it was asked for by.
+        // Each file counts under every name by which it was requested.
         assert_eq!(there.files.len(), 5, "{:?}", there.files);
         let memory = in_memory(folder.path(), &there);
         drop(folder);
@@ -170,14 +170,14 @@ mod tests {
         assert_eq!((here.digest, &here.files), (there.digest, &there.files));
         let mut inputs = there.files.clone();
         inputs.sort();
-        // Outputs on the disk replace none that is in memory.
+        // Inputs are files on the disk, which outputs must not replace.
         assert_eq!((there.inputs, here.inputs), (inputs, Vec::new()));
         let mut others = memory.clone();
         others.retain(|path, _| !path.ends_with("m.ply"));
         let error = load_from(&scene, &options, &Files::only(others)).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::MissingFile);
         assert_eq!((error.line(), error.column()), (Some(5), Some(35)));
-        // Another byte is another scene.
+        // Another byte makes another scene.
         let mut changed = memory;
         let part = PART.replace("point", "infinite");
         let part: Arc<[u8]> = part.into_bytes().into();
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_memory_comes_first_and_the_disk_second() {
+    fn memory_takes_precedence_over_the_disk() {
         let folder = tempfile::tempdir().unwrap();
         let [a, b] = ["a", "b"].map(|name| folder.path().join(name));
         for path in [&a, &b] {

@@ -1,35 +1,35 @@
-//! Files of other programs, recognised by their first bytes and their ending, so that a message names
-//! them and the way in.
+//! Recognises files of other programs by their first bytes and endings, so that messages name them and how
+//! to import them.
 //!
-//! The bytes count first, then a word of the expected format, and the ending last: a scene under an odd
-//! name is still read.
+//! The bytes take precedence, then a word of the expected format, then the ending: a scene with an
+//! unusual ending is still read.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::files::Files;
 use crate::pbrt::is_directive;
 use std::path::{Path, PathBuf};
 
-/// How much of a file is looked at. Unit: bytes.
+/// Size of the part of a file that is examined. Unit: bytes.
 const HEAD: usize = 1 << 16;
-/// How much of it may not have a zero byte, as text never has. Unit: bytes.
+/// Size of the part in which a zero byte marks a binary file. Unit: bytes.
 const TEXT_HEAD: usize = 1 << 12;
 
-/// A file that is no scene: what it is, and the way in.
+/// A kind of file that is not a scene, with a hint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Kind {
-    /// With its article.
+    /// The name with its article.
     name: &'static str,
     hint: Hint,
 }
 
-/// The way in.
+/// The hint how to import a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hint {
-    /// These words.
+    /// A text.
     Text(&'static str),
-    /// Give the file this ending.
+    /// Rename the file to this ending.
     Rename(&'static str),
-    /// The formats of scenes.
+    /// Use one of the formats of scenes.
     Formats,
 }
 
@@ -111,7 +111,7 @@ const fn by_blender(name: &'static str) -> Kind {
     }
 }
 
-/// First bytes that no text of another kind has.
+/// First bytes that identify a format.
 const MAGIC: [(&[u8], Kind); 18] = [
     (b"glTF", GLB),
     (b"BLENDER", BLENDER),
@@ -133,7 +133,7 @@ const MAGIC: [(&[u8], Kind); 18] = [
     (b"PK\x03\x04", ARCHIVE),
 ];
 
-/// Endings of files that are no scenes; packed ones have no first bytes of their own.
+/// Endings of files that are not scenes. Packed files have no identifying first bytes.
 const ENDINGS: [(&str, Kind); 26] = [
     ("blend", BLENDER),
     ("fbx", FBX),
@@ -163,7 +163,7 @@ const ENDINGS: [(&str, Kind); 26] = [
     ("bmp", IMAGE),
 ];
 
-/// Refuses a folder where a scene is to be read, and names a scene in it.
+/// Refuses a folder in the place of a scene, and suggests a scene in it.
 pub(crate) fn check_folder(path: &Path, files: &Files) -> Result<()> {
     if !files.is_folder(path) {
         return Ok(());
@@ -176,7 +176,7 @@ pub(crate) fn check_folder(path: &Path, files: &Files) -> Result<()> {
     })
 }
 
-/// The first scene of a folder by name.
+/// Returns the first scene of a folder in the order of names.
 fn first_scene(folder: &Path) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?.flatten();
     let scenes = entries.map(|entry| entry.path());
@@ -186,7 +186,7 @@ fn first_scene(folder: &Path) -> Option<PathBuf> {
     scenes.filter(is_scene).min()
 }
 
-/// Refuses a file that is no text of pbrt. Text that may be meant as one passes.
+/// Refuses a file that is not pbrt text. Text that may be intended as pbrt passes.
 pub(crate) fn check_pbrt(path: &Path, bytes: &[u8]) -> Result<()> {
     let head = &bytes[..bytes.len().min(HEAD)];
     let text = String::from_utf8_lossy(head);
@@ -195,7 +195,7 @@ pub(crate) fn check_pbrt(path: &Path, bytes: &[u8]) -> Result<()> {
     let is_named_pbrt = path.as_os_str() == "-" || ending.as_deref() == Some("pbrt");
     let kind = by_magic(head, ending.as_deref()).or_else(|| by_text(&text, ending.as_deref()));
     let is_other = !is_named_pbrt && !first.is_some_and(is_directive);
-    // The parser reports a misspelt directive, with its place.
+    // The parser reports misspelt directives with their places.
     let is_prose = is_other && first.is_some() && !text.contains("WorldBegin");
     let by_ending = || by_ending(ending.as_deref()).filter(|_| is_other);
     let kind = kind.or_else(by_ending);
@@ -204,7 +204,7 @@ pub(crate) fn check_pbrt(path: &Path, bytes: &[u8]) -> Result<()> {
     kind.map_or(Ok(()), |kind| Err(refusal(path, kind)))
 }
 
-/// Refuses a file that is no glTF, neither text nor binary.
+/// Refuses a file that is neither text nor binary glTF.
 pub(crate) fn check_gltf(path: &Path, bytes: &[u8]) -> Result<()> {
     let head = &bytes[..bytes.len().min(HEAD)];
     let text = String::from_utf8_lossy(head);
@@ -241,7 +241,7 @@ fn refusal(path: &Path, kind: Kind) -> Error {
     }
 }
 
-/// The ending in small letters, without that of packed files.
+/// Returns the ending in lower case, without `.gz`.
 fn ending(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_ascii_lowercase();
     let name = name.strip_suffix(".gz").unwrap_or(&name);
@@ -259,11 +259,11 @@ fn by_magic(head: &[u8], ending: Option<&str>) -> Option<Kind> {
 
 fn by_ending(ending: Option<&str>) -> Option<Kind> {
     let ending = ending?;
-    let found = ENDINGS.iter().find(|(known, _)| *known == ending);
-    found.map(|(_, kind)| *kind)
+    let entry = ENDINGS.iter().find(|(known, _)| *known == ending);
+    entry.map(|(_, kind)| *kind)
 }
 
-/// XML, JSON and OBJ by what they begin with.
+/// Recognises XML, JSON and OBJ by their first characters.
 fn by_text(text: &str, ending: Option<&str>) -> Option<Kind> {
     let text = text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']);
     match text.chars().next()? {
@@ -297,7 +297,7 @@ fn json(text: &str) -> Kind {
     }
 }
 
-/// The first word that is no comment of pbrt.
+/// Returns the first word outside of pbrt comments.
 fn first_word(text: &str) -> Option<&str> {
     let lines = text.trim_start_matches('\u{feff}').lines();
     let mut lines = lines.map(str::trim).filter(|line| !line.starts_with('#'));
@@ -306,7 +306,7 @@ fn first_word(text: &str) -> Option<&str> {
 }
 
 fn is_binary(head: &[u8]) -> bool {
-    // UTF-16, which has zeros, has a message of its own.
+    // UTF-16 text, which has zero bytes, has its own message.
     let is_utf16 = head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]);
     !is_utf16 && head[..head.len().min(TEXT_HEAD)].contains(&0)
 }

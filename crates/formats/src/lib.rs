@@ -1,7 +1,7 @@
-//! Bytes to data and back: scenes of pbrt-v4 and glTF 2.0, PLY meshes, images, film files.
+//! Readers and writers: scenes of pbrt-v4 and glTF 2.0, PLY meshes, images, film files.
 //!
-//! Nothing here panics, whatever the bytes: a broken file is an [`Error`] that says where the fault
-//! is, whose it is and what to do about it. Counts are checked before memory is taken for them.
+//! Nothing here panics, whatever the bytes: a broken file is an [`Error`] with a place, a kind and a hint.
+//! Counts are checked before memory is reserved for them.
 
 mod bytes;
 mod error;

@@ -1,15 +1,15 @@
-//! The limits of what is read. docs/reference/limits.md has them for users, written by a test.
+//! The limits of readers. A test writes them to docs/reference/limits.md.
 //!
-//! Memory and time follow the bytes that files have on the disk, so that a small file cannot ask for
-//! much. What a few bytes may stand for, such as packed texts, inclusions, subdivision and even
-//! images, has an [`Allowance`]: a part that is free, and so much more for every byte.
+//! Memory and time are bounded by the size of files on the disk, so that a small file cannot demand much.
+//! Features that expand a few bytes, such as packed texts, inclusions, subdivision and even images, have
+//! an [`Allowance`]: a free part, and more for every byte.
 
-/// How much files of a given size may stand for.
+/// A limit that grows with the size of files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Allowance {
-    /// For files of any size.
+    /// The limit for files of any size.
     pub(crate) free: u64,
-    /// More for every byte that the files have on the disk, packed.
+    /// The addition for every byte that the files have on the disk, packed.
     pub(crate) per_byte: u64,
 }
 
@@ -18,75 +18,76 @@ impl Allowance {
         Self { free, per_byte }
     }
 
-    /// How much files of `stored` bytes may stand for.
+    /// Returns the limit for files of `stored` bytes.
     pub(crate) const fn of(self, stored: u64) -> u64 {
         self.free
             .saturating_add(self.per_byte.saturating_mul(stored))
     }
 }
 
-/// Bytes that a packed file unpacks to. Numbers as text pack to a tenth, DEFLATE ends at a thousandth.
+/// Unpacked size of a packed file. Numbers as text pack to a tenth, DEFLATE packs to a thousandth at best.
+/// Unit: bytes.
 pub(crate) const UNPACKED: Allowance = Allowance::new(1 << 24, 64);
-/// Bytes of texts that are included again.
+/// Size of texts that are included repeatedly. Unit: bytes.
 pub(crate) const TEXTS_AGAIN: Allowance = Allowance::new(1 << 26, 16);
-/// Directives, which a text has several bytes for unless it is packed or included again.
+/// Number of directives. A text has several bytes for each, unless it is packed or included repeatedly.
 pub(crate) const DIRECTIVES: Allowance = Allowance::new(1 << 18, 1);
-/// Parameters of directives.
+/// Number of parameters of directives.
 pub(crate) const PARAMETERS: Allowance = Allowance::new(1 << 20, 1);
-/// Bytes of meshes, images, spectra and buffers that are read again.
+/// Size of meshes, images, spectra and buffers that are read repeatedly. Unit: bytes.
 pub(crate) const FILES_AGAIN: Allowance = Allowance::new(1 << 27, 128);
-/// Primitives of a scene, and vertices of its meshes; those of shared objects count once.
+/// Number of primitives of a scene, and of vertices of its meshes; shared objects count once.
 pub(crate) const PRIMITIVES: Allowance = Allowance::new(1 << 22, 16);
-/// Shapes, counted as they are kept: those that emit once for each place.
+/// Number of stored shapes; emitting shapes of an object count once for each place.
 pub(crate) const SHAPES: Allowance = Allowance::new(1 << 18, 1);
-/// Mesh instances of a glTF file; in pbrt each has a directive.
+/// Number of mesh instances of a glTF file; in pbrt each has a directive.
 pub(crate) const INSTANCES: Allowance = Allowance::new(1 << 18, 1);
-/// Components that are read by accessors of a glTF file.
+/// Number of components that accessors of a glTF file read.
 pub(crate) const COMPONENTS: Allowance = Allowance::new(1 << 26, 64);
-/// Numbers of an image: pixels times channels.
+/// Number of values of an image: pixels times channels.
 pub(crate) const IMAGE: Allowance = Allowance::new(1 << 26, 128);
-/// Numbers of all images of a scene.
+/// Number of values of all images of a scene.
 pub(crate) const IMAGES: Allowance = Allowance::new(1 << 28, 128);
 
-/// Bytes of one text, unpacked: places in it are 32-bit numbers.
+/// Unpacked size of one text, as places in it are 32-bit numbers. Unit: bytes.
 pub(crate) const LONGEST_TEXT: u64 = u32::MAX as u64;
-/// Files within files within files.
+/// Depth of nested inclusions.
 pub(crate) const DEEPEST_INCLUSION: usize = 64;
-/// Inclusions in all: each may ask the system for a file.
+/// Number of all inclusions, each of which may open a file.
 pub(crate) const MOST_INCLUSIONS: u64 = 1 << 16;
-/// Blocks within blocks.
+/// Depth of nested blocks.
 pub(crate) const DEEPEST_BLOCK: usize = 1 << 16;
-/// Parameters that `Attribute` directives give one kind of object; all are copied where one is added.
+/// Number of parameters of `Attribute` directives for one kind of object; adding one copies all.
 pub(crate) const MOST_DEFAULTS: usize = 64;
-/// Values of these parameters.
+/// Number of values of these parameters.
 pub(crate) const MOST_DEFAULT_VALUES: usize = 4096;
-/// Warnings that differ: the list is searched for each.
+/// Number of different warnings, as each one searches the list.
 pub(crate) const MOST_WARNINGS: usize = 200;
-/// The one warning for all others.
+/// The warning that stands for all further ones.
 pub(crate) const FURTHER_WARNINGS: &str = "further warnings, of other kinds";
-/// Primitives, and vertices, of a scene of any size, unless the caller says otherwise.
+/// Number of primitives, and of vertices, of a scene of any size, unless the caller sets another limit.
 pub(crate) const MOST_PRIMITIVES: u64 = 1 << 28;
-/// Steps of subdivision: each makes four triangles of one.
+/// Number of subdivision steps, each of which quadruples the triangles.
 pub(crate) const MOST_LEVELS: u32 = 10;
-/// Textures within textures.
+/// Depth of nested textures.
 pub(crate) const DEEPEST_TEXTURE: usize = 32;
-/// Textures that one texture combines.
+/// Number of textures that one texture combines.
 pub(crate) const MOST_TEXTURES: usize = 1024;
-/// Pixels of a film in either direction.
+/// Width and height of a film. Unit: pixels.
 pub(crate) const LARGEST_SIDE: u32 = 1 << 16;
-/// Bytes of a mesh file, unpacked.
+/// Unpacked size of a mesh file. Unit: bytes.
 pub(crate) const LARGEST_MESH: u64 = 1 << 34;
-/// Bytes of an image file.
+/// Size of an image file. Unit: bytes.
 pub(crate) const LARGEST_IMAGE: u64 = 1 << 33;
-/// Numbers of an image of any size: 2 GiB.
+/// Number of values of an image of any size: 2 GiB.
 pub(crate) const MOST_NUMBERS: u64 = 1 << 29;
-/// Bytes of a glTF file, and of each file that it names.
+/// Size of a glTF file, and of each file that it names. Unit: bytes.
 pub(crate) const LARGEST_GLTF: u64 = 1 << 33;
-/// Components of a glTF accessor that has no bytes of its own.
+/// Number of components of a glTF accessor without a buffer view.
 pub(crate) const MOST_ZEROS: usize = 1 << 22;
-/// Bytes of a file of a spectrum.
+/// Size of a spectrum file. Unit: bytes.
 pub(crate) const LARGEST_SPECTRUM: u64 = 1 << 24;
-/// Bytes of a film file.
+/// Size of a film file. Unit: bytes.
 pub(crate) const LARGEST_FILM: u64 = 1 << 36;
 
 #[cfg(test)]

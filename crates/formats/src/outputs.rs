@@ -1,10 +1,10 @@
-//! Outputs never replace what is read, nor each other.
+//! Checks that outputs replace neither inputs nor each other.
 //!
-//! Files are compared by identity: device and inode after all links, so that `a.png`, `./a.png`, a link
-//! to it and a second name of it are one file. A file that is not there yet is its name in the identity of
-//! its folder. Devices and pipes are written to and never replaced, so they are equal to nothing.
+//! Files are compared by identity: device and inode after all links, so that `a.png`, `./a.png`, a symbolic
+//! link and a hard link to it are one file. A file that does not exist yet is identified by its folder's
+//! identity and its name. Devices and pipes are written to and never replaced, so they equal nothing.
 //!
-//! A command that writes files calls [`check`] when it knows all that it reads, before it renders.
+//! A command that writes files calls [`check`] before it renders, as soon as it knows all its inputs.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::folder_of;
@@ -17,12 +17,11 @@ use std::path::{Path, PathBuf};
 pub struct Output<'a> {
     /// Its name.
     pub path: &'a Path,
-    /// The flag by which another name can be given. None: there is no flag.
+    /// The flag that names the file. None: there is no flag.
     pub flag: Option<&'a str>,
 }
 
-/// Fails where an output would replace one of `inputs`, or another output. Inputs that are not there are
-/// ignored.
+/// Checks that no output replaces one of `inputs` or another output. Inputs that do not exist are ignored.
 ///
 /// Errors: of kind [`ErrorKind::Io`], with both names.
 pub fn check<'a>(inputs: impl IntoIterator<Item = &'a Path>, outputs: &[Output<'_>]) -> Result<()> {
@@ -36,21 +35,21 @@ pub fn check<'a>(inputs: impl IntoIterator<Item = &'a Path>, outputs: &[Output<'
             continue;
         };
         if let Some(input) = read.get(&identity) {
-            return Err(refused(output, "would replace the input", input));
+            return Err(refusal(output, "would replace the input", input));
         }
         if let Some(other) = written.insert(identity, output.path) {
-            return Err(refused(output, "would replace the other output", other));
+            return Err(refusal(output, "would replace the other output", other));
         }
     }
     Ok(())
 }
 
-/// True where both names are of one file.
+/// Returns true if both names stand for one file.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     Identity::of(a).is_some_and(|identity| Some(identity) == Identity::of(b))
 }
 
-fn refused(output: &Output<'_>, does: &str, other: &Path) -> Error {
+fn refusal(output: &Output<'_>, does: &str, other: &Path) -> Error {
     let [path, other] = [output.path, other].map(Path::display);
     let message = format!("cannot write `{path}`: it {does} `{other}`");
     let hint = match output.flag {
@@ -60,19 +59,19 @@ fn refused(output: &Output<'_>, does: &str, other: &Path) -> Error {
     Error::naming(output.path, ErrorKind::Io, message).with_hint(hint)
 }
 
-/// Which file a name stands for.
+/// The identity of a file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Identity {
     /// A file or a folder by device and inode.
     Node(u64, u64),
-    /// A file that is not there, in a folder that is.
+    /// A new file in an existing folder.
     New(Box<Self>, OsString),
-    /// All that is known of it.
+    /// A path, if nothing else is known.
     Path(PathBuf),
 }
 
 impl Identity {
-    /// None: a device, a pipe or a socket.
+    /// Returns the identity of a file. None: a device, a pipe or a socket.
     fn of(path: &Path) -> Option<Self> {
         if path.exists() {
             return Self::of_existing(path);
@@ -80,7 +79,7 @@ impl Identity {
         Some(Self::of_new(path))
     }
 
-    /// None: nothing is there, or a device, a pipe or a socket.
+    /// Returns the identity of an existing file. None: it does not exist, or is a device, a pipe or a socket.
     fn of_existing(path: &Path) -> Option<Self> {
         let metadata = path.metadata().ok()?;
         let is_plain = metadata.is_file() || metadata.is_dir();
@@ -116,7 +115,7 @@ mod tests {
     use std::fs;
 
     #[track_caller]
-    fn said(inputs: &[&Path], outputs: &[&Path]) -> String {
+    fn message(inputs: &[&Path], outputs: &[&Path]) -> String {
         let flag = Some("--output");
         let outputs: Vec<_> = outputs.iter().map(|&path| Output { path, flag }).collect();
         let checked = check(inputs.iter().copied(), &outputs);
@@ -124,14 +123,14 @@ mod tests {
     }
 
     #[test]
-    fn an_output_is_no_input_by_any_name() {
+    fn an_output_equals_an_input_by_any_of_its_names() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         fs::write(at("a.png"), "a").unwrap();
         fs::create_dir(at("sub")).unwrap();
         for name in ["a.png", "./a.png", "sub/../a.png"] {
             let (input, output) = (at("a.png"), at(name));
-            let text = said(&[&input], &[&output]);
+            let text = message(&[&input], &[&output]);
             let expected = format!(
                 "cannot write `{}`: it would replace the input `{}`; name another file with --output",
                 output.display(),
@@ -139,25 +138,28 @@ mod tests {
             );
             assert_eq!(text, expected);
         }
-        assert_eq!(said(&[&at("a.png")], &[&at("b.png"), &at("sub/a.png")]), "");
-        // There is nothing to lose.
-        assert_eq!(said(&[&at("none.png")], &[&at("none.png")]), "");
+        assert_eq!(
+            message(&[&at("a.png")], &[&at("b.png"), &at("sub/a.png")]),
+            ""
+        );
+        // The input does not exist, so nothing is lost.
+        assert_eq!(message(&[&at("none.png")], &[&at("none.png")]), "");
     }
 
     #[test]
-    fn outputs_are_not_each_other_before_they_are_there() {
+    fn equal_outputs_are_found_before_they_exist() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         fs::create_dir(at("sub")).unwrap();
-        let text = said(&[], &[&at("a.json"), &at("sub/../a.json")]);
+        let text = message(&[], &[&at("a.json"), &at("sub/../a.json")]);
         assert!(text.contains("it would replace the other output"), "{text}");
-        assert_ne!(said(&[], &[&at("no/a"), &at("no/./a")]), "");
-        assert_eq!(said(&[], &[&at("a.json"), &at("sub/a.json")]), "");
+        assert_ne!(message(&[], &[&at("no/a"), &at("no/./a")]), "");
+        assert_eq!(message(&[], &[&at("a.json"), &at("sub/a.json")]), "");
     }
 
     #[cfg(unix)]
     #[test]
-    fn links_lead_to_one_file_and_devices_are_none() {
+    fn links_are_resolved_and_devices_equal_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         fs::write(at("a"), "a").unwrap();
@@ -165,12 +167,12 @@ mod tests {
         std::os::unix::fs::symlink("a", at("link")).unwrap();
         std::os::unix::fs::symlink(".", at("here")).unwrap();
         for name in ["second", "link", "here/a"] {
-            assert_ne!(said(&[&at("a")], &[&at(name)]), "", "{name}");
-            assert_ne!(said(&[&at(name)], &[&at("a")]), "", "{name}");
+            assert_ne!(message(&[&at("a")], &[&at(name)]), "", "{name}");
+            assert_ne!(message(&[&at(name)], &[&at("a")]), "", "{name}");
             assert!(is_same(&at(name), &at("a")), "{name}");
         }
-        assert_ne!(said(&[], &[&at("b"), &at("here/b")]), "");
+        assert_ne!(message(&[], &[&at("b"), &at("here/b")]), "");
         let null = Path::new("/dev/null");
-        assert_eq!(said(&[null], &[null, null]), "");
+        assert_eq!(message(&[null], &[null, null]), "");
     }
 }

@@ -1,4 +1,4 @@
-//! Scenes of any format: which one a file has, its name says.
+//! Reads scenes of any format, by the ending of the file name.
 
 pub use crate::files::{Files, InMemory};
 pub use crate::import::{Crop, Lamp, LoadOptions, Loaded, SceneDigest, SceneSettings, Summary};
@@ -7,13 +7,13 @@ use crate::error::Result;
 use crate::{gltf, pbrt};
 use std::path::Path;
 
-/// Reads a scene with all that it refers to: glTF 2.0 where the name ends in `.gltf` or `.glb`, else
+/// Reads a scene with all files that it refers to: glTF 2.0 if the name ends in `.gltf` or `.glb`, else
 /// pbrt-v4; `-` is standard input.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
     load_from(path, options, &Files::default())
 }
 
-/// The same as [`load`], with files from where `files` says.
+/// Does the same as [`load`] with files from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     if gltf::is_gltf(path) {
         gltf::load_from(path, options, files)

@@ -1,4 +1,4 @@
-//! Texts, places in them, and excerpts for people to look at.
+//! Texts, places in them, and excerpts for messages.
 
 use crate::error::{Error, ErrorKind, Place};
 use crate::text::{printable, printable_lines};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileId(u32);
 
-/// A stretch of bytes of one text.
+/// A range of bytes of one text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// The text.
@@ -33,7 +33,7 @@ impl Span {
         }
     }
 
-    /// From the beginning of this span to the end of `last`, which lies in the same text.
+    /// Returns the span from the beginning of this one to the end of `last`, which lies in the same text.
     pub(crate) fn to(self, last: Self) -> Self {
         debug_assert_eq!(self.file, last.file);
         Self {
@@ -43,7 +43,7 @@ impl Span {
     }
 }
 
-/// Something wrong at a place: becomes an [`Error`] where the texts are at hand.
+/// An error at a place, which becomes an [`Error`] with the help of the [`SourceMap`].
 #[derive(Debug)]
 pub(crate) struct Fault<P = Span> {
     pub(crate) kind: ErrorKind,
@@ -82,7 +82,7 @@ impl<P> Fault<P> {
         }
     }
 
-    /// Adds the nearest of `known` to `name` as a hint, where one is near.
+    /// Adds the one of `known` that is nearest to `name` as a hint, if one is near.
     pub(crate) fn with_nearest<'a>(
         mut self,
         name: &str,
@@ -102,14 +102,14 @@ pub struct SourceMap {
 }
 
 impl SourceMap {
-    /// The beginning of the first text: the place of errors that concern all of a scene.
+    /// The beginning of the first text: the place of errors that concern the whole scene.
     pub(crate) const BEGINNING: Span = Span {
         file: FileId(0),
         start: 0,
         end: 0,
     };
 
-    /// Adds a text under the name that messages give it.
+    /// Adds a text under its name in messages.
     pub(crate) fn add(&mut self, name: &Path, text: String) -> Result<FileId, Error> {
         if u32::try_from(text.len()).is_err() {
             let message = "longer than 4 GiB";
@@ -119,22 +119,22 @@ impl SourceMap {
         Ok(FileId(self.files.len() as u32 - 1))
     }
 
-    /// The name of a text.
+    /// Returns the name of a text.
     pub fn name(&self, file: FileId) -> &Path {
         &self.files[file.0 as usize].0
     }
 
-    /// A text.
+    /// Returns a text.
     pub(crate) fn text(&self, file: FileId) -> Arc<str> {
         Arc::clone(&self.files[file.0 as usize].1)
     }
 
-    /// All texts, in the order read.
+    /// Returns all texts in the order of reading.
     pub(crate) fn texts(&self) -> impl Iterator<Item = &str> {
         self.files.iter().map(|(_, text)| &**text)
     }
 
-    /// Line and column of the beginning of `span`, both counted from 1.
+    /// Returns line and column of the beginning of `span`, both counted from 1.
     pub fn line_and_column(&self, span: Span) -> (usize, usize) {
         line_and_column(&self.files[span.file.0 as usize].1, span.start as usize)
     }
@@ -158,7 +158,7 @@ impl SourceMap {
     }
 }
 
-/// Line and column of a byte, both counted from 1.
+/// Returns line and column of a byte, both counted from 1.
 pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -166,23 +166,23 @@ pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     (line, 1 + before[line_start..].chars().count())
 }
 
-/// The lines around a place, as they are shown: [`printable_lines`]. Long lines are cut, so that a mesh
-/// on one line does not fill the screen.
+/// The lines around a place as [`printable_lines`]. Long lines are cut, so that a mesh on one line does not
+/// fill the screen.
 #[derive(Clone, Debug)]
 pub(crate) struct Excerpt {
     name: String,
     text: String,
     marked: Range<usize>,
-    /// Of the first line of `text`, counted from 0.
+    /// The number of the first line of `text`, counted from 0.
     first_line: usize,
-    /// Characters that were cut off in front of `text`.
+    /// The number of characters that were cut off before `text`.
     cut: usize,
 }
 
 impl Excerpt {
-    /// Bytes shown on either side of the marked ones in a line that is too long to show.
+    /// Number of bytes shown on either side of the mark in a line that is cut.
     const MARGIN: usize = 60;
-    /// The most bytes that are shown uncut, or marked.
+    /// Maximum number of bytes that are shown uncut, or marked.
     const WHOLE: usize = 400;
 
     fn new(name: &Path, text: &str, line: usize, marked: Range<usize>) -> Self {
@@ -191,7 +191,7 @@ impl Excerpt {
         let line_end = text[marked.start..]
             .find('\n')
             .map_or(text.len(), |i| marked.start + i);
-        // One line before and one after for orientation.
+        // One line of context before and after.
         let start = text[..line_start.saturating_sub(1)]
             .rfind('\n')
             .map_or(0, |i| i + 1);
@@ -231,8 +231,8 @@ impl Excerpt {
     }
 }
 
-/// A text as it is shown, with the place of the same `marked` characters in it. Line ends lose their
-/// carriage return.
+/// Returns a printable text, and the range of the `marked` characters in it. Carriage returns at line ends
+/// are removed.
 fn shown(text: &str, marked: Range<usize>) -> (String, Range<usize>) {
     let text = text.strip_suffix('\r').unwrap_or(text);
     let end = marked.end.min(text.len());
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn an_excerpt_shows_what_a_terminal_would_obey() {
+    fn control_characters_in_an_excerpt_are_escaped() {
         let text = "Film \x1b[2J\r\nShape \"\u{202e}ab\"\r\nnext\r\n";
         let start = text.find("\"\u{202e}").unwrap();
         let excerpt = Excerpt::new(Path::new("a\x07"), text, 2, start..start + 8);

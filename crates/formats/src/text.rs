@@ -1,4 +1,4 @@
-//! Texts and numbers of files in messages: they are shown, and never obeyed by a terminal.
+//! Texts and numbers of files in messages, with control characters escaped.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -6,17 +6,17 @@ use std::fmt;
 /// Returns one line that shows `text`: every character that [`is_obeyed`] is written as its escape,
 /// such as `\n` or `\u{1b}`.
 ///
-/// A text that was shown already stays as it is.
+/// A text that is printable already stays as it is.
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, is_obeyed)
 }
 
-/// Returns lines that show `text`: as [`printable`], but line feeds and tabs stay.
+/// Returns lines that show `text`: like [`printable`], but line feeds and tabs stay.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_obeyed(c) && !matches!(c, '\n' | '\t'))
 }
 
-/// True for characters by which a terminal moves, colours or reorders what it shows: control
+/// Returns true for characters by which a terminal moves, colours or reorders text: control
 /// characters of both sets (C0 and C1), and marks of lines and of writing direction.
 pub fn is_obeyed(c: char) -> bool {
     // The property Bidi_Control of Unicode, and the separators of lines and paragraphs.
@@ -27,7 +27,7 @@ pub fn is_obeyed(c: char) -> bool {
     c.is_control() || is_mark
 }
 
-/// Returns a number as people write it: `0.5`, `1e30`, and not a row of zeros.
+/// Formats a number in the shorter of decimal and scientific notation: `0.5`, `1e30`.
 pub fn number(value: impl Into<f64> + Copy + fmt::Display + fmt::LowerExp) -> String {
     let size = value.into().abs();
     if size == 0.0 || (1e-5..1e7).contains(&size) || !size.is_finite() {
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_the_digits_that_matter() {
+    fn numbers_are_written_in_short_form() {
         assert_eq!(number(f32::MIN_POSITIVE), "1.1754944e-38");
         assert_eq!(number(1e30), "1e30");
         assert_eq!([number(-0.1_f32), number(12.0)], ["-0.1", "12"]);
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn every_character_that_a_terminal_obeys_is_shown() {
+    fn every_control_character_is_escaped() {
         check("room µ 🏠.pbrt", "room µ 🏠.pbrt", "room µ 🏠.pbrt");
         check("a\x1b[31mb", r"a\u{1b}[31mb", r"a\u{1b}[31mb");
         check("a\x7f\u{9b}2J", r"a\u{7f}\u{9b}2J", r"a\u{7f}\u{9b}2J");

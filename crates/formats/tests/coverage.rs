@@ -1,5 +1,5 @@
-//! Surfaces that are not all there: walks decide by chance, shadow rays know the share exactly, and
-//! all estimators mean the same picture.
+//! Partially covered surfaces: walks decide randomly, shadow rays compute transmittance exactly, and all
+//! estimators agree.
 
 #[path = "../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
@@ -37,7 +37,7 @@ fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates 
     replicates(scene, &settings, passes)
 }
 
-/// A wall across the view, black, of which `alpha` is there.
+/// Describes a black wall across the view with coverage `alpha`.
 fn wall(z: f32, alpha: f32) -> String {
     format!(
         "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n\
@@ -55,14 +55,14 @@ fn in_space(point: Vec3) -> SegmentEnd {
     }
 }
 
-/// Transmittances are the same to the last bit.
+/// Checks that transmittances are equal to the last bit.
 #[track_caller]
-fn same(found: f32, expected: f32) {
-    assert_eq!(found.to_bits(), expected.to_bits(), "{found} {expected}");
+fn same(actual: f32, expected: f32) {
+    assert_eq!(actual.to_bits(), expected.to_bits(), "{actual} {expected}");
 }
 
 #[test]
-fn walls_let_through_what_is_not_there() {
+fn transmittances_of_walls_multiply() {
     let walls = [wall(0.0, 0.5), wall(1.0, 0.3), wall(2.0, 0.0)].concat();
     let light = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
     let sphere = "Shape \"sphere\" \"float alpha\" 0.2\n";
@@ -70,12 +70,12 @@ fn walls_let_through_what_is_not_there() {
     let behind = Vec3::new(3.1, 1.2, 9.0);
     let seen = |from: Vec3, to: Vec3| scene.transmittance(&in_space(from), &in_space(to));
     let eye = Vec3::new(3.0, 1.0, -4.0);
-    // 1 - α as the file's numbers have it, rounded once.
+    // 1 - α of the file's numbers, rounded once.
     let factors = [0.5_f32, 0.3].map(|alpha| f64::from(1.0 - alpha));
     same(seen(eye, behind), (factors[0] * factors[1]) as f32);
     same(seen(behind, eye), seen(eye, behind));
     same(seen(eye, Vec3::new(3.0, 1.0, -2.0)), 1.0);
-    // In and out of the sphere, between no walls.
+    // Into and out of the sphere, between the walls.
     let clear = f64::from(1.0_f32 - 0.2);
     let (left, right) = (Vec3::new(-2.0, 0.1, -0.1), Vec3::new(2.0, 0.1, -0.1));
     same(seen(left, right), (clear * clear) as f32);
@@ -100,7 +100,7 @@ fn scene_of_walls_and_light() -> Scene {
     ))
 }
 
-/// A floor and a wall; the light is for each test to add.
+/// A floor and a wall; each test adds a light.
 const ROOM: &str = r#"
 Material "diffuse" "rgb reflectance" [0.6 0.5 0.4]
 Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point3 P" [-3 0 -3 -3 0 3 3 0 3 3 0 -3]
@@ -131,12 +131,12 @@ fn a_half_transparent_plane() {
     check_estimators(&scene(&format!("{ROOM}{LAMP}{veil}")));
 }
 
-/// A file with `world` beside a mask of four by four numbers.
+/// Loads a file with `world` beside a mask of four by four numbers.
 fn masked(world: &str) -> (tempfile::TempDir, Scene) {
     let folder = tempfile::tempdir().expect("a folder");
     let mut mask = b"PF\n4 4\n-1.0\n".to_vec();
     for i in 0..16_u32 {
-        // Holes, parts, and what is all there.
+        // Holes, partial coverage, and full coverage.
         let alpha = [0.0_f32, 1.0, 0.25, 1.0, 0.6][(i * 3 % 5) as usize];
         mask.extend([alpha; 3].iter().flat_map(|x| x.to_le_bytes()));
     }
@@ -177,7 +177,7 @@ fn lamps_cut_out_by_a_texture_and_by_a_number() {
 }
 
 #[test]
-fn a_lamp_that_is_not_there_shines_unseen() {
+fn an_invisible_lamp_still_emits() {
     let lamp = "AreaLightSource \"diffuse\" \"rgb L\" [6 7 8] \"float scale\" 3\n\
                 Translate 0 1.3 0 Shape \"sphere\" \"float radius\" 0.3 \"float alpha\" 0\n";
     let scene = scene(&format!("{ROOM}{lamp}"));

@@ -1,10 +1,10 @@
-//! The scenes that published figures were measured on do not change: a byte of any file that is
-//! read for them would be another scene. Who wants another one makes a new scene.
+//! The scenes of published measurements are frozen: any change of a file that is read for them fails here.
+//! Make a new scene instead.
 
 use bidir_formats::pbrt::{LoadOptions, load};
 use std::path::Path;
 
-/// Checks the hash of everything that is read for a scene.
+/// Checks the hash of all files that are read for a scene.
 #[track_caller]
 fn check(name: &str, digest: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");

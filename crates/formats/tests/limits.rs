@@ -1,4 +1,4 @@
-//! What a small file must not do: take memory or time that its bytes do not account for.
+//! Small files do not take memory or time out of proportion to their size.
 
 use bidir_formats::image::{self, Format};
 use bidir_formats::pbrt::{LoadOptions, build, load, parse_text};
@@ -14,14 +14,14 @@ fn check(error: &Error, kind: ErrorKind, words: &str) {
     assert!(error.to_string().contains(words), "{error}");
 }
 
-/// The limit that reading of this world runs into.
+/// Checks the limit that parsing this world exceeds.
 #[track_caller]
 fn check_text(world: &str, words: &str) {
     let error = parse_text("s", &format!("WorldBegin\n{world}")).expect_err("too much");
     check(&error, ErrorKind::Limit, words);
 }
 
-/// The limit of a hundred primitives that building of this world runs into.
+/// Checks that building this world exceeds a limit of a hundred primitives.
 #[track_caller]
 fn check_size(world: &str) {
     let options = LoadOptions {
@@ -39,7 +39,7 @@ fn check_image(format: Format, bytes: &[u8]) {
     check(&error, ErrorKind::Limit, "too large for a file of");
 }
 
-/// A chunk of a PNG.
+/// Returns a chunk of a PNG.
 fn chunk(name: [u8; 4], data: &[u8]) -> Vec<u8> {
     let named = [&name[..], data].concat();
     let mut crc = flate2::Crc::new();
@@ -48,7 +48,7 @@ fn chunk(name: [u8; 4], data: &[u8]) -> Vec<u8> {
     [&length[..], &named, &crc.sum().to_be_bytes()].concat()
 }
 
-/// A PNG whose rows are all black, as far as its header goes and a part of its rows.
+/// Returns the header and the first rows of a black PNG.
 fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) -> Vec<u8> {
     let size = [width.to_be_bytes(), height.to_be_bytes()].concat();
     let header = [&size[..], &[depth, color, 0, 0, 0]].concat();
@@ -66,7 +66,7 @@ fn black_png([width, height]: [u32; 2], [depth, color]: [u8; 2], rows: usize) ->
     png
 }
 
-/// A WebP without loss whose pixels are all the same: each takes no bit.
+/// Returns a lossless WebP of equal pixels, which take no bits.
 fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
     let size = (width - 1) | (height - 1) << 14;
     // No transformation, no cache, and for each channel a code of one symbol.
@@ -77,7 +77,7 @@ fn grey_webp([width, height]: [u32; 2]) -> Vec<u8> {
     webp
 }
 
-/// An EXR whose windows are larger than its pixels.
+/// Returns an EXR whose windows are larger than its pixels.
 fn large_exr() -> Vec<u8> {
     let seed = concat!(
         env!("CARGO_MANIFEST_DIR"),
@@ -93,7 +93,7 @@ fn large_exr() -> Vec<u8> {
 }
 
 #[test]
-fn images_do_not_claim_what_they_cannot_hold() {
+fn image_sizes_are_limited_by_the_size_of_the_file() {
     check_image(Format::Png, &black_png([12000, 12000], [8, 2], 1));
     check_image(Format::Exr, &large_exr());
     check_image(Format::WebP, &grey_webp([8000; 2]));
@@ -118,7 +118,7 @@ fn images_that_pack_well_are_read() {
 
 /// A row of 1-bit pixels takes an eighth of the bytes that it is decoded to.
 #[test]
-fn small_files_of_few_colours_are_read_and_cut_ones_refused() {
+fn small_files_of_few_colours_are_read_and_truncated_ones_refused() {
     let png = black_png([1024, 1024], [1, 3], 1024);
     assert!(png.len() < 400, "{}", png.len());
     let image = image::decode(Format::Png, &png, None).unwrap();
@@ -139,7 +139,7 @@ fn meshes_have_indices_of_32_bits() {
 }
 
 #[test]
-fn attributes_are_few() {
+fn the_number_of_attributes_is_limited() {
     check_text(
         &(0..65).fold(String::new(), |text, i| {
             text + &format!("Attribute \"shape\" \"float r{i}\" 1 ")
@@ -154,12 +154,12 @@ fn attributes_are_few() {
 }
 
 #[test]
-fn blocks_are_not_endless() {
+fn the_depth_of_blocks_is_limited() {
     check_text(&"AttributeBegin ".repeat(65537), "more than 65536 deep");
 }
 
 #[test]
-fn warnings_of_many_kinds_are_one() {
+fn the_number_of_warnings_is_limited() {
     let systems = (0..500).map(|i| format!("CoordSysTransform \"{i}\" "));
     let text = format!("WorldBegin {}", systems.collect::<String>());
     let warnings = parse_text("s", &text).unwrap().warnings;
@@ -167,8 +167,8 @@ fn warnings_of_many_kinds_are_one() {
     assert_eq!(warnings[200].count, 300);
 }
 
-/// The limit that a text runs into which includes another so many times, which does the same with a
-/// third.
+/// Checks the limit that a text exceeds which includes a second text a number of times, which in turn
+/// includes a third.
 #[track_caller]
 fn check_inclusions(times: [usize; 2], leaf: &str, words: &str) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -188,7 +188,7 @@ fn check_inclusions(times: [usize; 2], leaf: &str, words: &str) {
 }
 
 #[test]
-fn texts_are_not_included_again_and_again() {
+fn repeated_inclusion_is_limited() {
     let comment = format!("#{}\n", "x".repeat(1 << 20));
     check_inclusions([100, 100], &comment, "bytes that are included again");
     check_inclusions([257, 257], "", "included more than 65536 times");
@@ -200,7 +200,7 @@ fn texts_are_not_included_again_and_again() {
 }
 
 #[test]
-fn packed_texts_are_not_endless() {
+fn the_size_of_packed_texts_is_limited() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.pbrt.gz");
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
@@ -212,9 +212,9 @@ fn packed_texts_are_not_endless() {
     assert!(error.hint().is_some());
 }
 
-/// Levels of subdivision, patches and places take few bytes for many triangles.
+/// Subdivision, patches and instances make many triangles of few bytes.
 #[test]
-fn few_bytes_do_not_stand_for_many_primitives() {
+fn the_number_of_primitives_is_limited_by_the_size_of_the_file() {
     let check_built = |world: &str, words: &str| {
         let description = parse_text("s", &format!("WorldBegin\n{world}")).expect("it parses");
         let error = build(&description, &LoadOptions::default()).expect_err("too much");

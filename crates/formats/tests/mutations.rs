@@ -1,5 +1,5 @@
-//! Files that are nearly right never make a parser panic: the seeds of the fuzz targets, and a few
-//! thousand mutations of them, the same in every run.
+//! Nearly valid files never make a parser panic: the seeds of the fuzz targets, and a few thousand
+//! mutations of them, the same in every run.
 #![expect(
     unreachable_pub,
     reason = "the modules belong to a crate where they are reached"
@@ -53,6 +53,6 @@ fn spectra() {
 
 #[test]
 #[should_panic(expected = "panics: mutation")]
-fn a_panic_is_told() {
+fn a_panic_fails_the_test() {
     check("spectrum", 50, |bytes| assert!(!bytes.contains(&0xff)));
 }

@@ -1,4 +1,4 @@
-//! Shared objects look as copies do, whatever turns, stretches or mirrors them.
+//! Shared objects look like copies under any rotation, stretch or reflection.
 
 #[path = "../../bidir/tests/common/statistics/mod.rs"]
 mod statistics;
@@ -90,7 +90,7 @@ fn shared_objects_are_kept_once() {
     );
 }
 
-/// Rays through the places from all around.
+/// Returns rays through the places from all directions.
 fn rays() -> impl Iterator<Item = (Vec3, Vec3)> {
     let sampler = Sampler::new(SamplerKind::Independent, 1);
     (0..20_000).map(move |i| {
@@ -115,7 +115,7 @@ fn hit(scene: &Scene, (origin, direction): (Vec3, Vec3)) -> Option<SurfaceHit> {
 }
 
 #[test]
-fn geometry_is_that_of_copies() {
+fn shared_objects_have_the_geometry_of_copies() {
     let (shared, copied) = (shared(), copied());
     let (mut hits, mut different) = (0, 0);
     for ray in rays() {
@@ -126,7 +126,7 @@ fn geometry_is_that_of_copies() {
         };
         hits += 1;
         let (a, b) = (a.surface, b.surface);
-        // Rays that graze a silhouette may pass one and meet the other.
+        // A ray near a silhouette may hit only one of the two.
         if a.point.distance(b.point) > 1e-3 {
             different += 1;
             continue;
@@ -141,7 +141,7 @@ fn geometry_is_that_of_copies() {
         let near = 1.0 - 1e-3 / slant;
         assert!(shading.0 > near && shading.1 > near, "{ray:?} {a:?} {b:?}");
         assert!(a.uv.distance(b.uv) < 1e-4 / slant, "{ray:?} {a:?} {b:?}");
-        // Larger than that of a copy, by the error of the object's own space.
+        // The error is larger than that of a copy, by the error in the object's own space.
         assert!(
             a.error >= b.error && a.error < 20.0 * b.error,
             "{a:?} {b:?}"

@@ -1,6 +1,6 @@
-//! Scenes that others made: path tracing and bidirectional path tracing agree on them too. The
-//! variable BIDIR_SCENES names the folder that holds `pbrt-v4/` and `gltf/`; without it the tests are skipped,
-//! and with it every scene must be there.
+//! Path tracing and bidirectional path tracing agree on scenes made by others. The variable BIDIR_SCENES
+//! names the folder with `pbrt-v4/` and `gltf/`; without it the tests are skipped, and with it every scene
+//! must exist.
 
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
@@ -14,8 +14,8 @@ use bidir_formats::scene::{Crop, LoadOptions, Loaded, load};
 use statistics::{Replicates, WHOLE, check_agree, check_means, replicates, suspects};
 use std::path::PathBuf;
 
-/// Loads a scene with a film of `size` × `size` pixels, of which `crop` is rendered, or all. None: the tests
-/// are skipped, which is said.
+/// Loads a scene with a film of `size` × `size` pixels and a crop. None: the tests are skipped, which is
+/// printed.
 fn open_part(name: &str, size: u32, crop: Option<Crop>) -> Option<Loaded> {
     let Some(folder) = std::env::var_os("BIDIR_SCENES") else {
         eprintln!("skipped: BIDIR_SCENES is not set");
@@ -38,7 +38,7 @@ fn estimate(loaded: &Loaded, integrator: IntegratorKind, passes: u64) -> Replica
     estimate_anew(loaded, integrator, passes, 0)
 }
 
-/// The same with random numbers number `seed`.
+/// Does the same with another seed.
 fn estimate_anew(
     loaded: &Loaded,
     integrator: IntegratorKind,
@@ -57,8 +57,8 @@ fn estimate_anew(
     replicates(&loaded.scene, &settings, passes)
 }
 
-/// Compares the two estimators on a small film, with so many passes of the bidirectional one and
-/// `factor` times as many of the other: the noisier and the cheaper that one is, the more.
+/// Compares the two estimators on a small film: the bidirectional one with `passes`, path tracing, which is
+/// noisier and cheaper, with `factor` times as many.
 #[track_caller]
 fn check(name: &str, passes: u64, factor: u64) {
     let Some(loaded) = open(name, 32) else { return };
@@ -118,46 +118,50 @@ mod long_statistics {
 
 /// The film of a large comparison.
 const LARGE: u32 = 192;
-/// The blocks in which it is looked at.
+/// The size of compared blocks.
 const BLOCK: usize = 16;
-/// Samples per pixel of bidirectional path tracing there.
+/// Samples per pixel of bidirectional path tracing in a large comparison.
 const PASSES: u64 = 64;
-/// Path tracing, with more.
+/// The cross-check by path tracing, with more samples.
 const BY_PATH: (IntegratorKind, u64) = (IntegratorKind::Path, 16 * PASSES);
-/// For scenes of which path tracing finds most light by rare hits of small lamps.
+/// The cross-check for scenes in which path tracing finds most light by rare hits of small lamps.
 const BY_LVC: (IntegratorKind, u64) = (IntegratorKind::Lvc, PASSES);
-/// How many times as many where these differ.
+/// Factor on the samples of blocks that differ.
 const AGAIN: u64 = 256;
 
-/// 64 samples per pixel of bidirectional path tracing against those of a witness, for path tracing sixteen
-/// times the samples of the noisiest small test: blocks of 16 × 16 pixels agree, and means are within 1 %.
+/// Compares 64 samples per pixel of bidirectional path tracing with a second estimator: blocks of 16 × 16
+/// pixels agree, and means are within 1 %.
 ///
-/// Caustics seen in mirrors are found by rare hits of a lamp, by both estimators: in a block with such
-/// the means of 32 replicates are skewed, most of them too dark and alike, which looks like a bias. Blocks
-/// that differ are rendered again with 256 times as many samples: a bias stays, a skewed mean does not.
+/// Both estimators find caustics seen in mirrors by rare hits of a lamp: in such a block the means of 32
+/// replicates are skewed, most of them too dark and alike, which looks like a bias. Blocks that differ are
+/// rendered again with 256 times as many samples: a bias stays, a skewed mean does not.
 #[track_caller]
-fn check_large(name: &str, witness: (IntegratorKind, u64)) {
+fn check_large(name: &str, cross_check: (IntegratorKind, u64)) {
     let Some(loaded) = open(name, LARGE) else {
         return;
     };
     let bdpt = estimate(&loaded, IntegratorKind::Bdpt, PASSES);
-    let other = estimate(&loaded, witness.0, witness.1);
+    let other = estimate(&loaded, cross_check.0, cross_check.1);
     let ratio = bdpt.mean() / other.mean();
     eprintln!("{name}: mean ratio {ratio:.5}");
     assert!((ratio - 1.0).abs() < 0.01, "the means differ: {ratio}");
     check_means(name, &bdpt, &other, BLOCK);
     for block in suspects(&bdpt, &other, BLOCK) {
-        check_again(name, witness, block);
+        check_again(name, cross_check, block);
     }
 }
 
-/// Compares the two in these pixels alone.
+/// Compares the two in these pixels only.
 #[track_caller]
-fn check_again(name: &str, witness: (IntegratorKind, u64), [left, top, right, bottom]: [u32; 4]) {
+fn check_again(
+    name: &str,
+    cross_check: (IntegratorKind, u64),
+    [left, top, right, bottom]: [u32; 4],
+) {
     let crop = Crop::Pixels([left, right, top, bottom]);
     let loaded = open_part(name, LARGE, Some(crop)).expect("it was there before");
     let again = |(integrator, passes)| estimate_anew(&loaded, integrator, AGAIN * passes, 1);
-    let [bdpt, other] = [(IntegratorKind::Bdpt, PASSES), witness].map(again);
+    let [bdpt, other] = [(IntegratorKind::Bdpt, PASSES), cross_check].map(again);
     let name = format!("{name}, again from {left}, {top}");
     eprintln!("{name}: {:.5}, {:.5}", bdpt.mean(), other.mean());
     check_agree(&name, &bdpt, &other, &[WHOLE]);

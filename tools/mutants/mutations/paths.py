@@ -220,7 +220,7 @@ PATHS = [
         "crates/bidir/src/path/walk.rs",
         "let (light, prob) = context.emission().sample(u_light)?;",
         "let light = context.emission().sample(u_light)?.0;\n    let prob = scene.light_choice().prob(light);",
-        estimators("light_subpaths_that_begin"),
+        estimators("light_subpaths_with_a_trained"),
     ),
     (
         "lights that are learnt by the squares themselves",
@@ -536,13 +536,13 @@ PATHS = [
         "crates/bidir/src/scene/coverage.rs",
         "self.stream.get_for(self.dimension, surface ^ distance)",
         "self.stream.get_for(self.dimension, 0 * (surface ^ distance))",
-        coverage("walls_let_through"),
+        coverage("transmittances_of_walls"),
     ),
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/light.rs",
         "contribution: counted.whole().behind(arrives),",
         "contribution: counted.whole().behind(arrives.ceil()),",
-        coverage("walls_let_through"),
+        coverage("transmittances_of_walls"),
     ),
 ]

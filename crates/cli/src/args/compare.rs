@@ -5,7 +5,7 @@ use clap::{Args, ValueHint};
 use lab::metric::Metric;
 use std::path::PathBuf;
 
-/// What is compared, and what is told.
+/// The images to compare, and the metrics to print.
 #[derive(Args, Debug)]
 #[command(
     override_usage = "bidir compare [OPTIONS] A B\n       \
@@ -35,7 +35,7 @@ pub(crate) struct CompareArgs {
     /// different sizes are an error.
     #[arg(long)]
     pub(crate) resample: bool,
-    /// What is computed.
+    /// The metrics beside the usual numbers.
     #[command(flatten)]
     pub(crate) metrics: MetricArgs,
     /// Print JSON with the names of the metrics as keys, and size and resampled.
@@ -48,7 +48,7 @@ pub(crate) struct CompareArgs {
     pub(crate) json: bool,
 }
 
-/// What is computed of an image and its reference, beside the usual numbers.
+/// The metrics of an image and its reference beside the usual numbers.
 #[derive(Args, Debug)]
 pub(crate) struct MetricArgs {
     /// Print FLIP too: the difference seen when both images alternate. Takes seconds.

@@ -4,7 +4,7 @@ use super::ThreadsArgs;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
-/// An image, and where it goes without its noise.
+/// The image to denoise, and the output image.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Environment:\n  BIDIR_OIDN  the library of Open Image Denoise 2 or its folder \
@@ -23,7 +23,7 @@ pub(crate) struct DenoiseArgs {
     /// Output image: .exr with all other layers and attributes, or .png.
     #[arg(short, long, value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub(crate) output: PathBuf,
-    /// How fast it is.
+    /// The number of threads.
     #[command(flatten)]
     pub(crate) threads: ThreadsArgs,
 }

@@ -8,7 +8,7 @@ use clap::{ArgMatches, Args, Command, ValueHint};
 use lab::experiment::Extent;
 use std::path::PathBuf;
 
-/// What is compared, and where the results go.
+/// The description of the experiment, and the folder for its results.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 A description:
@@ -96,20 +96,22 @@ pub(crate) struct ExperimentArgs {
     /// BIDIR_PYTHON names the interpreter that has it (python3).
     #[arg(long, value_name = "ADDRESS")]
     pub(crate) ray: Option<String>,
-    /// How fast it is.
+    /// The number of threads.
     #[command(flatten)]
     pub(crate) threads: ThreadsArgs,
     /// Print only warnings and errors.
     #[arg(short, long)]
     pub(crate) quiet: bool,
-    /// Last, as its heading holds for all that follow.
+    /// The extent; the last field, because its help heading applies to all that follow.
     #[command(flatten)]
     pub(crate) extent: ExtentArgs,
 }
 
 impl ExperimentArgs {
-    /// Refuses --threads beside --ray, whose nodes decide that, and an extent, which these do not know.
-    /// A conflict of clap's would refuse variables, too, which are there for all commands.
+    /// Refuses --threads and the flags of the extent beside --ray.
+    ///
+    /// The nodes choose their own number of threads, and the Python package has no flags for the extent. A
+    /// conflict declared in clap would also refuse BIDIR_THREADS, which applies to all commands.
     pub(super) fn check(command: &mut Command, matches: &ArgMatches) -> Result<(), clap::Error> {
         let is_given = |name| matches.value_source(name) == Some(ValueSource::CommandLine);
         if is_given("ray") && is_given("threads") {
@@ -159,7 +161,7 @@ pub(crate) struct ExtentArgs {
 }
 
 impl ExtentArgs {
-    /// The extent that these flags give.
+    /// Returns the extent that these flags give.
     pub(crate) fn extent(&self) -> Extent {
         Extent {
             scenes: self.scenes.clone(),
@@ -171,7 +173,7 @@ impl ExtentArgs {
         }
     }
 
-    /// The flags that are given, as they are written.
+    /// Returns the given flags as they are written on a command line.
     pub(crate) fn words(&self) -> impl Iterator<Item = String> {
         let size = self.size.map(|size| size.0);
         let number = |flag: &str, number: Option<f64>| number.map(|n| format!("{flag} {n}"));

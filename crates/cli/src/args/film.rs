@@ -3,7 +3,7 @@
 use clap::{Args, Subcommand, ValueHint};
 use std::path::PathBuf;
 
-/// What to do with film files.
+/// The commands below `bidir film`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum FilmCommand {
     /// Print the scene, settings, passes and ray counts of a film file.

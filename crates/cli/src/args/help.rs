@@ -5,7 +5,7 @@ use clap::builder::Resettable;
 use clap::{Arg, Command, CommandFactory};
 use std::ffi::OsString;
 
-/// The flags of a command under `-h`, in their order. All flags, for a command that is not here.
+/// The flags that `-h` shows for a command, in order; it shows all flags of commands without an entry.
 const COMMON: [(&str, &[&str]); 4] = [
     (
         "render",
@@ -58,18 +58,18 @@ const COMMON: [(&str, &[&str]); 4] = [
     ),
 ];
 
-/// Which help text a command prints.
+/// The help text that a command prints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum View {
-    /// That of `-h`.
+    /// The help text of `-h`.
     Short,
-    /// That of `--help`, of manual pages and of the reference.
+    /// The help text of `--help`, of manual pages and of the reference.
     Long,
 }
 
 impl View {
-    /// The view that a command line prints, if it prints one at all.
-    pub(super) fn asked(arguments: &[OsString]) -> Self {
+    /// Returns the view that a command line requests, if it requests help.
+    pub(super) fn requested(arguments: &[OsString]) -> Self {
         let has_flag = arguments.iter().any(|argument| argument == "--help");
         if has_flag || arguments.get(1).is_some_and(|name| name == "help") {
             Self::Long
@@ -79,12 +79,12 @@ impl View {
     }
 }
 
-/// The command line, with the help text of `view`.
+/// Returns the command line with the help text of `view`.
 pub(crate) fn command(view: View) -> Command {
     shown(Cli::command(), view)
 }
 
-/// `command` and all below it in a view.
+/// Returns `command` and its subcommands with the help text of `view`.
 fn shown(command: Command, view: View) -> Command {
     let names = command.get_subcommands().map(Command::get_name);
     let names: Vec<_> = names.map(str::to_owned).collect();
@@ -93,7 +93,7 @@ fn shown(command: Command, view: View) -> Command {
     let common = common.map(|(_, flags)| *flags);
     let command = command.mut_args(|arg| match view {
         View::Short => short(arg, common),
-        // The values of this machine's environment are no documentation.
+        // The values of variables on this machine do not belong into documentation.
         View::Long => arg.hide_env_values(true),
     });
     names.into_iter().fold(command, |all, name| {
@@ -101,7 +101,7 @@ fn shown(command: Command, view: View) -> Command {
     })
 }
 
-/// An argument under `-h`: flags that are not `common` are hidden, and the others stand in one list.
+/// Returns an argument for `-h`: hides flags that are not `common`, and lists the others without headings.
 fn short(arg: Arg, common: Option<&[&str]>) -> Arg {
     let arg = arg.hide_env(true);
     let is_global = arg.is_global_set();
@@ -110,7 +110,7 @@ fn short(arg: Arg, common: Option<&[&str]>) -> Arg {
     };
     match common.iter().position(|known| *known == flag) {
         Some(place) => {
-            // Clap asserts in development that only flags with values hide them.
+            // In debug builds, clap asserts that only flags with values hide them.
             let has_value = arg.get_action().takes_values();
             arg.help_heading(Resettable::Reset)
                 .hide_possible_values(has_value)
@@ -139,14 +139,14 @@ mod tests {
 
     #[test]
     fn a_view_is_chosen_by_the_command_line() {
-        let asked = |line: &str| {
+        let view = |line: &str| {
             let words: Vec<_> = line.split(' ').map(OsString::from).collect();
-            View::asked(&words)
+            View::requested(&words)
         };
-        assert_eq!(asked("bidir render --help"), View::Long);
-        assert_eq!(asked("bidir help render"), View::Long);
-        assert_eq!(asked("bidir render -h"), View::Short);
-        assert_eq!(asked("bidir"), View::Short);
+        assert_eq!(view("bidir render --help"), View::Long);
+        assert_eq!(view("bidir help render"), View::Long);
+        assert_eq!(view("bidir render -h"), View::Short);
+        assert_eq!(view("bidir"), View::Short);
     }
 
     #[test]

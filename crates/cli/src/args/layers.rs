@@ -1,4 +1,4 @@
-//! The flags that ask for images beside the picture.
+//! The flags for layers.
 
 use super::values::named;
 use bidir::film::{Aov, Layers};
@@ -6,7 +6,7 @@ use clap::{Args, ValueHint};
 use lab::pyramid;
 use std::path::PathBuf;
 
-/// Images beside the main one, as layers of the EXR and of film files.
+/// The layers of the EXR and of film files.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Layers")]
 pub(crate) struct LayerArgs {
@@ -50,7 +50,7 @@ pub(crate) struct LayerArgs {
     pub(crate) pyramid: Option<PathBuf>,
 }
 
-/// An image to write, or all of them.
+/// A layer, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AovName {
     All,
@@ -65,21 +65,22 @@ fn aov_names() -> [(&'static str, AovName); Aov::NAMES.len() + 1] {
 }
 
 impl LayerArgs {
-    /// True where images are asked for that no picture for the screen has room for.
+    /// Returns true if the flags request layers that a PNG cannot hold.
     pub(crate) fn need_exr(&self) -> bool {
         let has_strategies = self.strategy_layers.is_some() && self.pyramid.is_none();
         !self.aov.is_empty() || self.light_groups || has_strategies
     }
 
-    /// The layers that are asked for, in a scene with these groups of lights, whose film has images
-    /// of its own.
+    /// Returns the layers of a render of a scene with these light groups.
+    ///
+    /// `own_aovs`: the layers of the scene's film, which apply unless --aov is given.
     pub(crate) fn layers(&self, light_groups: &[String], own_aovs: &[Aov]) -> Layers {
-        let asked = self.aov.iter().flat_map(|name| match name {
+        let requested = self.aov.iter().flat_map(|name| match name {
             AovName::All => Aov::NAMES.map(|(_, aov)| aov).to_vec(),
             AovName::One(aov) => vec![*aov],
         });
         let own = own_aovs.iter().copied().filter(|_| self.aov.is_empty());
-        let aovs = asked.chain(own);
+        let aovs = requested.chain(own);
         let guides = [Aov::Albedo, Aov::ShadingNormal];
         let aovs = aovs.chain(guides.into_iter().filter(|_| self.denoise));
         let light_groups = if self.light_groups { light_groups } else { &[] };

@@ -1,4 +1,4 @@
-//! The flags of long renders: film files, and shares of the passes.
+//! The flags of long renders: film files, and parts of a render.
 
 use super::values::Duration;
 use bidir::film::PassSet;
@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// How a render survives, and how it is shared.
+/// The film file of a render, and the passes that it renders.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Checkpoints and parts")]
 pub(crate) struct LongArgs {
@@ -52,7 +52,7 @@ pub(crate) struct LongArgs {
     pub(crate) part: Option<Part>,
 }
 
-/// Half-open and not empty, written `A..B`.
+/// A half-open, non-empty range of passes, written `A..B`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PassRange(pub(crate) Range<u64>);
 
@@ -68,17 +68,17 @@ impl FromStr for PassRange {
     }
 }
 
-/// One of several equal shares, written `I/N`.
+/// One of several equal parts of a render, written `I/N`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Part {
-    /// Below `of`.
+    /// The number of this part. Range: below `of`.
     pub(crate) index: u64,
-    /// How many shares there are; positive.
+    /// The number of parts; positive.
     pub(crate) of: u64,
 }
 
 impl Part {
-    /// The passes of this share out of `passes`: all shares together are all passes, once each.
+    /// Returns the passes of this part out of `passes`. The parts together have every pass once.
     pub(crate) fn range(self, passes: u64) -> Range<u64> {
         let edge = |i: u64| (u128::from(passes) * u128::from(i) / u128::from(self.of)) as u64;
         edge(self.index)..edge(self.index + 1)
@@ -110,7 +110,7 @@ impl FromStr for Part {
     }
 }
 
-/// Which of its tasks a scheduler says this one is, counted from 0.
+/// Reads the number of this task, counted from 0, from the variables of a scheduler.
 fn index_from_environment(variable: impl Fn(&str) -> Option<String>) -> Result<u64, String> {
     let number = |name: &str| {
         let text = variable(name)?;
@@ -119,7 +119,7 @@ fn index_from_environment(variable: impl Fn(&str) -> Option<String>) -> Result<u
                 .map_err(|_| format!("{name}={text} is not a whole number")),
         )
     };
-    // Workers of the first two may run inside of a Slurm job, and then it is their number that counts.
+    // Workers of HyperQueue and Kubernetes may run inside a Slurm job: their numbers take precedence.
     let inner = ["HQ_TASK_ID", "JOB_COMPLETION_INDEX"];
     if let Some(id) = inner.iter().find_map(|name| number(name)) {
         return id;
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_are_all_passes_once_each() {
+    fn parts_have_every_pass_once() {
         for (passes, of) in [(7, 3), (64, 7), (3, 5), (u64::MAX, 2)] {
             let ranges = (0..of).map(|index| Part { index, of }.range(passes));
             let end = ranges.fold(0, |end, range| {
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_mean_nothing_are_refused() {
+    fn malformed_parts_and_ranges_are_refused() {
         for text in ["", "3", "3/3", "-1/3", "a/b", "0/0", "1/"] {
             assert!(text.parse::<Part>().is_err(), "{text}");
         }
@@ -170,11 +170,11 @@ mod tests {
     }
 
     #[test]
-    fn schedulers_say_which_task_this_is() {
+    fn the_number_of_a_task_comes_from_the_scheduler() {
         let check = |set: &[(&str, &str)], expected: Option<u64>| {
             let variable = |name: &str| {
-                let found = set.iter().find(|(key, _)| *key == name)?;
-                Some(found.1.to_owned())
+                let (_, value) = set.iter().find(|(key, _)| *key == name)?;
+                Some((*value).to_owned())
             };
             assert_eq!(index_from_environment(variable).ok(), expected, "{set:?}");
         };

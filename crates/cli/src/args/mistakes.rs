@@ -1,5 +1,5 @@
-//! Errors of the command line that clap words for programmers: numbers out of range, values of
-//! variables, and flags under the names that other programs give them.
+//! Better messages for errors of the command line: numbers out of range, values of variables, and flags
+//! under the names of other programs.
 
 use bidir::names::nearest;
 use clap::builder::PossibleValue;
@@ -11,7 +11,7 @@ use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
 use std::path::Path;
 
-/// Flags of other programs, and what they are here.
+/// Flags of other programs, the flag of this program, and a hint.
 const ELSEWHERE: [(&[&str], &str, &str); 7] = [
     (
         &[
@@ -62,7 +62,7 @@ const ELSEWHERE: [(&[&str], &str, &str); 7] = [
     ),
 ];
 
-/// Flags that belong to another, which comes first.
+/// A flag, and the flags that need it.
 const NEEDS: [(&str, &[&str]); 3] = [
     ("--replay", &["--svg", "--json"]),
     (
@@ -72,7 +72,7 @@ const NEEDS: [(&str, &[&str]); 3] = [
     ("--error-map", &["--metric", "--error-max"]),
 ];
 
-/// Lets every flag with a value take a negative number, so that it is refused with the range.
+/// Lets every flag with a value accept a negative number, so that its error names the range.
 pub(super) fn accept_negative(command: Command) -> Command {
     let command = command.mut_args(|arg| {
         let has_value = arg.get_action().takes_values() && !arg.is_positional();
@@ -85,7 +85,7 @@ pub(super) fn accept_negative(command: Command) -> Command {
     command.mut_subcommands(accept_negative)
 }
 
-/// The same error in plain words, where clap's are not.
+/// Returns the same error with a better message where there is one.
 pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) -> Error {
     let root = command;
     let command = called(root, arguments);
@@ -102,7 +102,7 @@ pub(super) fn reworded(error: Error, command: &Command, arguments: &[OsString]) 
     better.unwrap_or(error)
 }
 
-/// The subcommand that the arguments call.
+/// Returns the subcommand that the arguments call.
 fn called<'c>(command: &'c Command, arguments: &[OsString]) -> &'c Command {
     let mut called = command;
     for argument in arguments.iter().skip(1) {
@@ -122,7 +122,7 @@ fn text(error: &Error, kind: ContextKind) -> Option<&str> {
     }
 }
 
-/// A flag under the name that another program gives it.
+/// Suggests the flag of this program for a flag of another program.
 fn elsewhere(error: &Error, command: &Command) -> Option<Error> {
     let given = text(error, ContextKind::InvalidArg)?;
     let (_, flag, hint) = ELSEWHERE
@@ -137,7 +137,7 @@ fn has_flag(command: &Command, flag: &str) -> bool {
     long.is_some() && command.get_arguments().any(|arg| arg.get_long() == long)
 }
 
-/// A long flag with one hyphen, which clap takes for short flags.
+/// Suggests two hyphens for a long flag with one, which clap reads as short flags.
 fn one_hyphen(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
     let given = text(error, ContextKind::InvalidArg)?;
     let words = arguments.iter().filter_map(|argument| argument.to_str());
@@ -152,7 +152,7 @@ fn one_hyphen(error: &Error, command: &Command, arguments: &[OsString]) -> Optio
     ))
 }
 
-/// A flag of another command alone.
+/// Names the command that has a flag which `command` lacks.
 fn of_another(error: &Error, command: &Command, root: &Command) -> Option<Error> {
     let given = text(error, ContextKind::InvalidArg)?;
     let mut others = root.get_subcommands();
@@ -162,7 +162,7 @@ fn of_another(error: &Error, command: &Command, root: &Command) -> Option<Error>
     Some(raw(error.kind(), message, Some(&hint)))
 }
 
-/// A value such as `-1s` or `-1,0,4,4`, which clap takes for a flag.
+/// Explains that a value such as `-1s` or `-1,0,4,4`, which clap reads as a flag, is negative.
 fn negative(error: &Error, arguments: &[OsString]) -> Option<Error> {
     let given = text(error, ContextKind::InvalidArg)?;
     let digits = given.strip_prefix('-')?;
@@ -180,7 +180,7 @@ fn negative(error: &Error, arguments: &[OsString]) -> Option<Error> {
         .then(|| raw(error.kind(), message, None))
 }
 
-/// A value that is no number in the range, or that a variable has.
+/// Explains an invalid value with the expected range or names, and with the variable that it comes from.
 fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Error> {
     let named = text(error, ContextKind::InvalidArg)?;
     let given = text(error, ContextKind::InvalidValue)?;
@@ -201,7 +201,7 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
         Some(reason) if is_of_a_number(&reason) => {
             format!("{at}: {quoted} is not {}", expected(arg))
         }
-        // Some reasons name the value.
+        // Some reasons already quote the value.
         Some(reason) if reason.contains(&quoted) => format!("{at}: {reason}"),
         Some(reason) => format!("{at}: {quoted}: {reason}"),
         None => format!("{at}: {quoted} is not one of {}", names.join(", ")),
@@ -210,7 +210,7 @@ fn value(error: &Error, command: &Command, arguments: &[OsString]) -> Option<Err
     Some(raw(error.kind(), message, near.as_deref()))
 }
 
-/// A file where a command is expected.
+/// Suggests the command for a file that stands in the place of a command.
 fn file(error: &Error) -> Option<Error> {
     let given = text(error, ContextKind::InvalidSubcommand)?;
     let ending = Path::new(given).extension()?.to_str()?;
@@ -224,7 +224,7 @@ fn file(error: &Error) -> Option<Error> {
     Some(raw(error.kind(), message, Some(&hint)))
 }
 
-/// A flag without the one that it belongs to.
+/// Explains that a flag needs another one.
 fn needed(error: &Error, arguments: &[OsString]) -> Option<Error> {
     let ContextValue::Strings(missing) = error.get(ContextKind::InvalidArg)? else {
         return None;
@@ -238,7 +238,7 @@ fn needed(error: &Error, arguments: &[OsString]) -> Option<Error> {
     Some(raw(error.kind(), format!("{flag} needs {needed}"), None))
 }
 
-/// True where a flag is among the arguments, alone or as `--flag=value`.
+/// Returns true if a flag is among the arguments, alone or as `--flag=value`.
 fn is_given(arguments: &[OsString], flag: &str) -> bool {
     arguments.iter().any(|argument| {
         let argument = argument.to_string_lossy();
@@ -247,7 +247,7 @@ fn is_given(arguments: &[OsString], flag: &str) -> bool {
     })
 }
 
-/// The variable that a value comes from. None: it stands on the command line.
+/// Returns the variable that a value comes from. None: it comes from the command line.
 fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
     let long = format!("--{}", arg.get_long()?);
     let short = arg.get_short().map(|short| format!("-{short}"));
@@ -264,20 +264,22 @@ fn variable(arg: &Arg, given: &str, arguments: &[OsString]) -> Option<String> {
     (std::env::var_os(name)? == OsStr::new(given)).then(|| name.to_string_lossy().into_owned())
 }
 
-/// True for what the standard library and clap say of whole numbers.
+/// Returns true for the messages of the standard library and of clap about whole numbers.
 fn is_of_a_number(reason: &str) -> bool {
     let starts = ["invalid digit", "number too", "cannot parse integer"];
     starts.iter().any(|start| reason.starts_with(start)) || reason.contains(" is not in ")
 }
 
-/// The whole numbers that a flag takes, in words: clap names the range where it refuses one.
+/// Describes the whole numbers that a flag accepts.
+///
+/// Clap does not expose the range of a parser, so it is read from clap's message about a number outside.
 fn expected(arg: &Arg) -> String {
     let range = |probe: &str| {
         let flag = Arg::new("probe").long("probe");
         let flag = flag.value_parser(arg.get_value_parser().clone());
         let command = Command::new("probe").arg(flag);
-        let refused = command.try_get_matches_from(["probe", "--probe", probe]);
-        let reason = std::error::Error::source(&refused.err()?)?.to_string();
+        let matches = command.try_get_matches_from(["probe", "--probe", probe]);
+        let reason = std::error::Error::source(&matches.err()?)?.to_string();
         let (least, most) = reason.split_once(" is not in ")?.1.split_once("..")?;
         let most = match most.strip_prefix('=') {
             Some(most) => most.parse::<u64>().ok(),
@@ -297,7 +299,7 @@ fn expected(arg: &Arg) -> String {
     }
 }
 
-/// An error as [`crate::console::Console`] writes it.
+/// Returns an error in the format of [`crate::console::Console`].
 fn raw(kind: ErrorKind, message: impl Display, hint: Option<&str>) -> Error {
     let message = message.to_string();
     let hint = hint.map(|hint| format!("\nhint: {}", printable(hint)));

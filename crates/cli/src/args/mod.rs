@@ -64,7 +64,7 @@ impl Cli {
 
     fn parsed() -> Result<Self, clap::Error> {
         let arguments: Vec<_> = std::env::args_os().collect();
-        let mut command = mistakes::accept_negative(command(View::asked(&arguments)));
+        let mut command = mistakes::accept_negative(command(View::requested(&arguments)));
         let matches = command.try_get_matches_from_mut(&arguments);
         let matches = matches.map_err(|error| mistakes::reworded(error, &command, &arguments))?;
         if let Some(("experiment", matches)) = matches.subcommand()

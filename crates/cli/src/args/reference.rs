@@ -7,7 +7,7 @@ use clap::{Args, FromArgMatches, ValueHint};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Which scene gets a reference, and by which estimators.
+/// The scene that gets a reference, and its estimators.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -64,15 +64,15 @@ pub(crate) struct ReferenceArgs {
     /// The scene.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// How fast it is.
+    /// The number of threads.
     #[command(flatten, next_help_heading = "Scene and machine")]
     pub(crate) threads: ThreadsArgs,
 }
 
-/// More would take longer than anybody waits.
+/// Maximum number of samples per pixel, beyond any practical render.
 const MOST_SAMPLES: u64 = 1 << 40;
 
-/// An estimator in one word of the command line, such as `bdpt --strategies s1,-t1`.
+/// An estimator in one argument of the command line, such as `bdpt --strategies s1,-t1`.
 #[derive(Clone, Debug)]
 pub(crate) struct EstimatorFlags(pub(crate) Request);
 
@@ -82,7 +82,7 @@ impl FromStr for EstimatorFlags {
     fn from_str(text: &str) -> Result<Self, String> {
         let command = clap::Command::new("").no_binary_name(true);
         let command = command.disable_help_flag(true);
-        // The environment is of the whole command.
+        // Variables apply to the whole command, not to one of its estimators.
         let command = Request::augment_args(command)
             .mut_args(|flag| flag.env(clap::builder::Resettable::Reset));
         let mut words: Vec<_> = text.split_whitespace().collect();
@@ -97,7 +97,7 @@ impl FromStr for EstimatorFlags {
     }
 }
 
-/// What is wrong, without the usage.
+/// Returns the first line of an error, without the usage.
 fn first_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let line = text.lines().next().unwrap_or_default();

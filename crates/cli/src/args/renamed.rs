@@ -11,12 +11,12 @@ const RULES: [&str; 3] = ["--candidates", "--path-roulette", "--shadow-rays"];
 /// and of this variable.
 const VARIABLE: &str = "BIDIR_SHADOW_RAYS";
 
-/// A warning for each older name on a command line and in the environment.
+/// Returns a warning for each older name on a command line and in the environment.
 pub(super) fn warnings(
     arguments: &[OsString],
     variable: impl Fn(&str) -> Option<String>,
 ) -> Vec<String> {
-    // Flags may be in quotes, as those of `bidir reference --estimator`.
+    // Flags may stand in quotes, as in `bidir reference --estimator`.
     let arguments = arguments.iter().filter_map(|argument| argument.to_str());
     let words: Vec<_> = arguments.flat_map(str::split_whitespace).collect();
     let has_flag = words
@@ -38,7 +38,7 @@ pub(super) fn warnings(
 mod tests {
     use super::*;
 
-    /// Which warnings there are: about the flag, and about the value.
+    /// Returns whether there are warnings about the flag and about the value.
     fn warned(words: &[&str], rule: Option<&str>) -> [bool; 2] {
         let words: Vec<_> = words.iter().map(OsString::from).collect();
         let all = warnings(&words, |name| {

@@ -12,8 +12,7 @@ use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use viewer::tev::TevAddress;
 
-/// The flags of `bidir render`. Headings of `--help` come in the order of
-/// their first fields.
+/// The flags of `bidir render`. The order of the fields is the order of the headings in `--help`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -35,7 +34,7 @@ Examples:
   bidir render room.pbrt --replay 17,4,3 --svg sample.svg
       sample 3 of the pixel in column 17, row 4: its terms as text, its paths as a drawing")]
 pub(crate) struct RenderArgs {
-    /// Where results go.
+    /// The files to write, and messages.
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     /// Show progress in the browser, read only.
@@ -64,25 +63,25 @@ pub(crate) struct RenderArgs {
     /// The image's geometry.
     #[command(flatten)]
     pub(crate) film: FilmArgs,
-    /// When it is enough.
+    /// The limits that end the render.
     #[command(flatten)]
     pub(crate) budget: BudgetArgs,
-    /// How light is estimated.
+    /// The settings of the estimator.
     #[command(flatten)]
     pub(crate) estimator: Request,
     /// The environment variables among the sources of flags.
     #[arg(skip)]
     pub(crate) sources: Sources,
-    /// Images beside the main one.
+    /// The layers.
     #[command(flatten)]
     pub(crate) layers: LayerArgs,
-    /// How it survives and is shared.
+    /// The film file, and the passes to render.
     #[command(flatten)]
     pub(crate) long: LongArgs,
     /// The scene.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// How fast it is.
+    /// The number of threads.
     #[command(flatten, next_help_heading = "Scene and machine")]
     pub(crate) threads: ThreadsArgs,
     /// Repeat one sample and print every term, instead of rendering.
@@ -108,7 +107,7 @@ pub(crate) struct RenderArgs {
     pub(crate) svg: Option<PathBuf>,
 }
 
-/// Where results go.
+/// The files to write, and messages.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Output")]
 pub(crate) struct OutputArgs {
@@ -151,7 +150,7 @@ pub(crate) struct TalkArgs {
     pub(crate) progress: Option<Display>,
 }
 
-/// When it is enough: the limit that is reached first ends the render.
+/// The limits of a render: the one that is reached first ends it.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Stopping")]
 pub(crate) struct BudgetArgs {
@@ -207,7 +206,7 @@ mod tests {
     use bidir::settings::Request;
     use clap::CommandFactory;
 
-    /// The help text of a flag of `bidir render`.
+    /// Returns the help text of a flag of `bidir render`.
     fn help_of(flag: &str) -> String {
         let cli = Cli::command();
         let render = cli.find_subcommand("render").unwrap();
@@ -229,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_help_has_the_true_defaults() {
+    fn the_help_has_the_defaults_of_the_library() {
         let of = |integrator| Request::of(&Settings::new(integrator)).texts();
         let of_lvc = of(IntegratorKind::Lvc);
         let same = [

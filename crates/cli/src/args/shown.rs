@@ -1,11 +1,11 @@
-//! Errors of the command line as a terminal may have them: what arguments and variables say is shown.
+//! Errors of the command line that are safe for a terminal: control characters are escaped.
 
 use clap::Error;
 use clap::error::ContextValue;
 use formats::printable;
 use std::borrow::Cow;
 
-/// The same error with [`printable`] arguments and values.
+/// Returns the same error with [`printable`] arguments and values.
 pub(super) fn shown(mut error: Error) -> Error {
     let all: Vec<_> = error
         .context()
@@ -20,7 +20,7 @@ pub(super) fn shown(mut error: Error) -> Error {
     error
 }
 
-/// True where a text has to be changed: clap's own have no such characters.
+/// Returns true for a value with control characters, which never comes from clap itself.
 fn is_foreign(value: &ContextValue) -> bool {
     let is_changed = |text: &String| matches!(printable(text), Cow::Owned(_));
     match value {
@@ -37,7 +37,7 @@ fn shown_value(value: ContextValue) -> ContextValue {
         ContextValue::Strings(texts) => {
             ContextValue::Strings(texts.into_iter().map(line).collect())
         }
-        // Advice repeats the argument between colours, which look like its own.
+        // Suggestions repeat the argument between colour codes, which look like those in the argument.
         ContextValue::StyledStrs(texts) => {
             let plain = texts.into_iter().map(|text| line(text.to_string()).into());
             ContextValue::StyledStrs(plain.collect())

@@ -1,15 +1,15 @@
-//! Where settings come from, so that messages name what a user can change.
+//! The sources of settings, so that messages name the flag or the variable to change.
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
 use std::collections::BTreeMap;
 
-/// The flags whose values are those of environment variables, each with its variable.
+/// The flags whose values come from environment variables, each with its variable.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sources(BTreeMap<String, String>);
 
 impl Sources {
-    /// The sources of what `command` found in `matches`.
+    /// Finds the flags of `command` whose values in `matches` come from variables.
     pub(super) fn new(command: &Command, matches: &ArgMatches) -> Self {
         let variable = |argument: &Arg| {
             let (flag, variable) = (argument.get_long()?, argument.get_env()?);
@@ -20,7 +20,7 @@ impl Sources {
         Self(command.get_arguments().filter_map(variable).collect())
     }
 
-    /// The variable that a flag's value comes from, else the flag itself.
+    /// Returns the variable that a flag's value comes from, else the flag itself.
     pub(crate) fn name<'s>(&'s self, flag: &'s str) -> &'s str {
         self.0.get(flag).map_or(flag, String::as_str)
     }
@@ -30,7 +30,7 @@ impl Sources {
 mod tests {
     use super::*;
 
-    /// The name of `--path`, which may come from a variable that is always set.
+    /// Returns the source of `--path`, whose variable PATH is always set.
     fn name(arguments: &[&str]) -> String {
         let flag = Arg::new("folders").long("path").env("PATH");
         let mut command = Command::new("bidir").arg(flag);
@@ -40,7 +40,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variable_is_named_where_there_is_no_flag() {
+    fn a_variable_is_named_unless_its_flag_is_given() {
         assert_eq!(name(&[]), "PATH");
         assert_eq!(name(&["--path", "here"]), "--path");
         assert_eq!(Sources::default().name("--path"), "--path");

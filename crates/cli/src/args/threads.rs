@@ -1,10 +1,10 @@
-//! How many threads there are.
+//! The flag for the number of threads.
 
 use bidir::driver::Threads;
 use clap::Args;
 
-/// The flag of all commands that compute for long. What 0 means to some of them, they say
-/// themselves.
+/// The flag of all commands with long computations. Commands for which 0 has another meaning replace the
+/// help text.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct ThreadsArgs {
     /// Threads [default: one per processor].

@@ -5,7 +5,7 @@ use crate::tonemap::Operator;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
-/// An image, and how it is brought to the screen.
+/// The image to convert, and the tone mapping operator.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  bidir tonemap room.exr -o room.png --exposure 1.5\n  \
@@ -31,7 +31,7 @@ pub(crate) struct TonemapArgs {
     pub(crate) operator: Operator,
 }
 
-/// Reads a number of stops that leaves something to see.
+/// Reads a number of stops within the range of 32-bit floats.
 fn stops(text: &str) -> Result<f32, String> {
     let number = text.parse().ok();
     number

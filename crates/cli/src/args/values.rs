@@ -6,7 +6,7 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// A parser of the names in a table of the library, which stay in that one place.
+/// Returns a parser of the names in a table of the library.
 pub(crate) fn named<T, const N: usize>(
     names: [(&'static str, T); N],
 ) -> impl TypedValueParser<Value = T>
@@ -19,7 +19,7 @@ where
     })
 }
 
-/// Reads the name of an instruction set that this machine has.
+/// Reads the name of an instruction set that this machine supports.
 pub(crate) fn isa(name: &str) -> Result<accel::Isa, String> {
     let isa = name
         .parse::<accel::Isa>()
@@ -56,7 +56,7 @@ impl FromStr for Size {
     }
 }
 
-/// The form of a size, with the width that `text` may be.
+/// Describes the form of a size; if `text` is a number, the example has it as its width.
 fn expected_size(text: &str) -> String {
     let width = text.trim().parse::<u16>().ok();
     let width = width.filter(|width| *width > 0).map(u32::from);
@@ -64,10 +64,10 @@ fn expected_size(text: &str) -> String {
     format!("expected WIDTHxHEIGHT, such as {}x{}", size[0], size[1])
 }
 
-/// The sides that a film can have. Unit: pixels.
+/// The valid sides of a film. Unit: pixels.
 const SIDES: RangeInclusive<u32> = 1..=1 << 16;
 
-/// A finite number above zero.
+/// Reads a finite number above zero.
 pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
     let percent = text.trim().strip_suffix('%');
     if let Some(percent) = percent.and_then(|percent| percent.trim().parse::<f64>().ok()) {
@@ -81,7 +81,7 @@ pub(crate) fn positive_number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number above 0, such as 0.01".into())
 }
 
-/// Numbers between commas, as many as there must be.
+/// Reads `N` numbers between commas.
 fn list<T: FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
     let numbers: Result<Vec<T>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     numbers.ok()?.try_into().ok()
@@ -103,7 +103,7 @@ impl PixelBounds {
         }
     }
 
-    /// pbrt's order, `x0,x1,y0,y1`.
+    /// Reads a rectangle in pbrt's order, `x0,x1,y0,y1`.
     pub(crate) fn from_pbrt(text: &str) -> Result<Self, String> {
         let [x0, x1, y0, y1] = list(text).ok_or("expected four pixel numbers: x0,x1,y0,y1")?;
         Self::new([x0, y0, x1, y1])
@@ -181,7 +181,7 @@ impl FromStr for Duration {
             let (number, after) = rest.split_at(end);
             let mut letters = after.chars();
             let unit = match letters.next() {
-                // A bare number is seconds, where it is all there is.
+                // A single number without a unit is in seconds.
                 None if largest.is_infinite() => 1.0,
                 Some('s') => 1.0,
                 Some('m') => 60.0,
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_as_people_write_them() {
+    fn durations_are_parsed() {
         check_duration("90", Some(90.0));
         check_duration("90s", Some(90.0));
         check_duration("0.5", Some(0.5));
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn durations_are_written_shortly() {
+    fn durations_are_printed_in_short_form() {
         let write = |seconds| Duration(std::time::Duration::from_secs_f64(seconds)).to_string();
         assert_eq!(write(1.234), "1.23s");
         assert_eq!(write(12.34), "12.3s");
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_have_both_orders() {
+    fn rectangles_are_read_in_both_orders() {
         let rect = PixelRect {
             min: [1, 2],
             max: [3, 4],

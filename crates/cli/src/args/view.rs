@@ -7,7 +7,7 @@ use clap::Args;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::str::FromStr;
 
-/// What is rendered, how, and where it is shown.
+/// The scene and its settings, and the address of the page.
 #[derive(Args, Debug)]
 #[command(after_long_help = "\
 Examples:
@@ -39,13 +39,13 @@ pub(crate) struct ViewArgs {
     #[arg(long, env = "BIDIR_SPP", value_name = "N", help_heading = "Stopping")]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) spp: Option<u64>,
-    /// How light is estimated.
+    /// The settings of the estimator.
     #[command(flatten)]
     pub(crate) estimator: Request,
     /// The scene.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// How fast it is.
+    /// The number of threads.
     #[command(flatten, next_help_heading = "Scene and machine")]
     pub(crate) threads: ThreadsArgs,
     /// Print only the URL, warnings and errors.
@@ -53,7 +53,7 @@ pub(crate) struct ViewArgs {
     pub(crate) quiet: bool,
 }
 
-/// Where a render is served: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
+/// The address of a server: `8080`, `:8080`, `192.0.2.1:8080`, `[::1]:8080`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ServeAddress(pub(crate) SocketAddr);
 
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn an_address_is_the_loopback_unless_it_says_otherwise() {
+    fn the_default_address_is_the_loopback() {
         check("8080", Some("127.0.0.1:8080"));
         check(":0", Some("127.0.0.1:0"));
         check("0.0.0.0:80", Some("0.0.0.0:80"));

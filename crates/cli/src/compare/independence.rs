@@ -1,4 +1,4 @@
-//! Are several images replicates with seeds of their own, as their intervals assume?
+//! Checks that several images have independent seeds, as their intervals assume.
 
 use crate::scene_io;
 use lab::image::{Pixels, identical};
@@ -15,12 +15,12 @@ pub(super) struct Independence {
 struct Replicate {
     path: PathBuf,
     pixels: Pixels,
-    /// The attribute of the image. None: it has no such.
+    /// The seed in the image's attributes. None: it has no such attribute.
     seed: Option<String>,
 }
 
 impl Independence {
-    /// Adds an image, and warns where it shares its noise with one before.
+    /// Adds an image, and a warning if an earlier image has the same noise.
     pub(super) fn add(&mut self, path: &Path, pixels: &Pixels) {
         let image = Replicate {
             path: path.to_owned(),
@@ -34,7 +34,7 @@ impl Independence {
 }
 
 impl Replicate {
-    /// The warning that both images share their noise. None: they may be independent.
+    /// Returns the warning that both images have the same noise. None: they may be independent.
     fn likeness(&self, other: &Self) -> Option<String> {
         let [a, b] = [&other.path, &self.path].map(|path| path.display());
         let needs = "intervals need images with different seeds";

@@ -1,4 +1,4 @@
-//! Is a difference noise? Tests of images that know their variances.
+//! Tests whether a difference of images with variances is more than noise.
 
 use crate::console::Console;
 use crate::exit::Failure;
@@ -10,15 +10,15 @@ use lab::statistics::{Estimated, z_test};
 use serde::Serialize;
 use std::path::Path;
 
-/// The image is cut into about so many blocks along its longer side.
+/// Approximate number of blocks along the longer side of an image.
 const BLOCKS: usize = 16;
 
-/// An image that may know how sure it is.
+/// An image with the variances of its pixels, if it has them.
 #[derive(Debug)]
 pub(super) struct Noisy {
     pub(super) pixels: Pixels,
     variance: Option<Variance>,
-    /// That of the render. None: the image does not say.
+    /// The integrator of the render. None: the image has no such attribute.
     integrator: Option<String>,
 }
 
@@ -52,8 +52,8 @@ impl Noisy {
         })
     }
 
-    /// The warning that pixels of this image, read from `path`, share noise, which the test of blocks
-    /// does not know. None: they are independent, or the image does not say.
+    /// Returns the warning that the noise of pixels of this image, read from `path`, is correlated, which
+    /// the test of blocks ignores. None: it is independent, or the integrator is unknown.
     pub(super) fn correlation(&self, path: &Path) -> Option<String> {
         let integrator = self.integrator.as_deref()?;
         if !["lvc", "auto"].contains(&integrator) {
@@ -76,18 +76,18 @@ impl Noisy {
     }
 }
 
-/// What tests say of a difference.
+/// The results of the tests of a difference.
 #[derive(Debug, Serialize)]
 pub(super) struct Significance {
     /// The side of a block. Unit: pixels.
     block: usize,
-    /// Of all pixels, the one that differs most.
+    /// The test of single pixels.
     pub(super) pixels: Verdict,
-    /// Of all blocks.
+    /// The test of blocks.
     pub(super) blocks: Verdict,
 }
 
-/// What a test found.
+/// The result of a test: the number of pixels or blocks, and the largest difference.
 #[derive(Debug, Serialize)]
 pub(super) struct Verdict {
     tests: usize,
@@ -96,14 +96,14 @@ pub(super) struct Verdict {
 }
 
 impl Significance {
-    /// None: an image does not know its variances, or the sizes differ.
+    /// Tests the difference of two images. None: an image has no variances, or the sizes differ.
     pub(super) fn of(a: &Noisy, b: &Noisy) -> Option<Self> {
         let [a, b] = [a.estimated()?, b.estimated()?];
         let [width, height] = a.mean.size;
         let block = width.max(height).div_ceil(BLOCKS);
         let test = |block| {
-            let found = z_test(&a, &b, block)?;
-            let (tests, worst) = (found.tests, Comparison::from(&found));
+            let result = z_test(&a, &b, block)?;
+            let (tests, worst) = (result.tests, Comparison::from(&result));
             Some(Verdict { tests, worst })
         };
         Some(Self {
@@ -115,7 +115,7 @@ impl Significance {
 }
 
 impl Verdict {
-    /// In a line.
+    /// Returns the verdict in one line.
     pub(super) fn text(&self) -> String {
         let Comparison {
             p,

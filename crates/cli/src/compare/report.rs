@@ -1,4 +1,4 @@
-//! What a comparison found, as text and as JSON.
+//! The results of a comparison, as text and as JSON.
 
 use super::noise::Significance;
 use crate::exit::{Exit, Failure};
@@ -9,16 +9,16 @@ use serde::{Serialize, Serializer};
 use std::fmt::Write;
 use std::path::PathBuf;
 
-/// A number by name. None: the sizes differ.
+/// A metric's name and value. None: the sizes differ.
 pub(super) type Number = (&'static str, Option<f64>);
 
-/// The name of the number that is near 1.
+/// The name of the ratio of means, which is printed with fixed digits.
 pub(super) const MEAN_RATIO: &str = "mean_ratio";
 
-/// The probability that an interval holds what infinitely many seeds would give.
+/// The probability that an interval contains the mean over infinitely many seeds.
 const CONFIDENCE: f64 = 0.95;
 
-/// Whether images have the same size and the same bits; in JSON, whether they are identical.
+/// The equality of two images in size and bits; a boolean in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(into = "bool")]
 pub(super) enum Bits {
@@ -35,7 +35,7 @@ impl Bits {
         }
     }
 
-    /// Those of all images together.
+    /// Returns `Same` if all comparisons do.
     pub(super) fn of_all(comparisons: &[Comparison]) -> Self {
         let mut each = comparisons.iter().map(|comparison| comparison.identical);
         if each.all(|bits| bits == Self::Same) {
@@ -59,49 +59,47 @@ impl From<Bits> for bool {
     }
 }
 
-/// What is found of one image. As JSON has no other numbers, those that are not finite become null
-/// in it.
+/// The results of one image. Numbers that are not finite become null in JSON, which has no such numbers.
 #[derive(Debug, Serialize)]
 pub(super) struct Comparison {
     #[serde(flatten, serialize_with = "as_map")]
     pub(super) numbers: Vec<Number>,
     pub(super) identical: Bits,
-    /// Width and height of what was compared. None: the sizes differ.
+    /// Width and height of the compared images. None: the sizes differ.
     pub(super) size: Option<[usize; 2]>,
-    /// Which image was brought to the size of the other.
+    /// The image that was resampled to the size of the other: `A` or `B`.
     pub(super) resampled: Option<&'static str>,
-    /// Whether the difference is noise. None: an image does not know its variances, or the sizes
-    /// differ.
+    /// The tests of the difference against noise. None: an image has no variances, or the sizes differ.
     #[serde(rename = "z_test", skip_serializing_if = "Option::is_none")]
     pub(super) significance: Option<Significance>,
 }
 
-/// What is found of images of independent seeds.
+/// The results of several images with independent seeds.
 #[derive(Debug, Serialize)]
 pub(super) struct Replicates {
     #[serde(flatten, serialize_with = "as_map")]
     numbers: Vec<(&'static str, Option<Spread>)>,
-    /// All images and the reference have the same bits.
+    /// The equality of all images and the reference.
     identical: Bits,
     size: Option<[usize; 2]>,
     resampled: Option<&'static str>,
-    /// How many there are.
+    /// The number of images.
     images: usize,
-    /// That of the intervals.
+    /// The confidence level of the intervals.
     confidence: f64,
 }
 
-/// A number over several images.
+/// The mean of a metric over several images, with its confidence interval.
 #[derive(Debug, Serialize)]
 struct Spread {
     mean: f64,
     low: f64,
     high: f64,
-    /// In the order of the images.
+    /// The values in the order of the images.
     values: Vec<f64>,
 }
 
-/// Names and values in their order.
+/// Serializes names and values as a map in their order.
 fn as_map<T: Serialize, S: Serializer>(
     entries: &[(&'static str, T)],
     serializer: S,
@@ -131,7 +129,7 @@ fn check_sizes(comparisons: &[Comparison], files: &[PathBuf]) -> Result<(), Fail
 }
 
 impl Replicates {
-    /// Joins what was found of each image, of which these are the files.
+    /// Joins the results of several images, read from `files`.
     pub(super) fn of(comparisons: &[Comparison], files: &[PathBuf]) -> Result<Self, Failure> {
         check_sizes(comparisons, files)?;
         let sizes: Vec<_> = comparisons.iter().filter_map(|one| one.size).collect();
@@ -159,7 +157,7 @@ impl Replicates {
         })
     }
 
-    /// One number per line, with its interval.
+    /// Returns one number per line, with its interval.
     pub(super) fn text(&self) -> String {
         let mut lines = Lines::default();
         for (name, spread) in &self.numbers {
@@ -184,7 +182,7 @@ impl Replicates {
 }
 
 impl Comparison {
-    /// One value per line.
+    /// Returns one value per line.
     pub(super) fn text(&self) -> String {
         let mut lines = Lines::default();
         for (name, value) in &self.numbers {
@@ -200,7 +198,7 @@ impl Comparison {
     }
 }
 
-/// Errors have any magnitude; a ratio is near 1.
+/// Formats a number: errors in scientific notation, the ratio of means, which is near 1, with fixed digits.
 fn number_text(name: &str, value: Option<f64>) -> String {
     match value {
         None => "none: the sizes differ".to_owned(),
@@ -248,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_json_does_not_have_are_null() {
+    fn numbers_that_are_not_finite_are_null_in_json() {
         let json = parsed(&comparison(&[
             ("rmse", Some(f64::NAN)),
             ("relmse", Some(f64::INFINITY)),
@@ -261,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn several_images_have_a_mean_between_bounds() {
+    fn several_images_have_a_mean_and_an_interval() {
         let comparisons =
             [1.0, 2.0, 3.0, 4.0, 5.0].map(|value| comparison(&[("rmse", Some(value))]));
         let replicates = Replicates::of(&comparisons, &[]).unwrap();

@@ -1,10 +1,10 @@
-//! Claims as text: verdicts, what was found, tables, and histograms as bars.
+//! Claims as text: verdicts, findings, tables, and histograms as bars.
 
 use formats::printable;
 use lab::report::table_text;
 use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
 
-/// A claim with its figures. Curves have their numbers in tables, so only histograms are drawn.
+/// Returns a claim with its figures. The numbers of curves stand in tables, so only histograms are drawn.
 pub(super) fn text(claim: &Claim) -> String {
     let mut text = format!(
         "{}: {}\n  {}: {}\n  {}\n  {}\n",
@@ -25,7 +25,7 @@ pub(super) fn text(claim: &Claim) -> String {
     text
 }
 
-/// All verdicts at a glance. None: nothing was claimed.
+/// Returns a table of all verdicts. None: there are no claims.
 pub(super) fn summary(claims: &[Claim]) -> Option<String> {
     let row = |claim: &Claim| {
         let words = [verdict(claim.verdict), &claim.id, &claim.claim];
@@ -50,10 +50,10 @@ fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The longest bar.
+/// The length of the longest bar. Unit: characters.
 const BAR: f64 = 20.0;
 
-/// Bars side by side, a row for each bin.
+/// Draws the series of a histogram as bars side by side, with a row for each bin.
 fn histogram(plot: &Plot) -> String {
     let points = || plot.series.iter().flat_map(|series| &series.points);
     let mut edges: Vec<f64> = points().map(|point| point[0]).collect();
@@ -66,7 +66,7 @@ fn histogram(plot: &Plot) -> String {
             .iter()
             .find(|point| (point[0] - edge).abs() < 1e-9);
         let length = point.map_or(0.0, |point| BAR * point[1] / highest);
-        // What is there is seen.
+        // A bin that is not empty has at least one character.
         let length = if length > 0.0 { length.max(1.0) } else { 0.0 };
         Cell::Text("#".repeat(length.round() as usize))
     };
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_claim_is_told_with_its_histogram() {
+    fn the_text_of_a_claim_has_its_histogram() {
         let expected = "figure: not reproduced\n  Figure 2: It is so.\n  It is not.\n  By looking.\n\
                         \nBars.\n\
                         size  one                   two\n\
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn verdicts_stand_in_a_table() {
+    fn the_summary_is_a_table_of_verdicts() {
         let expected = "Verdicts.\n\
                         verdict         id      claim\n\
                         not reproduced  figure  It is so.\n";

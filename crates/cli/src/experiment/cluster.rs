@@ -7,10 +7,10 @@ use lab::experiment::Builtin;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-/// How often it is asked whether the other program has ended.
+/// Interval between checks whether the other program has ended.
 const POLL: Duration = Duration::from_millis(100);
 
-/// Runs the experiment on the cluster at `address`, and ends as that does.
+/// Runs the experiment on the cluster at `address`, and returns the exit of the program that does it.
 pub(super) fn run(
     args: &ExperimentArgs,
     address: &str,
@@ -44,7 +44,7 @@ pub(super) fn run(
     wait(child, signals)
 }
 
-/// Waits until the other program has ended. Ctrl-C reaches it as it reaches this one.
+/// Waits until the other program has ended. Ctrl-C reaches both programs; SIGTERM only this one.
 fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
     loop {
         let status = child.try_wait();
@@ -53,7 +53,7 @@ fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
             return Ok(Exit::of_code(status.code()));
         }
         if signals.exit() == Some(Exit::Terminated) {
-            // Records are replaced as a whole: nothing is lost but the renders that run.
+            // Records are replaced as a whole, so that only the running renders are lost.
             let _ = child.kill();
             let _ = child.wait();
             return Ok(Exit::Checkpoint);
@@ -62,7 +62,7 @@ fn wait(mut child: Child, signals: &Signals) -> Result<Exit, Failure> {
     }
 }
 
-/// Fails where the interpreter or the package is not there.
+/// Checks that the interpreter and the package exist.
 fn check(python: &str) -> Result<(), Failure> {
     let mut command = Command::new(python);
     command
@@ -74,8 +74,8 @@ fn check(python: &str) -> Result<(), Failure> {
     if output.status.success() {
         return Ok(());
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    let last = said.trim().lines().next_back().unwrap_or("it failed");
+    let text = String::from_utf8_lossy(&output.stderr);
+    let last = text.trim().lines().next_back().unwrap_or("it failed");
     Err(missing(python, last))
 }
 

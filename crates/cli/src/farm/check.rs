@@ -1,4 +1,4 @@
-//! Refuses here, rather than on every machine of a farm, what would fail there.
+//! Checks of a job that would otherwise fail on every machine of a farm.
 
 use super::Job;
 use crate::args::Cli;
@@ -27,7 +27,7 @@ const REFUSED: [(&[&str], &str); 4] = [
     ),
 ];
 
-/// Fails where no job file can be made of what the user gives, or its parts could not be rendered.
+/// Checks that a job file can be made of the arguments, and that its parts can be rendered.
 pub(super) fn check(job: &Job<'_>) -> Result<(), Failure> {
     check_words(job)?;
     check_image(&job.image)?;
@@ -46,7 +46,7 @@ fn refuse(message: impl Into<String>, hint: &str) -> Result<(), Failure> {
     Err(Failure::usage(message).with_hint(hint))
 }
 
-/// Refuses a scene without a name, and words that a job file could not show: it is made to be read.
+/// Refuses a scene without a name, and arguments with control characters, as people read the job file.
 fn check_words(job: &Job<'_>) -> Result<(), Failure> {
     let args = job.args;
     if args.scene == "-" {
@@ -63,8 +63,8 @@ fn check_words(job: &Job<'_>) -> Result<(), Failure> {
     })
 }
 
-/// Refuses an image that is no .exr file, or whose film file the last step of another job would take
-/// for a part.
+/// Refuses an image that is no .exr file, and a name that the last step of another job would match as a
+/// part.
 fn check_image(image: &str) -> Result<(), Failure> {
     scene_io::image_format(Path::new(image), &[ImageFormat::Exr])?;
     let file = Path::new(image).file_name().unwrap_or_default();
@@ -78,20 +78,20 @@ fn check_image(image: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses flags that would take the parts of a job from each other. Variables of this machine do not
-/// count: the job is for others.
+/// Refuses flags that conflict with the division into parts. Variables of this machine do not count, as
+/// the job runs on others.
 fn check_owner(flags: &[String]) -> Result<(), Failure> {
     let words = ["bidir", "render", "scene"].into_iter();
     let words = words.chain(flags.iter().map(String::as_str));
-    // Other errors are those of the whole command.
+    // `check_flags` reports other errors.
     let parsed = Cli::command().ignore_errors(true);
     let parsed = parsed.try_get_matches_from(words).unwrap_or_default();
     let Some((_, given)) = parsed.subcommand() else {
         return Ok(());
     };
     let is_given = |flag: &&&str| given.value_source(flag) == Some(ValueSource::CommandLine);
-    for (refused, reason) in REFUSED {
-        if let Some(flag) = refused.iter().find(is_given) {
+    for (flags, reason) in REFUSED {
+        if let Some(flag) = flags.iter().find(is_given) {
             let flag = flag.replace('_', "-");
             let message = format!("--{flag} cannot be given after `--`: {reason}");
             return Err(Failure::usage(message));
@@ -100,7 +100,7 @@ fn check_owner(flags: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses flags that `bidir render` refuses beside those of a job.
+/// Refuses flags that `bidir render` does not accept together with those of a job.
 fn check_flags(job: &Job<'_>) -> Result<(), Failure> {
     let scene = job.args.scene.as_str();
     let words = [

@@ -1,6 +1,6 @@
 //! Words for shells and for YAML.
 
-/// Returns a word that any POSIX shell takes as it is.
+/// Quotes a word for POSIX shells.
 pub(super) fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -9,7 +9,7 @@ pub(super) fn quote(word: &str) -> String {
     format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// Returns more words of a shell's command, each after a space.
+/// Returns quoted arguments of a shell command, each after a space.
 pub(super) fn arguments(words: &[String]) -> String {
     words
         .iter()
@@ -17,15 +17,15 @@ pub(super) fn arguments(words: &[String]) -> String {
         .collect()
 }
 
-/// Returns a text as it stands between the double quotes of YAML, which reads the escapes of JSON.
+/// Escapes a text for the double quotes of YAML, which reads the escapes of JSON.
 ///
-/// `$$` is a dollar for Kubernetes, so that `$(…)` in a name stays as it is.
+/// `$$` is a dollar for Kubernetes, which would otherwise expand `$(…)` in a name.
 pub(super) fn yaml(text: &str) -> String {
     let string = serde_json::Value::from(text.replace('$', "$$")).to_string();
     string[1..string.len() - 1].to_owned()
 }
 
-/// Returns more items of the list that is the command of a container.
+/// Returns items for the list of a container's command.
 pub(super) fn items(words: &[String]) -> String {
     let item = |word: &String| format!("\n            - \"{}\"", yaml(word));
     words.iter().map(item).collect()
@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plain_words_stay_and_others_are_quoted() {
+    fn only_words_with_special_characters_are_quoted() {
         for word in ["out/room-1.exr", "all,-s0"] {
             assert_eq!(quote(word), word);
         }
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn strings_of_yaml_have_their_escapes() {
+    fn dollars_and_quotes_are_escaped_in_yaml() {
         assert_eq!(yaml("$(HOME): \"b\"\n"), r#"$$(HOME): \"b\"\n"#);
     }
 }

@@ -3,23 +3,22 @@
 //!
 //!     out = (O · s(x))^2.2,   x = (log2(I · in) - a) / (b - a), clamped to [0, 1]
 //!
-//! I draws colours towards grey, so that bright ones fade to white instead of clipping; s is the
-//! contrast curve; O draws them apart again. Middle grey, 0.18, is at x = 0.606, from where s leads
-//! to the middle of the screen's coded values, 0.5. The numbers are those of [Wrensch23, appendix]; s
-//! there is a polynomial of the sixth degree for the table of [Sobotka22, AgX_Default_Contrast], with
-//! a mean square error of 3.7e-6.
+//! I desaturates colours, so that bright ones fade to white instead of clipping; s is the contrast curve;
+//! O restores saturation. Middle grey, 0.18, is at x = 0.606, which s maps to the middle of the screen's
+//! coded values, 0.5. The numbers are those of [Wrensch23, appendix]; s there is a polynomial of the sixth
+//! degree fitted to the table of [Sobotka22, AgX_Default_Contrast], with a mean square error of 3.7e-6.
 //!
-//! The exponent is the screen's in the description, so that `out` is linear; what this program writes
-//! is coded by the curve of sRGB, as in the description.
+//! The exponent is that of the screen in the description, so that `out` is linear; this program then
+//! encodes it by the curve of sRGB, as in the description.
 
-/// I, row by row.
+/// The rows of I.
 const INSET: [[f32; 3]; 3] = [
     [0.842479062253094, 0.0784335999999992, 0.0792237451477643],
     [0.0423282422610123, 0.878468636469772, 0.0791661274605434],
     [0.0423756549057051, 0.0784336, 0.879142973793104],
 ];
 
-/// O, row by row.
+/// The rows of O.
 const OUTSET: [[f32; 3]; 3] = [
     [1.19687900512017, -0.0980208811401368, -0.0990297440797205],
     [-0.0528968517574562, 1.15190312990417, -0.0989611768448433],
@@ -35,7 +34,7 @@ const CURVE: [f32; 7] = [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.00232];
 /// The exponent of the screen.
 const EXPONENT: f32 = 2.2;
 
-/// Range: finite and not negative; the result is in `[0, 1]`.
+/// Applies the operator. Range: finite and not negative; the result is in `[0, 1]`.
 pub(super) fn apply(color: [f32; 3]) -> [f32; 3] {
     let coded = multiply(
         &OUTSET,
@@ -45,14 +44,14 @@ pub(super) fn apply(color: [f32; 3]) -> [f32; 3] {
     coded.map(|channel| libm::powf(channel.clamp(0.0, 1.0), EXPONENT))
 }
 
-/// x, the part of the range that light is at. Range: `[0, 1]`.
+/// Returns x, the position of light in the range of stops. Range: `[0, 1]`.
 fn log(light: f32) -> f32 {
     let [low, high] = RANGE;
-    // The logarithm of nothing is -∞, and clamped like the others.
+    // The logarithm of 0 is -∞, and clamped like others.
     (libm::log2f(light).clamp(low, high) - low) / (high - low)
 }
 
-/// s(x).
+/// Returns s(x).
 fn curve(x: f32) -> f32 {
     CURVE
         .iter()
@@ -70,7 +69,7 @@ mod tests {
     #[test]
     fn middle_grey_is_in_the_middle_of_the_screen() {
         assert!((log(0.18) - 10.0 / 16.5).abs() < 1e-5);
-        // Where [Sobotka22] puts its pivot, as exactly as the polynomial goes.
+        // The pivot of [Sobotka22], within the error of the polynomial.
         assert!((curve(log(0.18)) - 0.5).abs() < 4e-3);
         // The polynomial itself.
         assert!((curve(log(0.18)) - 0.496730).abs() < 1e-5);

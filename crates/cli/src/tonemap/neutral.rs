@@ -7,17 +7,17 @@
 //!     g   = 1 / (K_d (p - p_n) + 1)
 //!     out = (in - f) p_n/p g + p_n (1 - g)   beyond
 //!
-//! f takes away what a shiny surface of index 1.5 reflects of white surroundings, so that colours
-//! from 0.08 to 0.8 look on the screen as they were painted.
+//! f subtracts the light that a shiny surface of index 1.5 reflects of white surroundings, so that base
+//! colours from 0.08 to 0.8 appear unchanged on the screen.
 
-/// What a surface of index 1.5 reflects straight on.
+/// Reflectance of a surface of index 1.5 at normal incidence.
 const F_90: f32 = 0.04;
-/// Where highlights begin to be compressed.
+/// Value above which highlights are compressed.
 const K_S: f32 = 0.8 - F_90;
-/// How fast they lose colour.
+/// Rate at which highlights lose saturation.
 const K_D: f32 = 0.15;
 
-/// Range: finite and not negative; the result is in `[0, 1]`.
+/// Applies the operator. Range: finite and not negative; the result is in `[0, 1]`.
 pub(super) fn apply(color: [f32; 3]) -> [f32; 3] {
     let [r, g, b] = color;
     let f = offset(r.min(g).min(b));
@@ -28,11 +28,11 @@ pub(super) fn apply(color: [f32; 3]) -> [f32; 3] {
     }
     let p_n = 1.0 - (1.0 - K_S) * (1.0 - K_S) / (p + 1.0 - 2.0 * K_S);
     let g = 1.0 / (K_D * (p - p_n) + 1.0);
-    // The greatest channel becomes p_n; rounding shall not bring it, or another, beyond.
+    // The greatest channel becomes p_n; the bound keeps rounding errors below it.
     color.map(|channel| (channel / p * p_n * g + p_n * (1.0 - g)).min(p_n))
 }
 
-/// f, where the least channel is `x`. Range: at most `x`.
+/// Returns f for the least channel `x`. Range: at most `x`.
 fn offset(x: f32) -> f32 {
     if x <= 2.0 * F_90 {
         x - x * x / (4.0 * F_90)
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn painted_colours_stay_but_for_what_shines() {
+    fn base_colours_lose_only_the_reflection() {
         check([0.1, 0.5, 0.8], [0.06, 0.46, 0.76]);
         check([0.08; 3], [0.04; 3]);
         check([0.8, 0.3, 0.09], [0.76, 0.26, 0.05]);
@@ -65,14 +65,14 @@ mod tests {
     #[test]
     fn darkness_is_compressed_without_a_step() {
         check([0.04; 3], [0.01; 3]);
-        // A channel at 0 takes nothing away from the others.
+        // If the least channel is 0, the others stay.
         check([0.0, 0.3, 0.7], [0.0, 0.3, 0.7]);
         assert!((offset(0.08 - 1e-6) - offset(0.08 + 1e-6)).abs() < 1e-6);
     }
 
     #[test]
     fn highlights_are_as_in_the_specification() {
-        // Computed apart from this program.
+        // Computed independently of this program.
         check([1.0; 3], [0.869_090_909; 3]);
         check([2.0, 0.5, 0.1], [0.96, 0.321_135_76, 0.150_771_96]);
     }

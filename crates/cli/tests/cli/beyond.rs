@@ -6,7 +6,7 @@ const TINY: &str = "experiment beyond --quick --scenes room-direct,veach-ajar --
                     --rays 20 --seeds 1 --reference-spp 16 --threads 2";
 
 #[test]
-fn beyond_judges_what_there_is_and_goes_on() {
+fn beyond_judges_the_existing_scenes_and_continues() {
     let place = Workplace::new();
     place
         .run(&format!("{TINY} -o out"))
@@ -37,7 +37,7 @@ fn beyond_judges_what_there_is_and_goes_on() {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.contains("--scenes room-direct,veach-ajar --size 8x6 --seconds 0.02"));
-    // Nothing is rendered twice: records are the same, times too.
+    // Nothing is rendered twice: records are the same, including times.
     let before = place.read("out/records.ndjson");
     place.run(&format!("{TINY} -o out")).expect(0);
     assert_eq!(place.read("out/records.ndjson"), before);
@@ -74,7 +74,7 @@ samples = 1
 "#;
 
 #[test]
-fn results_of_a_description_are_not_replaced_by_those_of_the_program() {
+fn results_of_a_description_are_not_replaced_by_those_of_a_built_in_experiment() {
     let place = Workplace::new();
     place.write("test.toml", OTHER);
     place.run("experiment test.toml -o out").expect(0);
@@ -110,7 +110,7 @@ fn an_extent_is_checked() {
 }
 
 #[test]
-fn an_extent_stands_for_that_of_a_description() {
+fn flags_replace_the_extent_of_a_description() {
     let place = Workplace::new();
     place.write("test.toml", OTHER);
     place

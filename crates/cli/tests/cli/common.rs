@@ -26,7 +26,7 @@ Shape "trianglemesh" "integer indices" [0 2 1 0 3 2]
 AttributeEnd
 "#;
 
-/// A folder of its own with a scene in it, gone at the end.
+/// A temporary folder with a scene in it.
 pub(crate) struct Workplace {
     folder: TempDir,
 }
@@ -58,7 +58,7 @@ impl Workplace {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// The names of all files, sorted.
+    /// Returns the sorted names of all files.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -67,7 +67,7 @@ impl Workplace {
         names
     }
 
-    /// The attributes of an image by name: texts as they are, numbers written out.
+    /// Returns the attributes of an image as texts by name.
     pub(crate) fn attributes(&self, image: &str) -> BTreeMap<String, String> {
         let bytes = fs::read(self.path(image)).unwrap();
         let mut rest = &bytes[8..];
@@ -91,7 +91,7 @@ impl Workplace {
         }
     }
 
-    /// The command with these arguments, in this folder, without settings from outside.
+    /// Returns the command with these arguments, in this folder, without settings from the environment.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bidir"));
         command
@@ -109,8 +109,8 @@ impl Workplace {
         Ran::of(&mut self.command(arguments))
     }
 
-    /// Runs a command that denoises, with the library that the system or `BIDIR_OIDN` has. None:
-    /// there is none, and the test is skipped.
+    /// Runs a command that denoises, with the library of the system or of `BIDIR_OIDN`. None: there is none,
+    /// and the test is skipped.
     #[allow(clippy::print_stderr, reason = "a skipped test says so")]
     pub(crate) fn denoising(&self, arguments: &str) -> Option<Ran> {
         let mut command = self.command(arguments);
@@ -126,13 +126,13 @@ impl Workplace {
         Some(ran)
     }
 
-    /// All channels of an image.
+    /// Reads all channels of an image.
     pub(crate) fn layers(&self, name: &str) -> Layers {
         read_layers(&self.path(name)).unwrap()
     }
 }
 
-/// The text up to a zero, which is taken too.
+/// Takes the text up to a zero byte, and that byte.
 fn take_text(bytes: &mut &[u8]) -> String {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap();
     let text = String::from_utf8(bytes[..end].to_vec()).unwrap();
@@ -140,7 +140,7 @@ fn take_text(bytes: &mut &[u8]) -> String {
     text
 }
 
-/// How a command ended and what it said.
+/// The exit code and the output of a command.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,

@@ -8,7 +8,7 @@ fn image(place: &Workplace, name: &str, arguments: &str) {
 }
 
 #[test]
-fn numbers_come_as_text_and_as_json() {
+fn metrics_are_printed_as_text_and_as_json() {
     let place = Workplace::new();
     image(&place, "a.exr", "");
     image(&place, "b.exr", "--seed 1");
@@ -29,7 +29,7 @@ fn numbers_come_as_text_and_as_json() {
 }
 
 #[test]
-fn exactness_is_told_by_the_exit_code() {
+fn exact_sets_the_exit_code() {
     let place = Workplace::new();
     image(&place, "a.exr", "");
     image(&place, "b.exr", "--seed 1");
@@ -76,7 +76,7 @@ fn other_sizes_are_an_error_unless_averaged() {
 }
 
 #[test]
-fn all_numbers_have_their_keys_and_flip_comes_when_asked_for() {
+fn all_metrics_have_keys_and_flip_needs_its_flag() {
     let place = Workplace::new();
     image(&place, "a.exr", "");
     image(&place, "b.exr", "--seed 1");
@@ -151,7 +151,7 @@ fn several_seeds_have_intervals() {
     }
     let independent = place.run("compare 1.exr 2.exr --reference 0.exr");
     assert!(independent.stderr.is_empty(), "{}", independent.stderr);
-    // One image has none.
+    // A single image has no interval.
     let same = place
         .run("compare 2.exr --reference 0.exr --json")
         .expect(0);
@@ -170,7 +170,7 @@ fn several_seeds_have_intervals() {
 }
 
 #[test]
-fn errors_are_written_as_numbers_and_as_colours() {
+fn error_maps_are_written_as_numbers_and_as_colours() {
     let place = Workplace::new();
     image(&place, "a.exr", "");
     image(&place, "b.exr", "--seed 1");

@@ -6,7 +6,7 @@ const NOISY: [&str; 3] = ["Noisy.R", "Noisy.G", "Noisy.B"];
 const SIZE: [usize; 2] = [40, 30];
 
 impl Workplace {
-    /// Writes an image of noise with these guides: a name, and what its channels are called.
+    /// Writes an image of noise with these guides, each a name and its channels.
     fn write_noise(&self, name: &str, guides: &[(&str, [&str; 3])]) {
         let noise: Vec<f32> = (0..SIZE[0] * SIZE[1] * 3)
             .map(|index| (index * index % 97) as f32 / 97.0)
@@ -32,14 +32,14 @@ impl Workplace {
     }
 }
 
-/// The mean square difference of neighbours.
+/// Returns the mean square difference of neighbours.
 fn roughness(pixels: &[[f32; 3]]) -> f32 {
     let steps = pixels.windows(2).map(|pair| pair[1][1] - pair[0][1]);
     steps.map(|step| step * step).sum::<f32>() / pixels.len() as f32
 }
 
 #[test]
-fn a_render_loses_its_noise_and_keeps_what_it_says() {
+fn a_render_loses_its_noise_and_keeps_its_attributes() {
     let place = Workplace::new();
     place.run("render room.pbrt -q -o noisy.exr").expect(0);
     let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr") else {
@@ -54,8 +54,8 @@ fn a_render_loses_its_noise_and_keeps_what_it_says() {
     let [before, after] =
         [noisy, clean.clone()].map(|layers| roughness(&layers.triples(RGB).unwrap()));
     assert!(after < before / 2.0, "{before} {after}");
-    let told = clean.text("bidir/denoiser").unwrap();
-    assert!(told.starts_with("Open Image Denoise 2.") && told.ends_with("guides: none"));
+    let denoiser = clean.text("bidir/denoiser").unwrap();
+    assert!(denoiser.starts_with("Open Image Denoise 2.") && denoiser.ends_with("guides: none"));
     for name in ["bidir/version", "bidir/integrator"] {
         assert!(clean.text(name).is_some(), "{name}");
         assert_eq!(clean.text(name), place.layers("noisy.exr").text(name));
@@ -63,7 +63,7 @@ fn a_render_loses_its_noise_and_keeps_what_it_says() {
 }
 
 #[test]
-fn a_denoised_image_is_denoised_again_from_its_noise() {
+fn a_denoised_image_is_denoised_again_from_its_noisy_layer() {
     let place = Workplace::new();
     place.write_noise("noisy.exr", &[]);
     let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr --threads 1") else {
@@ -90,11 +90,11 @@ fn a_denoised_image_is_denoised_again_from_its_noise() {
 }
 
 #[test]
-fn layers_guide_where_they_are_complete() {
+fn complete_layers_guide_the_filter() {
     let place = Workplace::new();
     let albedo = ("Albedo", RGB);
     let [ns, n] = ["Ns", "N"].map(|name| (name, ["X", "Y", "Z"]));
-    for (guides, told, is_noted) in [
+    for (guides, message, is_noted) in [
         (vec![albedo, ns, n], "guides: Albedo, Ns;", false),
         (vec![albedo, n], "guides: Albedo, N;", false),
         (vec![albedo], "guides: Albedo;", true),
@@ -105,7 +105,7 @@ fn layers_guide_where_they_are_complete() {
         let Some(ran) = place.denoising("denoise noisy.exr -o clean.exr") else {
             return;
         };
-        let ran = ran.expect(0).says(told);
+        let ran = ran.expect(0).says(message);
         assert_eq!(ran.stderr.contains("note: "), is_noted, "{}", ran.stderr);
         let names = place.layers("noisy.exr").names().count();
         assert_eq!(place.layers("clean.exr").names().count(), names + 3);
@@ -113,7 +113,7 @@ fn layers_guide_where_they_are_complete() {
 }
 
 #[test]
-fn faults_are_told() {
+fn wrong_input_is_an_error() {
     let place = Workplace::new();
     place.write_noise("noisy.exr", &[]);
     place
@@ -146,7 +146,7 @@ fn faults_are_told() {
 }
 
 #[test]
-fn a_library_that_is_named_and_missing_is_told() {
+fn a_missing_library_is_an_error() {
     let place = Workplace::new();
     place.write_noise("noisy.exr", &[]);
     place.write("text.so", "no library");

@@ -29,7 +29,7 @@ fn place() -> Workplace {
     place
 }
 
-/// The records of an experiment, whose times are forgotten.
+/// Returns the records of an experiment without their times.
 fn records(place: &Workplace, folder: &str) -> Vec<Value> {
     let text = place.read(&format!("{folder}/results.json"));
     let mut results: Value = serde_json::from_str(&text).unwrap();
@@ -69,7 +69,7 @@ fn an_experiment_has_tables_records_and_a_report() {
 }
 
 #[test]
-fn a_report_shows_strategies_and_what_is_seen() {
+fn a_report_shows_strategies_and_flip_maps() {
     let place = place();
     place.write(
         "test.toml",
@@ -88,7 +88,7 @@ fn a_report_shows_strategies_and_what_is_seen() {
         results["pyramids"][0]["images"],
         "images/room--strategies.exr"
     );
-    // A reference that is there is in the report, too.
+    // A reference from a file is in the report, too.
     let reference = "reference = \"out/images/room--2-spp--all.exr\"";
     place.write(
         "test.toml",
@@ -106,7 +106,7 @@ fn a_report_shows_strategies_and_what_is_seen() {
 }
 
 #[test]
-fn one_more_method_needs_the_description_alone() {
+fn a_method_is_added_by_the_description_alone() {
     let place = place();
     let more = "[[method]]\nname = \"light\"\nintegrator = \"light\"\n";
     place.write("more.toml", &(DESCRIPTION.to_owned() + more));
@@ -118,31 +118,31 @@ fn one_more_method_needs_the_description_alone() {
     assert_eq!(records.len(), 18);
 }
 
-/// Runs an experiment, and stops it when a line with these words was told.
+/// Runs an experiment, and stops it after a line with these words.
 fn interrupted(place: &Workplace, arguments: &str, words: &str) -> Ran {
     let mut command = place.command(arguments);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
-    let mut told = String::new();
+    let mut output = String::new();
     for line in BufReader::new(child.stderr.take().unwrap()).lines() {
         let line = line.unwrap() + "\n";
-        if line.contains(words) && !told.contains(words) {
+        if line.contains(words) && !output.contains(words) {
             let id = child.id().to_string();
             let kill = Command::new("kill").args(["-s", "INT", &id]).status();
             assert!(kill.unwrap().success());
         }
-        told += &line;
+        output += &line;
     }
     let code = child.wait().unwrap().code();
     Ran {
         code,
         stdout: String::new(),
-        stderr: told,
+        stderr: output,
     }
 }
 
 #[test]
-fn what_was_interrupted_goes_on_to_the_same_records() {
+fn an_interrupted_experiment_continues_to_the_same_records() {
     let place = place();
     // The first render is long enough to be stopped.
     place.write(
@@ -158,7 +158,7 @@ fn what_was_interrupted_goes_on_to_the_same_records() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn errors_of_a_description_have_their_place() {
     let place = place();
     place.write("key.toml", &DESCRIPTION.replace("seeds", "sedes"));
     place
@@ -175,13 +175,13 @@ fn what_is_wrong_is_told_with_its_place() {
         .run("experiment none.toml -o out")
         .expect(4)
         .says("none.toml");
-    // The program brings an experiment of this name; the file has a path.
+    // A built-in experiment has this name; the path makes it a file.
     place.write("paper", DESCRIPTION);
     place.run("experiment ./paper -o out").expect(0);
 }
 
 #[test]
-fn another_experiment_needs_to_begin_anew() {
+fn another_experiment_needs_restart() {
     let place = place();
     place.run("experiment test.toml -o out").expect(0);
     place.write("test.toml", &DESCRIPTION.replace("rays = 40", "rays = 30"));
@@ -193,7 +193,7 @@ fn another_experiment_needs_to_begin_anew() {
         .run("experiment test.toml -o out --restart --threads 1")
         .expect(0);
     assert_eq!(records(&place, "out").len(), 12);
-    // Times of other threads are other times.
+    // Times depend on the number of threads.
     place
         .run("experiment test.toml -o out --threads 2")
         .expect(5)
@@ -216,11 +216,11 @@ fn a_cluster_needs_the_python_package() {
 
 #[cfg(unix)]
 #[test]
-fn a_cluster_s_program_is_called_as_it_should_be() {
+fn the_program_of_a_cluster_gets_the_arguments() {
     let place = Workplace::new();
     let python = |name: &str, script: &str| {
         let path = place.path(name);
-        // Written by another process: a program that is open for writing here cannot be started.
+        // Another process writes it, because a program that is open for writing here cannot be started.
         let write = "printf '%s' \"$1\" > \"$2\" && chmod +x \"$2\"";
         let mut shell = Command::new("sh");
         shell.args(["-c", write, "sh", script]).arg(&path);
@@ -234,7 +234,7 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
     let run = |python: &Path| {
         let command = "experiment a.toml -o out --ray host:1 --quick";
         let mut command = place.command(command);
-        // That is for all commands, and nodes have their own.
+        // The variable applies to all commands, and does not conflict with --ray.
         command.env("BIDIR_THREADS", "2");
         Ran::of(command.env("BIDIR_PYTHON", python))
     };
@@ -243,7 +243,7 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
         .says("No module named bidir")
         .says("pip install '.[ray]'");
     run(Path::new("no-such-python")).expect(4);
-    // What the package ends with is what the command ends with.
+    // The command has the exit code of the package.
     let with = python(
         "with",
         "#!/bin/sh\n[ \"$1\" = -c ] && exit 0\necho \"$@\" >&2\nexit 75\n",
@@ -253,7 +253,7 @@ fn a_cluster_s_program_is_called_as_it_should_be() {
         .says("-m bidir.ray experiment a.toml --output out --address host:1 --quick");
 }
 
-/// The description of the guide, small: the whole command works as it is printed there.
+/// Runs the description of the guide, made smaller, with the command that is printed there.
 #[test]
 fn the_description_of_the_guide_runs() {
     let place = Workplace::new();
@@ -272,7 +272,7 @@ fn the_description_of_the_guide_runs() {
     for claim in results["claims"].as_array().unwrap() {
         assert_ne!(claim["verdict"], "not-measured", "{claim}");
     }
-    // Claims can change: nothing is rendered again.
+    // Changed claims do not render anything again.
     let before = place.read("out/records.ndjson");
     let other = text.replace("below = 0.95", "below = 0.0001");
     place.write("claims.toml", &other.replace("file = \"scenes/", &scenes));

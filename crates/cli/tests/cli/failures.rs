@@ -6,7 +6,7 @@ fn check(arguments: &str, code: i32, says: &str) {
 }
 
 #[test]
-fn faults_of_the_command_line_exit_with_2() {
+fn errors_of_the_command_line_exit_with_2() {
     check("", 2, "Usage");
     check("render", 2, "SCENE");
     check("render room.pbrt --integrator photon", 2, "bdpt");
@@ -58,7 +58,7 @@ fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
 }
 
 #[test]
-fn numbers_out_of_range_are_told_the_range() {
+fn errors_of_numbers_out_of_range_name_the_range() {
     for (flags, says) in [
         ("--spp 0", "error: --spp: `0` is not a whole number above 0"),
         (
@@ -140,7 +140,7 @@ fn numbers_out_of_range_are_told_the_range() {
 }
 
 #[test]
-fn flags_without_the_one_that_they_belong_to_name_it() {
+fn flags_that_need_another_flag_name_it() {
     for (arguments, says) in [
         ("render room.pbrt --json", "--json needs --replay X,Y,PASS"),
         (
@@ -169,7 +169,7 @@ fn flags_without_the_one_that_they_belong_to_name_it() {
 }
 
 #[test]
-fn files_in_the_place_of_a_command_are_given_one() {
+fn a_file_in_the_place_of_a_command_gets_a_hint() {
     for (file, hint) in [
         ("scenes/room.pbrt", "bidir render scenes/room.pbrt"),
         ("room.GLB", "bidir render room.GLB"),
@@ -182,7 +182,7 @@ fn files_in_the_place_of_a_command_are_given_one() {
 }
 
 #[test]
-fn names_near_a_file_are_hints() {
+fn missing_files_get_a_hint_at_similar_names() {
     let near = "no such file\nhint: did you mean `room.pbrt`?\n";
     check("render rom.pbrt", 4, near);
     check(
@@ -248,12 +248,12 @@ fn flags_of_other_programs_are_recognised() {
         2,
         "error: `info` has no flag `--integrator`\nhint: it is a flag of `bidir render`\n",
     );
-    // A command without such a setting has nothing to suggest.
+    // A command without such a setting has no hint.
     check("tonemap room.exr --width 100", 2, "unexpected argument");
 }
 
 #[test]
-fn foreign_files_are_named_with_the_way_in() {
+fn foreign_files_are_named_with_a_hint() {
     let place = Workplace::new();
     place.write("room.blend", "BLENDER-v402");
     place.write("room.xml", "<scene version=\"3.0.0\"></scene>");
@@ -274,7 +274,7 @@ fn foreign_files_are_named_with_the_way_in() {
 }
 
 #[test]
-fn experiments_that_are_not_there_are_told_as_other_files_are() {
+fn missing_experiments_are_errors_like_other_missing_files() {
     check(
         "experiment nope.toml -o out",
         4,
@@ -285,7 +285,7 @@ fn experiments_that_are_not_there_are_told_as_other_files_are() {
 }
 
 #[test]
-fn names_are_told_whole() {
+fn messages_have_whole_names() {
     check(
         "render x.pbrt",
         4,
@@ -300,7 +300,7 @@ fn names_are_told_whole() {
 }
 
 #[test]
-fn a_share_that_would_leave_nothing_is_refused() {
+fn a_part_that_would_write_nothing_is_refused() {
     let place = Workplace::new();
     for share in ["--part 0/2", "--passes 0..1", "--part 0/2 -q"] {
         let ran = place.run(&format!("render room.pbrt {share}")).expect(2);
@@ -321,7 +321,7 @@ fn a_share_that_would_leave_nothing_is_refused() {
 }
 
 #[test]
-fn the_environment_is_read_after_flags() {
+fn flags_take_precedence_over_the_environment() {
     let place = Workplace::new();
     let spp = |arguments: &str, value: &str| {
         let mut command = place.command(arguments);
@@ -341,7 +341,7 @@ fn the_environment_is_read_after_flags() {
 }
 
 #[test]
-fn what_cannot_be_read_or_written_exits_with_4_before_anything_is_rendered() {
+fn unreadable_and_unwritable_files_exit_with_4_before_rendering() {
     check("render missing.pbrt", 4, "missing.pbrt");
     check("info missing.pbrt", 4, "missing.pbrt");
     check("compare missing.exr missing.exr", 4, "missing.exr");
@@ -376,7 +376,7 @@ fn what_cannot_be_read_or_written_exits_with_4_before_anything_is_rendered() {
 }
 
 #[test]
-fn warnings_are_errors_where_they_shall_be() {
+fn strict_makes_warnings_errors() {
     let place = Workplace::new();
     let light = "render room.pbrt --integrator light --shadow-rays per-pair";
     place
@@ -395,7 +395,7 @@ fn warnings_are_errors_where_they_shall_be() {
 }
 
 #[test]
-fn a_scene_without_light_is_told_of() {
+fn a_scene_without_light_is_a_warning() {
     let place = Workplace::new();
     place.write_dark();
     let message = "warning: the scene has no light: the image will be black";
@@ -404,7 +404,7 @@ fn a_scene_without_light_is_told_of() {
     strict.says(message).says("1 warning, which --strict makes");
 }
 
-/// Checks that a scene of `scenes/broken` is refused with its place.
+/// Checks that the error of a scene of `scenes/broken` has its place.
 #[track_caller]
 fn check_broken(name: &str, says: &str) {
     let scene = scenes().join("broken").join(name);
@@ -428,13 +428,13 @@ fn broken_scenes_exit_with_3_and_show_the_place() {
 }
 
 #[test]
-fn a_film_beyond_memory_is_a_fault_of_the_scene() {
+fn a_film_beyond_memory_is_an_error_of_the_scene() {
     let message = "room.pbrt: a film of 65536 x 65536 pixels is too large";
     check("render room.pbrt --size 65536x65536", 3, message);
 }
 
 #[test]
-fn colour_is_only_where_it_is_wanted() {
+fn colour_depends_on_flags_and_environment() {
     let place = Workplace::new();
     let mut command = place.command("render missing.pbrt");
     let plain = Ran::of(command.env_remove("FORCE_COLOR"));

@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// The flags that a command's help describes: the words at the head of its lines.
+/// Returns the flags that a command's help describes: the first words of its lines.
 fn flags(help: &str) -> BTreeSet<&str> {
     let heads = help.lines().filter_map(|line| {
         let line = line.trim_start();
@@ -126,7 +126,7 @@ fn short_help_has_the_common_flags() {
 }
 
 #[test]
-fn topics_of_render_come_in_their_order() {
+fn the_headings_of_render_are_in_order() {
     let help = Workplace::new().run("render --help").expect(0).stdout;
     let topics = "Arguments Options Output Image Stopping Integrator|Shadow rays|Shared light subpaths|Layers|\
         Checkpoints and parts|Scene and machine|Debugging Examples";
@@ -136,7 +136,7 @@ fn topics_of_render_come_in_their_order() {
     assert_eq!(of_one_word(&heads.concat()), of_one_word(topics));
 }
 
-/// Words that readers would have to translate.
+/// The help has no words that readers would have to translate.
 #[test]
 fn help_is_plain_english() {
     let place = Workplace::new();
@@ -210,7 +210,8 @@ fn version_completions_and_manual_are_printed() {
     place.run("man nothing").expect(2);
 }
 
-/// The commands in the code of a page: lines that run bidir, continued lines joined, comments left out.
+/// Returns the commands in the code of a page: lines that run bidir, with continued lines joined and
+/// comments removed.
 fn commands(page: &str) -> Vec<String> {
     let page = page.replace("\\\n", " ");
     let mut fenced = false;
@@ -239,7 +240,7 @@ fn commands(page: &str) -> Vec<String> {
     found
 }
 
-/// The flags of every command that a page may name: `render`, `film info`, `farm slurm` and the like.
+/// Returns the flags of every command that a page may name, such as `render` or `film info`.
 fn known_flags() -> BTreeMap<String, BTreeSet<String>> {
     let place = Workplace::new();
     let mut known = BTreeMap::new();
@@ -260,7 +261,7 @@ fn known_flags() -> BTreeMap<String, BTreeSet<String>> {
     known
 }
 
-/// What is wrong with a command line of a page. None: it names a command and flags that it has.
+/// Returns the error of a command line of a page. None: its command and flags exist.
 fn fault(line: &str, known: &BTreeMap<String, BTreeSet<String>>) -> Option<String> {
     let mut words = line.split_whitespace().peekable();
     let mut command = String::new();
@@ -298,7 +299,7 @@ fn fault(line: &str, known: &BTreeMap<String, BTreeSet<String>>) -> Option<Strin
 }
 
 #[test]
-fn pages_name_commands_and_flags_that_there_are() {
+fn pages_name_existing_commands_and_flags() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut pages = vec![root.join("README.md")];
     for folder in ["docs", "docs/guide", "docs/reference"] {

@@ -21,7 +21,7 @@ fn a_scene_is_described() {
 }
 
 #[test]
-fn light_paths_that_no_strategy_makes_are_told() {
+fn light_paths_that_no_strategy_makes_are_listed() {
     let place = Workplace::new();
     let glass = crate::common::SCENE.replace(
         "WorldBegin",
@@ -44,7 +44,7 @@ fn light_paths_that_no_strategy_makes_are_told() {
 }
 
 #[test]
-fn what_a_render_would_refuse_is_listed() {
+fn features_that_a_render_would_refuse_are_listed() {
     let place = Workplace::new();
     let odd = crate::common::SCENE.replace(
         "WorldBegin",
@@ -61,7 +61,7 @@ fn what_a_render_would_refuse_is_listed() {
 }
 
 #[test]
-fn what_is_odd_is_warned_of() {
+fn oddities_of_a_scene_cause_warnings() {
     let place = Workplace::new();
     place.write(
         "odd.pbrt",
@@ -77,9 +77,9 @@ fn what_is_odd_is_warned_of() {
         .says("1 warning, which --strict makes an error");
 }
 
-/// A spot through glass: the light of the caustic is missing from the image of `path`.
+/// A spot through glass: the image of `path` lacks the caustic.
 #[test]
-fn light_that_is_missed_is_told_when_it_is_rendered() {
+fn a_render_warns_of_missing_light() {
     let place = Workplace::new();
     let spot = "WorldBegin\nMaterial \"dielectric\"\nShape \"sphere\" \"float radius\" .01\n  \
                 LightSource \"spot\"\nLightSource \"point\" \"rgb I\" [0 0 0]\n";

@@ -1,11 +1,11 @@
-//! Images beside the picture: in EXR files by name, in film files, and denoised.
+//! Layers: in EXR files by name, in film files, and denoised.
 
 use crate::common::Workplace;
 
 const ROOM: &str = "render room.pbrt --size 24x18";
 const LAYERS: &str = "--aov albedo,depth,variance,rays --light-groups --strategy-layers 3";
 
-/// A workplace with a room whose two lights are in groups.
+/// Returns a workplace with a room whose two lights are in groups.
 fn workplace() -> Workplace {
     let workplace = Workplace::new();
     workplace.write(
@@ -26,7 +26,7 @@ fn workplace() -> Workplace {
 }
 
 #[test]
-fn layers_are_named_and_are_what_film_files_hold() {
+fn layers_have_names_and_equal_those_of_film_files() {
     let workplace = workplace();
     let render = format!("{ROOM} {LAYERS} --spp 4 -o a.exr --checkpoint a.film");
     workplace.run(&render).expect(0);
@@ -64,7 +64,7 @@ fn layers_are_named_and_are_what_film_files_hold() {
 }
 
 #[test]
-fn shares_with_layers_are_the_whole() {
+fn parts_with_layers_equal_the_whole() {
     let workplace = workplace();
     let render = format!("{ROOM} {LAYERS} --spp 5");
     workplace.run(&format!("{render} -o whole.exr")).expect(0);
@@ -85,7 +85,7 @@ fn shares_with_layers_are_the_whole() {
 }
 
 #[test]
-fn a_film_of_other_layers_is_not_gone_on_from() {
+fn a_film_of_other_layers_is_not_continued() {
     let workplace = workplace();
     let render = format!("{ROOM} --spp 2 -o a.exr --checkpoint a.film --resume");
     workplace.run(&format!("{render} --aov depth")).expect(0);
@@ -109,7 +109,7 @@ fn the_picture_does_not_depend_on_layers() {
         .expect(0);
 }
 
-/// All files of a pyramid of paths of four vertices.
+/// Flags for a pyramid of paths of up to four vertices.
 const PYRAMID: &str = "--pyramid p --strategy-layers 4 --spp 4";
 
 #[test]
@@ -130,7 +130,7 @@ fn a_pyramid_is_an_exr() {
     }
     expected.sort();
     assert_eq!(names, expected);
-    // Weighted layers add up to the picture, and raw ones are what weights are taken of.
+    // Weighted layers add up to the picture, and raw ones are the same without weights.
     let channel = |name: &str| layers.channel(name).unwrap();
     let parts = expected
         .iter()
@@ -155,7 +155,7 @@ fn a_pyramid_is_an_exr() {
 }
 
 #[test]
-fn a_pyramid_is_gone_on_from() {
+fn a_pyramid_is_continued() {
     let workplace = workplace();
     let render = format!("{ROOM} {PYRAMID} -o a.exr");
     workplace.run(&render).expect(0);
@@ -185,7 +185,7 @@ fn a_pyramid_needs_a_folder() {
 }
 
 #[test]
-fn what_cannot_be_kept_is_told() {
+fn layers_that_a_png_cannot_hold_are_an_error() {
     let workplace = workplace();
     let ran = workplace.run(&format!("{ROOM} --aov depth -o a.png"));
     ran.expect(2).says("a PNG cannot hold layers");

@@ -1,4 +1,4 @@
-//! Tests of the `bidir` command from outside: what it prints, writes and returns.
+//! Tests of the `bidir` command from outside: its output, files and exit codes.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
 

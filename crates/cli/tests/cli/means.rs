@@ -1,20 +1,20 @@
-//! Commands of which the system keeps threads or memory.
+//! Commands to which the system refuses threads or memory.
 
 use crate::common::{Ran, Workplace};
 use std::fs;
 use std::process::Command;
 
-/// Stacks that no machine has the addresses for: every thread is refused.
+/// A size of stacks beyond the address space, so that no thread can start.
 const NO_THREAD: (&str, &str) = ("RUST_MIN_STACK", "1152921504606846976");
 
 impl Workplace {
-    /// Runs a command without threads.
+    /// Runs a command that cannot start threads.
     fn alone(&self, arguments: &str) -> Ran {
         let mut command = self.command(arguments);
         Ran::of(command.env(NO_THREAD.0, NO_THREAD.1))
     }
 
-    /// Runs a command with so much memory. Unit: KiB.
+    /// Runs a command with limited memory. Unit: KiB.
     fn within(&self, kib: u32, arguments: &str) -> Ran {
         let command = self.command(arguments);
         let mut limited = Command::new("sh");
@@ -89,7 +89,7 @@ fn threads_beyond_four_per_processor_are_not_started() {
     assert_eq!(results["machine"]["threads"], most, "{results}");
 }
 
-/// An experiment that is done at once.
+/// An experiment that takes no time.
 const DESCRIPTION: &str = r#"
 title = "t"
 size = "4x3"
@@ -107,7 +107,7 @@ samples = 1
 
 #[test]
 #[cfg(target_os = "linux")]
-fn memory_that_is_refused_is_told_in_bytes() {
+fn errors_of_memory_have_the_number_of_bytes() {
     let place = Workplace::new();
     let large = place
         .within(400_000, "render room.pbrt --size 4000x4000 -o a.exr")

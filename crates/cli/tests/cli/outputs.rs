@@ -20,7 +20,7 @@ const MESH: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n\
     property float y\nproperty float z\nelement face 1\n\
     property list uchar int vertex_indices\nend_header\n0 0 3\n1 0 3\n0 1 3\n3 0 1 2\n";
 
-/// A place with the scene and its files.
+/// Returns a workplace with the scene and its files.
 fn place() -> Workplace {
     let place = Workplace::new();
     place.write("wood.pbrt", WOOD);
@@ -37,7 +37,7 @@ fn place() -> Workplace {
     place
 }
 
-/// All files with their bytes.
+/// Returns all files with their bytes.
 fn contents(place: &Workplace) -> BTreeMap<String, Vec<u8>> {
     let names = place.names().into_iter();
     let files = names.filter(|name| place.path(name).is_file());
@@ -46,7 +46,7 @@ fn contents(place: &Workplace) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// Runs a command that fails with both names, and leaves every file as it is.
+/// Checks that a command fails with both names, and changes no file.
 #[track_caller]
 fn refused(place: &Workplace, arguments: &str, [output, does, other]: [&str; 3]) -> Ran {
     let before = contents(place);
@@ -151,7 +151,7 @@ fn commands_for_images_and_films_replace_none_that_they_read() {
 }
 
 #[test]
-fn references_and_experiments_replace_nothing_that_they_read() {
+fn references_and_experiments_replace_no_file_that_they_read() {
     let place = place();
     fs::create_dir_all(place.path("old.reference/films")).unwrap();
     let picture = "old.reference/picture.exr";

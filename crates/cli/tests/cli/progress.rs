@@ -1,7 +1,7 @@
 use crate::common::Workplace;
 use serde_json::Value;
 
-/// The lines that are objects of JSON.
+/// Returns the lines that are JSON objects.
 fn objects(text: &str) -> Vec<Value> {
     let lines = text.lines().filter(|line| line.starts_with('{'));
     lines
@@ -10,7 +10,7 @@ fn objects(text: &str) -> Vec<Value> {
 }
 
 #[test]
-fn a_render_ends_with_all_of_it() {
+fn the_last_line_of_progress_is_complete() {
     let place = Workplace::new();
     let progress = |format: &str| place.run(&format!("render room.pbrt {format}")).expect(0);
     for format in ["", "--progress plain", "--progress bar"] {
@@ -36,7 +36,7 @@ fn a_render_ends_with_all_of_it() {
 }
 
 #[test]
-fn quiet_leaves_the_progress_that_is_asked_for() {
+fn quiet_keeps_requested_progress() {
     let place = Workplace::new();
     assert_eq!(place.run("render room.pbrt -q").expect(0).stderr, "");
     let ran = place.run("render room.pbrt -q --progress ndjson").expect(0);
@@ -46,7 +46,7 @@ fn quiet_leaves_the_progress_that_is_asked_for() {
 }
 
 #[test]
-fn lines_come_now_and_then() {
+fn lines_of_progress_come_at_intervals() {
     let place = Workplace::new();
     let arguments = "--spp 1000000000 --time 1.5 --threads 1 --progress ndjson -q";
     let ran = place
@@ -69,7 +69,7 @@ fn lines_come_now_and_then() {
 }
 
 #[test]
-fn a_scheduler_is_told_why_a_render_fails() {
+fn openjd_reports_the_error_of_a_render() {
     let place = Workplace::new();
     place.write(
         "bad.pbrt",
@@ -104,12 +104,12 @@ fn a_scheduler_is_told_why_a_render_fails() {
 
 #[cfg(unix)]
 #[test]
-fn a_render_that_is_stopped_does_not_say_that_it_is_done() {
+fn a_stopped_render_is_not_reported_as_complete() {
     use std::io::{BufRead, BufReader, Read};
     use std::process::{Command, Stdio};
 
     let place = Workplace::new();
-    // A tenth of the time is reported after a second.
+    // A tenth of the work is reported after a second.
     let arguments = "--size 500x300 --threads 1 --spp 1000000 --time 10 --progress openjd";
     let mut command = place.command(&format!("render room.pbrt {arguments}"));
     let mut child = command
@@ -118,9 +118,9 @@ fn a_render_that_is_stopped_does_not_say_that_it_is_done() {
         .spawn()
         .unwrap();
     let mut stdout = BufReader::new(child.stdout.take().unwrap());
-    let mut told = String::new();
-    while !told.contains("openjd_status") {
-        assert!(stdout.read_line(&mut told).unwrap() > 0, "{told}");
+    let mut output = String::new();
+    while !output.contains("openjd_status") {
+        assert!(stdout.read_line(&mut output).unwrap() > 0, "{output}");
     }
     let id = child.id().to_string();
     assert!(
@@ -130,11 +130,11 @@ fn a_render_that_is_stopped_does_not_say_that_it_is_done() {
             .unwrap()
             .success()
     );
-    stdout.read_to_string(&mut told).unwrap();
+    stdout.read_to_string(&mut output).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(143));
     assert!(
-        told.contains("openjd_status: stopping after the running pass"),
-        "{told}"
+        output.contains("openjd_status: stopping after the running pass"),
+        "{output}"
     );
-    assert!(!told.contains("100.0"), "{told}");
+    assert!(!output.contains("100.0"), "{output}");
 }

@@ -1,4 +1,4 @@
-//! Every example of README.md runs as it stands there, but for a smaller image and less time.
+//! Every example of README.md runs, with a smaller image and less time.
 
 use crate::common::{Ran, Workplace, scenes};
 use crate::signals::send;
@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader};
 use std::os::unix::fs::symlink;
 use std::process::Stdio;
 
-/// The commands in the code below the heading `## Examples`, without their comments.
+/// Returns the commands in the code below the heading `## Examples`, without comments.
 fn examples(page: &str) -> Vec<String> {
     let below = page.split("\n## Examples\n").nth(1).unwrap();
     let section = below.split("\n## ").next().unwrap();
@@ -18,7 +18,7 @@ fn examples(page: &str) -> Vec<String> {
     commands.map(str::to_owned).collect()
 }
 
-/// The same command with few samples of few pixels.
+/// Returns the same command with few samples of few pixels.
 fn shrunk(command: &str) -> String {
     let mut words: Vec<_> = command.split_whitespace().collect();
     for i in 1..words.len() {
@@ -31,7 +31,7 @@ fn shrunk(command: &str) -> String {
     }
     let fewer = match words[0] {
         _ if words.contains(&"--size") => "",
-        // A pixel of a smaller image would be another one.
+        // In a smaller image, the pixel would be another one.
         "render" if !words.contains(&"--replay") => "--size 16x16",
         "reference" => "--size 16x16",
         "view" => "--port 0 --size 16x16",
@@ -41,7 +41,7 @@ fn shrunk(command: &str) -> String {
     words.join(" ")
 }
 
-/// The experiment of the examples with fewer samples, pixels and seeds.
+/// Returns the experiment of the examples with fewer samples, pixels and seeds.
 fn small_experiment() -> String {
     let file = scenes().join("../experiments/shadow-rays.toml");
     let mut text = fs::read_to_string(file).unwrap();
@@ -57,7 +57,7 @@ fn small_experiment() -> String {
     text
 }
 
-/// A glTF file of one triangle, as exporters write it: JSON within a binary file.
+/// Returns a binary glTF file of one triangle.
 fn triangle() -> Vec<u8> {
     let mut json = br#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
@@ -81,7 +81,7 @@ fn triangle() -> Vec<u8> {
     file
 }
 
-/// Serves until it has printed its URL.
+/// Runs a server until it has printed its URL.
 fn serve(place: &Workplace, command: &str) {
     let mut command = place.command(command);
     let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
@@ -109,7 +109,7 @@ fn every_example_of_the_readme_runs() {
     fs::create_dir(place.path("experiments")).unwrap();
     place.write("experiments/shadow-rays.toml", &small_experiment());
     fs::write(place.path("room.glb"), triangle()).unwrap();
-    // The page's `mkdir`.
+    // The `mkdir` of the page.
     fs::create_dir(place.path("out")).unwrap();
     let examples = examples(&fs::read_to_string(root.join("README.md")).unwrap());
     assert!(examples.len() >= 10, "{examples:?}");

@@ -32,7 +32,7 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
             "film verify room.reference/films/picture-00.film room.reference/films/against-15.film",
         )
         .expect(0);
-    // The folder is its picture.
+    // The folder stands for its picture.
     place
         .run(&format!(
             "compare {picture} --reference room.reference --exact"
@@ -46,9 +46,9 @@ fn two_estimators_make_a_reference_that_images_are_compared_with() {
     assert!(other["z_test"]["blocks"]["p"].as_f64().unwrap() > 1e-3);
 }
 
-/// What is not named is as if it had been.
+/// Naming the default estimators makes the same reference.
 #[test]
-fn the_usual_estimators_may_be_named() {
+fn the_default_estimators_may_be_named() {
     let place = Workplace::new();
     let make = |flags: &str| place.run(&format!("reference room.pbrt --spp 16 {flags}"));
     make("").expect(0);
@@ -59,7 +59,7 @@ fn the_usual_estimators_may_be_named() {
 }
 
 #[test]
-fn a_difference_is_tested_where_both_know_their_noise() {
+fn a_difference_is_tested_if_both_images_have_variances() {
     let place = Workplace::new();
     let image = |name: &str, flags: &str| {
         let flags = format!("render room.pbrt -q -o {name} --sampler independent {flags}");
@@ -84,7 +84,7 @@ fn a_difference_is_tested_where_both_know_their_noise() {
         .expect(0)
         .prints("z_blocks     p ")
         .prints(" standard errors");
-    // The test of blocks is warned about where pixels share light subpaths, and only there.
+    // There is a warning about the test of blocks only if pixels share light subpaths.
     image("e.exr", &format!("{layers} --seed 3 --integrator lvc"));
     let is_warned = |images: &str| {
         let run = place.run(&format!("compare {images}")).expect(0);
@@ -121,7 +121,7 @@ fn more_samples_are_added_to_the_same_bits() {
     }
     assert_eq!(a["estimators"][0]["seed"], 3);
     assert_eq!(a["estimators"][0]["settings"]["strategies"], "all,-s0");
-    // The same again has nothing to do, less is refused.
+    // The same number of samples needs no work, fewer are refused.
     reference(&format!("-o b.reference {film} --spp 48"));
     assert_eq!(provenance(&place, "b.reference")["picture"], a["picture"]);
     place
@@ -131,13 +131,16 @@ fn more_samples_are_added_to_the_same_bits() {
 }
 
 #[test]
-fn what_disagrees_is_written_and_refused() {
+fn disagreeing_estimators_are_written_and_refused() {
     let place = Workplace::new();
     let mut command = place.command("reference room.pbrt --spp 64 --against");
     let output = command.arg("path --max-depth 1").output().unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(6), "{told}");
-    assert!(told.contains("the estimators disagree, most in"), "{told}");
+    let messages = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(6), "{messages}");
+    assert!(
+        messages.contains("the estimators disagree, most in"),
+        "{messages}"
+    );
     assert_eq!(
         provenance(&place, "room.reference")["agreement"]["agree"],
         false
@@ -147,7 +150,7 @@ fn what_disagrees_is_written_and_refused() {
         .run(&format!("compare {picture} --reference room.reference"))
         .expect(6)
         .says("room.reference: refused: its estimators disagree");
-    // With other estimators it begins anew, when asked to.
+    // Other estimators need --restart.
     place
         .run("reference room.pbrt --spp 16")
         .expect(5)
@@ -185,7 +188,7 @@ fn stale_and_damaged_references_are_refused() {
     let image = "compare a.reference/picture.exr --reference a.reference";
     place.run(image).expect(4).says("provenance.json: damaged");
     let mut older: Value = serde_json::from_str(&json).unwrap();
-    // As before there were checksums.
+    // Older files have no checksum.
     older.as_object_mut().unwrap().remove("checksum");
     older["format"] = 1.into();
     place.write("a.reference/provenance.json", &older.to_string());
@@ -223,7 +226,7 @@ fn stale_and_damaged_references_are_refused() {
 }
 
 #[test]
-fn an_estimator_is_no_witness_of_itself() {
+fn an_estimator_cannot_cross_check_itself() {
     let place = Workplace::new();
     let reference = |estimators: &[&str]| {
         let mut command = place.command("reference room.pbrt -q --spp 16 --restart -o a.reference");
@@ -235,10 +238,10 @@ fn an_estimator_is_no_witness_of_itself() {
         &["--estimator=lvc", "--against=lvc --shadow-rays auto"],
         &["--estimator=path", "--against=path --candidates 4"],
         &["--estimator=light", "--against=light --mis power"],
-        // Either may be what the other is.
+        // `auto` may choose the other estimator.
         &["--estimator=auto", "--against=path"],
         &["--estimator=bdpt", "--against=auto"],
-        // The first is the usual one.
+        // The first estimator is the default.
         &["--against=bdpt --path-roulette auto"],
     ];
     for estimators in same {
@@ -248,7 +251,7 @@ fn an_estimator_is_no_witness_of_itself() {
             .says("hint: give --against another integrator");
     }
     assert_eq!(place.names(), ["room.pbrt"]);
-    // Neither is a reference that is there lost by it.
+    // An existing reference stays.
     reference(&["--against=bdpt --mis power"]).expect(0);
     reference(&["--against=bdpt"]).expect(2);
     let picture = "a.reference/picture.exr";
@@ -258,7 +261,7 @@ fn an_estimator_is_no_witness_of_itself() {
 }
 
 #[test]
-fn a_wrong_command_line_is_told() {
+fn a_wrong_command_line_is_an_error() {
     let place = Workplace::new();
     for (arguments, says) in [
         ("--spp 4 --extend 4", "cannot be used with"),

@@ -1,7 +1,7 @@
 use crate::common::{Ran, Workplace};
 
 #[test]
-fn the_image_has_the_name_that_the_scene_says_and_a_picture_beside_it() {
+fn the_image_has_the_name_of_the_scenes_film_and_a_png_beside_it() {
     let place = Workplace::new();
     let ran = place
         .run("render room.pbrt")
@@ -13,7 +13,7 @@ fn the_image_has_the_name_that_the_scene_says_and_a_picture_beside_it() {
 }
 
 #[test]
-fn quiet_is_silent_and_a_picture_may_stand_alone() {
+fn quiet_is_silent_and_a_png_may_be_the_only_output() {
     let place = Workplace::new();
     let ran = place.run("render room.pbrt -q -o alone.png").expect(0);
     assert_eq!(ran.stdout + &ran.stderr, "");
@@ -21,7 +21,7 @@ fn quiet_is_silent_and_a_picture_may_stand_alone() {
 }
 
 #[test]
-fn lines_of_progress_end_where_no_terminal_listens() {
+fn progress_without_a_terminal_has_whole_lines() {
     let ran = Workplace::new()
         .run("render room.pbrt --time 1500ms")
         .expect(2);
@@ -34,7 +34,7 @@ fn lines_of_progress_end_where_no_terminal_listens() {
 }
 
 #[test]
-fn a_render_ends_with_files_samples_and_error() {
+fn the_summary_has_files_samples_and_error() {
     let place = Workplace::new();
     let last = |flags: &str, lines: usize| {
         let ran = place.run(&format!("render room.pbrt {flags}")).expect(0);
@@ -66,7 +66,7 @@ fn a_render_ends_with_files_samples_and_error() {
     );
 }
 
-/// A triangle without anything else.
+/// A scene of one triangle.
 const GLTF: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
 "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
 "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
@@ -90,7 +90,7 @@ fn a_gltf_file_is_rendered_with_auto_unless_another_integrator_is_named() {
 }
 
 #[test]
-fn a_scene_that_asks_for_path_gets_a_hint_at_auto_where_light_is_missed() {
+fn a_scene_with_path_gets_a_hint_at_auto_if_light_is_missing() {
     const NOTE: &str = "note: rendered with `path`, as the scene asks; try --integrator auto";
     let place = Workplace::new();
     let path = crate::common::SCENE.replace("Integrator \"bdpt\"", "Integrator \"volpath\"");
@@ -125,7 +125,7 @@ fn older_names_are_accepted_with_a_warning() {
     place.run("compare a.exr b.exr --exact").expect(0);
 }
 
-/// Checks that two ways to render give the same bits.
+/// Checks that two commands give the same bits.
 #[track_caller]
 fn check_same(place: &Workplace, a: &str, b: &str) {
     place
@@ -138,7 +138,7 @@ fn check_same(place: &Workplace, a: &str, b: &str) {
 }
 
 #[test]
-fn threads_instructions_and_spellings_do_not_change_a_bit() {
+fn threads_instructions_and_spellings_do_not_change_bits() {
     let place = Workplace::new();
     check_same(&place, "--threads 1", "--nthreads 2");
     for isa in accel::Isa::supported() {
@@ -189,7 +189,7 @@ fn settings_change_the_image() {
 }
 
 #[test]
-fn time_or_samples_end_a_render_whichever_is_first() {
+fn the_first_limit_of_time_and_samples_ends_a_render() {
     let place = Workplace::new();
     place
         .run("render room.pbrt --time 1h --spp 3")
@@ -207,7 +207,7 @@ fn time_or_samples_end_a_render_whichever_is_first() {
 }
 
 #[test]
-fn statistics_tell_settings_times_and_rays() {
+fn statistics_have_settings_times_and_rays() {
     let place = Workplace::new();
     let arguments = "--stats s.json --shadow-rays ray-roulette:0.2 --crop 1,2,9,10 --threads 1";
     place
@@ -245,7 +245,7 @@ fn statistics_tell_settings_times_and_rays() {
 }
 
 #[test]
-fn statistics_tell_what_became_of_each_strategy() {
+fn statistics_have_the_counts_of_each_strategy() {
     let place = Workplace::new();
     let arguments = "--stats s.json --shadow-rays per-camera-vertex --spp 4";
     place
@@ -281,7 +281,7 @@ fn statistics_tell_what_became_of_each_strategy() {
 }
 
 #[test]
-fn the_image_says_how_it_was_made() {
+fn the_image_has_attributes_of_its_render() {
     let place = Workplace::new();
     std::fs::create_dir(place.path("scenes")).unwrap();
     place.write("scenes/room.pbrt", crate::common::SCENE);
@@ -314,7 +314,7 @@ fn the_image_says_how_it_was_made() {
 }
 
 #[test]
-fn samples_that_do_not_count_are_told() {
+fn dropped_samples_cause_a_warning() {
     let place = Workplace::new();
     let mut command = place.command("render room.pbrt --passes 1..2 --checkpoint a.film");
     Ran::of(command.env("BIDIR_SPP", "9"))

@@ -2,7 +2,7 @@ use crate::common::Workplace;
 use serde_json::Value;
 
 #[test]
-fn a_sample_is_told_step_by_step() {
+fn a_replay_prints_every_step() {
     let place = Workplace::new();
     let ran = place.run("render room.pbrt --replay 12,12,1").expect(0);
     let ran = ran
@@ -18,7 +18,7 @@ fn a_sample_is_told_step_by_step() {
     assert!(!place.path("room.exr").exists(), "nothing is rendered");
 }
 
-/// Replays of the first passes of a pixel that has connections to choose from.
+/// Returns replays of the first passes of a pixel with several connections.
 fn replays(arguments: &str) -> Vec<Value> {
     let place = Workplace::new();
     let replay = |pass: u32| {
@@ -100,7 +100,7 @@ fn one_per_pair_shows_all_probabilities() {
 }
 
 #[test]
-fn roulette_shows_what_training_found() {
+fn roulette_shows_the_results_of_training() {
     let samples = replays("--shadow-rays ray-roulette:5");
     for sample in &samples {
         let training = |key: &str| sample["training"][key].as_f64().unwrap();
@@ -118,7 +118,7 @@ fn roulette_shows_what_training_found() {
 }
 
 #[test]
-fn splats_say_where_they_land() {
+fn splats_have_their_pixels() {
     let samples = replays("--integrator light");
     let splats: Vec<_> = samples
         .iter()
@@ -143,7 +143,7 @@ fn splats_say_where_they_land() {
 }
 
 #[test]
-fn json_alone_means_nothing() {
+fn json_needs_replay() {
     Workplace::new()
         .run("render room.pbrt --json")
         .expect(2)

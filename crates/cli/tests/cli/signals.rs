@@ -14,16 +14,16 @@ pub(crate) fn send(signal: &str, child: &Child) {
     );
 }
 
-/// Renders, and sends each signal when a line with its words was told.
+/// Renders, and sends each signal after a line with its words.
 fn interrupted(place: &Workplace, arguments: &str, signals: &[(&str, &str)]) -> Ran {
     let mut command = place.command(&format!("render room.pbrt {arguments}"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    let mut told = String::new();
+    let mut output = String::new();
     let mut signals = signals.iter();
     let mut next = signals.next();
     for line in BufReader::new(child.stderr.take().unwrap()).lines() {
         let line = line.unwrap() + "\n";
-        told += &line;
+        output += &line;
         if let Some((_, signal)) = next.filter(|(words, _)| line.contains(words)) {
             send(signal, &child);
             next = signals.next();
@@ -33,7 +33,7 @@ fn interrupted(place: &Workplace, arguments: &str, signals: &[(&str, &str)]) -> 
     Ran {
         code,
         stdout: String::new(),
-        stderr: told,
+        stderr: output,
     }
 }
 
@@ -41,7 +41,7 @@ fn interrupted(place: &Workplace, arguments: &str, signals: &[(&str, &str)]) -> 
 fn the_first_signal_ends_after_the_running_pass_with_an_image() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let place = Workplace::new();
-        // A tenth of the time is told of after a second.
+        // A tenth of the time is reported after a second.
         let arguments = "--spp 1000000000 --time 10 --threads 1";
         let ran = interrupted(&place, arguments, &[("Progress:", signal)]).expect(code);
         ran.says("wrote room.exr and room.png")
@@ -65,7 +65,7 @@ fn the_second_signal_ends_at_once() {
 }
 
 #[test]
-fn a_signal_that_comes_too_late_stops_nothing() {
+fn a_signal_during_the_last_pass_has_no_effect() {
     let place = Workplace::new();
     // The only pass is running when the signal comes.
     let arguments = "--size 400x400 --spp 1 --time 10";
@@ -74,7 +74,7 @@ fn a_signal_that_comes_too_late_stops_nothing() {
 }
 
 #[test]
-fn with_a_film_file_the_render_can_go_on() {
+fn with_a_film_file_the_render_can_continue() {
     let place = Workplace::new();
     let arguments = "--spp 1000000 --checkpoint a.film --time 10 --threads 1";
     let signals = [("Progress:", "TERM")];
@@ -86,28 +86,28 @@ fn with_a_film_file_the_render_can_go_on() {
     assert_eq!(info["stopping"], "time");
 }
 
-/// Runs what trains for long, and sends a signal when it says so.
+/// Runs a render with long training, and sends a signal after its message.
 fn stopped_in_training(place: &Workplace, what: &str, signal: &str) -> Ran {
     let long = "--integrator lvc --candidates 4096 --next-events 4096 --size 480x320";
     let mut command = place.command(&format!("render room.pbrt {long} {what}"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut told = String::new();
-    while !told.contains("training before the first sample") {
-        assert!(stderr.read_line(&mut told).unwrap() > 0, "{told}");
+    let mut output = String::new();
+    while !output.contains("training before the first sample") {
+        assert!(stderr.read_line(&mut output).unwrap() > 0, "{output}");
     }
     send(signal, &child);
-    stderr.read_to_string(&mut told).unwrap();
+    stderr.read_to_string(&mut output).unwrap();
     Ran {
         code: child.wait().unwrap().code(),
         stdout: String::new(),
-        stderr: told,
+        stderr: output,
     }
 }
 
 #[test]
 fn with_a_film_file_training_can_be_stopped_too() {
-    // There is nothing to go on from.
+    // There is nothing to continue from.
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let place = Workplace::new();
         let ran = stopped_in_training(&place, "--checkpoint a.film", signal).expect(code);
@@ -123,7 +123,7 @@ fn a_replay_can_be_stopped_while_it_trains() {
 }
 
 #[test]
-fn a_reference_can_be_stopped_and_gone_on_with() {
+fn a_reference_can_be_stopped_and_continued() {
     let place = Workplace::new();
     let arguments = "reference room.pbrt --size 48x32 --spp 4096 --progress plain";
     let mut child = place
@@ -131,29 +131,32 @@ fn a_reference_can_be_stopped_and_gone_on_with() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // As soon as the first replicate is done.
+    // Wait until the first replicate is done.
     while !place.path("room.reference/films/picture-00.film").exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
     send("INT", &child);
-    let mut told = String::new();
+    let mut output = String::new();
     let stderr = child.stderr.as_mut().unwrap();
-    stderr.read_to_string(&mut told).unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(75), "{told}");
-    assert!(told.contains("run the same command to continue"), "{told}");
+    stderr.read_to_string(&mut output).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(75), "{output}");
+    assert!(
+        output.contains("run the same command to continue"),
+        "{output}"
+    );
     assert!(!place.path("room.reference/provenance.json").exists());
-    // With less it cannot go on in the replicate that is done.
+    // With fewer samples, the finished replicate has too many.
     let least = "reference room.pbrt --size 48x32 --spp 16";
     place.run(least).expect(5).says("use --spp 4096");
 }
 
 #[test]
-fn a_signal_writes_now() {
+fn a_signal_writes_the_files_at_once() {
     let place = Workplace::new();
     let arguments = "--time 10m --threads 1 -o a.exr --checkpoint a.film";
     let mut command = place.command(&format!("render room.pbrt {arguments}"));
     let mut child = command.stderr(Stdio::null()).spawn().unwrap();
-    // The film file is locked when signals are watched.
+    // Once the film file is locked, signals are watched.
     while !place.path("a.film.lock").exists() {
         std::thread::sleep(Duration::from_millis(5));
     }

@@ -2,13 +2,13 @@ use crate::common::{Ran, SCENE, Workplace};
 use formats::is_obeyed;
 use std::fs;
 
-/// A title, a cleared screen, another direction of writing, and a line that is not ours.
+/// Sets a title, clears the screen, reverses the direction of writing, and forges a line.
 const HOSTILE: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\r\x7f\nerror: forged";
-/// The same in a string of a scene, which ends on its line.
+/// The same on one line, for strings of a scene.
 const HOSTILE_STRING: &str = "\x1b]0;t\x07\u{9b}2J\u{202e}\x7f";
 
-/// Runs a command in the scene's folder, and fails where a terminal would obey what it prints; `@` in a
-/// word is the hostile name.
+/// Runs a command in the scene's folder, and fails if its output has control characters; `@` in a word is
+/// the hostile name.
 #[track_caller]
 fn run(place: &Workplace, words: &str) -> Ran {
     let words = words.split_whitespace();
@@ -33,7 +33,7 @@ fn place() -> Workplace {
 }
 
 #[test]
-fn names_of_files_are_shown_and_not_obeyed() {
+fn control_characters_in_names_of_files_are_escaped() {
     let place = place();
     let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\r\u{7f}\nerror: forged";
     run(
@@ -75,13 +75,13 @@ fn names_of_files_are_shown_and_not_obeyed() {
 }
 
 #[test]
-fn texts_of_scenes_are_shown_and_not_obeyed() {
+fn control_characters_in_texts_of_scenes_are_escaped() {
     let place = Workplace::new();
     let shown = r"\u{1b}]0;t\u{7}\u{9b}2J\u{202e}\u{7f}";
     let broken = SCENE.replace("\"sphere\"", &format!("\"sphere{HOSTILE_STRING}\""));
     place.write("broken.pbrt", &broken);
     let ran = run(&place, "render broken.pbrt").expect(3);
-    // In the message and in the lines of the file.
+    // Once in the message, and once in the lines of the file.
     assert_eq!(ran.stderr.matches(shown).count(), 2, "{}", ran.stderr);
     let named = SCENE.replace("room.exr", &format!("{HOSTILE_STRING}.exr"));
     place.write("named.pbrt", &named.replace('\n', "\r\n"));
@@ -95,7 +95,7 @@ fn texts_of_scenes_are_shown_and_not_obeyed() {
 }
 
 #[test]
-fn names_of_an_experiment_are_shown_and_not_obeyed() {
+fn control_characters_in_names_of_an_experiment_are_escaped() {
     let place = Workplace::new();
     let name = r#"name = "a\u001b[2J\u009b\u202e\nerror: forged""#;
     let description = format!(
@@ -116,7 +116,7 @@ fn names_of_an_experiment_are_shown_and_not_obeyed() {
 }
 
 #[test]
-fn arguments_and_variables_are_shown_and_not_obeyed() {
+fn control_characters_in_arguments_and_variables_are_escaped() {
     let place = Workplace::new();
     for words in [
         "render room.pbrt --@",
@@ -131,7 +131,7 @@ fn arguments_and_variables_are_shown_and_not_obeyed() {
     ] {
         let ran = run(&place, words).expect(2);
         assert!(ran.stderr.contains(r"\u{1b}]0;t"), "{}", ran.stderr);
-        // With colours, which are our own.
+        // With our own colours.
         let words = words
             .split_whitespace()
             .map(|word| word.replace('@', HOSTILE));
@@ -146,7 +146,7 @@ fn arguments_and_variables_are_shown_and_not_obeyed() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn text_that_cannot_be_printed_is_an_error() {
+fn an_error_of_stdout_is_an_error() {
     let place = Workplace::new();
     for words in [
         "--help",

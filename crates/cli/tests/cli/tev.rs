@@ -3,13 +3,13 @@ use std::io::Read;
 use std::net::{TcpListener, TcpStream};
 use std::thread;
 
-/// The image of a listener: the bytes of its channels, as packets have drawn them.
+/// The image of a listener as drawn by packets.
 #[derive(Debug, Default)]
 struct Image {
     name: String,
     size: [usize; 2],
     pixels: Vec<[f32; 3]>,
-    /// How many packets drew something.
+    /// The number of packets that drew pixels.
     updates: usize,
 }
 
@@ -43,7 +43,7 @@ impl Packet {
 }
 
 impl Image {
-    /// What a listener shows at the end of a connection.
+    /// Receives packets, and returns the image at the end of the connection.
     fn receive(mut stream: TcpStream) -> Self {
         let mut image = Self::default();
         let mut length = [0; 4];
@@ -91,19 +91,19 @@ impl Image {
     }
 }
 
-/// The pixels of an image's crop, row by row.
+/// Returns the bits of pixels.
 fn bits(pixels: impl IntoIterator<Item = [f32; 3]>) -> Vec<[u32; 3]> {
     let bits = pixels.into_iter().map(|pixel| pixel.map(f32::to_bits));
     bits.collect()
 }
 
-/// Pixels of an EXR.
+/// Reads the pixels of an EXR.
 fn exr(place: &Workplace, name: &str) -> Vec<[u32; 3]> {
     bits(formats::image::read(&place.path(name), None).unwrap().rgb())
 }
 
 #[test]
-fn tev_shows_what_the_image_has() {
+fn tev_shows_the_pixels_of_the_image() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let receiver = thread::spawn(move || Image::receive(listener.accept().unwrap().0));
@@ -126,12 +126,12 @@ fn tev_shows_what_the_image_has() {
 }
 
 #[test]
-fn the_light_image_is_shown_too() {
+fn tev_shows_the_light_image() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let receiver = thread::spawn(move || Image::receive(listener.accept().unwrap().0));
     let place = Workplace::new();
-    // Nothing else is in the picture.
+    // The picture has nothing else.
     let command = "render room.pbrt -q --integrator light -o a.exr";
     place
         .run(&format!("{command} --display-server {address}"))
@@ -140,7 +140,7 @@ fn the_light_image_is_shown_too() {
     assert_eq!(bits(image.pixels), exr(&place, "a.exr"));
 }
 
-/// A render with and without a viewer at `address`, which does not accept images: same bits.
+/// Checks that a render without and with a viewer at `address`, which accepts no images, has the same bits.
 #[track_caller]
 fn check_unseen(address: &str) -> Ran {
     let place = Workplace::new();
@@ -156,7 +156,7 @@ fn check_unseen(address: &str) -> Ran {
 }
 
 #[test]
-fn nobody_has_to_listen() {
+fn a_render_does_not_need_a_listener() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     drop(listener);
@@ -169,7 +169,7 @@ fn a_listener_that_never_reads_stops_nothing() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     let place = Workplace::new();
-    // More than the system keeps for a connection that nobody reads.
+    // The image is larger than the buffer of an unread connection.
     let command = "render room.pbrt --size 1600x1000 --integrator path --max-depth 1 --spp 1";
     place.run(&format!("{command} -q -o alone.exr")).expect(0);
     let ran = place
@@ -181,7 +181,7 @@ fn a_listener_that_never_reads_stops_nothing() {
 }
 
 #[test]
-fn an_address_that_is_none_is_refused() {
+fn an_invalid_address_is_refused() {
     let place = Workplace::new();
     for wrong in ["", ":14158", "host:port", "host:0", "[::1"] {
         let mut command = place.command("render room.pbrt --display-server");

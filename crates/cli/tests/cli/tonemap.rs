@@ -14,14 +14,14 @@ fn write_image(place: &Workplace, name: &str, colors: &[[f32; 3]]) {
     fs::write(place.path(name), bytes).unwrap();
 }
 
-/// The bytes of a picture.
+/// Reads the bytes of a picture.
 fn read_picture(place: &Workplace, name: &str) -> Vec<[u8; 3]> {
     let image = formats::image::read(&place.path(name), Some(Encoding::Linear)).unwrap();
     let byte = |channel: f32| (channel * 255.0).round() as u8;
     image.rgb().map(|color| color.map(byte)).collect()
 }
 
-/// The picture of colours.
+/// Tone maps colours.
 fn tonemap(colors: &[[f32; 3]], arguments: &str) -> Vec<[u8; 3]> {
     let place = Workplace::new();
     write_image(&place, "in.pfm", colors);
@@ -33,7 +33,7 @@ fn tonemap(colors: &[[f32; 3]], arguments: &str) -> Vec<[u8; 3]> {
 }
 
 #[test]
-fn without_flags_the_picture_is_that_of_the_render() {
+fn the_default_picture_equals_that_of_the_render() {
     let place = Workplace::new();
     place.run("render room.pbrt -q -o room.exr").expect(0);
     place.run("tonemap room.exr -o same.png").expect(0);
@@ -82,11 +82,11 @@ fn a_stop_is_twice_the_light() {
 }
 
 #[test]
-fn known_values_are_where_they_should_be() {
+fn known_values_are_mapped_as_specified() {
     let coded = |operator: &str, color| tonemap(&[color], &format!("--operator {operator}"))[0];
     // 0.18 in sRGB is 117.6 of 255.
     assert_eq!(coded("srgb", [0.18, 0.0, 7.0]), [118, 0, 255]);
-    // 0.14 = 0.18 - 0.04 in sRGB, where PBR Neutral takes that away and nothing else.
+    // 0.14 = 0.18 - 0.04 in sRGB: PBR Neutral subtracts only the reflection.
     assert_eq!(coded("neutral", [0.18; 3]), [105; 3]);
     // The middle of the screen of exponent 2.2, coded for sRGB.
     assert!(
@@ -97,7 +97,7 @@ fn known_values_are_where_they_should_be() {
 }
 
 #[test]
-fn what_is_no_light_is_black_and_what_is_too_much_is_bright() {
+fn invalid_light_is_black_and_infinite_light_bright() {
     let infinite = [f32::INFINITY; 3];
     let colors = [[f32::NAN; 3], [-1.0; 3], [f32::NEG_INFINITY; 3], infinite];
     for operator in ["srgb", "agx", "neutral"] {
@@ -108,7 +108,7 @@ fn what_is_no_light_is_black_and_what_is_too_much_is_bright() {
 }
 
 #[test]
-fn faults_are_told() {
+fn wrong_input_is_an_error() {
     let place = Workplace::new();
     write_image(&place, "in.pfm", &[[1.0; 3]]);
     for (arguments, code, says) in [

@@ -5,14 +5,14 @@ use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// A command that serves, with what it printed as its URL.
+/// A running server with its URL.
 struct Served {
     child: Child,
     url: String,
 }
 
 impl Drop for Served {
-    /// Leaves nothing behind where a test fails.
+    /// Ends the server if a test fails.
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
@@ -31,7 +31,7 @@ impl Served {
         Self { child, url }
     }
 
-    /// The answer to a request for `path`, with its head.
+    /// Returns the answer to a request for `path`, with its head.
     fn get(&self, path: &str) -> String {
         let host = self.url.strip_prefix("http://").unwrap();
         let host = host.split('/').next().unwrap();
@@ -43,7 +43,7 @@ impl Served {
         String::from_utf8_lossy(&answer).into_owned()
     }
 
-    /// How the command ends, and what it said.
+    /// Returns the exit code of the command, and its messages.
     fn end(mut self) -> (Option<i32>, String) {
         let mut said = String::new();
         let stderr = self.child.stderr.as_mut().unwrap();
@@ -103,7 +103,7 @@ fn a_port_that_is_taken_is_an_error_with_a_hint() {
             .says(&format!("cannot serve on 127.0.0.1:{port}"))
             .says("hint: another program uses it");
     }
-    // An address that documents are about.
+    // An address reserved for documentation.
     place
         .run("view room.pbrt --bind 192.0.2.1")
         .expect(4)
@@ -114,7 +114,7 @@ fn a_port_that_is_taken_is_an_error_with_a_hint() {
 #[test]
 fn without_a_port_the_next_free_one_is_taken() {
     let place = Workplace::new();
-    // Somebody else may have it as well.
+    // Another process may have the port.
     let taken = TcpListener::bind("127.0.0.1:8080");
     let served = Served::new(&place, "view room.pbrt --threads 1 --spp 1");
     assert!(!served.url.contains(":8080/"), "{}", served.url);
@@ -125,7 +125,7 @@ fn without_a_port_the_next_free_one_is_taken() {
 }
 
 #[test]
-fn a_scene_that_is_wrong_is_told_before_anything_is_served() {
+fn an_error_of_the_scene_comes_before_serving() {
     let place = Workplace::new();
     let ran = place.run("view none.pbrt --port 0").expect(4);
     assert_eq!(ran.stdout, "");

@@ -1,50 +1,50 @@
-//! Blocks of pixels: sums as planes of bytes, packed.
+//! Blocks of pixels: packed planes of the bytes of sums.
 
 use flate2::{Compression, Crc, read::DeflateDecoder, write::DeflateEncoder};
 use std::io::{Read, Write};
 use std::iter;
 
-/// Pixels of a block.
+/// Number of pixels of a block.
 pub(super) const PIXELS: usize = 4096;
-/// Bytes of a sum.
+/// Size of a sum. Unit: bytes.
 const BYTES: usize = size_of::<i128>();
-/// About how many bytes of a plane are looked at to see how it packs.
+/// Approximate number of bytes of a plane that are sampled to decide how to pack it.
 const PROBED: usize = 256;
 
-/// CRC-32.
+/// Computes the CRC-32 of `bytes`.
 pub(super) fn checksum(bytes: &[u8]) -> u32 {
     let mut crc = Crc::new();
     crc.update(bytes);
     crc.sum()
 }
 
-/// How a plane is packed. Each has two bytes at the beginning of its block: this, and a byte.
+/// The packing of a plane. Each plane has two bytes at the beginning of its block: its kind, and a value.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 enum Kind {
-    /// All of it is the byte.
+    /// All bytes of the plane are the value.
     Uniform = 0,
-    /// Its bytes follow, after those of such planes before it: packing would gain little.
+    /// The bytes are stored as they are, after those of earlier plain planes, as packing would gain little.
     Plain = 1,
-    /// It is in the stream of DEFLATE at the end, after such planes before it.
+    /// The bytes are in the DEFLATE stream at the end, after those of earlier such planes.
     Deflated = 2,
 }
 
 /// A block of a file.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packed<'a> {
-    /// Of the packed bytes.
+    /// The checksum of the packed bytes.
     pub(super) checksum: u32,
-    /// The planes.
+    /// The packed planes.
     pub(super) bytes: &'a [u8],
 }
 
-/// The fewest bytes of a packed block of pixels with `numbers` sums each.
+/// Returns the minimum size of a packed block of pixels with `numbers` sums each. Unit: bytes.
 pub(super) fn least_bytes(numbers: usize) -> usize {
     numbers * BYTES * 2
 }
 
-/// The bytes of a block of pixels with `numbers` sums each: the length and the checksum of what is
-/// packed, and that.
+/// Packs a block of pixels with `numbers` sums each: length and checksum of the packed bytes, and the
+/// bytes.
 pub(super) fn write(sums: &[i128], numbers: usize) -> Vec<u8> {
     let (mut kinds, mut plain) = (Vec::with_capacity(least_bytes(numbers)), Vec::new());
     let mut deflated = DeflateEncoder::new(Vec::new(), Compression::fast());
@@ -80,7 +80,7 @@ impl Packed<'_> {
         let pixels = sums.len() / numbers;
         let (kinds, planes) = self.bytes.split_at_checked(least_bytes(numbers))?;
         let kinds: Vec<(Kind, u8)> = kinds.chunks(2).map(kind).collect::<Option<_>>()?;
-        let bytes_of = |wanted| kinds.iter().filter(|(kind, _)| *kind == wanted).count() * pixels;
+        let bytes_of = |of| kinds.iter().filter(|(kind, _)| *kind == of).count() * pixels;
         let (plain, deflated) = planes.split_at_checked(bytes_of(Kind::Plain))?;
         let deflated = inflated(deflated, bytes_of(Kind::Deflated))?;
         let (mut plain, mut deflated) = (plain.chunks(pixels), deflated.chunks(pixels));
@@ -98,7 +98,7 @@ impl Packed<'_> {
     }
 }
 
-/// The bytes of a pixel's sum `k`, and the bits that are not the same in all pixels'.
+/// Returns the bytes of the first pixel's sum `k`, and a mask of the bits that differ between pixels.
 fn uniform_bits(sums: &[i128], numbers: usize, k: usize) -> ([u8; BYTES], [u8; BYTES]) {
     let first = sums[k];
     let of_number = sums[k..].iter().step_by(numbers);
@@ -106,13 +106,13 @@ fn uniform_bits(sums: &[i128], numbers: usize, k: usize) -> ([u8; BYTES], [u8; B
     (first.to_le_bytes(), varying.to_le_bytes())
 }
 
-/// Byte `b` of sum `k` of every pixel.
+/// Returns byte `b` of sum `k` of every pixel.
 fn plane(sums: &[i128], numbers: usize, k: usize, b: usize) -> impl Iterator<Item = u8> {
     let of_number = sums[k..].iter().step_by(numbers);
     of_number.map(move |sum| (sum >> (8 * b)) as u8)
 }
 
-/// Sets byte `b` of sum `k` of every pixel, which is 0 so far.
+/// Sets byte `b` of sum `k` of every pixel, which has to be 0.
 fn set_plane<'a>(
     sums: &mut [i128],
     numbers: usize,
@@ -126,13 +126,13 @@ fn set_plane<'a>(
     }
 }
 
-/// True where packing would gain little for its time.
+/// Returns true if packing would gain little for its time.
 ///
-/// Of bytes with the frequencies pᵢ two are equal with the probability Σᵢ pᵢ², which is 1 ∕ 256 where
-/// all are as likely. With 32 times that they have 3 bits of 8 at least (Rényi's entropy is no more
-/// than Shannon's), but few runs, which is what fast DEFLATE finds: films are 1 % larger for this limit
-/// than without, and packed in half of the time. Of n bytes with the counts cᵢ,
-/// Σᵢ cᵢ (cᵢ − 1) ∕ (n (n − 1)) estimates the sum.
+/// Two bytes with the frequencies pᵢ are equal with probability Σᵢ pᵢ², which is 1 ∕ 256 for a uniform
+/// distribution. At the limit, 32 times that, bytes have at least 3 bits of entropy (Rényi's entropy is
+/// at most Shannon's), but few runs, which fast DEFLATE finds: the limit makes films 1 % larger, and
+/// halves the time of packing. For n bytes with the counts cᵢ, Σᵢ cᵢ (cᵢ − 1) ∕ (n (n − 1)) estimates the
+/// sum.
 fn is_dense(plane: &[u8]) -> bool {
     let mut counts = [0_usize; 256];
     let probed = plane.iter().step_by(plane.len().div_ceil(PROBED));
@@ -154,7 +154,7 @@ fn kind(bytes: &[u8]) -> Option<(Kind, u8)> {
     Some((kind, bytes[1]))
 }
 
-/// What `bytes` inflate to. None: not to so many bytes.
+/// Inflates `bytes`. None: they do not inflate to `length` bytes.
 fn inflated(bytes: &[u8], length: usize) -> Option<Vec<u8>> {
     let mut inflated = Vec::new();
     let most = length as u64 + 1;

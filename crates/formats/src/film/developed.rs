@@ -5,17 +5,17 @@ use crate::image::{self, ExrImage, ExrLayer, MetadataValue};
 use bidir::film::{Film, FilmSettings, LayerImage, Picture};
 use std::path::Path;
 
-/// A developed film: the picture with the images beside it.
+/// A developed film: the picture and its layers.
 #[derive(Clone, Debug)]
 pub struct Developed {
     /// The picture.
     pub picture: Picture,
-    /// The images beside it.
+    /// The layers.
     pub layers: Vec<LayerImage>,
 }
 
 impl Developed {
-    /// All that `film` keeps.
+    /// Develops the picture and all layers of `film`.
     pub fn new(film: &Film) -> Self {
         Self {
             picture: film.develop(),
@@ -23,7 +23,7 @@ impl Developed {
         }
     }
 
-    /// Writes it as EXR with attributes.
+    /// Writes an EXR with attributes.
     pub fn write_exr(
         &self,
         path: &Path,
@@ -33,7 +33,7 @@ impl Developed {
         image::write_exr(path, &Self::exr(film, &self.exr_layers(), metadata))
     }
 
-    /// The bytes of that file.
+    /// Encodes the EXR that [`write_exr`](Self::write_exr) writes.
     pub fn encode_exr(
         &self,
         film: &FilmSettings,

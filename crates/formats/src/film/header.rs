@@ -1,4 +1,4 @@
-//! What a film file says about its film: whose render it is, and which part.
+//! The header of a film file: the render that the film belongs to, and its passes.
 
 use super::broken;
 use super::layers::LayerNames;
@@ -10,21 +10,21 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// How the number of passes was decided. What looks at noise or at a clock may depend on the
-/// picture, which makes its mean slightly biased.
+/// The rule that ended the render. A rule that depends on noise or on time may depend on the picture, which
+/// biases its mean slightly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stopping {
-    /// Before the render.
+    /// The number of passes was fixed before the render.
     Fixed,
-    /// By a clock or a signal.
+    /// A clock or a signal ended the render.
     Time,
-    /// By the noise of the picture.
+    /// The noise of the picture ended the render.
     Noise,
 }
 
 impl Stopping {
-    /// As a word.
+    /// Returns the name of the rule.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",
@@ -39,36 +39,36 @@ impl Stopping {
 pub struct FilmHeader {
     /// The program that wrote it, with its version.
     pub program: String,
-    /// The scene file, as it was named.
+    /// The name of the scene file as it was given.
     pub scene: String,
-    /// Hash of everything that the picture's bits depend on but the passes: films can be merged
-    /// where it is the same.
+    /// Hash of everything except the passes that the picture's bits depend on. Films with equal hashes can be
+    /// merged.
     pub identity: String,
-    /// What the identity was made of, by name: where two differ, these say why.
+    /// The settings that the identity is a hash of, by name. They explain a difference of two identities.
     pub settings: BTreeMap<String, String>,
     /// Width and height of the whole film. Unit: pixels.
     pub resolution: [u32; 2],
-    /// Left, top, right, bottom of what is rendered, the last two exclusive. Unit: pixels.
+    /// Left, top, right and bottom of the rendered part, the last two exclusive. Unit: pixels.
     pub crop: [u32; 4],
-    /// What developed values are multiplied by.
+    /// The factor on developed values.
     pub exposure: f32,
-    /// What is kept beside the picture.
+    /// The layers of the film.
     #[serde(default, skip_serializing_if = "LayerNames::is_empty")]
     pub layers: LayerNames,
-    /// The passes that are summed.
+    /// The passes in the sums.
     #[serde(with = "passes")]
     pub passes: PassSet,
-    /// How the number of passes was decided.
+    /// The rule that ended the render.
     pub stopping: Stopping,
-    /// Time that rendering took. Unit: seconds.
+    /// The time of rendering. Unit: seconds.
     pub seconds: f64,
-    /// Whatever was counted, for those who read it.
+    /// Counts of rays and other events, which add up when films are merged.
     pub counts: Value,
 }
 
 impl FilmHeader {
-    /// The header of an empty film: the identity is a hash of `settings`, which must name everything
-    /// that the picture's bits depend on but the passes.
+    /// Returns the header of an empty film. The identity is a hash of `settings`, which must contain
+    /// everything except the passes that the picture's bits depend on.
     pub fn new(program: &str, scene: String, settings: BTreeMap<String, String>) -> Self {
         let mut hash = Sha256::new();
         for text in settings.iter().flat_map(|(name, value)| [name, value]) {
@@ -93,7 +93,7 @@ impl FilmHeader {
         }
     }
 
-    /// The name of the scene file without its folders, which are of no interest to others.
+    /// Returns the name of the scene file without its folders.
     pub fn scene_name(&self) -> String {
         let name = Path::new(&self.scene).file_name();
         name.map_or_else(
@@ -102,7 +102,7 @@ impl FilmHeader {
         )
     }
 
-    /// The header of both films: time and counts are added.
+    /// Returns the header of the sum of two films: time and counts are added.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         Self {
@@ -114,7 +114,7 @@ impl FilmHeader {
         }
     }
 
-    /// The same with the passes and geometry of `film`.
+    /// Returns the same header with the passes and geometry of `film`.
     #[must_use]
     pub fn of(&self, film: &Film) -> Self {
         let settings = film.settings();
@@ -146,13 +146,13 @@ impl FilmHeader {
         }
     }
 
-    /// What is kept beside the picture.
+    /// Returns the layers of the film.
     pub(super) fn layers(&self) -> Result<Layers> {
         let message = "the film has layers that this program does not know";
         self.layers.layers().ok_or_else(|| broken(message))
     }
 
-    /// The film's geometry, with a filter that nobody asks for.
+    /// Returns the film's geometry with a default filter, which is not used.
     pub(super) fn film_settings(&self) -> FilmSettings {
         let [left, top, right, bottom] = self.crop;
         FilmSettings {
@@ -165,13 +165,15 @@ impl FilmHeader {
         }
     }
 
-    /// Why a film of `self` is not one of `other`; None: it is. The first setting that differs is
-    /// named with both values: the integrator, which decides what others usually are, before them.
+    /// Describes why films of the two headers cannot be merged. None: they can.
+    ///
+    /// Names the first setting that differs with both values. The integrator comes first, as other defaults
+    /// depend on it.
     pub fn difference(&self, other: &Self) -> Option<String> {
         self.difference_between(other, ["here", "there"])
     }
 
-    /// [`Self::difference`] with phrases for both places, such as `in the film`.
+    /// Does the same as [`Self::difference`] with phrases for both places, such as `in the film`.
     pub fn difference_between(&self, other: &Self, [here, there]: [&str; 2]) -> Option<String> {
         if self.identity == other.identity {
             return None;
@@ -195,7 +197,7 @@ impl FilmHeader {
     }
 }
 
-/// Adds numbers, in objects key by key; of anything else there is the first.
+/// Adds numbers, in objects key by key; of other values, keeps the first.
 fn sum(a: &Value, b: &Value) -> Value {
     match (a, b) {
         (Value::Null, other) | (other, Value::Null) => other.clone(),
@@ -215,7 +217,7 @@ fn sum(a: &Value, b: &Value) -> Value {
     }
 }
 
-/// Passes as text.
+/// Serializes passes as text.
 mod passes {
     use bidir::film::PassSet;
     use serde::{Deserialize, Deserializer, Serializer, de::Error};

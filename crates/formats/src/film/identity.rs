@@ -1,4 +1,4 @@
-//! Whose film it is: what a film file says of the render that it belongs to, and its image likewise.
+//! The identity of a film: the description of its render in film files and in attributes of images.
 //!
 //! Names are those of flags: `light-point`, not `light_point`.
 
@@ -12,36 +12,36 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// The version of the program that writes.
+/// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// The setting that is known after training only.
+/// A setting that is known only after training.
 const TRAINED_MEAN: &str = "trained-mean";
-/// Whether training was cut short: known after it, too, and named only where it was.
+/// A setting that is present, after training, only if training was cut short.
 const TRAINING: &str = "training";
-/// What `auto` renders with: known after training, too.
+/// The plan of `auto`, known only after training.
 const PLAN: &str = "plan";
 /// The value of [`TRAINING`].
 const SHORT: &str = "short";
 
-/// The scene that a film is of.
+/// The scene of a film.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneIdentity<'a> {
-    /// The scene file, as it was named.
+    /// The name of the scene file as it was given.
     pub name: &'a str,
-    /// The hash of everything that was read for it, as text.
+    /// The hash of all files that were read for the scene, as text.
     pub digest: &'a str,
     /// The geometry of the film.
     pub film: &'a FilmSettings,
 }
 
 impl SceneIdentity<'_> {
-    /// The header of an empty film of this scene. Without `training` it is that of a render that
-    /// needs none, or what is known before.
+    /// Returns the header of an empty film of this scene. `training` is None before training, and for
+    /// renders that need none.
     pub fn header(&self, settings: &Settings, training: Option<&Training>) -> FilmHeader {
         new(self.name, self.all_settings(settings, training))
     }
 
-    /// Everything that the bits of the picture depend on but the passes, by name.
+    /// Returns everything except the passes that the bits of the picture depend on, by name.
     fn all_settings(
         &self,
         settings: &Settings,
@@ -74,7 +74,7 @@ impl SceneIdentity<'_> {
     }
 }
 
-/// The program with its version, as files name it.
+/// Returns the name and version of the program for files.
 pub fn program() -> String {
     format!("bidir {VERSION}")
 }
@@ -83,12 +83,12 @@ fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
     FilmHeader::new(&program(), name.to_owned(), settings)
 }
 
-/// True where the training of that render was cut short.
+/// Returns true if the training of the render was cut short.
 pub fn is_short(header: &FilmHeader) -> bool {
     header.settings.contains_key(TRAINING)
 }
 
-/// The same before training: what can be compared before it.
+/// Returns the header without the settings that are known only after training.
 #[must_use]
 pub fn untrained(header: &FilmHeader) -> FilmHeader {
     let mut settings = header.settings.clone();
@@ -98,7 +98,7 @@ pub fn untrained(header: &FilmHeader) -> FilmHeader {
     new(&header.scene, settings)
 }
 
-/// What film files keep of what was counted: numbers that add up when films are merged.
+/// Returns the counts for film files: numbers that add up when films are merged.
 fn counts(session: &Session<'_>) -> Value {
     let stats = session.stats();
     let rays = &stats.rays;
@@ -116,13 +116,13 @@ fn counts(session: &Session<'_>) -> Value {
         },
         "connections_blocked": stats.connections_blocked,
         "light_image_blocked": stats.light_image_blocked,
-        // The setting `candidates` has that name.
+        // The name `candidates` is that of a setting.
         "candidates_evaluated": stats.candidates,
         "dropped": stats.dropped,
     })
 }
 
-/// The header with the time and the counts of this run.
+/// Returns the header with the time and the counts of this run.
 pub fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> FilmHeader {
     FilmHeader {
         seconds: time.as_secs_f64(),
@@ -131,7 +131,7 @@ pub fn of_run(header: &FilmHeader, session: &Session<'_>, time: Duration) -> Fil
     }
 }
 
-/// What was counted, by name, such as `rays.camera`.
+/// Returns the counts by name, such as `rays.camera`.
 pub fn counts_by_name(header: &FilmHeader) -> Vec<(String, String)> {
     let mut counts = Vec::new();
     flatten(String::new(), &header.counts, &mut counts);
@@ -151,8 +151,8 @@ fn flatten(name: String, value: &Value, counts: &mut Vec<(String, String)>) {
     }
 }
 
-/// The attributes of an image of the film with this header, whichever command writes it: pbrt's
-/// where it has such, else our own. Time and counts are those of all runs.
+/// Returns the attributes of an image of the film with this header: those of pbrt where they exist, else
+/// our own. Time and counts are those of all runs.
 pub fn metadata(header: &FilmHeader) -> Vec<(String, MetadataValue)> {
     let passes = i32::try_from(header.passes.len()).unwrap_or(i32::MAX);
     let seconds = header.seconds as f32;

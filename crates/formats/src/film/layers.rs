@@ -1,4 +1,4 @@
-//! What a film keeps beside the picture, by name.
+//! The layers of a film by name.
 
 use bidir::film::{Aov, Layers, StrategyImages};
 use serde::{Deserialize, Serialize};
@@ -10,9 +10,9 @@ pub struct LayerNames {
     pub aovs: Vec<String>,
     /// Groups of lights.
     pub light_groups: Vec<String>,
-    /// The most vertices of paths whose strategies have images.
+    /// The maximum number of vertices of paths whose strategies have images.
     pub strategy_vertices: usize,
-    /// Whether these have raw images too.
+    /// The kinds of images of these strategies.
     #[serde(default, skip_serializing_if = "is_weighted")]
     pub strategy_images: StrategyImagesName,
 }
@@ -21,10 +21,10 @@ pub struct LayerNames {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StrategyImagesName {
-    /// Weighted ones alone; films that say nothing have these.
+    /// Weighted images only, which is the default.
     #[default]
     Weighted,
-    /// Weighted and raw ones.
+    /// Weighted and raw images.
     WeightedAndRaw,
 }
 
@@ -34,12 +34,12 @@ fn is_weighted(images: &StrategyImagesName) -> bool {
 }
 
 impl LayerNames {
-    /// True where there is the picture alone.
+    /// Returns true if the film has no layers.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The layers of these names. None: one is not known, or they are not in order.
+    /// Returns the layers of these names. None: a name is unknown, or the order is wrong.
     pub(super) fn layers(&self) -> Option<Layers> {
         let find = |name: &String| Aov::NAMES.iter().find(|(known, _)| known == name);
         let aovs = self.aovs.iter().map(|name| Some(find(name)?.1));

@@ -1,4 +1,4 @@
-//! Film files: the exact sums of a render on disk, to go on from, to merge, and to develop.
+//! Film files: the exact sums of a render on disk, to continue, merge and develop.
 //!
 //! A file is one header and the sums of all pixels in row order:
 //!
@@ -9,23 +9,23 @@
 //! | 4 | length of the header |
 //! | … | the header, JSON ([`FilmHeader`]) |
 //! | 4 | checksum of all bytes before it |
-//! | … | blocks of 4096 pixels, the last one shorter: length of what is packed, its checksum, and that |
+//! | … | blocks of 4096 pixels, the last one shorter: length of the packed bytes, their checksum, the bytes |
 //! | 8 | `BIDIREND` |
 //!
 //! Numbers are little-endian, checksums CRC-32. Sums are 128-bit two's complements, in the order of
-//! [`Film::sums`]; how many a pixel has follows from the header's layers. A block is packed by planes
-//! of bytes: first the lowest byte of the first sum of every pixel, then the second byte, and so on to
-//! the highest byte of the last sum. Most planes are one byte again and again, and some are so dense
-//! that packing would gain little. A packed block is
+//! [`Film::sums`]; their number per pixel follows from the header's layers. A block is packed by planes of
+//! bytes: first the lowest byte of the first sum of every pixel, then the second byte, and so on to the
+//! highest byte of the last sum. Most planes repeat one byte, and some are so dense that packing would
+//! gain little. A packed block is
 //!
 //! | bytes | what |
 //! |---|---|
-//! | 2 for each plane | 0 and the byte that all of it is; 1, 0 for a dense one; 2, 0 for any other |
-//! | 1 for each pixel of each dense plane | those planes |
+//! | 2 for each plane | 0 and the repeated byte; 1, 0 for a dense plane; 2, 0 for any other |
+//! | 1 for each pixel of each dense plane | the dense planes |
 //! | … | the other planes, DEFLATE |
 //!
-//! Nothing is normalised: equal films are equal files but for the header, and adding the sums of two
-//! files of different passes is the file of both.
+//! Sums are not normalised: equal films have equal files except for the header, and the sums of two files
+//! with different passes add up to those of the merged file.
 
 mod block;
 mod developed;
@@ -56,38 +56,38 @@ use std::path::Path;
 const MAGIC: &[u8; 8] = b"BIDIRFLM";
 const END: &[u8; 8] = b"BIDIREND";
 const VERSION: u32 = 3;
-/// Bytes of a film: what the memory of a render has room for.
+/// Maximum size of a film: the memory of a render. Unit: bytes.
 const LARGEST_FILM: u64 = Resources::DEFAULT_FILM_MEMORY;
-/// Blocks that are packed at once: no more of them are in memory twice.
+/// Number of blocks that are packed at once, which bounds the additional memory.
 const AT_ONCE: usize = 64;
-/// Bytes before the header.
+/// Size of the part before the header. Unit: bytes.
 const PREAMBLE: usize = 16;
 
 /// A film file in memory.
 #[derive(Clone, Debug)]
 pub struct FilmFile {
-    /// Whose film it is.
+    /// The description of the render.
     pub header: FilmHeader,
-    /// The sums, with the header's geometry and passes. Its filter is the default one: nothing can
-    /// be added but other films.
+    /// The sums, with the header's geometry and passes. The filter is the default one: only other films can
+    /// be added.
     pub film: Film,
 }
 
-/// Writes a film file, so that its name stands for the whole of it or for what was there before.
+/// Writes a film file atomically.
 ///
-/// Passes and geometry in `header` are those of `film`, whatever it said before.
+/// Passes and geometry in `header` are replaced by those of `film`.
 ///
 /// Errors: the file cannot be written.
 pub fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
     file::replace(path, &encode(header, film)?)
 }
 
-/// The same, and the file that was there is called `previous` afterwards.
+/// Does the same as [`write()`], and renames an existing file to `previous`.
 pub fn write_keeping(path: &Path, previous: &Path, header: &FilmHeader, film: &Film) -> Result<()> {
     file::replace_keeping(path, previous, &encode(header, film)?)
 }
 
-/// True where a file begins as film files do, damaged or not.
+/// Returns true if a file begins like a film file, even if it is damaged.
 pub fn is_film(path: &Path) -> bool {
     let mut first = [0; MAGIC.len()];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut first));
@@ -96,13 +96,13 @@ pub fn is_film(path: &Path) -> bool {
 
 /// Reads a film file.
 ///
-/// Errors: it cannot be read, or is no whole film file of this version.
+/// Errors: the file cannot be read, or is not an intact film file of this version.
 pub fn read(path: &Path) -> Result<FilmFile> {
     let bytes = bytes::read_or_stdin(path, limits::LARGEST_FILM)?.bytes;
     decode(&bytes).map_err(|error| error.in_file(path))
 }
 
-/// The bytes of a film file; see [`write()`].
+/// Encodes a film file; see [`write()`].
 ///
 /// Errors: the system does not have the memory.
 pub fn encode(header: &FilmHeader, film: &Film) -> Result<Vec<u8>> {
@@ -129,7 +129,7 @@ pub fn encode(header: &FilmHeader, film: &Film) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Takes memory for so many more bytes.
+/// Reserves memory for `more` bytes.
 fn reserve(bytes: &mut Vec<u8>, more: usize) -> Result<()> {
     bytes.try_reserve(more).map_err(|_| {
         let count = bytes.len().saturating_add(more);
@@ -177,7 +177,7 @@ fn take_sums(rest: &mut &[u8], area: u64, layers: &Layers) -> Result<Vec<i128>> 
     let blocks = blocks.collect::<Result<Vec<_>>>()?;
     let numbers = layers.sums();
     let count = area as usize * numbers;
-    // Memory is taken only where there is enough to fill it.
+    // Memory is reserved only if the file has enough bytes to fill it.
     let least = block::least_bytes(numbers);
     if blocks.iter().any(|packed| packed.bytes.len() < least) {
         return Err(broken("damaged: it is shorter than any film of its size"));
@@ -206,7 +206,7 @@ fn take_block<'a>(rest: &mut &'a [u8]) -> Result<Packed<'a>> {
     })
 }
 
-/// The next `count` bytes.
+/// Takes the next `count` bytes.
 fn take<'a>(rest: &mut &'a [u8], count: usize) -> Result<&'a [u8]> {
     let (bytes, after) = rest
         .split_at_checked(count)

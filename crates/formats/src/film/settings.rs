@@ -1,4 +1,4 @@
-//! The settings of a render as texts: identities of films and attributes of images are made of these.
+//! The settings of a render as texts, for identities of films and attributes of images.
 
 use bidir::driver::Settings;
 use bidir::film::StrategyImages;
@@ -7,25 +7,25 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The settings that an image depends on, and its layers. Settings without influence are null.
+/// The settings that an image depends on, and its layers. Settings without effect are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SettingsText {
-    /// Those of the estimator.
+    /// The settings of the estimator.
     #[serde(flatten)]
     pub request: Request,
-    /// The images beside the picture.
+    /// The layers.
     pub aov: String,
-    /// The groups of lights with images of their own.
+    /// The light groups with layers of their own.
     pub light_groups: String,
-    /// The most vertices of paths whose strategies have images of their own.
+    /// The maximum number of vertices of paths whose strategies have layers of their own.
     pub strategy_layers: usize,
-    /// True where strategies have raw images too; left out where they have none.
+    /// True if strategies also have raw layers; omitted if they do not.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub raw_strategies: bool,
 }
 
 impl SettingsText {
-    /// The same by the names of flags: `light-point`, not `light_point`.
+    /// Returns the settings by the names of flags: `light-point`, not `light_point`.
     pub fn by_flag(&self) -> BTreeMap<String, String> {
         let Ok(Value::Object(mut texts)) = serde_json::to_value(self) else {
             unreachable!("settings are an object of texts and numbers")
@@ -34,7 +34,7 @@ impl SettingsText {
         texts.iter().map(|(k, v)| (flag(k), text(v))).collect()
     }
 
-    /// The settings of these names in a line, such as `shadow rays all, seed 0`.
+    /// Returns the settings of these names in one line, such as `shadow rays all, seed 0`.
     pub fn line(&self, names: &[&str]) -> String {
         let texts = self.by_flag();
         let named = names
@@ -45,12 +45,12 @@ impl SettingsText {
     }
 }
 
-/// The name of a field as flags are spelt.
+/// Returns the name of a field in the spelling of flags.
 pub(super) fn flag(field: &str) -> String {
     field.replace('_', "-")
 }
 
-/// A value as flags write it.
+/// Returns a value in the spelling of flags.
 pub(super) fn text(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -58,7 +58,7 @@ pub(super) fn text(value: &Value) -> String {
     }
 }
 
-/// Names with commas between them.
+/// Joins names with commas.
 fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<_> = names.collect();
     if names.is_empty() {

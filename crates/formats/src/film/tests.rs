@@ -3,7 +3,7 @@ use bidir::film::{Aov, FilmSettings, Filter, PassBuffer, PassSet, SplatPlace};
 use bidir::math::Vec2;
 use serde_json::json;
 
-/// A film of two blocks and a bit, with sums of both signs.
+/// Returns a film of more than two blocks, with sums of both signs.
 fn film(first_pass: u64) -> Film {
     let settings = FilmSettings::new([100, 90], Filter::default());
     let groups = ["lamp", "sky"].map(str::to_owned);
@@ -72,7 +72,7 @@ fn a_film_that_ends_early_is_damaged() {
 }
 
 #[test]
-fn no_memory_is_taken_for_pixels_that_the_file_has_no_bytes_for() {
+fn no_memory_is_reserved_for_pixels_without_bytes_in_the_file() {
     let whole = bytes();
     let length = u32::from_le_bytes(whole[12..PREAMBLE].try_into().unwrap()) as usize;
     // Three blocks of no bytes, with their checksums.
@@ -82,7 +82,7 @@ fn no_memory_is_taken_for_pixels_that_the_file_has_no_bytes_for() {
         message.contains("shorter than any film of its size"),
         "{message}"
     );
-    // A film of nothing packs best.
+    // A black film packs best.
     let settings = FilmSettings::new([640, 480], Filter::default());
     let black = Film::with_layers(settings, Layers::default(), u64::MAX).unwrap();
     let again = decode(&encode(&header(), &black).unwrap()).unwrap();
@@ -90,21 +90,21 @@ fn no_memory_is_taken_for_pixels_that_the_file_has_no_bytes_for() {
 }
 
 #[test]
-fn a_flipped_bit_is_seen() {
+fn a_flipped_bit_is_detected() {
     let bytes = bytes();
     for at in (0..bytes.len()).step_by(499).chain(0..64) {
         let mut flipped = bytes.clone();
         flipped[at] ^= 1 << (at % 8);
-        // Where packed bytes have two spellings the film is still the same.
+        // DEFLATE can encode the same film in two ways.
         if let Ok(file) = decode(&flipped) {
             assert!(file.film == film(0), "{at}");
         }
     }
 }
 
-/// Whoever writes a checksum may have meant what it is of.
+/// A valid checksum does not make invalid blocks valid.
 #[test]
-fn what_no_film_is_packed_to_is_damaged_whatever_its_checksum() {
+fn invalid_blocks_with_valid_checksums_are_damaged() {
     let bytes = bytes();
     let header = u32::from_le_bytes(bytes[12..PREAMBLE].try_into().unwrap()) as usize;
     let block = PREAMBLE + header + 4;
@@ -127,7 +127,7 @@ fn what_no_film_is_packed_to_is_damaged_whatever_its_checksum() {
 }
 
 #[test]
-fn other_files_and_versions_are_told() {
+fn other_files_and_versions_are_errors() {
     let check = |bytes: &[u8], text: &str| {
         let error = decode(bytes).unwrap_err().to_string();
         assert!(error.contains(text), "{error}");
@@ -149,7 +149,7 @@ fn a_difference_is_named() {
         header().difference(&header_with("2")).unwrap(),
         "seed is 1 here and 2 there"
     );
-    // Whatever else differs follows from the integrator, or matters less.
+    // Other differences follow from the integrator, or matter less.
     let with = |candidates: &str, integrator: &str| {
         let settings = [("candidates", candidates), ("integrator", integrator)];
         let settings = settings.map(|(name, value)| (name.to_owned(), value.to_owned()));

@@ -1,7 +1,7 @@
 use crate::scene::{LoadOptions, load};
 use std::path::PathBuf;
 
-/// The message about a file of this name, without the folder's.
+/// Returns the message about a file of this name, without the folder.
 fn message(name: &str, bytes: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
@@ -68,7 +68,7 @@ fn meshes_and_scenes_of_modellers_are_named() {
 }
 
 #[test]
-fn a_gltf_file_under_another_name_says_which() {
+fn a_gltf_file_with_another_ending_gets_a_hint() {
     let expected = "`a.pbrt` is a glTF file; name it ";
     let said = message("a.pbrt", b"{\"asset\": {\"version\": \"2.0\"}}");
     assert!(
@@ -88,7 +88,7 @@ fn a_gltf_file_under_another_name_says_which() {
 }
 
 #[test]
-fn what_is_no_gltf_is_named() {
+fn files_that_are_not_gltf_are_named() {
     check(
         "a.glb",
         b"some words",
@@ -116,9 +116,9 @@ fn binary_files_are_never_printed() {
         let expected = format!("`a.pbrt` is a binary file, not a scene; {FORMATS}");
         check("a.pbrt", bytes, &expected);
     }
-    // No zero in it, but no UTF-8 either.
-    let said = message("a.pbrt", b"\x9c\x1b[31m\xff\xfe");
-    assert!(said.is_ascii() && !said.contains('\x1b'), "{said:?}");
+    // Neither zero bytes nor UTF-8.
+    let text = message("a.pbrt", b"\x9c\x1b[31m\xff\xfe");
+    assert!(text.is_ascii() && !text.contains('\x1b'), "{text:?}");
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn a_folder_is_named_with_a_scene_in_it() {
 }
 
 #[test]
-fn scenes_under_odd_names_are_read_and_slips_are_the_parser_s() {
+fn scenes_with_unusual_endings_are_read_and_the_parser_reports_misspellings() {
     let folder = tempfile::tempdir().unwrap();
     let text = "# a sky\nWorldBegin LightSource \"infinite\"\n";
     for name in ["sky", "sky.txt", "sky.xml", "sky.PBRT"] {

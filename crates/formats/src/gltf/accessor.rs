@@ -43,7 +43,7 @@ impl Component {
         }
     }
 
-    /// The number in `bytes`, which are [`size`](Self::size) many; exact.
+    /// Reads the number in `bytes`, of which there are [`size`](Self::size). The result is exact.
     fn read(self, bytes: &[u8]) -> f64 {
         match (self, bytes) {
             (Self::I8, &[a, ..]) => f64::from(a as i8),
@@ -56,7 +56,7 @@ impl Component {
         }
     }
 
-    /// What a normalised number stands for.
+    /// Maps a normalised integer to `[0, 1]` or `[-1, 1]`.
     fn normalise(self, value: f64) -> f64 {
         match self {
             Self::I8 => (value / 127.0).max(-1.0),
@@ -79,7 +79,7 @@ const KINDS: [(&str, usize); 7] = [
     ("MAT4", 16),
 ];
 
-/// An accessor that was checked against its buffers.
+/// An accessor that is checked against its buffers.
 struct Layout<'a> {
     accessor: &'a Accessor,
     component: Component,
@@ -113,12 +113,12 @@ impl<'a> Layout<'a> {
         })
     }
 
-    /// Bytes of one value. Columns of matrices begin at multiples of four bytes.
+    /// Returns the size of one value in bytes. Columns of matrices begin at multiples of four bytes.
     fn value_size(&self) -> usize {
         self.offset_of(self.components - 1) + self.component.size()
     }
 
-    /// Where a component begins within its value.
+    /// Returns the offset of a component within its value. Unit: bytes.
     fn offset_of(&self, i: usize) -> usize {
         let rows = match self.accessor.kind.as_str() {
             "MAT2" => 2,
@@ -129,7 +129,7 @@ impl<'a> Layout<'a> {
         (i / rows) * column + (i % rows) * self.component.size()
     }
 
-    /// All components of all values in one row.
+    /// Reads all components of all values.
     fn read(&self, document: &Document) -> Result<Vec<f64>, GltfFault> {
         let count = self.accessor.count;
         let components = count.saturating_mul(self.components);
@@ -161,13 +161,13 @@ impl<'a> Layout<'a> {
         let size = self.value_size();
         let stride =
             stride.unwrap_or(size.next_multiple_of(if self.components > 4 { 4 } else { 1 }));
-        let wanted = Elements {
+        let elements = Elements {
             offset: self.accessor.byte_offset,
             stride,
             size,
             count: self.accessor.count,
         };
-        let range = wanted.range(bytes.len(), &self.place)?;
+        let range = elements.range(bytes.len(), &self.place)?;
         let bytes = &bytes[range];
         document.count_components(self.accessor.count * self.components, &self.place)?;
         let at = |i: usize| &bytes[i * stride..i * stride + size];
@@ -215,7 +215,7 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Values in bytes.
+/// The layout of values in a buffer view.
 struct Elements {
     offset: usize,
     stride: usize,
@@ -233,7 +233,7 @@ impl Elements {
         }
     }
 
-    /// The bytes that all values lie in. Errors: they end beyond `available`.
+    /// Returns the range of bytes of all values. Errors: it ends beyond `available`.
     fn range(&self, available: usize, place: &Place) -> Result<Range<usize>, GltfFault> {
         let end = || {
             let last = self.count.checked_sub(1)?.checked_mul(self.stride)?;
@@ -271,7 +271,7 @@ impl Elements {
 }
 
 impl Document {
-    /// The values of an accessor of vectors with `N` components, which `user` refers to.
+    /// Reads an accessor of vectors with `N` components, which `user` refers to.
     pub(super) fn vectors<const N: usize>(
         &self,
         index: usize,
@@ -289,7 +289,7 @@ impl Document {
         Ok(values.as_chunks::<N>().0.iter().map(vector).collect())
     }
 
-    /// Vectors of which all components have to be finite numbers.
+    /// Reads an accessor of vectors, whose components have to be finite.
     pub(super) fn finite_vectors<const N: usize>(
         &self,
         index: usize,
@@ -303,12 +303,12 @@ impl Document {
         }
     }
 
-    /// How many components the vectors of an accessor have.
+    /// Returns the number of components of an accessor's vectors.
     pub(super) fn components(&self, index: usize, user: &Place) -> Result<usize, GltfFault> {
         Layout::new(self, index, user).map(|layout| layout.components)
     }
 
-    /// The values of an accessor of whole numbers.
+    /// Reads an accessor of whole numbers.
     pub(super) fn indices(&self, index: usize, user: &Place) -> Result<Vec<u32>, GltfFault> {
         let layout = Layout::new(self, index, user)?;
         let whole = matches!(

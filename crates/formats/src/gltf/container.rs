@@ -1,4 +1,4 @@
-//! The parts of a glTF file: the JSON, the binary chunk of a `.glb`, files beside it and data URIs.
+//! The parts of a glTF file: the JSON, the binary chunk of a `.glb`, files beside it, and data URIs.
 
 use super::place::{GltfFault, Place};
 use crate::error::{Error, ErrorKind, Result};
@@ -9,7 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::path::{Path, PathBuf};
 
-/// The beginning of a `.glb`.
+/// The first bytes of a `.glb`.
 const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: [u8; 4] = *b"JSON";
 const BINARY_CHUNK: [u8; 4] = *b"BIN\0";
@@ -23,14 +23,14 @@ pub(super) struct Container {
 }
 
 impl Container {
-    /// Bytes of the file.
+    /// Returns the size of JSON and binary chunk. Unit: bytes.
     pub(super) fn size(&self) -> u64 {
         let binary = self.binary.as_ref().map_or(0, Vec::len);
         (self.json.len() + binary) as u64
     }
 }
 
-/// Reads a `.gltf` or `.glb`; which of them it is, its first bytes say.
+/// Reads a `.gltf` or `.glb`, which are distinguished by their first bytes.
 pub(super) fn read(path: &Path, files: &Files) -> Result<Container> {
     foreign::check_folder(path, files)?;
     let bytes = files.read(path, LARGEST_GLTF)?.bytes;
@@ -59,13 +59,13 @@ fn broken(message: impl Into<String>) -> Error {
     )
 }
 
-/// Four bytes as a number, and what follows. None: there are no four.
+/// Reads four bytes as a number, and returns the rest. None: there are fewer.
 fn number(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (number, rest) = bytes.split_first_chunk::<4>()?;
     Some((u32::from_le_bytes(*number) as usize, rest))
 }
 
-/// Takes a `.glb` apart: twelve bytes, then chunks of a length, a name and bytes.
+/// Splits a `.glb` into its chunks: after twelve bytes, each has a length, a name and bytes.
 fn chunks(bytes: &[u8]) -> Result<Container> {
     let short = || broken("it ends inside its header");
     let (version, rest) = number(&bytes[MAGIC.len()..]).ok_or_else(short)?;
@@ -89,7 +89,7 @@ fn chunks(bytes: &[u8]) -> Result<Container> {
         match *kind {
             JSON_CHUNK if json.is_none() => json = Some(text(data.to_vec())?),
             BINARY_CHUNK if binary.is_none() => binary = Some(data.to_vec()),
-            // Chunks of other kinds are for programs that know them.
+            // The format allows unknown chunks.
             _ => {}
         }
         rest = after;
@@ -128,7 +128,7 @@ pub(super) fn resource(
     Ok(Resource { bytes, file })
 }
 
-/// The file that `uri` names. None: it names none.
+/// Returns the file that `uri` names. None: it is a data URI or a remote one.
 pub(super) fn file(folder: &Path, uri: &str) -> Option<PathBuf> {
     let is_other = uri.starts_with("data:") || uri.contains("://");
     (!is_other).then(|| folder.join(file_of(uri)))
@@ -146,7 +146,7 @@ fn data_uri(data: &str, place: &Place) -> Result<Vec<u8>, GltfFault> {
     decoded.map_err(|error| broken(format!("broken base64: {error}")))
 }
 
-/// A relative URI as a file's name: `%20` is a blank, and what is no such code stays.
+/// Converts a relative URI to a file name: decodes escapes such as `%20`, and keeps invalid ones.
 fn file_of(uri: &str) -> PathBuf {
     let mut bytes = Vec::new();
     let mut rest = uri.as_bytes();
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn uris_become_names_of_files() {
+    fn uris_are_decoded_to_file_names() {
         for (uri, name) in [
             ("a.bin", "a.bin"),
             ("my%20mesh%2Bb.bin", "my mesh+b.bin"),
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn chunks_are_taken_apart_and_cut_ones_refused() {
+    fn chunks_are_split_and_truncated_ones_refused() {
         let mut glb = b"glTF\x02\0\0\0\x28\0\0\0\x04\0\0\0JSON{}  ".to_vec();
         glb.extend(b"\x04\0\0\0BIN\0\x01\x02\x03\x04\0\0\0\0");
         glb.truncate(36);

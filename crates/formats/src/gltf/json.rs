@@ -1,5 +1,4 @@
-//! The JSON of a glTF file, as far as it is read. What is not named here is passed over, as the format
-//! wants of programs that do not know it.
+//! The JSON of a glTF file, as far as it is read. Other keys are ignored, as the format demands.
 
 #![expect(
     clippy::struct_field_names,
@@ -9,7 +8,7 @@
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// An index into one of the arrays of the file.
+/// An index into one of the file's arrays.
 pub(super) type Index = usize;
 
 macro_rules! object {
@@ -24,7 +23,7 @@ macro_rules! object {
 }
 
 object!(
-    /// All of the file.
+    /// The whole file.
     Root {
         asset: Asset,
         extensions_used: Vec<String>,
@@ -157,7 +156,7 @@ object!(Texture {
     extensions: ImageExtensions,
 });
 object!(
-    /// The image of a texture in formats that the core of glTF does not have.
+    /// The image of a texture in formats of extensions.
     ImageExtensions {
         #[serde(rename = "EXT_texture_webp")]
         webp: Option<OtherImage>,
@@ -182,11 +181,11 @@ object!(Sampler {
     wrap_t: Option<u32>,
 });
 object!(
-    /// Where a material uses a texture.
+    /// The use of a texture by a material.
     TextureInfo {
         index: Index,
         tex_coord: usize,
-        /// Of a normal texture.
+        /// The scale of a normal texture.
         scale: Option<f32>,
         extensions: TextureExtensions,
     }
@@ -246,7 +245,7 @@ object!(MaterialExtensions {
     iridescence: Option<Empty>,
 });
 object!(
-    /// Something of which only matters that it is there.
+    /// An object whose contents are not read.
     Empty {}
 );
 object!(EmissiveStrength { emissive_strength: Option<f32>, });

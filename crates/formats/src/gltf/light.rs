@@ -1,5 +1,5 @@
-//! Lights of KHR_lights_punctual. Their units are those of light that is seen: candela and lux count
-//! as radiant intensity and irradiance, as everywhere in the file.
+//! Lights of KHR_lights_punctual. Photometric units are used as radiometric ones, as everywhere in the
+//! file: candela as radiant intensity, lux as irradiance.
 
 use super::document::Context;
 use super::json::Light as Described;
@@ -9,7 +9,7 @@ use bidir::light::{DistantLight, Light, PointLight, SpotLight};
 use bidir::math::Vec3;
 use glam::{DAffine3, DVec3};
 
-/// The lights of the scene with their places, in the order of its nodes.
+/// Builds the lights of the scene with their places, in the order of its nodes.
 pub(super) fn all(
     context: &mut Context<'_>,
     nodes: &Nodes,
@@ -77,7 +77,7 @@ fn build(
     }
 }
 
-/// The intensity or irradiance in each channel.
+/// Returns the intensity or irradiance in each channel.
 fn power(described: &Described, place: &Place) -> Result<[f32; 3], GltfFault> {
     let intensity = described.intensity.unwrap_or(1.0);
     let color = described.color.unwrap_or([1.0; 3]);

@@ -1,4 +1,4 @@
-//! Materials: what surfaces scatter, emit and cover.
+//! Materials: scattering, emission and coverage of surfaces.
 
 mod reader;
 
@@ -12,21 +12,21 @@ use bidir::texture::FloatTexture;
 use reader::Reader;
 use std::collections::BTreeMap;
 
-/// A material as shapes use it.
+/// A built material for shapes.
 #[derive(Clone, Debug)]
 pub(super) struct Built {
     pub(super) id: MaterialId,
     pub(super) emission: Option<Emission>,
-    /// The alpha of the surface. None: it is opaque.
+    /// The coverage of the surface. None: it is opaque.
     pub(super) coverage: Option<FloatTexture>,
-    /// The parameters of its meshes.
+    /// The map from texture coordinates to the parameters of meshes.
     pub(super) uv: UvMap,
 }
 
-/// The material of a primitive, and what its vertices multiply the base colour by.
+/// The material of a primitive, and the factor of its vertices on the base colour.
 type Key = (Option<usize>, [u32; 4]);
 
-/// The materials that are in use.
+/// The materials in use.
 #[derive(Default)]
 pub(super) struct Materials {
     built: BTreeMap<Key, Built>,
@@ -34,8 +34,7 @@ pub(super) struct Materials {
 }
 
 impl Materials {
-    /// Material number `index`, the default one where there is none, with its base colour times
-    /// `color`.
+    /// Returns material number `index`, or the default material, with its base colour times `color`.
     pub(super) fn get(
         &mut self,
         (context, builder): (&mut Context<'_>, &mut SceneBuilder),
@@ -75,13 +74,13 @@ impl Materials {
         Ok(built)
     }
 
-    /// The number of materials.
+    /// Returns the number of materials.
     pub(super) fn count(&self) -> usize {
         self.built.len()
     }
 }
 
-/// The textures of a material that say where it is looked up, the most important one first.
+/// Returns the textures of a material, the one whose coordinates matter most first.
 fn infos(described: &Described) -> Vec<&TextureInfo> {
     let extensions = &described.extensions;
     let (pbr, specular) = (
@@ -111,8 +110,8 @@ fn infos(described: &Described) -> Vec<&TextureInfo> {
     all.into_iter().flatten().collect()
 }
 
-/// The parameters of a material's meshes: the map that all its textures share, else the set of the
-/// first one.
+/// Returns the map from texture coordinates to the parameters of meshes: the one that all textures share,
+/// else the coordinate set of the first texture.
 fn baked(described: &Described) -> UvMap {
     let mut maps = infos(described).into_iter().map(uv_map);
     let Some(first) = maps.next() else {

@@ -1,4 +1,4 @@
-//! Primitives of meshes: their attributes, made into triangles.
+//! Reads the attributes and triangles of primitives.
 
 mod places;
 mod placing;
@@ -14,25 +14,25 @@ use bidir::math::Vec2;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surface {
     pub(super) positions: Vec<[f32; 3]>,
-    /// Empty: the surface is flat.
+    /// The normals. Empty: faces are flat.
     pub(super) normals: Vec<[f32; 3]>,
-    /// Empty: along the texture coordinates' first axis.
+    /// The tangents. Empty: they follow the first axis of the texture coordinates.
     pub(super) tangents: Vec<[f32; 3]>,
-    /// Two sets; empty where there are none.
+    /// Two sets of texture coordinates; empty if the file has none.
     pub(super) uvs: [Vec<[f32; 2]>; 2],
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The factor of the base colour, from the vertices: red, green, blue, alpha.
+    /// The factor of all vertices on the base colour: red, green, blue, alpha.
     pub(super) color: [f32; 4],
-    /// Joints and their weights, by vertex. Empty: there are none.
+    /// Joints and their weights of each vertex. Empty: the surface has no skin.
     pub(super) joints: Vec<[(u32, f32); 4]>,
 }
 
-/// The map from texture coordinates to those of the built mesh.
+/// The map from texture coordinates to the parameters of the built mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvMap {
-    /// Which set.
+    /// The set of texture coordinates.
     pub(super) set: usize,
-    /// Rows of a matrix with an offset behind: (u', v') = rows · (u, v, 1).
+    /// The rows of an affine map: (u', v') = rows · (u, v, 1).
     pub(super) rows: [[f32; 3]; 2],
 }
 
@@ -42,7 +42,7 @@ impl UvMap {
         rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
     };
 
-    /// The parameters of the built mesh, whose v goes up where that of the file goes down.
+    /// Returns the parameters of the built mesh, whose v points up, while that of the file points down.
     fn apply(&self, [u, v]: [f32; 2]) -> Vec2 {
         let [s, t] = self.rows.map(|[a, b, c]| a * u + b * v + c);
         Vec2::new(s, 1.0 - t)
@@ -50,7 +50,7 @@ impl UvMap {
 }
 
 impl Surface {
-    /// Reads a primitive. None: it has no triangles, of which a warning says why.
+    /// Reads a primitive. None: it has no triangles; a warning says why.
     pub(super) fn read(
         context: &mut Context<'_>,
         (primitive, place): (&Primitive, &Place),
@@ -99,7 +99,7 @@ impl Surface {
         if let Some((index, place)) = find("NORMAL") {
             self.normals = self.per_vertex(document.finite_vectors(index, &place)?, &place)?;
         }
-        // Without normals the format ignores tangents.
+        // The format demands that tangents are ignored if there are no normals.
         let is_smooth = !self.normals.is_empty();
         if let Some((index, place)) = find("TANGENT").filter(|_| is_smooth) {
             let tangents = document.finite_vectors::<4>(index, &place)?;
@@ -126,7 +126,7 @@ impl Surface {
         Ok(())
     }
 
-    /// Values of which there has to be one per vertex.
+    /// Checks that there is one value per vertex.
     fn per_vertex<T>(&self, values: Vec<T>, place: &Place) -> Result<Vec<T>, GltfFault> {
         let (vertices, count) = (self.positions.len(), values.len());
         if vertices == count {
@@ -135,7 +135,7 @@ impl Surface {
         Err(place.scene(format!("there are {count} values for {vertices} positions")))
     }
 
-    /// One colour for all vertices: theirs where it is the same, else the mean.
+    /// Reads one colour for all vertices: the mean of their colours.
     fn read_color(
         &mut self,
         context: &mut Context<'_>,
@@ -191,7 +191,7 @@ impl Surface {
         Ok(joints.iter().zip(&weights).map(of_vertex).collect())
     }
 
-    /// Adds the targets' differences, each times its weight.
+    /// Adds the displacements of morph targets, each times its weight.
     fn morph(
         &mut self,
         document: &Document,
@@ -222,7 +222,7 @@ impl Surface {
     }
 }
 
-/// The triangles of a primitive, from triangles, strips or fans.
+/// Reads the triangles of a primitive from triangles, strips or fans.
 fn triangles(
     document: &Document,
     primitive: &Primitive,

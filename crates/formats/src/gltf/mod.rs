@@ -1,15 +1,14 @@
 //! glTF 2.0: `.gltf` with its files beside it, and `.glb`.
 //!
-//! The JSON becomes plain structures (`json`) whose extensions have names and types; accessors are
-//! checked against the bytes they lie in before anything is taken for them; and what is built is a
-//! scene like any other. Faults name their place by the way to it in the JSON.
+//! The JSON is parsed into plain structures (`json`) with typed extensions; accessors are checked against
+//! their bytes before memory is reserved for them. Errors have a line, a column and a path in the JSON.
 //!
-//! The format lets programs leave out extensions that a file does not require: that is a warning.
-//! Features that the format itself demands are refused where the renderer lacks them, and
-//! [`LoadOptions::lenient`] accepts a substitute. docs/reference/gltf.md lists all.
+//! The format lets programs ignore extensions that a file does not require: an ignored or simplified
+//! feature is a warning. A required feature that the renderer does not support is an error, or with
+//! [`LoadOptions::lenient`] replaced by a similar one. docs/reference/gltf.md lists all of them.
 //!
-//! A file without a camera is seen as a whole, and one without light is lit from behind the viewer
-//! (`outside`). Units are taken as they are: nothing is divided by 683 lm/W.
+//! A file without a camera is shown as a whole, and one without light is lit from behind the viewer
+//! (`outside`). Units are not converted: nothing is divided by 683 lm/W.
 
 mod accessor;
 mod assembly;
@@ -37,7 +36,7 @@ use bidir::sampler::SamplerKind;
 use document::Document;
 use std::path::Path;
 
-/// The default settings of a render: the format has none.
+/// The default settings of a render, as the format has none.
 const SETTINGS: SceneSettings = SceneSettings {
     integrator: IntegratorKind::Auto,
     max_depth: 12,
@@ -48,7 +47,7 @@ const SETTINGS: SceneSettings = SceneSettings {
     aovs: Vec::new(),
 };
 
-/// True for names of files in this format.
+/// Returns true for names of files in this format.
 pub fn is_gltf(path: &Path) -> bool {
     let extension = path.extension().and_then(|extension| extension.to_str());
     extension.is_some_and(|extension| {
@@ -58,12 +57,12 @@ pub fn is_gltf(path: &Path) -> bool {
     })
 }
 
-/// Reads a file with all that it refers to.
+/// Reads a file with all files that it refers to.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded> {
     load_from(path, options, &Files::default())
 }
 
-/// The same as [`load`], with files from where `files` says.
+/// Does the same as [`load`] with files from `files`.
 pub fn load_from(path: &Path, options: &LoadOptions, files: &Files) -> Result<Loaded> {
     let (document, log) = Document::open(path, options, files)?;
     import::load(&document, options, log, Builder::gather)

@@ -1,4 +1,4 @@
-//! The nodes of the scene that is shown, each with its map to the world.
+//! The nodes of the rendered scene with their maps to the world.
 
 use super::document::Document;
 use super::json::{Node, Root};
@@ -7,23 +7,21 @@ use glam::{DAffine3, DMat4, DQuat, DVec3};
 
 /// The nodes of a scene in the order of a walk from the roots, children after parents.
 pub(super) struct Nodes {
-    /// Nodes by index.
+    /// The indices of the nodes.
     pub(super) order: Vec<usize>,
-    /// The map to the space that is rendered in of each node of the file. None: it is not in the
-    /// scene.
+    /// The map of each node of the file to the render space. None: it is not in the scene.
     pub(super) render_from_node: Vec<Option<DAffine3>>,
 }
 
 impl Nodes {
-    /// Walks the scene that the file shows. Errors: nodes that are their own ancestors, or have two
-    /// parents.
+    /// Walks the nodes of the file's scene. Errors: a node is its own ancestor, or has two parents.
     pub(super) fn of(document: &Document, render_from_world: DAffine3) -> Result<Self, GltfFault> {
         let root = &document.root;
         let mut nodes = Self {
             order: Vec::new(),
             render_from_node: vec![None; root.nodes.len()],
         };
-        // Nodes to visit, the next one last, each with where it is named.
+        // Nodes to visit, the next one last, each with its parent and the place that names it.
         let mut waiting = roots(root, render_from_world)?;
         waiting.reverse();
         while let Some((index, parent, named)) = waiting.pop() {
@@ -51,8 +49,8 @@ impl Nodes {
     }
 }
 
-/// The roots of the scene that the file shows: its default scene, else the first, else all nodes that
-/// are nobody's children.
+/// Returns the roots of the rendered scene: the default scene, else the first, else all nodes without a
+/// parent.
 fn roots(
     root: &Root,
     render_from_world: DAffine3,
@@ -81,7 +79,7 @@ fn roots(
     Ok(from_top(&tops))
 }
 
-/// The map from a node to its parent.
+/// Returns the map from a node to its parent.
 fn local(node: &Node, place: &Place) -> Result<DAffine3, GltfFault> {
     let Some(matrix) = &node.matrix else {
         return Ok(from_parts(node.translation, node.rotation, node.scale));
@@ -96,7 +94,7 @@ fn local(node: &Node, place: &Place) -> Result<DAffine3, GltfFault> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// T · R · S.
+/// Returns T · R · S.
 pub(super) fn from_parts(
     translation: Option<[f64; 3]>,
     rotation: Option<[f64; 4]>,

@@ -1,8 +1,8 @@
-//! Where a scene without a camera is seen from, and the light around one that has none.
+//! The camera of a scene without one, and the environment of a scene without light.
 //!
-//! The front of an asset is +z. A scene that is flat, or whose surfaces are edge-on from there, is
-//! seen from elsewhere. The light comes from behind the viewer, so that a surface of any colour
-//! differs from the background.
+//! The front of an asset is +z. A flat scene, or one whose surfaces are edge-on from there, gets another
+//! viewpoint. The light comes from behind the viewer, so that a surface of any colour differs from the
+//! background.
 
 use super::view::looking;
 use bidir::light::InfiniteLight;
@@ -10,16 +10,16 @@ use bidir::math::{Affine3A, Mat3, Vec2, Vec3, square_to_direction};
 use bidir::texture::Image;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// A direction that a scene may be seen from.
+/// A direction from which a scene may be seen.
 pub(super) struct Viewpoint {
-    /// From the scene, not normalised.
+    /// The direction from the scene to the viewer, not normalised.
     to_viewer: DVec3,
     up: DVec3,
-    /// Where the camera is.
+    /// The name of the position in messages.
     pub(super) name: &'static str,
 }
 
-/// The first from which enough is seen is taken; from one of the last three every plane is seen.
+/// The viewpoints in order of preference. Every plane is visible from one of the last three.
 const VIEWPOINTS: [Viewpoint; 4] = [
     Viewpoint {
         to_viewer: DVec3::Z,
@@ -43,12 +43,12 @@ const VIEWPOINTS: [Viewpoint; 4] = [
     },
 ];
 
-/// The part of the largest projected area that has to be seen.
+/// The required projected area, relative to the largest of all viewpoints.
 const ENOUGH: f64 = 0.25;
-/// The part of the view that is left free.
+/// The size of the view relative to the scene.
 const MARGIN: f64 = 1.05;
 
-/// The look of a scene from afar.
+/// The extent of a scene: its box, and its projected areas.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     /// The corners of a box around all triangles.
@@ -58,13 +58,13 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// Of nothing.
+    /// The extent of an empty scene.
     pub(super) const NONE: Self = Self {
         corners: [Vec3::INFINITY, Vec3::NEG_INFINITY],
         areas: DMat3::ZERO,
     };
 
-    /// Of triangles.
+    /// Computes the extent of triangles.
     pub(super) fn of(points: &[Vec3], triangles: impl Iterator<Item = [Vec3; 3]>) -> Self {
         let widened = |[low, high]: [Vec3; 2], &p: &Vec3| [low.min(p), high.max(p)];
         let mut extent = Self::NONE;
@@ -77,8 +77,8 @@ impl Extent {
         extent
     }
 
-    /// Adds what `map` makes of another extent: exact for the box, and where `map` keeps shapes for the
-    /// areas.
+    /// Adds another extent mapped by `map`. The box contains the mapped one; areas are exact if `map` is a
+    /// similarity.
     pub(super) fn include(&mut self, other: &Self, map: &DAffine3) {
         for i in 0..8_usize {
             let corner = Vec3::from_array(std::array::from_fn(|axis| {
@@ -103,14 +103,14 @@ impl Extent {
         }
     }
 
-    /// The centre of the box, and half its size. None: there is nothing.
+    /// Returns the centre of the box, and half its size. None: the scene is empty.
     fn centre_and_half(&self) -> Option<(DVec3, DVec3)> {
         let [low, high] = self.corners.map(Vec3::as_dvec3);
         let is_something = low.cmple(high).all();
         is_something.then(|| ((low + high) / 2.0, (high - low) / 2.0))
     }
 
-    /// The first of the viewpoints from which enough is seen: of the box, and of the surfaces.
+    /// Returns the first viewpoint from which enough of the box and of the surfaces is visible.
     pub(super) fn viewpoint(&self) -> &'static Viewpoint {
         let half = self.centre_and_half().map_or(DVec3::ONE, |(_, half)| half);
         let sides = DVec3::new(half.y * half.z, half.x * half.z, half.x * half.y);
@@ -118,7 +118,7 @@ impl Extent {
             .each_ref()
             .map(|point| point.to_viewer.normalize());
         let box_areas = directions.map(|d| d.abs().dot(sides));
-        // A mean square, as the signs of normals do not matter.
+        // The root mean square, as the signs of normals do not matter.
         let surfaces = directions.map(|d| d.dot(self.areas * d).max(0.0).sqrt());
         let is_enough =
             |areas: [f64; 4], i: usize| areas[i] >= ENOUGH * areas.into_iter().fold(0.0, f64::max);
@@ -133,7 +133,7 @@ fn outer(v: DVec3) -> DMat3 {
 }
 
 impl Viewpoint {
-    /// A place in this direction from which the box of `extent` fills a view of half size `half` at
+    /// Returns a camera in this direction for which the box of `extent` fills a view of half size `half` at
     /// distance 1.
     pub(super) fn camera(&self, extent: &Extent, half: DVec3) -> Affine3A {
         let (centre, size) = extent
@@ -153,14 +153,14 @@ impl Viewpoint {
     }
 }
 
-/// Texels of the surroundings in either direction.
+/// Number of texels of the environment in either direction.
 const TEXELS: usize = 128;
-/// The radiance of the background, which all other directions have besides.
+/// The radiance of the background, which is added in all directions.
 const BACKGROUND: f32 = 0.25;
-/// Where most light comes from, in the space of the camera: over the viewer's left shoulder.
+/// The direction of most light in the space of the camera: over the viewer's left shoulder.
 const KEY: Vec3 = Vec3::new(-0.4, 0.7, -1.0);
 
-/// Soft light from behind and above the viewer, cos θ + [`BACKGROUND`], before an even background.
+/// Returns soft light from behind and above the viewer, cos θ + [`BACKGROUND`], before a uniform background.
 ///
 /// A white diffuse surface that faces the light has radiance 0.92.
 pub(super) fn surroundings(world_from_camera: &Affine3A) -> InfiniteLight {

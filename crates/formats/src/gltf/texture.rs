@@ -1,4 +1,4 @@
-//! Images and how materials look them up.
+//! Images, and their lookup by materials.
 
 use super::container::Resource;
 use super::document::{Context, Document};
@@ -21,18 +21,18 @@ pub(super) enum Part {
     Red,
     Green,
     Blue,
-    /// 1 where the image has none.
+    /// Alpha; 1 if the image has none.
     Alpha,
 }
 
-/// A change of an image's numbers.
+/// A change of the numbers of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Change {
-    /// Itself.
+    /// No change.
     Keep,
-    /// This many times as much.
+    /// A factor.
     Scale(f32),
-    /// 1 where `factor` times it is at least `cutoff`, else 0.
+    /// A threshold: 1 if the number times `factor` is at least `cutoff`, else 0.
     Cut { factor: f32, cutoff: f32 },
 }
 
@@ -46,27 +46,27 @@ impl Change {
     }
 }
 
-/// The images of a file that were decoded.
+/// The decoded images of a file.
 #[derive(Default)]
 pub(super) struct Textures {
     colors: BTreeMap<(usize, bool), Arc<Image<3>>>,
     numbers: BTreeMap<(usize, String), Arc<Image<1>>>,
-    /// The image that was decoded last: its channels are often asked for one after the other.
+    /// The last decoded image, as its channels are often requested in sequence.
     last: Option<((usize, bool), ImageData)>,
     /// Images that the log has.
     logged: BTreeSet<usize>,
 }
 
-/// The part of a texture's coordinates that is not in the mesh.
+/// A lookup of a texture, with the part of its transform that the mesh contains.
 #[derive(Clone, Copy)]
 pub(super) struct Lookup<'a> {
     pub(super) info: &'a TextureInfo,
     pub(super) place: &'a Place,
-    /// The part in the mesh.
+    /// The map that the parameters of the mesh contain.
     pub(super) baked: UvMap,
 }
 
-/// The map of texture coordinates that a material asks for.
+/// Returns the map of texture coordinates that a material requests.
 pub(super) fn uv_map(info: &TextureInfo) -> UvMap {
     let Some(transform) = &info.extensions.transform else {
         return UvMap {
@@ -86,7 +86,7 @@ pub(super) fn uv_map(info: &TextureInfo) -> UvMap {
 }
 
 impl Textures {
-    /// A texture of colours, stored as `encoding` says.
+    /// Returns a texture of colours, stored in `encoding`.
     pub(super) fn color(
         &mut self,
         context: &mut Context<'_>,
@@ -107,7 +107,7 @@ impl Textures {
         Ok(ColorTexture::Image(Arc::new(map)))
     }
 
-    /// A texture of numbers: one channel of a linear image, changed.
+    /// Returns a texture of numbers: one channel of a linear image, changed.
     pub(super) fn number(
         &mut self,
         context: &mut Context<'_>,
@@ -166,7 +166,7 @@ fn channel(data: &ImageData, part: Part) -> impl Iterator<Item = f32> + '_ {
         })
 }
 
-/// The image and the sampler of a texture.
+/// Returns the image and the sampler of a texture.
 fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), GltfFault> {
     let root = &document.root;
     let index = lookup.info.index;
@@ -209,7 +209,7 @@ fn source(document: &Document, lookup: Lookup<'_>) -> Result<(usize, Sampler), G
     Ok((source, known.clone()))
 }
 
-/// The bytes of an image.
+/// Reads the bytes of an image.
 fn resource(
     context: &mut Context<'_>,
     source: usize,
@@ -228,7 +228,7 @@ fn resource(
     }
 }
 
-/// The format of an image, by its first bytes.
+/// Returns the format of an image by its first bytes.
 fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Ok(Format::Png),
@@ -266,7 +266,7 @@ fn format_of(bytes: &[u8], place: &Place) -> Result<Format, GltfFault> {
 pub(super) const IMAGES_TO_EXPORT: &str =
     "export its images as png, jpg or webp; `ktx extract` makes png of KTX2";
 
-/// The marks of other formats, and the bytes where images have them.
+/// The marks of other formats, with their offsets.
 const OTHER_FORMATS: [(usize, &[u8], &str); 5] = [
     (0, b"\xabKTX 20", "a KTX2 file"),
     (0, b"\xabKTX 11", "a KTX file"),
@@ -275,7 +275,7 @@ const OTHER_FORMATS: [(usize, &[u8], &str); 5] = [
     (0, b"GIF8", "a GIF file"),
 ];
 
-/// The image laid over the mesh's parameters.
+/// Returns an image texture on the parameters of the mesh.
 fn map<const N: usize>(
     context: &mut Context<'_>,
     image: Arc<Image<N>>,
@@ -291,11 +291,11 @@ fn map<const N: usize>(
         beyond(sampler.wrap_s, place)?,
         beyond(sampler.wrap_t, place)?,
     ]);
-    let wanted = uv_map(lookup.info);
-    let (scale, offset) = if wanted == lookup.baked {
+    let requested = uv_map(lookup.info);
+    let (scale, offset) = if requested == lookup.baked {
         (Vec2::ONE, Vec2::ZERO)
     } else {
-        remaining(context, &wanted, lookup)?
+        remaining(context, &requested, lookup)?
     };
     Ok(ImageMap {
         image,
@@ -306,7 +306,7 @@ fn map<const N: usize>(
     })
 }
 
-/// The wrap mode of one coordinate.
+/// Returns the wrapping of a sampler in one coordinate.
 fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
     match wrap.unwrap_or(10497) {
         33071 => Ok(Beyond::Clamp),
@@ -316,21 +316,21 @@ fn beyond(wrap: Option<u32>, place: &Place) -> Result<Beyond, GltfFault> {
     }
 }
 
-/// Scale and offset of a texture that differs from what the mesh has.
+/// Returns scale and offset of a texture whose map differs from that of the mesh.
 fn remaining(
     context: &mut Context<'_>,
-    wanted: &UvMap,
+    requested: &UvMap,
     lookup: Lookup<'_>,
 ) -> Result<(Vec2, Vec2), GltfFault> {
-    if wanted.set != lookup.baked.set {
+    if requested.set != lookup.baked.set {
         let what = "a material with textures of several sets of coordinates";
         context.unsupported(lookup.place.clone(), what, "one set is used for all")?;
     }
-    let [[su, across, ou], [down, sv, ov]] = wanted.rows;
+    let [[su, across, ou], [down, sv, ov]] = requested.rows;
     if across.abs().max(down.abs()) > 1e-6 {
         let what = "a material with textures that are rotated by different angles";
         context.unsupported(lookup.place.clone(), what, "they are not rotated")?;
     }
-    // Parameters of the mesh go up where those of the file go down.
+    // The v of the mesh points up, that of the file down.
     Ok((Vec2::new(su, sv), Vec2::new(ou, 1.0 - sv - ov)))
 }

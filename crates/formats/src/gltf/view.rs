@@ -1,4 +1,4 @@
-//! The camera and the film: those of the file, or a view of all that is there.
+//! The camera and the film: those of the file, or a view of the whole scene.
 
 use super::document::{Context, Document};
 use super::json;
@@ -12,31 +12,31 @@ use bidir::math::{Affine3A, Vec2};
 use glam::{DAffine3, DVec3};
 use std::ops::RangeInclusive;
 
-/// Rows of the film.
+/// Default number of rows of the film.
 const HEIGHT: u32 = 720;
-/// Columns of the film without a camera of given proportions.
+/// Default number of columns of the film, if no camera has an aspect ratio.
 const WIDTH: u32 = 1280;
-/// The vertical angle of the view without a camera. Unit: radians.
+/// Default vertical angle of the view. Unit: radians.
 const ANGLE: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
-/// Width over height of what cameras see.
+/// The valid aspect ratios of cameras: width over height.
 const RATIOS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// The projection of a camera, and half the height of its picture.
+/// The projection of a camera, and half the height of its view.
 #[derive(Clone, Copy)]
 enum Screen {
-    /// At distance 1.
+    /// Perspective; half the height at distance 1.
     Perspective(f64),
-    /// Everywhere.
+    /// Orthographic; half the height at any distance.
     Orthographic(f64),
 }
 
-/// The view of a scene.
+/// The camera of the file, or the default one.
 pub(super) struct View {
-    /// x right, y up, z forward. None: so that all is in view.
+    /// The camera's frame: x right, y up, z forward. None: the whole scene is in view.
     world_from_camera: Option<Affine3A>,
     screen: Screen,
-    /// Width over height of what has to be in view. None: as the film is.
+    /// Width over height of the part that has to be in view. None: that of the film.
     aspect: Option<f64>,
     place: Place,
 }
@@ -63,7 +63,7 @@ pub(super) fn find(context: &mut Context<'_>, nodes: &Nodes) -> Result<View, Glt
     }
     let render_from_node = nodes.render_from_node[node].unwrap_or(DAffine3::IDENTITY);
     let mut view = read(document, camera, &render_from_node)?;
-    // Only what parallel rays see has a size in the unit of the scene.
+    // Only the view of parallel rays has a size in the unit of the scene.
     if let Screen::Orthographic(half) = &mut view.screen {
         *half /= context.layout.space.unit;
     }
@@ -100,7 +100,7 @@ fn read(document: &Document, index: usize, render_from_node: &DAffine3) -> Resul
     })
 }
 
-/// The screen of a perspective camera, and its width over height.
+/// Returns the projection and the aspect ratio of a perspective camera.
 fn perspective(
     camera: &json::Perspective,
     place: &Place,
@@ -118,7 +118,7 @@ fn perspective(
     Ok((screen, aspect))
 }
 
-/// The same of an orthographic one.
+/// Returns the projection and the aspect ratio of an orthographic camera.
 fn orthographic(
     camera: &json::Orthographic,
     place: &Place,
@@ -134,7 +134,7 @@ fn orthographic(
     Ok((Screen::Orthographic(height), Some(width / height)))
 }
 
-/// The place of a camera that looks along -z of its node, whose scale does not matter.
+/// Returns the frame of a camera that looks along -z of its node, without the node's scale.
 fn rigid(render_from_node: &DAffine3) -> Affine3A {
     let m = render_from_node.matrix3;
     let forward = (-m.z_axis).normalize_or(DVec3::NEG_Z);
@@ -152,13 +152,13 @@ pub(super) fn looking(eye: DVec3, forward: DVec3, up: DVec3) -> Affine3A {
 }
 
 impl View {
-    /// The position of the file's camera, in the space that is rendered in.
+    /// Returns the position of the file's camera in the render space. None: the file has no camera.
     pub(super) fn eye(&self) -> Option<DVec3> {
         let place = self.world_from_camera?;
         Some(place.translation.as_dvec3())
     }
 
-    /// The film: as large as the caller says, else of the camera's proportions.
+    /// Returns the film, in the size of the caller's options, else in the camera's aspect ratio.
     pub(super) fn film(&self, context: &Context<'_>) -> Result<FilmSettings, GltfFault> {
         let own = match self.aspect {
             None => [WIDTH, HEIGHT],
@@ -175,7 +175,7 @@ impl View {
         Ok(film)
     }
 
-    /// The place of the camera: that of the file, else one that sees all of `extent`.
+    /// Returns the frame of the camera: that of the file, else one with all of `extent` in view.
     pub(super) fn placed(
         &self,
         context: &mut Context<'_>,
@@ -191,8 +191,8 @@ impl View {
         })
     }
 
-    /// The camera in front of a film of `resolution`. What the file's camera sees is in view
-    /// whatever the film's shape; nothing is stretched.
+    /// Returns the camera for a film of `resolution`. The view of the file's camera is contained in that of
+    /// a film of any aspect ratio, and not stretched.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
@@ -221,7 +221,7 @@ impl View {
         camera.ok_or_else(|| self.place.scene("the camera's position is not finite"))
     }
 
-    /// Half the size of what a film of `resolution` shows, z being 0.
+    /// Returns half the size of the view of a film of `resolution`; z is 0.
     fn half(&self, resolution: [u32; 2]) -> DVec3 {
         let [width, height] = resolution.map(f64::from);
         let (Screen::Perspective(mut half) | Screen::Orthographic(mut half)) = self.screen;

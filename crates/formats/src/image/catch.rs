@@ -1,8 +1,7 @@
-//! Panics of other crates, caught without a word.
+//! Catches panics of other crates without printing their messages.
 //!
-//! A panic prints its message before it can be caught, by a hook that belongs to the process. Here
-//! a hook is put in front of that one, once, which is silent for the threads that say so, and
-//! hands on all other panics.
+//! A panic prints its message before it can be caught, by a hook of the process. The hook installed here is
+//! silent for threads that catch panics, and passes all other panics to the previous hook.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
@@ -10,18 +9,18 @@ use std::sync::Once;
 use std::thread;
 
 thread_local! {
-    /// True while this thread's panics are caught.
+    /// True while panics of this thread are caught.
     static IS_CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `work`, of which a panic leaves nothing in use that is seen afterwards. Errors: a panic of
-/// this thread, whose message is not printed.
+/// Runs `work`, which must not leave visible state behind if it panics. Errors: a panic of this thread,
+/// whose message is not printed.
 pub(super) fn catch_silently<T>(work: impl FnOnce() -> T) -> thread::Result<T> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let previous = take_hook();
         set_hook(Box::new(move |panic| {
-            // A thread that is ending has no such flag any more, and is not caught.
+            // A thread that is ending has destroyed its flag, and catches nothing.
             if !IS_CAUGHT.try_with(Cell::get).unwrap_or(false) {
                 previous(panic);
             }
@@ -38,18 +37,18 @@ mod tests {
     use super::*;
     use std::process::Command;
 
-    /// The panics whose messages are looked for happen in a process of their own.
+    /// Runs the panics in another process, whose messages are examined.
     #[test]
-    fn only_panics_that_are_caught_are_silent() {
+    fn only_caught_panics_are_silent() {
         let panicking = "image::catch::tests::panics_in_and_out_of_silence";
         let run = Command::new(std::env::current_exe().unwrap())
             .args([panicking, "--exact", "--ignored", "--nocapture"])
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&run.stderr);
-        assert!(run.status.success(), "{told}");
-        assert_eq!(told.matches("panicked").count(), 2, "{told}");
-        assert!(told.contains("in another thread") && told.contains("afterwards"));
+        let messages = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.success(), "{messages}");
+        assert_eq!(messages.matches("panicked").count(), 2, "{messages}");
+        assert!(messages.contains("in another thread") && messages.contains("afterwards"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! OpenEXR: every kind of flat image in, 32-bit scan lines out.
+//! OpenEXR: reads every kind of flat image, writes 32-bit scan lines.
 
 use super::{ImageData, broken, check_size};
 use crate::error::{Error, ErrorKind, Result};
@@ -18,11 +18,11 @@ pub struct ExrLayer<'a> {
     pub name: &'a str,
     /// The channels' names, such as `R`, `G`, `B`.
     pub channels: &'a [&'a str],
-    /// Row by row from the top left, the channels side by side.
+    /// The pixels row by row from the top left, with interleaved channels.
     pub data: &'a [f32],
 }
 
-/// What an attribute of the file holds.
+/// The value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MetadataValue {
     /// Text.
@@ -33,12 +33,12 @@ pub enum MetadataValue {
     Integer(i32),
 }
 
-/// What [`write_exr`] writes.
+/// An image for [`write_exr`].
 #[derive(Clone, Copy, Debug)]
 pub struct ExrImage<'a> {
     /// Width and height of the whole picture: the display window. Unit: pixels.
     pub resolution: [usize; 2],
-    /// Left, top, right and bottom (exclusive) of the pixels that there are: the data window.
+    /// Left, top, right and bottom (exclusive) of the stored pixels: the data window.
     pub crop: [usize; 4],
     /// The layers; no two channels have the same full name.
     pub layers: &'a [ExrLayer<'a>],
@@ -46,23 +46,23 @@ pub struct ExrImage<'a> {
     pub metadata: &'a [(String, MetadataValue)],
 }
 
-/// Writes an EXR of 32-bit numbers with Rec. 709 primaries. The same image gives the same bytes.
+/// Writes an EXR of 32-bit numbers with Rec. 709 primaries. Equal images give equal bytes.
 pub fn write_exr(path: &Path, image: &ExrImage<'_>) -> Result<()> {
     let encoded = encode_exr(image).map_err(|error| error.in_file(path))?;
     file::replace(path, &encoded)
 }
 
-/// A file with one part, all of whose channels are kept.
+/// A file with one part and all of its channels.
 pub(super) type OnePart = Image<Layer<AnyChannels<FlatSamples>>>;
 
-/// How every file is written.
+/// The encoding of every written file.
 pub(super) const ENCODING: Encoding = Encoding {
     compression: Compression::ZIP16,
     blocks: Blocks::ScanLines,
     line_order: LineOrder::Increasing,
 };
 
-/// The bytes that [`write_exr`] writes.
+/// Encodes the bytes that [`write_exr`] writes.
 pub fn encode_exr(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     let [left, top, right, bottom] = image.crop;
     let size = (right.saturating_sub(left), bottom.saturating_sub(top));
@@ -87,7 +87,7 @@ pub fn encode_exr(image: &ExrImage<'_>) -> Result<Vec<u8>> {
     to_bytes(&Image::new(attributes, layer))
 }
 
-/// The bytes of a file with one part.
+/// Encodes a file with one part.
 pub(super) fn to_bytes(image: &OnePart) -> Result<Vec<u8>> {
     let mut encoded = Vec::new();
     image
@@ -102,13 +102,13 @@ pub(super) fn not_written(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("cannot write: {message}"))
 }
 
-/// A text of the format, which are bytes: Latin-1 where that has all characters, as the crate reads it,
-/// and else UTF-8, as most programs do. No image is lost because of a name.
+/// Converts a text to bytes: Latin-1 if it has all characters, as the crate reads it, else UTF-8, as most
+/// programs do. It never fails, so that no image is lost because of a name.
 pub(super) fn text(text: &str) -> Text {
     Text::new_or_none(text).unwrap_or_else(|| Text::from_slice_unchecked(text.as_bytes()))
 }
 
-/// The channels of all layers, each of `pixels` numbers.
+/// Returns the channels of all layers, each of `pixels` numbers.
 fn channels(layers: &[ExrLayer<'_>], pixels: usize) -> Result<AnyChannels<FlatSamples>> {
     let mut channels = Vec::new();
     for layer in layers {
@@ -145,7 +145,7 @@ const REC709: Chromaticities = Chromaticities {
     white: Vec2(0.3127, 0.3290),
 };
 
-/// Brings the attributes of a file with one part into the order of their names.
+/// Sorts the attributes of a file with one part by name.
 ///
 /// The crate writes them in the order of a hash map, which differs from run to run; their order
 /// means nothing, and no offset in the file depends on it.
@@ -161,7 +161,7 @@ fn sort_attributes(encoded: &mut [u8]) {
     encoded[MAGIC_AND_VERSION..at].copy_from_slice(&records.concat());
 }
 
-/// The bytes of an attribute: name, zero, type, zero, size, value. None: at the end of the header.
+/// Returns the length of an attribute: name, zero, type, zero, size, value. None: the header ends here.
 fn attribute_length(bytes: &[u8]) -> Option<usize> {
     let zero_after = |from: usize| Some(from + bytes.get(from..)?.iter().position(|&b| b == 0)?);
     let name_end = zero_after(0).filter(|&end| end > 0)?;
@@ -171,8 +171,7 @@ fn attribute_length(bytes: &[u8]) -> Option<usize> {
     (length <= bytes.len()).then_some(length)
 }
 
-/// Refuses sizes that are zero or too large, before memory is taken for them; else what the headers
-/// say.
+/// Reads the headers. Errors: sizes are zero or too large, which is checked before memory is reserved.
 pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(broken)?;
     for header in &meta.headers {
@@ -180,7 +179,7 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
         let check =
             |Vec2(width, height)| check_size([width as u64, height as u64], channels, bytes);
         check(header.layer_size)?;
-        // Tiles may be larger than the image, and memory is taken for one.
+        // Tiles may be larger than the image, and memory is reserved for one.
         if let BlockDescription::Tiles(tiles) = header.blocks {
             check(tiles.tile_size)?;
         }
@@ -188,9 +187,9 @@ pub(super) fn check_headers(bytes: &[u8]) -> Result<MetaData> {
     Ok(meta)
 }
 
-/// All channels of the first part that can be read.
+/// Reads all channels of the first readable part.
 pub(super) fn read_part(bytes: &[u8]) -> Result<OnePart> {
-    // Not in parallel: a panic in a thread of the crate's own would end the process.
+    // Not in parallel: a panic in a thread of the crate would end the process.
     exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -228,13 +227,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
     })
 }
 
-/// Channels that have fewer numbers than the image has pixels.
+/// Returns the error for channels with fewer numbers than pixels.
 pub(super) fn subsampled() -> Error {
     broken("it has subsampled channels")
 }
 
-/// R, G, B and, where there is one, A; else Y. Where no such channel stands alone, those of the
-/// first layer that has them.
+/// Returns R, G, B and A, if there is one; else Y. If the unnamed layer has none of them, returns those of
+/// the first layer that does.
 fn pick_channels(list: &[AnyChannel<FlatSamples>]) -> Option<Vec<&AnyChannel<FlatSamples>>> {
     let find = |name: &str| list.iter().find(|channel| channel.name.eq(name));
     let colours = |prefix: &str| {

@@ -1,4 +1,4 @@
-//! All channels of an EXR by their names, to be read, added to and written again.
+//! The channels of an EXR by name, to read, change and write again.
 
 use super::exr::{ENCODING, OnePart, check_headers, not_written, read_part, subsampled};
 use super::exr::{text, to_bytes};
@@ -9,30 +9,30 @@ use exr::image::{AnyChannel, AnyChannels, FlatSamples};
 use exr::meta::attribute::AttributeValue;
 use std::path::Path;
 
-/// The channels of an EXR, and all that its header says.
+/// The channels of an EXR, and its header.
 ///
-/// What is not changed is written as it was read: the other channels, whatever kind of number they
-/// have, both windows, and all attributes.
+/// Everything that is not changed is written as it was read: other channels of any type, both windows, and
+/// all attributes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     image: OnePart,
 }
 
 impl Layers {
-    /// Width and height of the pixels that there are: the data window. Unit: pixels.
+    /// Returns width and height of the data window. Unit: pixels.
     pub fn size(&self) -> [usize; 2] {
         let size = self.image.layer_data.size;
         [size.0, size.1]
     }
 
-    /// The names of all channels, such as `R` or `Albedo.R`, in the order of the file, which is that
-    /// of the alphabet.
+    /// Returns the names of all channels, such as `R` or `Albedo.R`, in the order of the file, which is
+    /// alphabetical.
     pub fn names(&self) -> impl Iterator<Item = String> + '_ {
         let channels = self.image.layer_data.channel_data.list.iter();
         channels.map(|channel| channel.name.to_string())
     }
 
-    /// The numbers of a channel, row by row from the top left. None: there is no such channel.
+    /// Returns the numbers of a channel, row by row from the top left. None: there is no such channel.
     ///
     /// Shape: the product of [`size`](Self::size).
     pub fn channel(&self, name: &str) -> Option<Vec<f32>> {
@@ -41,7 +41,7 @@ impl Layers {
         Some(channel.sample_data.values_as_f32().collect())
     }
 
-    /// The numbers of three channels side by side. None: one of them is not there.
+    /// Returns the interleaved numbers of three channels. None: one of them is missing.
     ///
     /// Shape: the product of [`size`](Self::size).
     pub fn triples(&self, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
@@ -50,9 +50,9 @@ impl Layers {
         Some(pairs.map(|((x, y), z)| [x, y, z]).collect())
     }
 
-    /// Puts three channels of 32 bits in, in place of those that have their names.
+    /// Sets three channels of 32 bits, which replace those of the same names.
     ///
-    /// Errors: the number of pixels is not that of the image; a name that cannot be written.
+    /// Errors: the number of pixels is not that of the image; a name cannot be written.
     pub fn set_triples(&mut self, names: [&str; 3], data: &[[f32; 3]]) -> Result<()> {
         for (index, name) in names.into_iter().enumerate() {
             self.set_channel(name, data.iter().map(|triple| triple[index]).collect())?;
@@ -75,7 +75,7 @@ impl Layers {
         Ok(())
     }
 
-    /// The text of an attribute that is none of the standard's own. None: it has none, or no text.
+    /// Returns the text of a non-standard attribute. None: it does not exist, or is not a text.
     pub fn text(&self, name: &str) -> Option<String> {
         let others = &self.image.layer_data.attributes.other;
         match others.get(&text(name))? {
@@ -84,7 +84,7 @@ impl Layers {
         }
     }
 
-    /// Puts an attribute with a text in, in place of one that has its name.
+    /// Sets an attribute to a text.
     pub fn set_text(&mut self, name: &str, value: &str) {
         let others = &mut self.image.layer_data.attributes.other;
         others.insert(text(name), AttributeValue::Text(text(value)));
@@ -93,8 +93,8 @@ impl Layers {
 
 /// Reads all channels of an EXR.
 ///
-/// Errors: the file cannot be read, is no EXR, is broken, or has several parts or subsampled
-/// channels, which cannot be written again.
+/// Errors: the file cannot be read, is not an EXR, is broken, or has several parts or subsampled channels,
+/// which cannot be written again.
 pub fn read_layers(path: &Path) -> Result<Layers> {
     if Format::of(path) != Some(Format::Exr) {
         let error = Error::new(ErrorKind::Unsupported, "an image without named channels");
@@ -128,7 +128,7 @@ fn decode(bytes: &[u8]) -> Result<Layers> {
     Ok(Layers { image })
 }
 
-/// Writes an EXR. The same layers give the same bytes.
+/// Writes an EXR. Equal layers give equal bytes.
 pub fn write_layers(path: &Path, layers: &Layers) -> Result<()> {
     let encoded = to_bytes(&layers.image).map_err(|error| error.in_file(path))?;
     file::replace(path, &encoded)

@@ -1,11 +1,10 @@
-//! Images: PNG, JPEG, WebP, TGA, HDR, PFM and EXR to linear numbers; linear numbers to EXR and PNG.
+//! Images: reads PNG, JPEG, WebP, TGA, HDR, PFM and EXR as linear numbers, and writes EXR and PNG.
 //!
-//! Rows go from top to bottom, whatever the file's order. Eight-bit files hold sRGB and become
-//! linear; only for PNG can the caller say otherwise, as scene files do. EXR, HDR and PFM are
-//! linear as they are.
+//! Rows go from top to bottom, whatever the file's order. Eight-bit files are converted from sRGB to
+//! linear; only for PNG can the caller, such as a scene file, name another encoding. EXR, HDR and PFM are
+//! linear.
 //!
-//! Decoders written by others may still meet bytes that they panic on; such a panic becomes an
-//! [`Error`] like any other, and prints nothing.
+//! Decoders of other crates may panic on some bytes; such a panic becomes an [`Error`], and prints nothing.
 
 mod catch;
 mod exr;
@@ -29,18 +28,18 @@ use std::path::Path;
 /// An image of linear numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImageData {
-    /// Pixels per row.
+    /// Number of pixels per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// 1: grey; 3: red, green, blue; 4: these and alpha.
+    /// Number of channels. 1: grey; 3: red, green, blue; 4: these and alpha.
     pub channels: usize,
-    /// Row by row from the top left. Shape: `width · height · channels`.
+    /// The numbers row by row from the top left. Shape: `width · height · channels`.
     pub data: Vec<f32>,
 }
 
 impl ImageData {
-    /// The colours: grey is repeated, alpha is left out. Shape: `width · height`.
+    /// Returns the colours: grey is repeated, alpha is omitted. Shape: `width · height`.
     pub fn rgb(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
         self.data
             .chunks_exact(self.channels.max(1))
@@ -52,14 +51,14 @@ impl ImageData {
     }
 }
 
-/// A format that is read.
+/// A readable format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Portable Network Graphics, 8 or 16 bits.
     Png,
     /// JPEG.
     Jpeg,
-    /// WebP, with and without loss; of an animation the first image.
+    /// WebP, lossy and lossless; of an animation the first image.
     WebP,
     /// Targa.
     Tga,
@@ -72,7 +71,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file's name says. None: it says none of them.
+    /// Returns the format by the ending of a file's name. None: the ending is unknown.
     pub fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
         Some(match extension.as_str() {
@@ -88,10 +87,10 @@ impl Format {
     }
 }
 
-/// Reads an image; `encoding` is what a PNG file holds, sRGB where there is none.
+/// Reads an image; `encoding` is that of a PNG, by default sRGB.
 pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
     let format = named_format(path).map_err(|unknown| {
-        // What is not there has no format that could be wrong.
+        // For a missing file, the format does not matter.
         let missing = path.metadata().err();
         missing.map_or(unknown, |error| Error::io(path, "open", &error))
     })?;
@@ -99,7 +98,7 @@ pub fn read(path: &Path, encoding: Option<Encoding>) -> Result<ImageData> {
     decode(format, &bytes, encoding).map_err(|error| error.in_file(path))
 }
 
-/// The format that the name of an image says, which is one that is read.
+/// Returns the format by the name of an image. Errors: it cannot be read.
 pub(crate) fn named_format(path: &Path) -> Result<Format> {
     Format::of(path).ok_or_else(|| {
         let error = Error::new(ErrorKind::Unsupported, "unknown image format");
@@ -119,8 +118,7 @@ pub fn decode(format: Format, bytes: &[u8], encoding: Option<Encoding>) -> Resul
     decode_stored(format, bytes, encoding)
 }
 
-/// Decodes an image in memory whose numbers are stored as `encoding` says, whatever the format; EXR
-/// and PFM are linear.
+/// Decodes an image in memory whose numbers are stored in `encoding`; EXR and PFM are always linear.
 pub(crate) fn decode_stored(format: Format, bytes: &[u8], encoding: Encoding) -> Result<ImageData> {
     let decode = || match format {
         Format::Exr => exr::decode(bytes),
@@ -134,26 +132,25 @@ fn broken(message: impl std::fmt::Display) -> Error {
     Error::new(ErrorKind::Data, format!("broken image: {message}"))
 }
 
-/// The numbers of an image, for limits: grey becomes three channels where colours are asked for.
+/// Returns the number of numbers of an image for limits: grey may become three channels.
 pub(crate) fn numbers([width, height]: [u64; 2], channels: u64) -> u64 {
     width.saturating_mul(height).saturating_mul(channels.max(3))
 }
 
-/// Refuses sizes that are zero, or too large for the bytes of the file, before memory is taken for
-/// them.
+/// Refuses sizes that are zero, or too large for the bytes of the file, before memory is reserved.
 fn check_size([width, height]: [u64; 2], channels: u64, bytes: &[u8]) -> Result<()> {
     let numbers = numbers([width, height], channels);
     if numbers == 0 {
         return Err(broken("it has no pixels"));
     }
-    let refused = |message: String| Error::new(ErrorKind::Limit, message);
+    let refuse = |message: String| Error::new(ErrorKind::Limit, message);
     let size = format!("an image of {width} × {height} pixels");
     if numbers > limits::MOST_NUMBERS {
-        return Err(refused(format!("{size} is too large")));
+        return Err(refuse(format!("{size} is too large")));
     }
     let (stored, per_byte) = (bytes.len() as u64, limits::IMAGE.per_byte);
     if numbers > limits::IMAGE.of(stored) {
-        let error = refused(format!("{size} is too large for a file of {stored} bytes"));
+        let error = refuse(format!("{size} is too large for a file of {stored} bytes"));
         return Err(error.with_hint(format!(
             "the file is cut, or has fewer than one byte for {per_byte} numbers"
         )));

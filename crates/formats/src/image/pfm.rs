@@ -3,7 +3,7 @@
 use super::{ImageData, broken, check_size};
 use crate::error::Result;
 
-/// `PF` or `Pf`, width and height, a scale whose sign is the byte order, then rows from the bottom.
+/// Decodes `PF` or `Pf`, width and height, a scale whose sign is the byte order, then rows from the bottom.
 pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
     let mut rest = bytes;
     let channels = match word(&mut rest) {
@@ -43,7 +43,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ImageData> {
     })
 }
 
-/// The next word; one byte of white space after it is taken too, as the numbers follow at once.
+/// Takes the next word and one byte of white space after it, as binary numbers may follow.
 fn word<'b>(rest: &mut &'b [u8]) -> Option<&'b str> {
     let trimmed = rest.trim_ascii_start();
     let end = trimmed.iter().position(u8::is_ascii_whitespace)?;

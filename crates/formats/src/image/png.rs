@@ -1,4 +1,4 @@
-//! Images for the screen.
+//! Writes PNG images for the screen.
 
 use super::transfer::srgb_byte;
 use crate::error::{Error, ErrorKind, Result};
@@ -7,13 +7,13 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
 
-/// Writes linear colours as [`encode_png`] gives them.
+/// Writes linear colours, encoded by [`encode_png`].
 pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()> {
     let encoded = encode_png(size, pixels).map_err(|error| error.in_file(path))?;
     file::replace(path, &encoded)
 }
 
-/// Linear colours as an eight-bit sRGB PNG; values outside `[0, 1]` are clamped.
+/// Encodes linear colours as an eight-bit sRGB PNG; values outside `[0, 1]` are clamped.
 ///
 /// Shape: `size[0] · size[1]` pixels, row by row from the top left.
 pub fn encode_png(size: [u32; 2], pixels: &[[f32; 3]]) -> Result<Vec<u8>> {

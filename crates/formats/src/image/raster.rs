@@ -1,4 +1,4 @@
-//! Images that the `image` crate decodes: PNG, JPEG, WebP, TGA, HDR.
+//! Reads images by the `image` crate: PNG, JPEG, WebP, TGA, HDR.
 
 use super::{Encoding, Format, ImageData, broken, check_size};
 use crate::error::Result;
@@ -16,7 +16,7 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
     };
     let mut reader = ImageReader::with_format(Cursor::new(bytes), known);
     let mut own = Limits::default();
-    // For packed chunks beside the pixels, such as colour profiles.
+    // This bounds packed chunks beside the pixels, such as colour profiles.
     own.max_alloc = Some(limits::UNPACKED.of(bytes.len() as u64));
     reader.limits(own);
     let decoder = reader.into_decoder().map_err(broken)?;
@@ -25,7 +25,7 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
     check_size([width.into(), height.into()], channels.into(), bytes)?;
     let decoded = DynamicImage::from_decoder(decoder).map_err(broken)?;
     let (channels, data) = linear(decoded, encoding);
-    // Grey with alpha is taken as grey; of the others PNG and WebP keep their alpha.
+    // Alpha is kept only for colours in PNG and WebP.
     let kept = match channels {
         2 => 1,
         4 if !matches!(format, Format::Png | Format::WebP) => 3,
@@ -44,7 +44,7 @@ pub(super) fn decode(format: Format, bytes: &[u8], encoding: Encoding) -> Result
     })
 }
 
-/// The number of channels and the linear values.
+/// Returns the number of channels and the linear values.
 fn linear(decoded: DynamicImage, encoding: Encoding) -> (usize, Vec<f32>) {
     let channels = usize::from(decoded.color().channel_count());
     let data = match decoded {
@@ -57,7 +57,7 @@ fn linear(decoded: DynamicImage, encoding: Encoding) -> (usize, Vec<f32>) {
         DynamicImage::ImageRgb16(image) => words_to_linear(&image.into_raw(), encoding),
         DynamicImage::ImageRgba16(image) => words_to_linear(&image.into_raw(), encoding),
         DynamicImage::ImageRgb32F(image) => image.into_raw(),
-        // Including kinds that the crate may add.
+        // Also kinds that the crate may add.
         other => return (4, other.into_rgba32f().into_raw()),
     };
     (channels, data)

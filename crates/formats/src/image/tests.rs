@@ -48,7 +48,7 @@ fn example(data: &[f32]) -> Vec<u8> {
 }
 
 #[test]
-fn exr_comes_back_exactly_and_always_has_the_same_bytes() {
+fn exr_survives_the_round_trip_and_always_has_the_same_bytes() {
     let data = gradient(7, 5);
     let bytes = example(&data);
     assert!((0..8).all(|_| example(&data) == bytes));
@@ -205,7 +205,7 @@ fn pfm(scale: &str, numbers: &[f32]) -> Vec<u8> {
 }
 
 #[test]
-fn pfm_has_its_rows_from_the_bottom_in_either_byte_order() {
+fn pfm_is_read_from_the_bottom_in_either_byte_order() {
     let numbers = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
     for scale in ["1.0", "-1.0"] {
         let image = decode(Format::Pfm, &pfm(scale, &numbers), None).unwrap();
@@ -223,7 +223,7 @@ fn check_broken(format: Format, bytes: &[u8], expected: &str) {
 }
 
 #[test]
-fn broken_images_are_told() {
+fn broken_images_are_errors() {
     check_broken(
         Format::Pfm,
         b"P6\n",
@@ -302,7 +302,7 @@ proptest! {
     }
 }
 
-/// An image of 2 x 2 pixels in tiles of 4 by `rows`.
+/// Returns an image of 2 x 2 pixels in tiles of 4 by `rows`.
 fn tiled(rows: u32) -> Vec<u8> {
     use ::exr::prelude::*;
     let encoding = Encoding {
@@ -333,7 +333,7 @@ fn tiled(rows: u32) -> Vec<u8> {
 }
 
 #[test]
-fn no_memory_is_taken_for_tiles_that_the_file_has_no_bytes_for() {
+fn no_memory_is_reserved_for_tiles_without_bytes_in_the_file() {
     let decode = |rows| decode(Format::Exr, &tiled(rows), None);
     let image = decode(4).unwrap();
     assert_eq!(image.data[..3], [1.0, 2.0, 3.0]);

@@ -1,19 +1,19 @@
-//! Stored numbers to linear light and back.
+//! Conversions between stored numbers and linear light.
 
-/// How stored numbers relate to linear ones.
+/// The encoding of linear numbers in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Encoding {
-    /// The curve of sRGB.
+    /// The transfer curve of sRGB.
     #[default]
     Srgb,
-    /// Linear as stored.
+    /// Stored numbers are linear.
     Linear,
-    /// Linear = stored to this power.
+    /// A linear number is the stored one to this power.
     Gamma(f32),
 }
 
 impl Encoding {
-    /// The linear value of a stored one in `[0, 1]`.
+    /// Returns the linear value of a stored one in `[0, 1]`.
     pub fn decode(self, stored: f64) -> f64 {
         match self {
             Self::Srgb if stored <= 0.04045 => stored / 12.92,
@@ -23,7 +23,7 @@ impl Encoding {
         }
     }
 
-    /// The linear values of all stored values from 0 to `max`.
+    /// Returns the linear values of all stored values from 0 to `max`.
     pub(super) fn table(self, max: u16) -> Vec<f32> {
         (0..=max)
             .map(|stored| self.decode(f64::from(stored) / f64::from(max)) as f32)
@@ -31,7 +31,7 @@ impl Encoding {
     }
 }
 
-/// The eight bits that stand for a linear value in sRGB; what is outside `[0, 1]` is clamped.
+/// Returns the eight bits of a linear value in sRGB; values outside `[0, 1]` are clamped.
 pub(super) fn srgb_byte(linear: f32) -> u8 {
     let linear = if linear.is_nan() {
         0.0

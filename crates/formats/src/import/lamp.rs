@@ -1,26 +1,25 @@
-//! Lamps: the lights of a scene where its file describes them.
+//! Lamps: the lights of a scene with their places in its file.
 
 use bidir::light::Light;
 use bidir::scene::Scene;
 use std::ops::Range;
 
-/// The most lamps with places: to find one takes as long as the text is.
+/// Maximum number of lamps with places, as finding a place takes time in proportion to the text.
 const MOST: usize = 3;
 
 /// A lamp of a file that no ray can hit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lamp {
-    /// Its place in the file, such as `file:line:column`.
+    /// Its place in the file, as `file:line:column`.
     pub place: String,
     /// The first of its lights, by index.
     pub light: u32,
 }
 
-/// A lamp in the making: its place, and its lights by index, which are several where triangles emit each for
-/// itself.
+/// The place of a lamp, and its lights by index: several if each triangle is a light of its own.
 pub(crate) type Placed<P> = (P, Range<u32>);
 
-/// The first of `lamps` that no ray can hit, with the texts of their places.
+/// Returns the first of `lamps` that no ray can hit, with the texts of their places.
 pub(crate) fn unhittable<P>(
     scene: &Scene,
     lamps: &[Placed<P>],
@@ -37,7 +36,7 @@ pub(crate) fn unhittable<P>(
     found.take(MOST).map(lamp).collect()
 }
 
-/// The warning of a lamp whose lights are dark. None: one is not.
+/// Returns the warning that the lamp with these lights gives no light. None: it gives light.
 pub(crate) fn dark_warning(scene: &Scene, lights: Range<u32>) -> Option<String> {
     let lights = &scene.lights()[lights.start as usize..lights.end as usize];
     let context = scene.light_context();

@@ -1,14 +1,13 @@
-//! Vertices that a file holds as `f32`: how far off they may be.
+//! The rounding error of vertices that a file stores as `f32`.
 //!
-//! A coordinate is within half a step of `f32` of what its author meant, and steps grow with its
-//! size: no transformation brings back what is lost before it. Coordinates that are small, moved by
-//! a transformation, lose nothing.
+//! The error of a coordinate is half a unit in the last place, which grows with its size, and no
+//! transformation recovers the lost digits. Small coordinates moved by a transformation lose nothing.
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// The largest error that is passed over, as a part of half the longest side of the mesh.
+/// The largest error without a warning, relative to half the longest side of the mesh.
 const NOTICED: f64 = 0.01;
-/// The largest error that is rendered, as a part of [`Survey::reach`](super::Survey::reach).
+/// The largest error that is rendered, relative to [`Survey::reach`](crate::space::Survey::reach).
 const ACCEPTED: f64 = 0.25;
 
 /// The error of the vertices of a mesh.
@@ -16,15 +15,15 @@ const ACCEPTED: f64 = 0.25;
 pub(crate) struct VertexError {
     /// The largest coordinate in the file.
     coordinate: f32,
-    /// In the world.
+    /// The error in the world.
     distance: f64,
-    /// As a part of half the longest side of the mesh.
+    /// The error relative to half the longest side of the mesh.
     part: f64,
 }
 
 impl VertexError {
-    /// The error of vertices that `linear` takes to the world. None: it is too small to matter, or
-    /// the mesh is a point.
+    /// Computes the error of vertices that `linear` maps to the world. None: it is negligible, or the mesh
+    /// is a point.
     pub(crate) fn of(positions: &[[f32; 3]], linear: &DMat3) -> Option<Self> {
         let nowhere = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let around =
@@ -42,7 +41,7 @@ impl VertexError {
     }
 }
 
-/// The most that a map stretches vectors.
+/// Estimates the largest factor by which a map lengthens vectors: its longest column.
 fn stretch(linear: &DMat3) -> f64 {
     let columns = [linear.x_axis, linear.y_axis, linear.z_axis];
     columns.map(DVec3::length).into_iter().fold(0.0, f64::max)
@@ -51,11 +50,11 @@ fn stretch(linear: &DMat3) -> f64 {
 /// The errors of all meshes of a scene, each with the place `P` in the file that names it.
 #[derive(Clone, Debug)]
 pub(crate) struct VertexErrors<P> {
-    /// The number of meshes with one.
+    /// The number of meshes with an error.
     count: usize,
-    /// That of the largest part of its mesh.
+    /// The largest error relative to its mesh.
     worst: Option<(P, VertexError)>,
-    /// The longest.
+    /// The largest error in the world.
     longest: Option<(P, VertexError)>,
 }
 
@@ -85,8 +84,8 @@ impl<P: Clone> VertexErrors<P> {
         keep(&mut self.longest, |error| error.distance);
     }
 
-    /// The mesh that makes the scene impossible to render, whose box with the camera is `reach` to
-    /// each side, and why. None: there is none.
+    /// Returns the mesh that makes the scene impossible to render, and the message; `reach` is half the size
+    /// of the scene with the camera. None: there is no such mesh.
     pub(crate) fn refusal(&self, reach: f64) -> Option<(P, String)> {
         let (place, error) = self.longest.as_ref()?;
         (error.distance > ACCEPTED * reach).then(|| {
@@ -101,7 +100,7 @@ impl<P: Clone> VertexErrors<P> {
         })
     }
 
-    /// The warning for the mesh that lost most. None: none lost enough.
+    /// Returns the warning for the mesh with the largest relative error. None: no error is noticeable.
     pub(crate) fn warning(&self) -> Option<(P, String)> {
         let (place, error) = self.worst.as_ref()?;
         let others = match self.count {
@@ -119,7 +118,7 @@ impl<P: Clone> VertexErrors<P> {
     }
 }
 
-/// The hint of that error.
+/// The hint of the error.
 pub(crate) const HINT: &str = "use small coordinates and a transformation";
 
 #[cfg(test)]
@@ -131,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_that_are_small_for_the_mesh_are_passed_over() {
+    fn errors_that_are_small_for_the_mesh_are_ignored() {
         for at in [0.0, 1.0, 1e3, 1e5] {
             assert_eq!(VertexError::of(&quad(at), &DMat3::IDENTITY), None);
         }
@@ -157,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_of_errors_is_refused() {
+    fn a_scene_with_large_errors_is_refused() {
         let mut errors = VertexErrors::default();
         errors.add(&1, VertexError::of(&quad(1e7), &DMat3::IDENTITY));
         assert_eq!(errors.refusal(4.0), None);

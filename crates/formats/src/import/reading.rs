@@ -1,4 +1,4 @@
-//! The amount that was read for a scene, against the limits.
+//! Counts what is read for a scene, and checks it against the limits.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{self, ImageData};
@@ -6,21 +6,21 @@ use crate::limits::{self, Allowance};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// The bytes of the files of a scene, and the amounts that were made of them so far.
+/// The size of the files of a scene, and the amounts that were read from them.
 #[derive(Clone, Debug)]
 pub(crate) struct Reading {
-    /// Bytes that all files take on the disk, each once.
+    /// The size of all files on the disk, each counted once. Unit: bytes.
     stored: u64,
-    /// By identity.
+    /// The identities of the files.
     files: BTreeSet<PathBuf>,
-    /// Bytes of files that were read before.
+    /// The size of files that are read repeatedly. Unit: bytes.
     again: u64,
-    /// Of all images.
+    /// The numbers in all images.
     numbers: u64,
 }
 
 impl Reading {
-    /// Begins with texts that take `stored` bytes on the disk.
+    /// Starts with texts that have `stored` bytes on the disk.
     pub(crate) fn new(stored: u64) -> Self {
         Self {
             stored,
@@ -30,13 +30,12 @@ impl Reading {
         }
     }
 
-    /// Bytes that all files take on the disk, each once.
+    /// Returns the size of all files on the disk, each counted once. Unit: bytes.
     pub(crate) fn stored(&self) -> u64 {
         self.stored
     }
 
-    /// Counts a file of `length` bytes that takes `stored` of them on the disk. Errors: files are read
-    /// again and again.
+    /// Counts a file of `length` bytes that has `stored` bytes on the disk. Errors: files are read too often.
     pub(crate) fn file(&mut self, identity: PathBuf, stored: u64, length: u64) -> Result<()> {
         if self.files.insert(identity) {
             self.stored += stored;
@@ -75,9 +74,9 @@ impl Reading {
 mod tests {
     use super::*;
 
-    /// Files pay for what is made of them once, by whatever name they are read.
+    /// The size of a file counts once, whatever names it is read by.
     #[test]
-    fn files_that_are_read_again_have_a_limit() {
+    fn reading_files_repeatedly_has_a_limit() {
         let mut reading = Reading::new(1000);
         let most = limits::FILES_AGAIN.of(1000 + 50);
         let mut read = |length| reading.file("a.ply".into(), 50, length);
@@ -89,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn images_of_a_scene_have_a_limit_together() {
+    fn all_images_of_a_scene_share_a_limit() {
         let mut reading = Reading::new(0);
         let image = || ImageData {
             width: 1,

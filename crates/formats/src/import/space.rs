@@ -1,55 +1,55 @@
-//! The spaces that a scene is placed in: the world's own where `f32` holds what is there, else one
-//! around what is seen.
+//! The space that a scene is rendered in: that of the world if `f32` suffices for it, else one around the
+//! visible part.
 //!
-//! A reader places everything in the world, and a [`Survey`] looks at it in `f64`. If the
-//! [`Layout`] that follows is not that of the world, the reader starts again and places everything
-//! there, by transformations composed in `f64`: what is seen is near the origin when it is rounded.
+//! A reader places everything in the world, and a [`Survey`] records it in `f64`. If the resulting
+//! [`Layout`] is not that of the world, the reader starts again and places everything in the new space, by
+//! transformations composed in `f64`: visible points are near the origin when they are rounded.
 //!
-//! **Origin.** Points are off by some 10⁻⁶ of their distance from the origin (`position_error` of
-//! `bidir::shape`), so that is moved
-//! - to the middle of the box around everything, where it is more than [`FAR`] half widths from there;
-//! - or else to the camera, where it is [`FAR_FROM_VIEW`] times farther from there than the nearest
+//! **Origin.** The error of points is about 10⁻⁶ of their distance from the origin (`position_error` of
+//! `bidir::shape`), so the origin is moved
+//! - to the middle of the box around everything, if it is more than [`FAR`] half widths away from it;
+//! - or else to the camera, if it is [`FAR_FROM_VIEW`] times farther away from it than the nearest
 //!   vertex.
 //!
-//! **Unit.** Where the farthest point from the origin is not within 2^±[`RANGE`], the unit is the
-//! power of two that brings a large scene to 2^[`RANGE`], and a small one to 1: densities per area
-//! and squares of distances stay in the range of `f32` for details that are much smaller.
+//! **Unit.** If the distance of the farthest point from the origin is not within 2^±[`RANGE`], the unit is
+//! the power of two that scales a large scene to 2^[`RANGE`], and a small one to 1: densities per area and
+//! squared distances stay in the range of `f32` for much smaller details.
 //!
-//! Objects that are shared have an origin of their own, by the same rule for their box.
+//! Shared objects have their own origin, by the same rule for their box.
 
 use bidir::scene::RenderSpace;
 use glam::{DAffine3, DVec3};
 
-/// The distance of the middle of everything from an origin that moves. Unit: half widths; below it
-/// points are off by less than 10⁻⁴ of the half width.
+/// The origin is moved if the middle of the scene is more than this many half widths away. Below it, the
+/// error of points is less than 10⁻⁴ of the half width.
 const FAR: f64 = 64.0;
-/// The distance of a camera from an origin that moves. Unit: distances to the nearest vertex; it is
-/// larger, as that vertex may be a single one.
+/// The origin is moved if the camera is farther away than this many distances to the nearest vertex. It is
+/// larger than [`FAR`], as the nearest vertex may be an exception.
 const FAR_FROM_VIEW: f64 = 1024.0;
-/// The exponents of two of the sizes that are left as they are.
+/// Scenes whose size is within 2^±RANGE keep their unit.
 const RANGE: i32 = 20;
 
-/// The spaces that a scene is placed in.
+/// The spaces in which a scene is placed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Layout {
-    /// The space of the world's shapes, of lights and of the camera.
+    /// The space of shapes outside of objects, of lights and of the camera.
     pub(crate) space: RenderSpace,
-    /// The origins of shared objects, in the space of each; of those beyond the list, its own.
+    /// The origins of shared objects, each in its own space. Objects beyond the list have the origin 0.
     pub(crate) objects: Vec<DVec3>,
 }
 
 impl Layout {
-    /// The map from the world to the space that is rendered in.
+    /// Returns the map from the world to the render space.
     pub(crate) fn render_from_world(&self) -> DAffine3 {
         self.space.from_world()
     }
 
-    /// The origin of a shared object.
+    /// Returns the origin of a shared object.
     pub(crate) fn object_origin(&self, object: usize) -> DVec3 {
         self.objects.get(object).copied().unwrap_or(DVec3::ZERO)
     }
 
-    /// The layout of a scene, and of the objects in it.
+    /// Computes the layout of a scene and of its objects.
     pub(crate) fn of(scene: &Survey, objects: &[Survey]) -> Self {
         let mut objects: Vec<DVec3> = objects.iter().map(Survey::origin).collect();
         while objects.last() == Some(&DVec3::ZERO) {
@@ -65,7 +65,7 @@ impl Layout {
 /// The contents of a space, as far as its layout needs them.
 #[derive(Clone, Debug)]
 pub(crate) struct Survey {
-    /// Of a box around every point; the first is above the second where there is none.
+    /// The corners of a box around every point. If there is none, the first is above the second.
     corners: [DVec3; 2],
     eye: Option<DVec3>,
     /// The square of the distance of the nearest point to the eye.
@@ -73,8 +73,8 @@ pub(crate) struct Survey {
 }
 
 impl Survey {
-    /// A space where nothing is but a camera at `eye`. None: it has none, or one that follows from
-    /// what is there.
+    /// Returns the survey of an empty space with a camera at `eye`. None: there is no camera, or its position
+    /// follows from the scene.
     pub(crate) fn new(eye: Option<DVec3>) -> Self {
         Self {
             corners: [DVec3::INFINITY, DVec3::NEG_INFINITY],
@@ -92,20 +92,20 @@ impl Survey {
         }
     }
 
-    /// Adds the corners of a box, as `map` places them; nothing where the box is empty.
+    /// Adds the corners of a box mapped by `map`; nothing if the box is empty.
     pub(crate) fn include_box(&mut self, corners: [DVec3; 2], map: &DAffine3) {
         for corner in box_corners(corners) {
             self.include(map.transform_point3(corner));
         }
     }
 
-    /// Two corners of a box around every point. None: there is no point.
+    /// Returns two corners of a box around every point. None: there is no point.
     pub(crate) fn corners(&self) -> Option<[DVec3; 2]> {
         let [low, high] = self.corners;
         low.cmple(high).all().then_some(self.corners)
     }
 
-    /// Half the longest side of the box around every point and the eye; 0 where there is neither.
+    /// Returns half the longest side of the box around every point and the eye; 0 if there is neither.
     pub(crate) fn reach(&self) -> f64 {
         let mut all = Self {
             eye: None,
@@ -155,7 +155,7 @@ impl Survey {
     }
 }
 
-/// The corners of a box; none where it is empty.
+/// Returns the corners of a box; none if it is empty.
 pub(crate) fn box_corners(corners: [DVec3; 2]) -> impl Iterator<Item = DVec3> {
     let count = if corners[0].cmple(corners[1]).all() {
         8
@@ -167,8 +167,8 @@ pub(crate) fn box_corners(corners: [DVec3; 2]) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// `p` rounded to a multiple of a power of two below `size`, so that differences of coordinates
-/// with few digits to it are exact.
+/// Rounds `p` to a multiple of a power of two below `size`, so that its differences to coordinates with few
+/// digits are exact.
 fn rounded(p: DVec3, size: f64) -> DVec3 {
     if size == 0.0 {
         return p;
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_near_the_origin_stays_there() {
+    fn a_scene_near_the_origin_stays_there() {
         let room = [DVec3::new(-1.0, 0.0, 0.0), DVec3::new(1.0, 2.0, 2.0)];
         check(&survey(DVec3::new(0.0, 1.0, -4.0), &room), [0.0; 3], 1.0);
         let moved = room.map(|p| p + DVec3::X * 60.0);
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn objects_far_from_their_origin_have_another() {
+    fn objects_far_from_their_origin_get_another_one() {
         let [near, far] = [0.0, 1e5].map(|x| {
             let mut survey = Survey::new(None);
             survey.include_box(

@@ -1,4 +1,4 @@
-//! Names: what is defined, what is used before it is defined, what is never defined.
+//! Names: definitions, uses before a definition, and names that are never defined.
 
 use super::known;
 use super::lexer::shorten;
@@ -7,7 +7,7 @@ use super::scene::{Entity, MaterialDescription, ObjectDescription, TextureKind};
 use crate::source::{Fault, Span};
 
 impl Parser {
-    /// The material of a name, used here: it may be defined later.
+    /// Returns the material of a name, which may be defined later.
     pub(super) fn material_use(&mut self, name: &str, span: Span) -> usize {
         let materials = &mut self.scene.materials;
         let (index, _) = *self
@@ -41,7 +41,7 @@ impl Parser {
         Ok(())
     }
 
-    /// The object of a name, used here: it may be defined later.
+    /// Returns the object of a name, which may be defined later.
     pub(super) fn object_use(&mut self, name: &str, span: Span) -> usize {
         let objects = &mut self.scene.objects;
         let (index, _) = *self
@@ -74,12 +74,12 @@ impl Parser {
         Ok(())
     }
 
-    /// Takes a texture's name; false where it is taken.
+    /// Registers a texture's name. False: it is defined already.
     pub(super) fn names_texture(&mut self, name: &str, kind: TextureKind) -> bool {
         self.texture_names.insert((kind, name.to_owned()))
     }
 
-    /// Takes a medium's name; false where it is taken.
+    /// Registers a medium's name. False: it is defined already.
     pub(super) fn names_medium(&mut self, name: &str) -> bool {
         self.medium_names.insert(name.to_owned())
     }

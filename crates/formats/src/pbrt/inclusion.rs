@@ -1,4 +1,4 @@
-//! Texts within texts, and what all of them may stand for.
+//! Includes texts within texts, and checks their limits.
 
 use super::parser::{Parser, decode};
 use super::state::Scope;
@@ -8,22 +8,22 @@ use crate::limits::{self, Allowance, LONGEST_TEXT};
 use crate::source::{Fault, FileId, Span};
 use std::path::Path;
 
-/// How to have the same things in many places.
+/// A hint for repeated inclusions.
 const REPEAT_BY_OBJECTS: &str =
     "make an object of what is repeated (ObjectBegin), and instances of it (ObjectInstance)";
 
-/// How much was read, for limits.
+/// Counts of what was read, for limits.
 #[derive(Debug, Default)]
 pub(super) struct Counts {
     pub(super) inclusions: u64,
-    /// Bytes of texts that were included again.
+    /// The size of texts that were included repeatedly. Unit: bytes.
     pub(super) again: u64,
     pub(super) directives: u64,
     pub(super) parameters: u64,
 }
 
 impl Parser {
-    /// Reads `Include`d files with the state as it is.
+    /// Reads an `Include`d file, which shares the state.
     pub(super) fn include(&mut self, name: &str, span: Span) -> Result<(), Fault> {
         self.check_inclusion(span)?;
         let beside = self.scene.folder.join(name);
@@ -48,7 +48,7 @@ impl Parser {
         result.map(|_| ())
     }
 
-    /// Reads an `Import`ed file with a copy of the state.
+    /// Reads an `Import`ed file, which gets a copy of the state.
     pub(super) fn import(&mut self, name: &str, span: Span) -> Result<(), Fault> {
         let copy = Scope {
             state: self.scope.state.clone(),
@@ -75,9 +75,9 @@ impl Parser {
         Ok(())
     }
 
-    /// Reads a file under a name that is new.
+    /// Reads a file under a name that is used for the first time.
     fn load(&mut self, path: &Path, span: Span) -> Result<FileId, Fault> {
-        // One file has many names.
+        // A file may have several names.
         let key = self.scene.files.identity(path);
         if let Some(&file) = self.texts.get(&key) {
             self.scene.texts.push(path.to_owned());
@@ -97,7 +97,7 @@ impl Parser {
         self.scene.sources.add(path, decode(path, bytes)?)
     }
 
-    /// Counts a text that is included again.
+    /// Counts a text that is included repeatedly.
     fn load_again(&mut self, file: FileId, span: Span) -> Result<FileId, Fault> {
         self.counts.again += self.scene.sources.text(file).len() as u64;
         let again = (self.counts.again, "bytes that are included again");
@@ -105,8 +105,8 @@ impl Parser {
         Ok(file)
     }
 
-    /// Refuses more of something than the texts have the bytes for: packed or included again, a few
-    /// bytes can stand for any number.
+    /// Refuses counts beyond the allowance of the texts' bytes: packed or included repeatedly, a few bytes
+    /// expand to any number.
     pub(super) fn check_count(
         &self,
         (count, what): (u64, &str),

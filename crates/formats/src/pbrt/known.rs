@@ -1,11 +1,11 @@
-//! The words of the format: what exists, and what existed in older versions.
+//! The words of the format in this version and in older ones.
 
 use super::lexer::shorten;
 use super::v3;
 use crate::source::{Fault, Span};
 use unicode_normalization::UnicodeNormalization;
 
-/// Names are compared in Unicode's normal form C.
+/// Returns a name in Unicode's normal form C, in which names are compared.
 pub(super) fn normalized(name: &str) -> String {
     if name.is_ascii() {
         name.into()
@@ -14,12 +14,12 @@ pub(super) fn normalized(name: &str) -> String {
     }
 }
 
-/// Where a directive may stand.
+/// The block in which a directive may stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Block {
     /// Before `WorldBegin`.
     Options,
-    /// After it.
+    /// After `WorldBegin`.
     World,
     Anywhere,
 }
@@ -68,17 +68,17 @@ pub(super) const DIRECTIVES: &[(&str, Block)] = &[
     ("WorldBegin", Block::Options),
 ];
 
-/// True for a word that begins a directive of this version or an older one.
+/// Returns true for a word that begins a directive of this version or an older one.
 pub(crate) fn is_directive(word: &str) -> bool {
     DIRECTIVES.iter().any(|(name, _)| *name == word) || v3::directive(word).is_some()
 }
 
-/// The type words that a directive takes.
+/// The type words of a directive.
 pub(super) struct Names {
-    /// What they name.
+    /// The kind of thing that they name.
     what: &'static str,
     known: &'static [&'static str],
-    /// Those of version 3, each with what to write instead.
+    /// The words of version 3, each with its replacement.
     old: &'static [(&'static str, &'static str)],
 }
 

@@ -1,4 +1,4 @@
-//! Words, quoted strings and brackets of a scene's text.
+//! Splits a scene's text into words, quoted strings and brackets.
 
 use crate::source::{Fault, FileId, Span};
 use logos::{Lexer, Logos};
@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 #[derive(Clone, Copy, Debug, Logos, PartialEq)]
 #[logos(skip(r"[ \t\r\n]+"))]
-// A comment begins where a token could; inside a word `#` is an ordinary character.
+// A comment begins between tokens; inside a word, `#` is an ordinary character.
 #[logos(skip(r"#[^\r\n]*", allow_greedy = true))]
 enum Raw {
     #[token("[")]
@@ -21,7 +21,7 @@ enum Raw {
     Word,
 }
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum TokenKind<'t> {
     /// `[`
@@ -42,7 +42,7 @@ pub(super) struct Token<'t> {
 }
 
 impl Token<'_> {
-    /// The token in words, for "expected …, found …".
+    /// Describes the token for "expected …, found …".
     pub(super) fn describe(&self) -> String {
         match &self.kind {
             TokenKind::Open => "`[`".into(),
@@ -53,7 +53,7 @@ impl Token<'_> {
     }
 }
 
-/// A name short enough to be quoted in a message.
+/// Shortens a name for messages.
 pub(super) fn shorten(text: &str) -> Cow<'_, str> {
     const LONGEST: usize = 60;
     match text.char_indices().nth(LONGEST) {
@@ -72,7 +72,7 @@ pub(super) struct Tokens<'t> {
 
 impl<'t> Tokens<'t> {
     pub(super) fn new(text: &'t str, file: FileId) -> Self {
-        // Glued to the first word, a byte-order mark would make it unknown.
+        // A byte-order mark would become a part of the first word.
         let mark = if text.starts_with('\u{feff}') {
             '\u{feff}'.len_utf8()
         } else {
@@ -88,7 +88,7 @@ impl<'t> Tokens<'t> {
         }
     }
 
-    /// Takes the next token. None: at the end of the text.
+    /// Takes the next token. None: the text has ended.
     pub(super) fn next(&mut self) -> Result<Option<Token<'t>>, Fault> {
         let token = match self.ahead.take() {
             Some(token) => Some(token),
@@ -100,7 +100,7 @@ impl<'t> Tokens<'t> {
         Ok(token)
     }
 
-    /// Looks at the next token without taking it.
+    /// Returns the next token without taking it.
     pub(super) fn peek(&mut self) -> Result<Option<&Token<'t>>, Fault> {
         if self.ahead.is_none() {
             self.ahead = self.read()?;
@@ -108,7 +108,7 @@ impl<'t> Tokens<'t> {
         Ok(self.ahead.as_ref())
     }
 
-    /// Takes the next token where it is a quoted string.
+    /// Takes the next token if it is a quoted string.
     pub(super) fn next_if_quoted(&mut self) -> Result<Option<(Cow<'t, str>, Span)>, Fault> {
         if !matches!(
             self.peek()?,
@@ -125,14 +125,14 @@ impl<'t> Tokens<'t> {
         }))
     }
 
-    /// Takes the next token, which has to be there.
+    /// Takes the next token. Errors: the text has ended.
     pub(super) fn expect(&mut self, what: &str) -> Result<Token<'t>, Fault> {
         let last = self.last;
         let missing = || Fault::syntax(last, format!("expected {what}, found the end of the file"));
         self.next()?.ok_or_else(missing)
     }
 
-    /// Takes the next token, which has to be a quoted string.
+    /// Takes the next token. Errors: it is not a quoted string.
     pub(super) fn expect_quoted(&mut self, what: &str) -> Result<(Cow<'t, str>, Span), Fault> {
         let token = self.expect(what)?;
         if let TokenKind::Quoted(text) = token.kind {
@@ -169,8 +169,8 @@ impl<'t> Tokens<'t> {
     }
 }
 
-/// True for the text between the opening quotes of two strings, of which the first is not closed: it
-/// ends in a blank, and a word is glued to its end.
+/// Returns true if `inside` is the text between the opening quotes of two strings, the first of which is not
+/// closed: it ends with a blank, and a word follows the quote directly.
 fn is_unclosed(inside: &str, after: &str) -> bool {
     inside.ends_with([' ', '\t']) && after.starts_with(|next: char| next.is_ascii_alphabetic())
 }
@@ -181,7 +181,7 @@ fn unclosed(inside: &str, span: Span) -> Fault {
     fault.with_hint(format!("write `\"{text}\"`"))
 }
 
-/// Resolves the escapes of what stands between the quotes.
+/// Resolves the escapes of the text between quotes.
 fn unescape(text: &str, span: Span) -> Result<Cow<'_, str>, Fault> {
     if !text.contains('\\') {
         return Ok(text.into());
@@ -211,7 +211,7 @@ fn unescape(text: &str, span: Span) -> Result<Cow<'_, str>, Fault> {
     Ok(resolved.into())
 }
 
-/// Reads a number as the format writes it: no `inf`, no `nan`, nothing after it.
+/// Reads a number in the syntax of the format: no `inf`, no `nan`, nothing after it.
 pub(super) fn parse_float(word: &str) -> Option<f64> {
     let digits = word.trim_start_matches(['+', '-']);
     if let Some(hex) = digits
@@ -229,7 +229,7 @@ pub(super) fn parse_float(word: &str) -> Option<f64> {
     word.parse().ok()
 }
 
-/// Reads an integer: digits and a sign only, within 32 bits.
+/// Reads an integer of 32 bits: a sign and digits only.
 pub(super) fn parse_integer(word: &str) -> Option<i32> {
     word.parse().ok()
 }
@@ -244,33 +244,33 @@ mod tests {
         let mut sources = SourceMap::default();
         let file = sources.add(Path::new("t"), text.into()).unwrap();
         let mut tokens = Tokens::new(text, file);
-        let mut found = Vec::new();
+        let mut texts = Vec::new();
         loop {
             match tokens.next() {
                 Ok(Some(Token {
                     kind: TokenKind::Quoted(text),
                     ..
-                })) => found.push(format!("<{text}>")),
+                })) => texts.push(format!("<{text}>")),
                 Ok(Some(Token {
                     kind: TokenKind::Word(word),
                     ..
-                })) => found.push(word.into()),
+                })) => texts.push(word.into()),
                 Ok(Some(Token {
                     kind: TokenKind::Open,
                     ..
-                })) => found.push("[".into()),
+                })) => texts.push("[".into()),
                 Ok(Some(Token {
                     kind: TokenKind::Close,
                     ..
-                })) => found.push("]".into()),
+                })) => texts.push("]".into()),
                 Ok(None) => break,
                 Err(fault) => {
-                    found.push(format!("error {}", sources.error(fault)));
+                    texts.push(format!("error {}", sources.error(fault)));
                     break;
                 }
             }
         }
-        found.join(" ")
+        texts.join(" ")
     }
 
     #[track_caller]

@@ -1,13 +1,13 @@
 //! Scene files of pbrt-v4.
 //!
-//! Reading is two steps. [`parse_file`] turns text into a [`SceneDescription`]: plain data that
-//! says what the text says, where every name is known and every number is one. [`build()`] makes a
-//! scene of it and reads the meshes and images; [`load`] does both.
+//! Reading has two steps. [`parse_file`] parses text into a [`SceneDescription`]: plain data with the
+//! contents of the text, in which all names are known and all numbers valid. [`build()`] makes a scene of
+//! it and reads the meshes and images; [`load`] does both.
 //!
-//! Departures from the reference program, all towards telling the user more: an unknown name is an
-//! error with the nearest known one; a file of version 3 is recognised by the first mark of it; a
-//! matrix with perspective, a degenerate transformation and a name that is used and never defined are
-//! errors where they stand.
+//! Departures from the reference program, which all give more specific errors: an unknown name is an error
+//! that suggests the nearest known one; a file of version 3 is recognised by its first mark; a matrix with
+//! perspective, a degenerate transformation, and a name that is used and never defined are errors with
+//! their places.
 
 mod build;
 mod definitions;

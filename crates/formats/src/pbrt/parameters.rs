@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub enum ParameterType {
     /// `true` or `false`.
     Bool,
-    /// 32 bits.
+    /// An integer of 32 bits.
     Integer,
     /// One number.
     Float,
@@ -55,7 +55,7 @@ impl ParameterType {
         Self::Blackbody,
     ];
 
-    /// The word as files spell it.
+    /// Returns the word in files.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Bool => "bool",
@@ -74,7 +74,7 @@ impl ParameterType {
         }
     }
 
-    /// The numbers that make one value.
+    /// Returns the number of numbers in one value.
     const fn arity(self) -> usize {
         match self {
             Self::Point2 | Self::Vector2 => 2,
@@ -96,18 +96,18 @@ impl ParameterType {
 /// The values of a parameter, in the order of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Of `bool`.
+    /// The values of `bool`.
     Bools(Vec<bool>),
-    /// Of `integer`.
+    /// The values of `integer`.
     Integers(Vec<i32>),
-    /// Of all that is made of numbers.
+    /// The values of all other types made of numbers.
     Floats(Vec<f32>),
-    /// Of `string`, `texture` and a `spectrum` that is named.
+    /// The values of `string`, `texture` and a named `spectrum`.
     Strings(Vec<String>),
 }
 
 impl Values {
-    /// The number of words they were written with.
+    /// Returns the number of words in the file.
     pub fn len(&self) -> usize {
         match self {
             Self::Bools(values) => values.len(),
@@ -117,7 +117,7 @@ impl Values {
         }
     }
 
-    /// True for `[ ]`.
+    /// Returns true for `[ ]`.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -132,29 +132,29 @@ pub struct Parameter {
     pub name: String,
     /// The values.
     pub values: Values,
-    /// The colour space that was current: what `rgb` values mean.
+    /// The current colour space, in which `rgb` values are given.
     pub color_space: ColorSpace,
-    /// The quoted `type name`.
+    /// The place of the quoted `type name`.
     pub span: Span,
-    /// The value, with its brackets.
+    /// The place of the value with its brackets.
     pub value_span: Span,
 }
 
 /// The parameters of one directive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterList {
-    /// Those of the directive itself. Of two with the same type and name the last counts.
+    /// The parameters of the directive itself. Of two with the same type and name, the last counts.
     pub explicit: Vec<Parameter>,
-    /// Those of `Attribute` directives: they count where the directive has no such parameter.
+    /// The parameters of `Attribute` directives, for which the directive has none of its own.
     pub defaults: Arc<Vec<Parameter>>,
 }
 
 impl ParameterList {
-    /// The parameter of this type and name. None: where the file gives none.
+    /// Returns the parameter of this type and name. None: the file has none.
     pub fn get(&self, kind: ParameterType, name: &str) -> Option<&Parameter> {
-        let wanted = |parameter: &&Parameter| parameter.kind == kind && parameter.name == name;
-        let explicit = self.explicit.iter().rev().find(wanted);
-        explicit.or_else(|| self.defaults.iter().rev().find(wanted))
+        let matches = |parameter: &&Parameter| parameter.kind == kind && parameter.name == name;
+        let explicit = self.explicit.iter().rev().find(matches);
+        explicit.or_else(|| self.defaults.iter().rev().find(matches))
     }
 }
 
@@ -242,7 +242,7 @@ fn push(
     token: TokenKind<'_>,
     span: Span,
 ) -> Result<(), Fault> {
-    // A spectrum is numbers or names; its first value decides.
+    // A spectrum has numbers or names, which its first value decides.
     if kind == ParameterType::Spectrum && values.is_empty() && matches!(token, TokenKind::Quoted(_))
     {
         *values = Values::Strings(Vec::new());

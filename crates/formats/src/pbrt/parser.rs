@@ -1,4 +1,4 @@
-//! From files to a [`SceneDescription`].
+//! Parses files into a [`SceneDescription`].
 
 use super::directives;
 use super::inclusion::Counts;
@@ -24,7 +24,7 @@ pub fn parse_file(path: &Path) -> Result<SceneDescription> {
     parse_file_from(path, &Files::default())
 }
 
-/// The same as [`parse_file`], with files from where `files` says.
+/// Does the same as [`parse_file`] with files from `files`.
 pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
     foreign::check_folder(path, files)?;
     let FileBytes { bytes, stored } = files.read_or_stdin(path, LONGEST_TEXT)?;
@@ -39,14 +39,14 @@ pub fn parse_file_from(path: &Path, files: &Files) -> Result<SceneDescription> {
     parse(parser, path, (text, stored))
 }
 
-/// Parses a scene that is already in memory; files are looked for in the working directory.
+/// Parses a scene in memory, whose other files are read from the working directory.
 pub fn parse_text(name: &str, text: &str) -> Result<SceneDescription> {
     let parser = Parser::new(Path::new(""), Files::default());
     let text = (text.to_owned(), text.len() as u64);
     parse(parser, Path::new(name), text)
 }
 
-/// Parses a text that takes `stored` bytes on the disk.
+/// Parses a text that has `stored` bytes on the disk.
 fn parse(
     mut parser: Parser,
     name: &Path,
@@ -61,7 +61,7 @@ fn parse(
     }
 }
 
-/// Bytes as text: UTF-8 and nothing else.
+/// Decodes bytes as UTF-8 text.
 pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         let error = Error::new(ErrorKind::Syntax, "the text is UTF-16").in_file(path);
@@ -82,7 +82,7 @@ pub(super) fn decode(path: &Path, bytes: Vec<u8>) -> Result<String> {
     })
 }
 
-/// The parser's whole state.
+/// The whole state of the parser.
 pub(super) struct Parser {
     pub(super) scene: SceneDescription,
     pub(super) scope: Scope,
@@ -90,14 +90,14 @@ pub(super) struct Parser {
     pub(super) in_world: bool,
     /// The object between `ObjectBegin` and `ObjectEnd`.
     pub(super) object: Option<usize>,
-    /// Materials by name, with the first use of those that are not defined yet.
+    /// Materials by name, with the first use of undefined ones.
     pub(super) materials: BTreeMap<String, (usize, Option<Span>)>,
     /// Objects by name, in the same way.
     pub(super) objects: BTreeMap<String, (usize, Option<Span>)>,
-    /// The files that are being read, outermost first.
+    /// The files in reading, outermost first.
     pub(super) open: Vec<PathBuf>,
     pub(super) texts: BTreeMap<PathBuf, FileId>,
-    /// The files that were included, by the names that the scene has for them, beside it.
+    /// The included files by their names beside the scene.
     pub(super) included: BTreeMap<PathBuf, (PathBuf, FileId)>,
     pub(super) texture_names: BTreeSet<(TextureKind, String)>,
     pub(super) medium_names: BTreeSet<String>,
@@ -144,7 +144,7 @@ impl Parser {
         self.check_defined()
     }
 
-    /// Parses one text to its end, which it returns.
+    /// Parses one text. Returns the place of its end.
     pub(super) fn file(&mut self, file: FileId) -> Result<Span, Fault> {
         let text = self.scene.sources.text(file);
         let mut tokens = Tokens::new(&text, file);
@@ -182,7 +182,7 @@ impl Parser {
         }
     }
 
-    /// Parses the parameters that follow.
+    /// Parses a list of parameters.
     pub(super) fn parameters(&mut self, tokens: &mut Tokens<'_>) -> Result<Vec<Parameter>, Fault> {
         let list = parse_list(tokens, self.scope.state.color_space)?;
         if let Some(last) = list.last() {
@@ -193,7 +193,7 @@ impl Parser {
         Ok(list)
     }
 
-    /// Parses a type word and parameters.
+    /// Parses a type word and its parameters.
     pub(super) fn entity(
         &mut self,
         tokens: &mut Tokens<'_>,
@@ -242,9 +242,9 @@ impl Parser {
             }
             Some(block) => {
                 let (line, _) = self.scene.sources.line_and_column(block.span);
-                let (opened, wanted) = block.opener.words();
+                let (opened, closing) = block.opener.words();
                 let message = format!("`{end}` closes the `{opened}` of line {line}");
-                Err(Fault::scene(span, message).with_hint(format!("`{wanted}` is missing")))
+                Err(Fault::scene(span, message).with_hint(format!("`{closing}` is missing")))
             }
             None => Err(Fault::scene(span, format!("`{end}` without `{begin}`"))),
         }
@@ -261,7 +261,7 @@ impl Parser {
 }
 
 impl SceneDescription {
-    /// The path of a file that the scene names: beside the scene, else in the working directory.
+    /// Returns the path of a file that the scene names: beside the scene, else in the working directory.
     pub fn resolve(&self, name: &str) -> PathBuf {
         let beside = self.folder.join(name);
         let here = Path::new(name);

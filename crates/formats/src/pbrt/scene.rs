@@ -1,4 +1,4 @@
-//! The text of a scene as plain data: nothing is built, no mesh or image is read.
+//! The contents of a scene's text as plain data, without meshes and images.
 
 use super::parameters::{Parameter, ParameterList};
 use super::transform::Transforms;
@@ -10,21 +10,21 @@ use std::sync::Arc;
 
 /// A parsed scene.
 ///
-/// References are indices into the vectors here; all of them are valid. Every item keeps the place
-/// it came from, so that errors of building have file, line and column.
+/// References are valid indices into the vectors here. Every item has its place in the text, so that errors
+/// of building have file, line and column.
 #[derive(Clone, Debug, Default)]
 pub struct SceneDescription {
     /// The texts that spans point into.
     pub sources: SourceMap,
     /// The source of files.
     pub files: Files,
-    /// The files that the texts are of, by each name that they were asked for.
+    /// The files of the texts, under each name by which they were requested.
     pub texts: Vec<PathBuf>,
-    /// Bytes that these files take on the disk, packed, each once.
+    /// The size of these files on the disk, packed, each counted once. Unit: bytes.
     pub stored: u64,
-    /// The folder that relative file names are taken from: that of the top-level file.
+    /// The folder of the top-level file, to which relative file names refer.
     pub folder: PathBuf,
-    /// The camera. None: where the file has no such directive; so below.
+    /// The camera. None, here and below: the file has no such directive.
     pub camera: Option<CameraDescription>,
     /// The film.
     pub film: Option<FilmDescription>,
@@ -38,7 +38,7 @@ pub struct SceneDescription {
     pub accelerator: Option<Entity>,
     /// The `Option` directives.
     pub options: Vec<OptionDescription>,
-    /// The materials. The first is the one that shapes have before any is named.
+    /// The materials. The first is the default material.
     pub materials: Vec<MaterialDescription>,
     /// The textures.
     pub textures: Vec<TextureDescription>,
@@ -63,7 +63,7 @@ pub struct Entity {
     pub kind: String,
     /// Its parameters.
     pub parameters: ParameterList,
-    /// The type word with its quotes.
+    /// The place of the type word with its quotes.
     pub span: Span,
 }
 
@@ -81,14 +81,14 @@ pub enum ColorSpace {
     Aces2065,
 }
 
-/// The camera and where it stands.
+/// The camera and its transformation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraDescription {
     /// Type and parameters.
     pub entity: Entity,
     /// Camera from world.
     pub transforms: Transforms,
-    /// The medium around it: the outer one of this.
+    /// The outer one of these media surrounds it.
     pub medium: MediumInterface,
 }
 
@@ -115,13 +115,13 @@ pub struct OptionDescription {
 /// A material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MaterialDescription {
-    /// Its name. None: for one of a `Material` directive.
+    /// The name. None: the material comes from a `Material` directive.
     pub name: Option<String>,
-    /// Type and parameters. None: only for the one that shapes have before any is named.
+    /// Type and parameters. None: this is the default material.
     pub entity: Option<Entity>,
 }
 
-/// The values of a texture.
+/// The type of a texture's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TextureKind {
     /// Numbers.
@@ -133,9 +133,9 @@ pub enum TextureKind {
 /// A texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureDescription {
-    /// Its name: numbers and colours have separate names.
+    /// The name: numbers and colours have separate name spaces.
     pub name: String,
-    /// Its values.
+    /// The type of its values.
     pub kind: TextureKind,
     /// Class and parameters.
     pub entity: Entity,
@@ -146,7 +146,7 @@ pub struct TextureDescription {
 /// A participating medium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MediumDescription {
-    /// Its name; the span of [`entity`](Self::entity) is that of the name.
+    /// The name; the span of [`entity`](Self::entity) is that of the name.
     pub name: String,
     /// Type and parameters.
     pub entity: Entity,
@@ -161,7 +161,7 @@ pub struct LightDescription {
     pub entity: Entity,
     /// World from light space.
     pub transforms: Transforms,
-    /// The medium around it: the outer one of this.
+    /// The outer one of these media surrounds it.
     pub medium: MediumInterface,
 }
 
@@ -172,11 +172,11 @@ pub struct ShapeDescription {
     pub entity: Entity,
     /// World (or instance) from object space.
     pub transforms: Transforms,
-    /// True where `ReverseOrientation` turned the normals.
+    /// True if `ReverseOrientation` reversed the normals.
     pub reverse_orientation: bool,
     /// An index into [`SceneDescription::materials`].
     pub material: usize,
-    /// Its emission. None: where it does not emit.
+    /// The emission. None: the shape does not emit.
     pub area_light: Option<Arc<Entity>>,
     /// The media on its sides.
     pub medium: MediumInterface,
@@ -207,9 +207,9 @@ pub struct InstanceDescription {
 /// The media on the two sides of a surface. None: vacuum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MediumInterface {
-    /// On the side away from the normal.
+    /// The medium on the side away from the normal.
     pub inside: Option<MediumReference>,
-    /// On the side of the normal.
+    /// The medium on the side of the normal.
     pub outside: Option<MediumReference>,
 }
 

@@ -1,4 +1,4 @@
-//! What directives change and later ones take over.
+//! The graphics state, which directives change and later ones inherit.
 
 use super::scene::{AttributeDefaults, ColorSpace, Entity, MediumInterface};
 use super::transform::{Active, Transforms};
@@ -6,21 +6,21 @@ use crate::source::Span;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The graphics state: saved and restored as a whole by blocks.
+/// The graphics state, which blocks save and restore as a whole.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GraphicsState {
     pub(super) transforms: Transforms,
     pub(super) active: Active,
     pub(super) color_space: ColorSpace,
     pub(super) reverse_orientation: bool,
-    /// An index into the materials; 0 is the material before any is named.
+    /// An index into the materials; 0 is the default material.
     pub(super) material: usize,
     pub(super) area_light: Option<Arc<Entity>>,
     pub(super) medium: MediumInterface,
     pub(super) defaults: AttributeDefaults,
 }
 
-/// What opened a block.
+/// The directive that opened a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Opener {
     Attribute,
@@ -29,7 +29,7 @@ pub(super) enum Opener {
 }
 
 impl Opener {
-    /// The directives that open and close such a block.
+    /// Returns the directives that open and close such a block.
     pub(super) fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Attribute => ("AttributeBegin", "AttributeEnd"),
@@ -39,7 +39,7 @@ impl Opener {
     }
 }
 
-/// An open block: what to restore at its end.
+/// An open block, with the state to restore at its end.
 #[derive(Clone, Debug)]
 pub(super) struct OpenBlock {
     pub(super) opener: Opener,
@@ -47,7 +47,7 @@ pub(super) struct OpenBlock {
     pub(super) saved: GraphicsState,
 }
 
-/// The state of one file and those it includes. An imported file has one of its own.
+/// The state of one file and those that it includes. An imported file has its own.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scope {
     pub(super) state: GraphicsState,

@@ -2,14 +2,14 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Transformations at the two ends of the shutter's interval: the same where nothing moves.
+/// Transformations at the two ends of the shutter's interval: equal if nothing moves.
 ///
-/// In f64: chains of rotations and translations stay exact enough to become f32 once, at the end.
+/// They are f64, so that chains of rotations and translations are rounded to f32 only once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transforms {
-    /// At the first time.
+    /// The transformation at the first time.
     pub start: DAffine3,
-    /// At the second time.
+    /// The transformation at the second time.
     pub end: DAffine3,
     /// The two times.
     pub times: [f32; 2],
@@ -26,7 +26,7 @@ impl Default for Transforms {
 }
 
 impl Transforms {
-    /// True where the two ends differ.
+    /// Returns true if the two ends differ.
     pub fn is_animated(&self) -> bool {
         self.start != self.end
     }
@@ -46,7 +46,7 @@ impl Transforms {
         }
     }
 
-    /// Changes the ends that `active` names.
+    /// Changes the ends that are `active`.
     pub(super) fn change(&mut self, active: Active, f: impl Fn(DAffine3) -> DAffine3) {
         if active != Active::EndTime {
             self.start = f(self.start);
@@ -57,7 +57,7 @@ impl Transforms {
     }
 }
 
-/// Which ends of the interval transform directives change.
+/// The ends of the interval that transform directives change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Active {
     #[default]
@@ -66,10 +66,10 @@ pub(super) enum Active {
     EndTime,
 }
 
-/// Why a transformation cannot be made.
+/// The reason why a transformation is not valid.
 pub(super) type Reason = &'static str;
 
-/// Rotation by `degrees` about an axis, by Rodrigues' formula: v′ = c v + (1 − c)(a·v) a + s a × v.
+/// Returns the rotation by `degrees` about an axis, by Rodrigues' formula: v′ = c v + (1 − c)(a·v) a + s a × v.
 pub(super) fn rotate(degrees: f64, axis: DVec3) -> Result<DAffine3, Reason> {
     let axis = axis
         .try_normalize()
@@ -81,7 +81,7 @@ pub(super) fn rotate(degrees: f64, axis: DVec3) -> Result<DAffine3, Reason> {
     Ok(DAffine3::from_mat3(matrix))
 }
 
-/// Camera from world: the camera stands at `eye`, +z towards `target`, +y up, +x to the right.
+/// Returns camera from world for a camera at `eye`, with +z towards `target`, +y up, +x to the right.
 ///
 /// This camera space is left-handed.
 pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, Reason> {
@@ -91,7 +91,7 @@ pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, 
     let parallel = "the up vector must not be zero or parallel to the view";
     let up = up.try_normalize().ok_or(parallel)?;
     let right = up.cross(forward);
-    // Of two unit vectors: 1e-9 is far below what anyone means by an angle.
+    // The vectors have unit length: 1e-9 is far below any intended angle.
     let right = if right.length() > 1e-9 {
         right.normalize()
     } else {
@@ -101,7 +101,7 @@ pub(super) fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Result<DAffine3, 
     Ok(DAffine3::from_mat3_translation(frame, eye).inverse())
 }
 
-/// Sixteen numbers, column by column.
+/// Reads a matrix of sixteen numbers, column by column.
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, Reason> {
     let [
         ax,
@@ -133,7 +133,7 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, Reason> {
     Ok(DAffine3::from_mat3_translation(linear, column(tx, ty, tz)))
 }
 
-/// True where a transformation can be undone without loss of all digits.
+/// Returns true if a transformation has a finite inverse.
 pub(super) fn is_invertible(transform: &DAffine3) -> bool {
     let determinant = transform.matrix3.determinant();
     transform.is_finite() && determinant.is_normal() && transform.inverse().is_finite()
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn rotations_turn_by_the_right_hand() {
+    fn rotations_follow_the_right_hand_rule() {
         check_maps(rotate(90.0, DVec3::Z).unwrap(), [1., 0., 0.], [0., 1., 0.]);
         check_maps(
             rotate(-90.0, DVec3::X * 7.0).unwrap(),

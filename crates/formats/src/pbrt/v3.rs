@@ -1,8 +1,8 @@
-//! What proves that a file was written for version 3 (or older) of the format.
+//! The marks of files for version 3 (or older) of the format.
 
 use crate::source::{Fault, Span};
 
-/// The error at a mark of version 3; `hint` says what version 4 writes.
+/// Returns the error for a mark of version 3; `hint` names the replacement in version 4.
 pub(super) fn fault(span: Span, mark: &str, hint: &str) -> Fault {
     let fault = Fault::scene(
         span,
@@ -11,7 +11,7 @@ pub(super) fn fault(span: Span, mark: &str, hint: &str) -> Fault {
     fault.with_hint(format!("{hint}, or convert the file with `pbrt --upgrade`"))
 }
 
-/// What to write for a directive of old.
+/// Returns the replacement for an old directive.
 pub(super) fn directive(word: &str) -> Option<&'static str> {
     match word {
         "WorldEnd" => Some("leave it out: the world ends with the file"),
@@ -22,7 +22,7 @@ pub(super) fn directive(word: &str) -> Option<&'static str> {
     }
 }
 
-/// What to write for a type word of old.
+/// Returns the replacement for an old type word.
 pub(super) fn type_word(word: &str) -> Option<&'static str> {
     match word {
         "color" => Some("write `rgb`"),
@@ -33,7 +33,7 @@ pub(super) fn type_word(word: &str) -> Option<&'static str> {
     }
 }
 
-/// What to write for a parameter of old; none of these names is used by version 4.
+/// Returns the replacement for an old parameter; version 4 uses none of these names.
 pub(super) fn parameter(name: &str) -> Option<&'static str> {
     match name {
         "xwidth" => Some("write `xradius`"),

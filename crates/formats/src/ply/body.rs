@@ -1,22 +1,22 @@
-//! The numbers of a PLY file, one after the other.
+//! Reads the numbers of a PLY file in sequence.
 
 use super::Broken;
 use super::header::{Element, Format, PropertyKind, Scalar};
 
-/// What is left of the body.
+/// The unread rest of the body.
 pub(super) struct Body<'b> {
     format: Format,
     rest: &'b [u8],
-    /// The line of the last word, from 1: of ASCII bodies.
+    /// The line of the last word in an ASCII body, counted from 1.
     line: usize,
-    /// Its column, from 1.
+    /// Its column, counted from 1.
     column: usize,
-    /// The column that `rest` begins at.
+    /// The column at which `rest` begins.
     next_column: usize,
 }
 
 impl<'b> Body<'b> {
-    /// `lines`: those of the header before it.
+    /// Returns the body after a header of `lines` lines.
     pub(super) fn new(format: Format, rest: &'b [u8], lines: usize) -> Self {
         Self {
             format,
@@ -27,7 +27,7 @@ impl<'b> Body<'b> {
         }
     }
 
-    /// Something wrong here.
+    /// Returns an error at the current place.
     pub(super) fn broken(&self, message: impl Into<String>) -> Broken {
         let is_text = self.format == Format::Ascii;
         Broken {
@@ -36,7 +36,7 @@ impl<'b> Body<'b> {
         }
     }
 
-    /// Refuses counts that the body cannot hold, before memory is taken for them.
+    /// Refuses counts that the body is too short for, before memory is reserved.
     pub(super) fn check_room(&self, element: &Element) -> Result<(), Broken> {
         let smallest = |scalar: Scalar| match self.format {
             // A digit and a separator.
@@ -78,7 +78,7 @@ impl<'b> Body<'b> {
         }
     }
 
-    /// Passes over a property.
+    /// Skips a property.
     pub(super) fn skip(&mut self, kind: PropertyKind) -> Result<(), Broken> {
         match kind {
             PropertyKind::Scalar(scalar) => self.skip_scalars(scalar, 1),
@@ -89,7 +89,7 @@ impl<'b> Body<'b> {
         }
     }
 
-    /// Passes over `count` numbers.
+    /// Skips `count` numbers.
     pub(super) fn skip_scalars(&mut self, scalar: Scalar, count: usize) -> Result<(), Broken> {
         for _ in 0..count {
             self.scalar(scalar)?;
@@ -115,7 +115,7 @@ impl<'b> Body<'b> {
         })
     }
 
-    /// The next bytes of a binary body, least significant first.
+    /// Takes the next bytes of a binary body, least significant first.
     #[inline]
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Broken> {
         let Some((bytes, rest)) = self.rest.split_first_chunk::<N>() else {

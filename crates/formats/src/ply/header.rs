@@ -1,8 +1,8 @@
-//! The text at the beginning of a PLY file.
+//! Reads the text at the beginning of a PLY file.
 
 use super::Broken;
 
-/// How the body is written.
+/// The encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Ascii,
@@ -24,7 +24,7 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
-    /// Its size in a binary body.
+    /// Returns its size in a binary body. Unit: bytes.
     pub(super) const fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -49,7 +49,7 @@ impl Scalar {
     }
 }
 
-/// What a property holds.
+/// The type of a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PropertyKind {
     Scalar(Scalar),
@@ -71,17 +71,17 @@ pub(super) struct Element {
     pub(super) properties: Vec<Property>,
 }
 
-/// What the body holds.
+/// The description of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) format: Format,
     pub(super) elements: Vec<Element>,
-    /// The lines of the header itself.
+    /// The number of lines of the header.
     pub(super) lines: usize,
 }
 
 impl Header {
-    /// Reads the header; the second part is the body.
+    /// Reads the header. Returns it with the bytes of the body.
     pub(super) fn parse(bytes: &[u8]) -> Result<(Self, &[u8]), Broken> {
         let mut rest = bytes;
         let mut format = None;

@@ -1,12 +1,12 @@
-//! Triangle meshes in PLY files: ASCII and binary of either byte order, packed or not.
+//! Reads triangle meshes from PLY files: ASCII and binary of either byte order, packed or not.
 //!
-//! Of the `vertex` element `x y z`, `nx ny nz` and the first complete pair of `u v`, `s t`,
-//! `texture_u texture_v`, `texture_s texture_t` are read; of the `face` element the list
-//! `vertex_indices`. Everything else is skipped. A quadrilateral a b c d becomes (a, b, c) and
-//! (a, c, d); faces with fewer or more corners are skipped and counted.
+//! Reads `x y z`, `nx ny nz` and the first complete pair of `u v`, `s t`, `texture_u texture_v`,
+//! `texture_s texture_t` of the `vertex` element, and the list `vertex_indices` of the `face` element.
+//! Everything else is skipped. A quadrilateral a b c d becomes (a, b, c) and (a, c, d); faces with fewer
+//! or more corners are skipped and counted.
 //!
-//! Why not a crate: `serde-ply` and `ply-rs-bw` read a list of a million faces into a million
-//! vectors, and neither says which element of a file is broken.
+//! The crates `serde-ply` and `ply-rs-bw` are not used: they read a list of a million faces into a million
+//! vectors, and do not report which element of a file is broken.
 
 mod body;
 mod header;
@@ -22,20 +22,20 @@ use std::path::Path;
 pub struct PlyMesh {
     /// The vertices: finite, at least one.
     pub positions: Vec<[f32; 3]>,
-    /// One per vertex, not normalised. Shape: empty where the file has none.
+    /// One normal per vertex, not normalised. Shape: empty if the file has none.
     pub normals: Vec<[f32; 3]>,
-    /// One per vertex. Shape: empty where the file has none.
+    /// One pair of texture coordinates per vertex. Shape: empty if the file has none.
     pub uvs: Vec<[f32; 2]>,
-    /// Indices of vertices, all valid.
+    /// Valid indices of vertices.
     pub triangles: Vec<[u32; 3]>,
-    /// Faces that are neither triangles nor quadrilaterals.
+    /// The number of faces that are neither triangles nor quadrilaterals.
     pub skipped_faces: usize,
 }
 
-/// What is wrong within a file. The file's name is known further up.
+/// An error within a file, whose name the caller knows.
 struct Broken {
     message: String,
-    /// Line and column, both from 1. None: in binary files.
+    /// Line and column, both counted from 1. None: the file is binary.
     place: Option<(usize, usize)>,
 }
 
@@ -47,7 +47,7 @@ impl Broken {
         }
     }
 
-    /// Says which element is meant.
+    /// Adds the name and number of the element to the message.
     fn of(self, element: &str, index: usize) -> Self {
         Self {
             message: format!("{element} {index}: {}", self.message),
@@ -56,13 +56,13 @@ impl Broken {
     }
 }
 
-/// Reads the mesh of a file; `.gz` is unpacked.
+/// Reads the mesh of a file, which may be packed.
 pub fn read(path: &Path) -> Result<PlyMesh> {
     let bytes = bytes::read(path, limits::LARGEST_MESH)?.bytes;
     parse(&bytes).map_err(|error| error.in_file(path))
 }
 
-/// Reads the mesh in `bytes`, which are unpacked.
+/// Reads the mesh in `bytes`, which are not packed.
 pub fn parse(bytes: &[u8]) -> Result<PlyMesh> {
     parse_mesh(bytes).map_err(|broken| {
         let error = Error::new(ErrorKind::Data, broken.message);
@@ -110,10 +110,10 @@ fn parse_mesh(bytes: &[u8]) -> Result<PlyMesh, Broken> {
     Ok(mesh)
 }
 
-/// The numbers of a vertex that are read: position, normal, uv.
+/// The numbers of a vertex: position, normal, uv.
 type VertexRow = [f32; 8];
 
-/// Which of a vertex's properties goes where in a [`VertexRow`].
+/// The places of a vertex's properties in a [`VertexRow`].
 struct Columns {
     slots: Vec<Option<usize>>,
     has_normal: bool,

@@ -7,7 +7,7 @@ const QUAD: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty
     0 0 0 0 0 1\n1 0 0 1 0 2\n1 1 0 1 1 3\n0 1 0 0 1 4\n\
     4 0 1 2 3\n2 0 1\n3 2 1 0\n7\n";
 
-/// The same mesh as [`QUAD`], with normals, in binary.
+/// Returns the same mesh as [`QUAD`], with normals, in binary.
 fn binary_quad(format: &str) -> Vec<u8> {
     let mut bytes = format!(
         "ply\r\nformat {format} 1.0\r\nelement face 2\r\nproperty int id\r\n\
@@ -72,7 +72,7 @@ fn check_broken(from: &str, to: &str, expected: &str) {
 }
 
 #[test]
-fn broken_files_are_told_with_element_and_line() {
+fn errors_of_broken_files_name_element_and_line() {
     check_broken(
         "ply\n",
         "plx\n",

@@ -1,4 +1,5 @@
-//! XYZ = ∫ S(λ) (x̄, ȳ, z̄)(λ) dλ and linear RGB of it: sums over whole nanometres from 360 to 830.
+//! Colours of spectra: XYZ = ∫ S(λ) (x̄, ȳ, z̄)(λ) dλ as sums over whole nanometres from 360 to 830, and
+//! its linear RGB.
 
 use super::Spectrum;
 use super::named::daylight;
@@ -9,14 +10,14 @@ use std::sync::LazyLock;
 
 /// Chromaticities of red, green and blue, and of white.
 pub(crate) struct Primaries {
-    /// Of the three primaries.
+    /// The chromaticities of the three primaries.
     pub(crate) xy: [[f64; 2]; 3],
-    /// XYZ of white, of luminance 1.
+    /// XYZ of white at luminance 1.
     pub(crate) white: DVec3,
 }
 
 impl Primaries {
-    /// Linear Rec. 709, which is that of sRGB, under the D65 of the tables.
+    /// Returns Rec. 709, whose primaries sRGB shares, with D65 as in the tables.
     pub(crate) fn rec709() -> Self {
         Self {
             xy: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
@@ -24,7 +25,7 @@ impl Primaries {
         }
     }
 
-    /// XYZ = M · RGB, the primaries scaled so that they add up to white.
+    /// Returns M in XYZ = M · RGB, with the primaries scaled to add up to white.
     fn xyz_from_rgb(&self) -> DMat3 {
         let [r, g, b] = self.xy.map(xyz);
         let unscaled = DMat3::from_cols(r, g, b);
@@ -32,14 +33,14 @@ impl Primaries {
     }
 }
 
-/// XYZ of luminance 1.
+/// Returns XYZ of a chromaticity at luminance 1.
 fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
-/// What all colours need: the observer and daylight, nanometre by nanometre.
+/// The observer and daylight, nanometre by nanometre.
 struct Observed {
-    /// Wavelength, the observer's functions, D65 relative to its luminance.
+    /// Wavelength (nm), the observer's functions, and D65 relative to its luminance.
     steps: Vec<(f64, DVec3, f64)>,
     /// XYZ of D65.
     white: DVec3,
@@ -74,19 +75,19 @@ fn rgb(xyz: DVec3) -> Rgb {
     (rgb_from_xyz() * xyz).as_vec3().into()
 }
 
-/// ∫ value · D65 in linear Rec. 709: that of a reflectance of 1 is white. Not clamped.
+/// Computes ∫ value · D65 in linear Rec. 709, which is white for a reflectance of 1. Not clamped.
 fn under_daylight(value: impl Fn(f64) -> f64) -> Rgb {
     let steps = OBSERVED.steps.iter();
     rgb(steps.map(|(nm, bars, d65)| bars * (d65 * value(*nm))).sum())
 }
 
-/// What a reflectance, or another factor, looks like under daylight: linear Rec. 709, not clamped.
+/// Returns the colour of a reflectance, or another factor, under daylight in linear Rec. 709. Not clamped.
 pub(crate) fn reflectance(spectrum: &Spectrum) -> Rgb {
     under_daylight(|nm| spectrum.at(nm))
 }
 
-/// The colour of a light, with luminance 1; channels outside of Rec. 709 are clamped. None: it has
-/// no luminance.
+/// Returns the colour of a light at luminance 1; channels outside of Rec. 709 are clamped. None: the light
+/// has no luminance.
 pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
     let steps = OBSERVED.steps.iter();
     let xyz: DVec3 = steps.map(|(nm, bars, _)| bars * spectrum.at(*nm)).sum();
@@ -94,13 +95,13 @@ pub(crate) fn emission(spectrum: &Spectrum) -> Option<Rgb> {
         return None;
     }
     let clamped = (rgb_from_xyz() * xyz).max(DVec3::ZERO);
-    // Clamping adds light, which is taken off again.
+    // Clamping adds light, which the division removes.
     let luminance = (Primaries::rec709().xyz_from_rgb() * clamped).y;
     Some((clamped / luminance).as_vec3().into())
 }
 
-/// η and k of the metal whose reflectance at normal incidence, under daylight, is that of the
-/// spectral index: η is the mean that each channel sees, and k follows from
+/// Returns η and k of a metal whose reflectance at normal incidence, under daylight, equals that of the
+/// spectral index: η is the mean over each channel, and k follows from
 /// R = ((η - 1)² + k²) / ((η + 1)² + k²).
 pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
     let sqr = |x: f64| x * x;
@@ -118,21 +119,21 @@ pub(crate) fn conductor(eta: &Spectrum, k: &Spectrum) -> (Rgb, Rgb) {
     (seen, k)
 }
 
-/// Linear Rec. 709 of a colour whose primaries are others: its white becomes `white`.
+/// Converts a colour from other primaries to linear Rec. 709; their white becomes `white`.
 pub(crate) fn rgb_from_rgb(from: &Primaries, white: DVec3, color: Rgb) -> Rgb {
     let xyz = from.xyz_from_rgb() * DVec3::from(color.map(f64::from));
     rgb(bradford(from.white, white) * xyz)
 }
 
-/// The matrix on linear Rec. 709 that makes a scene lit by `white` look as if lit by D65.
+/// Returns the matrix on linear Rec. 709 that adapts a scene lit by `white` to D65.
 pub(crate) fn adapted(white: DVec3) -> DMat3 {
     let primaries = Primaries::rec709();
     let xyz_from_rgb = primaries.xyz_from_rgb();
     xyz_from_rgb.inverse() * bradford(white, primaries.white) * xyz_from_rgb
 }
 
-/// Chromatic adaptation: what is white under `from` is white under `to`, by von Kries' rule in the
-/// space of cones of Lam's Bradford matrix.
+/// Returns the chromatic adaptation that maps the white `from` to the white `to`, by von Kries' rule in the
+/// cone space of Lam's Bradford matrix.
 fn bradford(from: DVec3, to: DVec3) -> DMat3 {
     let cones = DMat3::from_cols(
         DVec3::new(0.8951, -0.7502, 0.0389),
@@ -143,7 +144,7 @@ fn bradford(from: DVec3, to: DVec3) -> DMat3 {
     cones.inverse() * DMat3::from_diagonal(ratio) * cones
 }
 
-/// XYZ of a CIE daylight of luminance 1, `kelvin` from 4000 to 25000 (CIE 15).
+/// Returns XYZ of a CIE daylight at luminance 1, for `kelvin` from 4000 to 25000 (CIE 15).
 pub(crate) fn daylight_white(kelvin: f64) -> DVec3 {
     let t = 1e3 / kelvin;
     let x = if kelvin <= 7000.0 {
@@ -154,7 +155,7 @@ pub(crate) fn daylight_white(kelvin: f64) -> DVec3 {
     xyz([x, (-3.0 * x + 2.870) * x - 0.275])
 }
 
-/// XYZ of a blackbody of luminance 1.
+/// Returns XYZ of a blackbody at luminance 1.
 pub(crate) fn planckian_white(kelvin: f64) -> DVec3 {
     let spectrum = Spectrum::blackbody(kelvin);
     let steps = OBSERVED.steps.iter();
@@ -163,7 +164,7 @@ pub(crate) fn planckian_white(kelvin: f64) -> DVec3 {
 }
 
 impl Primaries {
-    /// Primaries with a white of this chromaticity.
+    /// Returns primaries with a white of this chromaticity.
     pub(crate) fn new(xy: [[f64; 2]; 3], white: [f64; 2]) -> Self {
         Self {
             xy,

@@ -1,9 +1,8 @@
-//! Spectra, and what they are as colours: functions of wavelength that files give by samples, by
-//! temperature or by name.
+//! Spectra and their colours: functions of wavelength, given by samples, temperature or name.
 //!
-//! The renderer computes with linear Rec. 709, so a spectrum ends here, once, as three numbers:
-//! what a reflectance looks like under daylight ([`reflectance`]), the hue of a light
-//! ([`emission`]), the index of a metal that reflects as its spectrum does ([`conductor`]).
+//! The renderer computes with linear Rec. 709, so spectra are converted to three numbers here: the colour
+//! of a reflectance under daylight ([`reflectance`]), the hue of a light ([`emission`]), the index of a
+//! metal with the reflectance of its spectrum ([`conductor`]).
 
 mod color;
 mod named;
@@ -17,31 +16,31 @@ pub(crate) use named::{named, names};
 
 use std::fmt;
 
-/// What a sampled spectrum is beyond its first and last wavelength.
+/// The value of a sampled spectrum beyond its first and last wavelength.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Beyond {
-    /// Nothing.
+    /// The value is 0.
     Zero,
-    /// As at the nearest end.
+    /// The value is that of the nearest end.
     Last,
 }
 
 /// A function of wavelength, linear between samples.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spectrum {
-    /// Wavelength (nm, increasing) and value.
+    /// Pairs of wavelength (nm, increasing) and value.
     samples: Vec<[f64; 2]>,
     beyond: Beyond,
 }
 
-/// Why numbers are no spectrum.
+/// The reason why numbers are not a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SpectrumError {
-    /// There is no sample at all.
+    /// There are no samples.
     Empty,
-    /// A wavelength without a value.
+    /// A wavelength has no value.
     Odd,
-    /// Something in line number `.0` is no number.
+    /// A word in line number `.0` is not a number.
     NotANumber(usize),
     /// Wavelengths do not increase.
     Order,
@@ -66,7 +65,7 @@ impl fmt::Display for SpectrumError {
 }
 
 impl Spectrum {
-    /// The spectrum of these samples: wavelength (nm) and value.
+    /// Returns the spectrum of samples: wavelength (nm) and value.
     pub(crate) fn new(samples: Vec<[f64; 2]>, beyond: Beyond) -> Result<Self, SpectrumError> {
         if samples.is_empty() {
             return Err(SpectrumError::Empty);
@@ -77,7 +76,7 @@ impl Spectrum {
         Ok(Self { samples, beyond })
     }
 
-    /// The same of a flat list.
+    /// Returns the spectrum of a flat list of wavelengths and values.
     pub(crate) fn from_pairs(numbers: &[f64], beyond: Beyond) -> Result<Self, SpectrumError> {
         let (pairs, rest) = numbers.as_chunks::<2>();
         if !rest.is_empty() {
@@ -106,7 +105,7 @@ impl Spectrum {
         Self::from_pairs(&numbers, Beyond::Zero)
     }
 
-    /// Planck's law at `kelvin`, relative to its peak.
+    /// Returns Planck's law at `kelvin`, relative to its peak.
     pub(crate) fn blackbody(kelvin: f64) -> Self {
         // c2 = h c / k. Unit: m K. Wien's displacement constant. Unit: nm K.
         const C2: f64 = 1.438776877e-2;
@@ -123,7 +122,7 @@ impl Spectrum {
         }
     }
 
-    /// The value at a wavelength. Unit of `nm`: nanometres.
+    /// Returns the value at a wavelength. Unit of `nm`: nanometres.
     pub(crate) fn at(&self, nm: f64) -> f64 {
         let next = self.samples.partition_point(|&[x, _]| x < nm);
         let value = |i: usize| self.samples.get(i).copied();
@@ -138,12 +137,12 @@ impl Spectrum {
         }
     }
 
-    /// True where no sample is negative.
+    /// Returns true if no sample is negative.
     pub(crate) fn is_positive(&self) -> bool {
         self.samples.iter().all(|&[_, value]| value >= 0.0)
     }
 
-    /// The largest sample.
+    /// Returns the largest sample.
     pub(crate) fn peak(&self) -> f64 {
         self.samples.iter().fold(0.0, |peak, &[_, y]| peak.max(y))
     }

@@ -3,12 +3,12 @@
 use super::table::{self, DAYLIGHT, FLUORESCENT, METALS};
 use super::{Beyond, Spectrum};
 
-/// The wavelengths of glasses and of illuminants that are formulas. Unit: nm.
+/// Returns the wavelengths at which formulas of glasses and illuminants are tabulated. Unit: nm.
 fn visible(step: usize) -> impl Iterator<Item = f64> {
     (360..=830).step_by(step).map(f64::from)
 }
 
-/// The spectrum of this name. None: there is none.
+/// Returns the spectrum of this name. None: there is none.
 pub(crate) fn named(name: &str) -> Option<Spectrum> {
     if let Some(metal) = name.strip_prefix("metal-") {
         return METALS.column(metal);
@@ -25,7 +25,7 @@ pub(crate) fn named(name: &str) -> Option<Spectrum> {
     }
 }
 
-/// All names.
+/// Returns all names.
 pub(crate) fn names() -> impl Iterator<Item = String> {
     let metals = METALS.names().map(|metal| format!("metal-{metal}"));
     let glasses = table::glasses().map(|(glass, _)| format!("glass-{glass}"));
@@ -40,7 +40,7 @@ pub(crate) fn names() -> impl Iterator<Item = String> {
     metals.chain(glasses).chain(lamps).chain(formulas)
 }
 
-/// n² = 1 + Σ B λ² / (λ² - C), λ in micrometres.
+/// Returns Sellmeier's index n² = 1 + Σ B λ² / (λ² - C), λ in micrometres.
 fn sellmeier(coefficients: &[f64; 6]) -> Spectrum {
     let index = |nm: f64| {
         let square = nm * nm * 1e-6;
@@ -51,7 +51,7 @@ fn sellmeier(coefficients: &[f64; 6]) -> Spectrum {
     tabulated(visible(5), index)
 }
 
-/// CIE standard illuminant A: Planck's law at 2848 K with c2 = 1.435e7 nm K.
+/// Returns CIE standard illuminant A: Planck's law at 2848 K with c2 = 1.435e7 nm K.
 fn incandescent() -> Spectrum {
     let exponent = |nm: f64| libm::expm1(1.435e7 / (2848.0 * nm));
     tabulated(visible(5), |nm| {
@@ -59,7 +59,7 @@ fn incandescent() -> Spectrum {
     })
 }
 
-/// The daylight of this chromaticity: S0 + M1 S1 + M2 S2 (CIE 15).
+/// Returns the daylight of this chromaticity: S0 + M1 S1 + M2 S2 (CIE 15).
 pub(super) fn daylight([x, y]: [f64; 2]) -> Spectrum {
     let m = 0.0241 + 0.2562 * x - 0.7341 * y;
     let m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / m;

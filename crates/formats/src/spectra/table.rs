@@ -3,7 +3,7 @@
 use super::{Beyond, Spectrum};
 use std::sync::LazyLock;
 
-/// Columns of numbers, the first of which is the wavelength.
+/// Columns of numbers over wavelength.
 pub(super) struct Table {
     names: Vec<&'static str>,
     columns: Vec<Vec<[f64; 2]>>,
@@ -19,7 +19,7 @@ pub(super) static METALS: LazyLock<Table> =
     LazyLock::new(|| Table::read(include_str!("../../data/spectra/metals.csv")));
 
 impl Table {
-    /// Reads comma-separated values; fields without a number are left out.
+    /// Reads comma-separated values; fields without a number are omitted.
     fn read(text: &'static str) -> Self {
         let mut lines = text.lines();
         let header = lines.next().unwrap_or_default();
@@ -37,26 +37,26 @@ impl Table {
         Self { names, columns }
     }
 
-    /// The columns' names.
+    /// Returns the names of the columns.
     pub(super) fn names(&self) -> impl Iterator<Item = &'static str> {
         self.names.iter().copied()
     }
 
-    /// The column of this name, extended beyond its ends.
+    /// Returns the column of this name, with its end values beyond its ends.
     pub(super) fn column(&self, name: &str) -> Option<Spectrum> {
         let index = self.names.iter().position(|known| *known == name)?;
         Spectrum::new(self.columns[index].clone(), Beyond::Last).ok()
     }
 }
 
-/// The Sellmeier coefficients B1, C1, B2, C2, B3, C3 of a glass. Unit of C: µm².
+/// Returns the Sellmeier coefficients B1, C1, B2, C2, B3, C3 of a glass. Unit of C: µm².
 pub(super) fn glass(name: &str) -> Option<[f64; 6]> {
     let (_, numbers) = glasses().find(|(known, _)| *known == name)?;
     let numbers: Vec<f64> = numbers.split(',').filter_map(|n| n.parse().ok()).collect();
     numbers.try_into().ok()
 }
 
-/// Names and coefficients of all glasses.
+/// Returns names and coefficients of all glasses.
 pub(super) fn glasses() -> impl Iterator<Item = (&'static str, &'static str)> {
     let text = include_str!("../../data/spectra/glasses.csv");
     text.lines().skip(1).filter_map(|line| line.split_once(','))

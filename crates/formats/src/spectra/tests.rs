@@ -1,4 +1,4 @@
-//! Spectra against what standards print.
+//! Compares spectra with the tables of standards.
 
 use super::*;
 use glam::DVec3;
@@ -61,7 +61,7 @@ fn white_reflects_everything_under_daylight() {
     check_color(emission(&d65).unwrap(), [1.0; 3], 1e-6);
 }
 
-/// XYZ by its chromaticity, of a light whose colour lies within Rec. 709.
+/// Returns the chromaticity of a light whose colour lies within Rec. 709.
 fn chromaticity(light: &Spectrum) -> [f64; 2] {
     let rgb = DVec3::from(emission(light).unwrap().map(f64::from));
     // The matrix of IEC 61966-2-1 from linear sRGB to XYZ.
@@ -76,9 +76,9 @@ fn chromaticity(light: &Spectrum) -> [f64; 2] {
 
 #[track_caller]
 fn check_chromaticity(light: &Spectrum, expected: [f64; 2], tolerance: f64) {
-    let found = chromaticity(light);
-    let distance = libm::hypot(found[0] - expected[0], found[1] - expected[1]);
-    assert!(distance < tolerance, "{found:?} instead of {expected:?}");
+    let actual = chromaticity(light);
+    let distance = libm::hypot(actual[0] - expected[0], actual[1] - expected[1]);
+    assert!(distance < tolerance, "{actual:?} instead of {expected:?}");
 }
 
 /// CIE 15, table T.3, and the locus of Planck.

@@ -1,4 +1,4 @@
-//! A torture scene and how much is spent on it.
+//! A torture scene and its number of passes.
 
 use crate::statistics::{Replicates, WHOLE, check_agree, replicates};
 use bidir::driver::Settings;
@@ -8,14 +8,14 @@ use bidir::scene::Scene;
 use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
 use std::path::Path;
 
-/// Few pixels with many samples each: then the mean of a pixel is close to normal.
+/// Few pixels with many samples each, so that the mean of a pixel is close to normal.
 pub(crate) const RESOLUTION: [u32; 2] = [16, 16];
-/// The film's mean and every pixel are compared.
+/// Blocks to compare: the whole film, and every pixel.
 pub(crate) const PIXELS: &[usize] = &[WHOLE, 1];
-/// For estimators whose pixels have heavy tails: the film's mean and its quarters.
+/// Blocks for estimators whose pixels have heavy tails: the whole film, and its quarters.
 pub(crate) const QUARTERS: &[usize] = &[WHOLE, 8];
 
-/// A scene, the limit of depth that its file asks for, and the passes of all replicates.
+/// A scene, the maximum depth of its file, and the passes of all replicates.
 #[derive(Clone, Copy)]
 pub(crate) struct Case<'a> {
     scene: &'a Scene,
@@ -50,7 +50,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The case with other random numbers, and four times as many passes.
+    /// Returns the case with another seed, and four times as many passes.
     pub(crate) fn again(self) -> Self {
         Self {
             seed: self.seed + 1,
@@ -58,7 +58,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The case with `factor` times as many passes, for an estimator of more variance.
+    /// Returns the case with `factor` times as many passes, for an estimator of more variance.
     pub(crate) fn with_effort(self, factor: u64) -> Self {
         Self {
             passes: self.passes * factor,
@@ -66,7 +66,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// The case with one part in `parts` of the passes, for estimators that share their noise.
+    /// Returns the case with one part in `parts` of the passes, for estimators with correlated noise.
     pub(crate) fn with_part(self, parts: u64) -> Self {
         Self {
             passes: self.passes.div_ceil(parts),

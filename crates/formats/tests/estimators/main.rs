@@ -1,9 +1,9 @@
-//! All estimators agree with the path tracer on the torture scenes, each of which is after one way
-//! to be wrong. The scenes are the project's own, in `scenes/torture`.
+//! All estimators agree with the path tracer on the torture scenes in `scenes/torture`, each of which
+//! exposes one kind of error.
 //!
-//! Here are those that need comparisons of their own; `matrix` has every integrator with every choice
-//! of shadow rays on all scenes; `plans` has what `auto` takes;
-//! `places` moves and scales a scene.
+//! This file has the scenes that need comparisons of their own; `matrix` has every integrator with every
+//! choice of shadow rays on all scenes; `plans` has the plans that `auto` chooses; `places` moves and
+//! scales a scene.
 
 mod case;
 mod matrix;
@@ -22,7 +22,7 @@ use case::{Case, PIXELS, QUARTERS, open, open_part};
 use statistics::{Replicates, check_agree, check_paired};
 use std::sync::LazyLock;
 
-/// A scene of several tests, and its image by path tracing, which is rendered once.
+/// A scene for several tests, with its image by path tracing, which is rendered once.
 struct World {
     loaded: Loaded,
     passes: u64,
@@ -30,7 +30,7 @@ struct World {
 }
 
 impl World {
-    /// The path tracer takes `effort` times the passes of a test twice.
+    /// Renders the reference with twice `effort` times the passes of a test.
     fn new(name: &str, passes: u64, effort: u64) -> Self {
         let loaded = open(&format!("{name}.pbrt"));
         let reference = Case::new(&loaded, passes).with_effort(effort).path();
@@ -51,7 +51,7 @@ static RED_LIGHT: LazyLock<World> = LazyLock::new(|| World::new("red-light-blue-
 
 #[test]
 fn glass_smooth_and_rough() {
-    // The light tracer cannot see through smooth glass, and so is not asked.
+    // The light tracer cannot connect through smooth glass, so it is not compared.
     let loaded = open("glass.pbrt");
     let case = Case::new(&loaded, 2304);
     case.check_bdpt(&case.path());
@@ -67,8 +67,8 @@ fn metal_smooth_rough_and_anisotropic() {
 #[test]
 fn half_covered_lens() {
     let loaded = open("lens.pbrt");
-    // Splats from close to the lens are few and bright: the light tracer needs so many samples that it is
-    // compared among the long statistics.
+    // Splats from close to the lens are few and bright: the light tracer needs so many samples that it
+    // belongs to the long statistics.
     let case = Case::new(&loaded, 2560);
     case.check_bdpt(&case.path());
 }
@@ -78,7 +78,7 @@ fn parallel_rays() {
     let loaded = open("parallel.pbrt");
     let case = Case::new(&loaded, 1152);
     case.check_bdpt(&case.path());
-    // Nothing but the camera's own rays can see the sky: below it is the ground.
+    // Only camera rays can see the sky, so the light tracer is compared on the ground below it.
     let ground = open_part("parallel.pbrt", Some(Crop::Fractions([0.0, 1.0, 0.5, 1.0])));
     let case = Case::new(&ground, 9216);
     case.check_light(&case.path());
@@ -126,7 +126,7 @@ fn lamps_chosen_by_a_tree_and_by_power() {
     check_agree("path, tree", &case.path(), &reference, PIXELS);
     case.check_bdpt(&reference);
     case.with_effort(2).check_light(&reference);
-    // Weights that know the tree's densities, and points that do not come from it.
+    // Weights contain the tree's densities, but shared points do not come from it.
     let shared = case.bdpt(|settings| settings.path.light_point = LightPointChoice::Shared);
     check_agree("bdpt, shared", &shared, &reference, PIXELS);
 }
@@ -147,8 +147,10 @@ fn filters_with_and_without_negative_lobes() {
     check_filter("mitchell", 512, 2);
 }
 
-/// The path tracer meets the lamp rarely, and the wider the lobes the more that varies: it takes `effort`
-/// times the passes. Lobes blur edges and leave means of blocks alone, so pixels are compared.
+/// Compares estimators with a filter, by pixels, as lobes blur edges but keep means of blocks.
+///
+/// The path tracer takes `effort` times the passes: it rarely hits the lamp, and wide lobes raise the
+/// variance.
 #[track_caller]
 fn check_filter(name: &str, passes: u64, effort: u64) {
     let loaded = open(&format!("filter-{name}.pbrt"));
@@ -156,7 +158,7 @@ fn check_filter(name: &str, passes: u64, effort: u64) {
     let reference = case.bdpt(|_| ());
     case.check_light(&reference);
     let case = case.with_effort(2 * effort);
-    // Walks whose film position has a negative weight survive as others do.
+    // Roulette treats walks whose film position has a negative weight like others.
     for roulette in [
         PathRoulette::default(),
         PathRoulette::Throughput { start: 0 },
@@ -196,8 +198,8 @@ fn surfaces_that_almost_touch() {
     Case::new(&open("touching.pbrt"), 640).check_all();
 }
 
-/// All shadow rays under each heuristic look as path tracing does, and every choice among them, which makes
-/// the same subpaths, as all of them.
+/// All shadow rays under each heuristic agree with path tracing, and every choice among them, which has the
+/// same subpaths, agrees with all of them.
 #[test]
 fn every_choice_of_shadow_rays_under_every_heuristic() {
     let case = RED_LIGHT.case();
@@ -230,7 +232,8 @@ fn every_choice_of_shadow_rays_under_every_heuristic() {
     }
 }
 
-/// Several light points for each camera vertex, as many for the first as for those behind it or more.
+/// Takes several light points for each camera vertex: for the first vertex as many as for later ones, or
+/// more.
 #[test]
 fn several_light_points_for_each_camera_vertex() {
     let separated = World::new("separated", 128, 4);
@@ -251,9 +254,9 @@ fn several_light_points_for_each_camera_vertex() {
     }
 }
 
-/// Lamps of many places, and lights of every kind: what is learnt of them is far from their power.
+/// In scenes with many lamps and with all kinds of lights, the trained distribution differs much from power.
 #[test]
-fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
+fn light_subpaths_with_a_trained_light_start() {
     for (name, passes, effort) in [("lamps", 960, 2), ("lights", 768, 1)] {
         let loaded = open(&format!("{name}.pbrt"));
         let case = Case::new(&loaded, passes);
@@ -262,14 +265,14 @@ fn light_subpaths_that_begin_where_they_reach_what_is_seen() {
             let result = case.render(IntegratorKind::Lvc, |settings| {
                 settings.lvc.light_start = emission;
             });
-            // So few splats land in a pixel that sees the sky alone that their mean is skewed.
+            // A pixel that sees only the sky gets so few splats that its mean is skewed.
             let name = format!("{name}, emission {kind}");
             check_agree(&name, &result, &reference, QUARTERS);
         }
     }
 }
 
-/// Two of many candidates are traced: what counts as a sample depends on how weights count.
+/// Traces two of many candidates; the sample counts in MIS weights depend on `mis-count`.
 #[track_caller]
 fn check_counts(name: &str, world: &World, effort: u64) {
     for (count_name, mis_count) in MisCount::NAMES {
@@ -342,8 +345,8 @@ mod long_statistics {
                 settings.path.max_depth = Some(length as u32 - 2);
             })
         };
-        // Few light subpaths reach the lens's view, and few walks of the camera the lamp: those that
-        // meet it after two bounces are too few to compare.
+        // Few light subpaths reach the view of the lens, and few camera subpaths the lamp: hits after two
+        // bounces are too rare to compare.
         for (length, effort, others) in [(3, 1, [(0, 8), (2, 6)]), (4, 8, [(2, 6), (3, 24)])] {
             let next_event = single(1, length, effort);
             for (s, effort) in others {
@@ -361,7 +364,7 @@ mod long_statistics {
 
     #[test]
     #[ignore = "long statistics: .ci/run statistics"]
-    fn neither_next_event_estimation_nor_light_images() {
+    fn strategies_without_next_event_estimation_and_light_images() {
         check_strategies("all,-s1,-t1", 20, QUARTERS);
     }
 

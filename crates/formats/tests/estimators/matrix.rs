@@ -1,5 +1,5 @@
-//! Every integrator with every choice of shadow rays, and `auto` with plans that it may choose, on every
-//! scene: a part of it always, more among the long statistics, and all of it at night.
+//! Compares every integrator with every choice of shadow rays, and `auto` with its possible plans, on every
+//! scene: a part always, more in the long statistics, and everything in nightly runs.
 
 use crate::case::{Case, PIXELS, QUARTERS, open};
 use crate::statistics::{BIAS, Comparison, Replicates};
@@ -15,30 +15,30 @@ const RULES: [&str; 5] = [
     "budget:2",
 ];
 
-/// Comparisons by pairs take this part of the passes: what the estimators share goes away.
+/// Paired comparisons take this fraction of the passes, as the correlated noise of the estimators cancels.
 const PART_OF_PAIRS: u64 = 4;
 
-/// Plans of `auto` that are no integrator's default: candidates of a camera vertex, shadow rays of a
-/// sample, and the binary logarithm of the samples for each light subpath.
+/// Plans of `auto` that are not the default of an integrator: candidates of a camera vertex, shadow rays per
+/// sample, and the binary logarithm of the samples per light subpath.
 const PLANS: [([u16; 2], u32, u32); 2] = [([20, 3], 8, 1), ([24, 4], 10, 0)];
 
 /// A scene of `scenes/torture`.
 struct World {
     name: &'static str,
-    /// Of the bidirectional path tracer; the path tracer takes `effort` times as many twice.
+    /// The passes of the bidirectional path tracer; the path tracer takes twice `effort` times as many.
     passes: u64,
     effort: u64,
     light: Light,
-    /// Of what sizes blocks are compared where all shadow rays are traced.
+    /// The sizes of compared blocks, if all shadow rays are traced.
     blocks: &'static [usize],
 }
 
-/// What the light tracer makes of a scene.
+/// The part of a scene that the light tracer renders.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Light {
-    /// All of the picture, with this many times the passes.
+    /// The whole picture, with this many times the passes.
     Whole(u64),
-    /// Not all of it: something is seen by Dirac lobes, or only the camera's own rays see it.
+    /// Not everything: something is visible only by Dirac lobes, or only to camera rays.
     Partial,
 }
 
@@ -53,8 +53,8 @@ const fn world(name: &'static str, [passes, effort]: [u64; 2], light: Light) -> 
 }
 
 impl World {
-    /// The same compared by blocks alone: so few splats land in a pixel that its mean is skewed, and
-    /// where none lands nothing varies.
+    /// Returns the same scene, compared only by blocks: pixels get so few splats that their means are skewed,
+    /// or no splats, which leaves no variance.
     const fn by_blocks(self) -> Self {
         Self {
             blocks: QUARTERS,
@@ -63,8 +63,8 @@ impl World {
     }
 }
 
-/// Those that no other test is about. All but three of them take so long that they are among the long
-/// statistics alone.
+/// The scenes without tests of their own. All but three take so long that they are only in the long
+/// statistics.
 const WORLDS: [World; 8] = [
     world("picture-lamp", [512, 2], Light::Whole(2)),
     world("sky-alone", [256, 2], Light::Whole(32)).by_blocks(),
@@ -76,7 +76,7 @@ const WORLDS: [World; 8] = [
     world("empty-sky", [128, 1], Light::Whole(12)).by_blocks(),
 ];
 
-/// Those that have tests of their own, and are in the matrix at night.
+/// The scenes with tests of their own, which are in the matrix of nightly runs.
 const OTHERS: [World; 13] = [
     world("conductor", [2880, 1], Light::Partial),
     world("crop", [1536, 1], Light::Whole(10)).by_blocks(),
@@ -93,21 +93,21 @@ const OTHERS: [World; 13] = [
     world("touching", [768, 1], Light::Whole(2)),
 ];
 
-/// An estimator of a scene, and how it is compared.
+/// An estimator of a scene, with the parameters of its comparison.
 #[derive(Clone)]
 struct Entrant {
     name: String,
     integrator: IntegratorKind,
-    /// None: the estimator's own.
+    /// The choice of shadow rays. None: the default of the estimator.
     rays: Option<ShadowRays>,
     lvc: LvcSettings,
-    /// It takes this many times the passes.
+    /// The factor on the number of passes.
     effort: u64,
     blocks: &'static [usize],
 }
 
 impl Entrant {
-    /// An estimator with its own settings, under a rule.
+    /// Returns an estimator with default settings and a choice of shadow rays.
     fn new(integrator: IntegratorKind, rays: ShadowRays) -> Self {
         Self {
             name: format!("{integrator:?}, {rays}"),
@@ -128,7 +128,7 @@ impl Entrant {
     }
 }
 
-/// An image that others are compared with.
+/// A reference image and its estimator.
 struct Reference<'a> {
     entrant: &'a Entrant,
     image: Replicates,
@@ -140,7 +140,7 @@ impl<'a> Reference<'a> {
         Self { entrant, image }
     }
 
-    /// Compares an image with this one: by pairs where both estimators make the same subpaths.
+    /// Compares an image with this one, in pairs if both estimators make the same subpaths.
     fn comparison<'b>(&'b self, entrant: &Entrant, image: &'b Replicates) -> Comparison<'b> {
         let comparison = Comparison::new(image, &self.image, entrant.blocks);
         if entrant.integrator == self.entrant.integrator {
@@ -152,9 +152,9 @@ impl<'a> Reference<'a> {
 }
 
 impl World {
-    /// Compares the bidirectional path tracers that trace all shadow rays, the light tracer where it sees
-    /// all, and `others` with the path tracer. Under each of `rules` the same light subpaths and camera
-    /// subpaths are made, and so these are compared with all shadow rays, pair by pair.
+    /// Compares the bidirectional path tracers with all shadow rays, the light tracer if it renders the whole
+    /// picture, and `others` with the path tracer. Estimators with `rules` make the same subpaths, so they are
+    /// compared in pairs with all shadow rays.
     #[track_caller]
     fn check(&self, rules: &[&str], others: impl IntoIterator<Item = Entrant>) {
         let loaded = open(&format!("{}.pbrt", self.name));
@@ -182,7 +182,7 @@ impl World {
         }
     }
 
-    /// The light tracer, where it sees all.
+    /// Returns the light tracer, if it renders the whole picture.
     fn light(&self) -> Option<Entrant> {
         match self.light {
             Light::Partial => None,
@@ -193,9 +193,11 @@ impl World {
         }
     }
 
-    /// Of hundreds of comparisons some look different by chance, or a rare bright path keeps them from seeing
-    /// anything: these are made again, with other random numbers and more of them, by which chance goes away
-    /// and a fault stays.
+    /// Compares an estimator with the reference, and repeats a comparison that fails or cannot detect a bias,
+    /// with another seed and more passes.
+    ///
+    /// Of hundreds of comparisons, some fail by chance, or have no power because of a rare bright path. Repeated
+    /// with more samples, chance disappears and a fault stays.
     #[track_caller]
     fn compare(&self, case: Case<'_>, entrant: &Entrant, reference: &Reference<'_>) {
         let name = format!("{}, {}", self.name, entrant.name);
@@ -212,7 +214,7 @@ impl World {
     }
 }
 
-/// `auto`, and its plans that are no integrator's default.
+/// Returns `auto`, and its plans that are not the default of an integrator.
 fn planned() -> Vec<Entrant> {
     let plans = PLANS.map(|([first, deeper], rays, exponent)| Entrant {
         name: format!("{first},{deeper} candidates, budget:{rays}"),
@@ -231,11 +233,11 @@ fn planned() -> Vec<Entrant> {
     plans.into_iter().chain([auto]).collect()
 }
 
-/// A scene with all shadow rays, with one of the other rules, and with `auto` or one of its plans.
+/// Checks a scene with all shadow rays, one of the other rules, and `auto` or one of its plans.
 #[track_caller]
 fn check(name: &str) {
-    let is_meant = |world: &World| world.name == name;
-    let i = WORLDS.iter().position(is_meant).expect("a world");
+    let has_name = |world: &World| world.name == name;
+    let i = WORLDS.iter().position(has_name).expect("a world");
     let rule = RULES[i % RULES.len()];
     let mut plans = planned();
     let one = i % plans.len();
@@ -291,7 +293,7 @@ mod long_statistics {
     }
 }
 
-/// One test for each world, so that they run side by side and each has a result of its own.
+/// One test for each world, so that they run in parallel and have separate results.
 mod every_choice_of_shadow_rays {
     use super::{OTHERS, RULES, WORLDS, planned};
 
@@ -303,7 +305,7 @@ mod every_choice_of_shadow_rays {
         world.check(&RULES, planned());
     }
 
-    /// A test with the name of each world.
+    /// Defines a test for each world.
     macro_rules! worlds {
         ($($name:ident)*) => {
             $(
@@ -330,9 +332,9 @@ mod every_choice_of_shadow_rays {
     }
 }
 
-/// Without light every estimator is exactly black.
+/// Every estimator of a scene without light is exactly black.
 #[test]
-fn nothing_is_black() {
+fn a_scene_without_light_is_black() {
     let loaded = open("empty.pbrt");
     let case = Case::new(&loaded, 64);
     for integrator in [

@@ -1,5 +1,5 @@
-//! Every estimator sees the same wherever a scene is in its world, and whatever its size there: the
-//! same paths, drawn with the same random numbers, carry the same light.
+//! Every estimator renders a scene alike at any place and of any size in its world: the same paths, drawn
+//! with the same random numbers, carry the same light.
 
 use super::QUARTERS;
 use super::case::{Case, RESOLUTION};
@@ -9,7 +9,7 @@ use bidir_formats::scene::{Files, LoadOptions, Loaded, load_from};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Where the room of `scale-unit.pbrt` is, and how long one of its units is there.
+/// The place of the room of `scale-unit.pbrt`, and the length of its unit.
 #[derive(Clone, Copy, Debug)]
 struct Site {
     offset: f64,
@@ -30,7 +30,7 @@ impl Site {
         Self { unit, ..HOME }
     }
 
-    /// The text of the room here. The camera's way back comes after its `LookAt`.
+    /// Returns the text of the room at this place. The camera's inverse transformation follows its `LookAt`.
     fn text(self) -> String {
         let Self { offset, unit } = self;
         let room = include_str!("../../../../scenes/torture/scale-unit.pbrt");
@@ -70,8 +70,8 @@ impl Site {
 fn check(sites: &[Site], passes: u64) {
     let home = HOME.render(passes);
     for site in sites {
-        for ((name, found), (_, expected)) in site.render(passes).iter().zip(&home) {
-            check_paired(&format!("{name}, {site:?}"), found, expected, QUARTERS);
+        for ((name, actual), (_, expected)) in site.render(passes).iter().zip(&home) {
+            check_paired(&format!("{name}, {site:?}"), actual, expected, QUARTERS);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What `auto` renders with, in scenes where that is plain: at 80 x 60 the best plan of another
-//! estimator takes twice as long.
+//! The plans that `auto` chooses in clear cases: at 80 x 60, the best plan of another estimator takes twice
+//! as long.
 
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
@@ -14,18 +14,18 @@ fn under_a_sky_paths_begin_at_the_camera() {
 }
 
 #[test]
-fn what_few_vertices_make_needs_few_connections() {
+fn short_paths_need_few_connections() {
     check("filter-triangle.pbrt", IntegratorKind::Bdpt);
 }
 
 #[test]
-fn where_light_comes_by_bounces_its_subpaths_are_shared() {
+fn indirect_light_has_shared_subpaths() {
     check("narrow-spot.pbrt", IntegratorKind::Lvc);
 }
 
-/// Candidates that nobody named are those of the plan, or the estimator's own, and named ones stay.
+/// Default candidates are those of the plan or of the estimator, and explicit ones stay.
 #[test]
-fn candidates_are_those_that_suit_the_estimator() {
+fn default_candidates_depend_on_the_estimator() {
     let scene = open("narrow-spot.pbrt").scene;
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |candidates| {
@@ -50,9 +50,9 @@ fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, request: &Request) 
     Session::new(scene, settings, &Resources::default()).expect("the film is small")
 }
 
-/// A choice of shadow rays that nobody named is the estimator's, and one that was named stays.
+/// The default choice of shadow rays is that of the estimator, and an explicit one stays.
 #[test]
-fn shadow_rays_are_those_that_suit_the_estimator() {
+fn the_default_choice_of_shadow_rays_depends_on_the_estimator() {
     let scene = open("narrow-spot.pbrt").scene;
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |shadow_rays| {
@@ -74,7 +74,7 @@ fn shadow_rays_are_those_that_suit_the_estimator() {
         let own = plan.map_or(integrator.shadow_rays(), |plan| plan.shadow_rays);
         assert_eq!(session.settings().shadow_rays, own, "{name}");
         if let ShadowRays::Budget(rays) = own {
-            assert!(session.step(&()), "nobody stops it");
+            assert!(session.step(&()), "no observer stops it");
             let stats = session.stats();
             assert!(stats.rays.connection <= u64::from(rays) * stats.samples);
             assert!(

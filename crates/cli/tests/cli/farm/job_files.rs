@@ -4,7 +4,7 @@ use super::{check_lines, job};
 use crate::common::{Ran, Workplace};
 
 #[test]
-fn job_files_say_what_is_started() {
+fn job_files_have_the_commands_of_all_steps() {
     let place = Workplace::new();
     let arguments = "scenes/room.pbrt --parts 8 --spp 64 -o out/room.exr -- --mis power";
     let share = |number: &str| format!("--checkpoint out/room.part-{number}-of-8.film --resume");
@@ -27,11 +27,11 @@ fn job_files_say_what_is_started() {
 }
 
 #[test]
-fn slurm_reads_all_of_its_directives() {
+fn all_directives_of_slurm_precede_the_first_command() {
     let ran = Workplace::new().run("farm slurm room.pbrt --parts 8");
     let text = ran.expect(0).stdout;
     check_lines(&text, &["#SBATCH --job-name=room", "#SBATCH --array=0-7"]);
-    // Slurm reads no further than to the first command.
+    // Slurm ignores directives after the first command.
     let is_directive = |line: &&str| line.starts_with("#SBATCH");
     let is_comment = |line: &&str| line.is_empty() || line.starts_with('#');
     let head = text.lines().take_while(is_comment);
@@ -39,7 +39,7 @@ fn slurm_reads_all_of_its_directives() {
     assert_eq!(head.filter(is_directive).count(), all, "{text}");
 }
 
-/// Wrong arguments, and after `=>` a part of the message.
+/// Wrong arguments, and a part of the message after `=>`.
 const WRONG: &str = "\
 slurm room.pbrt => --parts
 slurm room.pbrt --parts 0 => `0` is not a whole number from 1 to 100000
@@ -79,7 +79,7 @@ fn wrong_input_is_refused_before_anything_is_printed() {
 }
 
 #[test]
-fn variables_here_are_no_flags_of_the_job() {
+fn variables_of_this_machine_do_not_affect_the_job() {
     let place = Workplace::new();
     let mut command =
         place.command("farm shell room.pbrt --parts 8 -- --mis power --checkpoint-every 1m");
@@ -89,7 +89,7 @@ fn variables_here_are_no_flags_of_the_job() {
 }
 
 #[test]
-fn braces_in_a_name_are_no_places_of_a_template() {
+fn braces_in_a_name_are_no_placeholders() {
     let place = Workplace::new();
     let ran = place.run("farm shell {{parts}}.pbrt --parts 8");
     ran.prints(
@@ -98,7 +98,7 @@ fn braces_in_a_name_are_no_places_of_a_template() {
 }
 
 #[test]
-fn names_of_objects_are_labels() {
+fn names_of_kubernetes_objects_are_valid_labels() {
     let text = job(&Workplace::new(), "k8s", "--parts 5");
     check_lines(
         &text,

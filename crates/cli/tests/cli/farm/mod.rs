@@ -1,4 +1,4 @@
-//! Job files for farms, and the jobs that they start.
+//! Job files for farms, and their jobs.
 
 mod job_files;
 #[cfg(unix)]
@@ -6,12 +6,12 @@ mod started;
 
 use crate::common::{Ran, Workplace};
 
-/// A scene whose name has what shells and YAML take for something else.
+/// A scene whose name has special characters of shells and YAML.
 const SCENE: &str = "it's \"my\" $(HOME) room.pbrt";
-/// The beginning of its film files.
+/// The prefix of its film files.
 const NAME: &str = "it's \"my\" $(HOME) room";
 
-/// Prints a job file for that scene, and keeps it in `job`.
+/// Prints a job file for that scene, and writes it to `job`.
 fn job(place: &Workplace, farm: &str, arguments: &str) -> String {
     place.write(SCENE, crate::common::SCENE);
     let mut command = place.command(&format!("farm {farm}"));
@@ -25,7 +25,7 @@ fn job(place: &Workplace, farm: &str, arguments: &str) -> String {
 fn check_lines(text: &str, lines: &[&str]) {
     for line in lines {
         assert!(
-            text.lines().any(|found| found == *line),
+            text.lines().any(|other| other == *line),
             "{line:?} is missing in: {text}"
         );
     }

@@ -1,4 +1,4 @@
-//! The jobs themselves, with schedulers of our own that do what theirs do.
+//! Runs jobs with imitations of the schedulers.
 
 use super::{NAME, check_lines, job};
 use crate::common::{Ran, Workplace};
@@ -17,7 +17,7 @@ fn install(place: &Workplace, name: &str, script: &str) {
     fs::set_permissions(&file, fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// A shell that finds the programs of `bin`, then the true `bidir`.
+/// Returns a shell that finds the programs in `bin`, then the real `bidir`.
 fn shell(place: &Workplace, arguments: &[&str]) -> Command {
     let bidir = Path::new(env!("CARGO_BIN_EXE_bidir")).parent().unwrap();
     let path = std::env::var_os("PATH").unwrap();
@@ -36,13 +36,13 @@ fn shell(place: &Workplace, arguments: &[&str]) -> Command {
     command
 }
 
-/// Writes a job of three parts whose syntax a shell accepts.
+/// Writes a job of three parts, and checks its syntax.
 fn job_of_three(place: &Workplace, farm: &str) {
     job(place, farm, "--parts 3 --spp 8");
     Ran::of(&mut shell(place, &["-n", "job"])).expect(0);
 }
 
-/// Checks that the image has the bits of a render in one piece.
+/// Checks that the image has the bits of an undivided render.
 #[track_caller]
 fn check_image(place: &Workplace) {
     place
@@ -63,12 +63,12 @@ fn a_shell_makes_the_image() {
 }
 
 #[test]
-fn several_machines_share_by_number() {
+fn several_machines_render_parts_by_number() {
     let place = Workplace::new();
     job_of_three(&place, "shell");
     Ran::of(&mut shell(&place, &["job", "2", "0"])).expect(0);
     assert!(!place.path(&format!("{NAME}.part-1-of-3.film")).exists());
-    // Film files of other jobs, or of other shares, whose names begin alike.
+    // Film files of other jobs or other divisions, with similar names.
     for other in ["-2.part-0-of-3", "-2", ".part-old", ".part-0-of-2", "-old"] {
         place.write(&format!("{NAME}{other}.film"), "");
     }
@@ -79,7 +79,7 @@ fn several_machines_share_by_number() {
         .says("--part");
 }
 
-/// Does what Slurm does with an array of three, and with a job of one command.
+/// Imitates Slurm with an array of three, and with a job of one command.
 const SBATCH: &str = r#"
 if [ "$1" = --parsable ]; then
   export SLURM_ARRAY_TASK_MIN=0 SLURM_ARRAY_TASK_COUNT=3
@@ -109,7 +109,7 @@ fn slurm_makes_the_image() {
     Ran::of(&mut part).expect(2).says("submit the whole array");
 }
 
-/// A render without an end, which a signal stops with a film file.
+/// An endless render, which a signal stops with a film file.
 const ENDLESS: &str = r"
 trap 'echo stopped >>heard; exit 75' TERM
 echo $$ >started.part
@@ -117,16 +117,15 @@ mv started.part started
 while :; do sleep 0.02; done
 ";
 
-/// Starts a share by Slurm, and waits until it renders.
-fn start_share(place: &Workplace) -> Child {
+/// Starts a part by Slurm, and waits until it renders.
+fn start_part(place: &Workplace) -> Child {
     job(place, "slurm", "--parts 3");
     install(place, "bidir", ENDLESS);
     install(place, "scontrol", r#"echo "$@" >requeued"#);
-    let mut share = shell(place, &["job"]);
-    share
-        .env("SLURM_ARRAY_TASK_ID", "1")
+    let mut part = shell(place, &["job"]);
+    part.env("SLURM_ARRAY_TASK_ID", "1")
         .env("SLURM_JOB_ID", "43");
-    let child = share.stderr(Stdio::null()).spawn().unwrap();
+    let child = part.stderr(Stdio::null()).spawn().unwrap();
     let begin = Instant::now();
     while !place.path("started").exists() {
         assert!(begin.elapsed() < Duration::from_secs(20), "no start");
@@ -142,28 +141,28 @@ fn send(signal: &str, id: &str) {
 }
 
 #[test]
-fn a_share_of_slurm_goes_back_to_the_queue_when_its_time_is_over() {
+fn a_part_of_slurm_is_requeued_when_its_time_is_over() {
     let place = Workplace::new();
-    let mut share = start_share(&place);
-    send("USR1", &share.id().to_string());
-    assert_eq!(share.wait().unwrap().code(), Some(75));
+    let mut part = start_part(&place);
+    send("USR1", &part.id().to_string());
+    assert_eq!(part.wait().unwrap().code(), Some(75));
     assert_eq!(place.read("heard"), "stopped\n");
     assert_eq!(place.read("requeued"), "requeue 43\n");
 }
 
 #[test]
-fn a_share_of_slurm_that_is_cancelled_does_not_come_back() {
+fn a_cancelled_part_of_slurm_is_not_requeued() {
     let place = Workplace::new();
-    let mut share = start_share(&place);
+    let mut part = start_part(&place);
     // Slurm signals every process.
-    send("TERM", &share.id().to_string());
+    send("TERM", &part.id().to_string());
     send("TERM", place.read("started").trim());
-    assert_eq!(share.wait().unwrap().code(), Some(75));
+    assert_eq!(part.wait().unwrap().code(), Some(75));
     assert_eq!(place.read("heard"), "stopped\n");
     assert!(!place.path("requeued").exists());
 }
 
-/// Does what HyperQueue does with a task array of three.
+/// Imitates HyperQueue with a task array of three.
 const HQ: &str = r#"
 case "$*" in
   --output-mode=quiet\ submit*)
@@ -191,7 +190,7 @@ fn hyperqueue_makes_the_image() {
 }
 
 #[test]
-fn hyperqueue_makes_no_image_without_all_shares() {
+fn hyperqueue_makes_no_image_without_all_parts() {
     let place = Workplace::new();
     job_of_three(&place, "hyperqueue");
     install(&place, "hq", HQ);
@@ -201,7 +200,7 @@ fn hyperqueue_makes_no_image_without_all_shares() {
     assert!(!place.path(&format!("{NAME}.exr")).exists());
 }
 
-/// A string of a command as Kubernetes expands it.
+/// Expands a string of a command as Kubernetes does.
 fn expanded(line: &str, index: &str) -> String {
     let text: String = serde_json::from_str(line).unwrap();
     let parts = text

@@ -1,17 +1,17 @@
-//! Files that are damaged, that are no films, or that are there already; what films say.
+//! Damaged film files, other files, existing files; the headers of films.
 
 use crate::common::Workplace;
 use std::fs;
 
-/// Where the checksum of the first pixels is. Packed bytes may have two spellings, of which one is as
-/// good as the other.
+/// Returns the offset of the checksum of the first block. Tests damage the checksum rather than packed bytes,
+/// which may have several valid encodings.
 fn checksum_of_pixels(film: &[u8]) -> usize {
     let header = u32::from_le_bytes(film[12..16].try_into().unwrap());
     16 + header as usize + 4 + 4
 }
 
 #[test]
-fn damaged_files_are_told_and_the_one_before_is_named() {
+fn errors_of_damaged_files_name_the_previous_file() {
     let place = Workplace::new();
     place.render_share("0..2", "a.film");
     let resume = "render room.pbrt -q --spp 4 --checkpoint a.film --resume -o a.exr";
@@ -34,7 +34,7 @@ fn damaged_files_are_told_and_the_one_before_is_named() {
 }
 
 #[test]
-fn files_that_are_no_films_are_not_replaced_by_one() {
+fn other_files_are_not_replaced_by_a_film() {
     let place = Workplace::new();
     let scene = place.read("room.pbrt");
     let render = "render room.pbrt -q --spp 1 --restart --checkpoint";
@@ -56,7 +56,7 @@ fn files_that_are_no_films_are_not_replaced_by_one() {
 }
 
 #[test]
-fn the_file_before_is_never_pushed_out_by_a_damaged_one() {
+fn a_damaged_file_never_replaces_the_previous_one() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     place
@@ -76,7 +76,7 @@ fn the_file_before_is_never_pushed_out_by_a_damaged_one() {
 }
 
 #[test]
-fn a_film_file_is_not_replaced_unasked() {
+fn a_film_file_is_replaced_only_with_a_flag() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     let render = "render room.pbrt -q --spp 2 --checkpoint a.film";
@@ -91,7 +91,7 @@ fn a_film_file_is_not_replaced_unasked() {
 }
 
 #[test]
-fn a_film_says_which_estimates_it_has() {
+fn a_film_has_the_version_of_the_estimators() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     let version = bidir::ESTIMATOR_VERSION.to_string();
@@ -105,7 +105,7 @@ fn a_film_says_which_estimates_it_has() {
 }
 
 #[test]
-fn what_needs_no_scene_is_told_before_one_is_read() {
+fn checks_without_a_scene_come_before_reading_it() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     let render = "render no-such-scene.pbrt --checkpoint";

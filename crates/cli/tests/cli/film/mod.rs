@@ -1,4 +1,4 @@
-//! Film files: shares of a render, what becomes of them, and writers that end early.
+//! Film files: parts of a render, operations on them, and interrupted writers.
 
 mod files;
 mod shares;
@@ -7,7 +7,7 @@ mod writers;
 use crate::common::{Ran, Workplace};
 
 impl Workplace {
-    /// Renders a share of seven passes into a film file.
+    /// Renders a part of seven passes into a film file.
     fn render_share(&self, share: &str, film: &str) -> Ran {
         self.run(&format!(
             "render room.pbrt --passes {share} -q --checkpoint {film}"

@@ -1,10 +1,10 @@
-//! Shares of a render: merged, missing, refused, and gone on from.
+//! Parts of a render: merged, missing, refused and continued.
 
 use crate::common::{SCENE, Workplace};
 use std::fs;
 
 #[test]
-fn merged_shares_in_any_order_are_the_whole() {
+fn parts_merged_in_any_order_equal_the_whole() {
     let place = Workplace::new();
     for estimator in ["path", "light", "bdpt", "bdpt --shadow-rays ray-roulette"] {
         let render = format!("render room.pbrt --integrator {estimator} --spp 7 -q");
@@ -26,15 +26,15 @@ fn merged_shares_in_any_order_are_the_whole() {
                 .expect(0);
             place.expect_same("all.exr", "whole.exr");
         }
-        // That of the next estimator does not replace it.
+        // The film of the next estimator does not replace it.
         fs::remove_file(place.path("all.film")).unwrap();
     }
-    // A share by itself writes no image that others would overwrite.
+    // A part writes no image that others would overwrite.
     assert!(!place.path("room.exr").exists());
 }
 
 #[test]
-fn what_is_missing_is_told() {
+fn missing_passes_are_printed() {
     let place = Workplace::new();
     place.render_share("0..2", "a.film");
     place.render_share("3..5", "b.film");
@@ -50,7 +50,7 @@ fn what_is_missing_is_told() {
         .json();
     assert_eq!(json["passes"][1], "5..8");
     place.run("missing a.film --spp 2").expect(0);
-    // A file that is not there has no passes; one that cannot be merged is refused.
+    // A missing file has no passes; one that cannot be merged is refused.
     place
         .run("missing a.film none.film --spp 2")
         .expect(0)
@@ -63,7 +63,7 @@ fn what_is_missing_is_told() {
 }
 
 #[test]
-fn films_that_do_not_belong_together_are_refused() {
+fn films_of_different_renders_are_refused() {
     let place = Workplace::new();
     place.render_share("0..2", "a.film");
     place.render_share("1..3", "overlap.film");
@@ -102,7 +102,7 @@ fn films_that_do_not_belong_together_are_refused() {
 }
 
 #[test]
-fn merging_replaces_no_film_that_it_has_not_all_of() {
+fn merging_replaces_only_films_whose_passes_it_has() {
     let place = Workplace::new();
     place.render_share("0..1", "a.film");
     place.render_share("1..2", "b.film");
@@ -159,7 +159,7 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
         assert_eq!(fs::read(&file).ok(), before, "{output}");
         assert_eq!(place.names(), names);
     }
-    // What is in the result may be replaced by it, again and again.
+    // A film whose passes are in the result may be replaced repeatedly.
     let whole = "merge -o whole.film a.film b.film";
     place.run(whole).expect(0);
     place.run(whole).expect(0);
@@ -169,7 +169,7 @@ fn merging_replaces_no_film_that_it_has_not_all_of() {
 }
 
 #[test]
-fn a_merge_into_one_of_its_films_can_be_given_again() {
+fn a_merge_into_one_of_its_films_can_be_repeated() {
     let place = Workplace::new();
     for (passes, film) in [("0..1", "a"), ("1..2", "b"), ("2..3", "c"), ("2..4", "d")] {
         place.render_share(passes, &format!("{film}.film"));
@@ -198,13 +198,13 @@ fn a_merge_into_one_of_its_films_can_be_given_again() {
     // A film with some of the passes was not merged before.
     let part = place.run("merge -o whole.film whole.film d.film");
     part.expect(5).says("both have the passes 2..3");
-    // Where the output is none of them, every pass counts once.
+    // If the output is not one of them, no film is skipped.
     let twice = place.run("merge -o other.film a.film c.film c.film");
     twice.expect(5).says("both have the passes 2..3");
 }
 
 #[test]
-fn a_film_of_passes_that_are_not_asked_for_is_not_gone_on_from() {
+fn a_film_with_passes_outside_the_render_is_not_continued() {
     let place = Workplace::new();
     place.render_share("0..4", "a.film");
     let before = fs::read(place.path("a.film")).unwrap();
@@ -213,13 +213,13 @@ fn a_film_of_passes_that_are_not_asked_for_is_not_gone_on_from() {
         let ran = place.run(&format!("{resume} {fewer}")).expect(5);
         ran.says("which this render does not include");
     }
-    // Where nothing is left to do the file stays as it is.
+    // If nothing is left to do, the file stays as it is.
     place.run(&format!("{resume} --spp 4")).expect(0);
     assert_eq!(fs::read(place.path("a.film")).unwrap(), before);
 }
 
 #[test]
-fn an_image_says_the_same_of_all_runs_whoever_writes_it() {
+fn an_image_has_the_attributes_of_all_runs_by_any_command() {
     let place = Workplace::new();
     let render = "render room.pbrt -q --shadow-rays ray-roulette --checkpoint a.film --resume";
     let seconds = || {
@@ -247,13 +247,13 @@ fn an_image_says_the_same_of_all_runs_whoever_writes_it() {
     assert!(fs::read(place.path("b.exr")).unwrap() == image);
     place.run("merge a.film -o c.film --image c.exr").expect(0);
     assert!(fs::read(place.path("c.exr")).unwrap() == image);
-    // Where nothing is left to do the image is that of the film file, too.
+    // If nothing is left to do, the image is also that of the film file.
     place.run(&format!("{render} --spp 5 -o d.exr")).expect(0);
     assert!(fs::read(place.path("d.exr")).unwrap() == image);
 }
 
 #[test]
-fn an_image_says_what_it_was_rendered_with() {
+fn an_image_has_the_settings_of_its_render() {
     let place = Workplace::new();
     let attributes = |flags: &str| {
         let command = format!("render room.pbrt -q --spp 1 -o a.exr {flags}");
@@ -269,13 +269,13 @@ fn an_image_says_what_it_was_rendered_with() {
 }
 
 #[test]
-fn the_picture_decides_when_it_is_done() {
+fn noise_ends_a_render() {
     let place = Workplace::new();
     let render = "render room.pbrt -q --noise 0.1 --checkpoint a.film";
     place.run(render).expect(0);
     let info = place.run("film info a.film --json").expect(0).json();
     assert_eq!(info["stopping"], "noise");
-    // Interrupted somewhere and gone on, it is done after the same passes.
+    // An interrupted and continued render ends after the same passes.
     place
         .run("render room.pbrt -q --spp 5 --checkpoint b.film")
         .expect(0);
@@ -300,7 +300,7 @@ fn a_black_picture_has_no_noise() {
 }
 
 #[test]
-fn every_run_adds_a_pass_where_one_is_left() {
+fn every_run_adds_a_pass_if_one_is_left() {
     let place = Workplace::new();
     let render = "render room.pbrt -q --spp 3 --time 0.000001 --checkpoint a.film --resume";
     for passes in [1, 2, 3, 3] {

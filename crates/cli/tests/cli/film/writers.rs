@@ -1,4 +1,4 @@
-//! Writers that are killed, that meet another, or whose disk is full.
+//! Writers that are killed, that compete with another, or whose disk is full.
 
 use crate::common::Workplace;
 use std::fs;
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 #[cfg(target_os = "linux")]
 #[test]
-fn what_killed_writers_left_behind_is_removed() {
+fn leftovers_of_killed_writers_are_removed() {
     let place = Workplace::new();
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
     let host = host
@@ -16,7 +16,7 @@ fn what_killed_writers_left_behind_is_removed() {
     for name in ["a.film", "a.film.previous", "b.film"] {
         place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
     }
-    // An image has no lock, and its next writer removes what no living one holds.
+    // An image has no lock file; its next writer removes the leftovers that no process holds.
     for name in ["b.exr", "b.png"] {
         place.write(&format!(".{name}.bidir-{host}-1-aB3dE6.tmp"), "part of");
     }
@@ -32,7 +32,7 @@ fn what_killed_writers_left_behind_is_removed() {
 }
 
 #[test]
-fn a_file_with_something_in_it_is_no_lock() {
+fn a_file_with_contents_is_no_lock() {
     let place = Workplace::new();
     place.write("a.film.lock", "notes");
     let render = "render room.pbrt -q --spp 1 --checkpoint a.film";
@@ -73,7 +73,7 @@ fn two_writers_of_one_film_are_kept_apart() {
     while !lock.exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
-    // The lock is taken right after the file is made.
+    // The lock is taken right after the file is created.
     std::thread::sleep(Duration::from_millis(200));
     place
         .run(render)
@@ -86,23 +86,23 @@ fn two_writers_of_one_film_are_kept_apart() {
         .says("another process is writing this file");
     first.kill().unwrap();
     first.wait().unwrap();
-    // What was killed holds nothing.
+    // A killed process holds no lock.
     place
         .run("render room.pbrt -q --spp 1 --checkpoint a.film --restart")
         .expect(0);
 }
 
-/// How often a render is killed; `tools/attack` kills many more.
+/// Number of times that a render is killed; `tools/attack` kills many more.
 const KILLS: u64 = 3;
 
 #[test]
-fn a_killed_render_goes_on_to_the_same_bits() {
+fn a_killed_render_continues_to_the_same_bits() {
     let place = Workplace::new();
     let passes = 50 * KILLS;
     let render = format!("render room.pbrt -q --size 96x64 --spp {passes}");
     let start = Instant::now();
     place.run(&format!("{render} -o whole.exr")).expect(0);
-    // All runs that are killed take about half as long, whatever else the machine does.
+    // All killed runs together take about half as long, whatever the load of the machine.
     let share = start.elapsed().div_f64(KILLS as f64);
     let resumed = format!("{render} --checkpoint a.film --resume -o a.exr");
     let often = format!("{resumed} --checkpoint-every 0.001s");
@@ -113,7 +113,7 @@ fn a_killed_render_goes_on_to_the_same_bits() {
         child.kill().unwrap();
         child.wait().unwrap();
     }
-    // The last run renders what the killed ones did not, and no more.
+    // The last run renders only the passes that the killed ones did not.
     let info = place.run("film info a.film --json").expect(0).json();
     let before = info["counts"]["samples"].as_u64().unwrap();
     assert!(before > 0 && before < passes * 96 * 64, "{before} samples");
@@ -124,12 +124,12 @@ fn a_killed_render_goes_on_to_the_same_bits() {
         passes * 96 * 64
     );
     place.expect_same("a.exr", "whole.exr");
-    // What was killed while it wrote left files behind; the last run removed them.
+    // The last run removed the leftovers of killed writers.
     let names = "a.exr a.film a.film.previous a.json a.png room.pbrt whole.exr whole.png";
     assert_eq!(place.names().join(" "), names);
 }
 
-/// A disk of so many KiB, taken away at the end. None: this process may not make one.
+/// A disk of limited size, unmounted at the end. None: this process may not mount one.
 #[cfg(target_os = "linux")]
 struct SmallDisk(std::path::PathBuf);
 

@@ -1,4 +1,4 @@
-//! One material of a file.
+//! Reads one material.
 
 use crate::gltf::document::Context;
 use crate::gltf::json::{Material as Described, TextureInfo};
@@ -19,7 +19,7 @@ use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture};
 use std::sync::Arc;
 
-/// A material that is being read.
+/// Reads a material and its textures.
 pub(super) struct Reader<'a, 'b> {
     pub(super) context: &'a mut Context<'b>,
     pub(super) textures: &'a mut Textures,
@@ -29,7 +29,7 @@ pub(super) struct Reader<'a, 'b> {
 }
 
 impl Reader<'_, '_> {
-    /// A colour in sRGB.
+    /// Reads a colour, whose texture is in sRGB.
     fn color(&mut self, factor: Rgb, info: Option<&TextureInfo>) -> Result<ScaledColor, GltfFault> {
         let texture = info
             .map(|info| self.image(info, Encoding::Srgb))
@@ -46,7 +46,7 @@ impl Reader<'_, '_> {
         self.textures.color(self.context, lookup, encoding)
     }
 
-    /// A number in one channel.
+    /// Reads a number, whose texture is one channel.
     fn number(
         &mut self,
         factor: f32,
@@ -73,7 +73,7 @@ impl Reader<'_, '_> {
         self.textures.number(self.context, lookup, (part, change))
     }
 
-    /// The material, under its relief where it has one.
+    /// Builds the material, with its normal map if it has one.
     pub(super) fn material(&mut self, color: [f32; 4]) -> Result<Material, GltfFault> {
         let material = Material::Principled(Arc::new(self.principled(color)?));
         let Some(info) = &self.described.normal_texture else {
@@ -108,7 +108,7 @@ impl Reader<'_, '_> {
         Ok(material)
     }
 
-    /// Index, reflectance and grain.
+    /// Reads the index of refraction, specular reflectance and anisotropy.
     fn read_dielectric(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
         let extensions = &self.described.extensions;
         if let Some(ior) = &extensions.ior {
@@ -178,7 +178,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Coat and sheen.
+    /// Reads coat and sheen.
     fn read_layers(&mut self, material: &mut PrincipledMaterial) -> Result<(), GltfFault> {
         let extensions = &self.described.extensions;
         if let Some(coat) = &extensions.clearcoat {
@@ -203,7 +203,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Warns of features that the renderer lacks and that the format lets be left out.
+    /// Warns of optional features of the material that the renderer does not support.
     fn warn_of_departures(&mut self) {
         let extensions = &self.described.extensions;
         let departures = [
@@ -247,7 +247,7 @@ impl Reader<'_, '_> {
         let pattern = self.described.emissive_texture.as_ref();
         let pattern = pattern.map(|info| self.image(info, Encoding::Srgb));
         let pattern = pattern.transpose()?;
-        // Lamps cost time even where they are dark: what is black all over is none.
+        // Lamps cost time even if they are dark, so a black image makes no lamp.
         if pattern.as_ref().is_some_and(is_black) {
             return Ok(None);
         }
@@ -263,7 +263,7 @@ impl Reader<'_, '_> {
         }))
     }
 
-    /// The alpha of the surface, with vertices of alpha `vertex`.
+    /// Returns the coverage of the surface, with vertices of alpha `vertex`.
     pub(super) fn coverage(&mut self, vertex: f32) -> Result<Option<FloatTexture>, GltfFault> {
         let pbr = &self.described.pbr_metallic_roughness;
         let factor = pbr.base_color_factor.map_or(1.0, |color| color[3]) * vertex;
@@ -289,7 +289,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// True for an image of black texels.
+/// Returns true for an image of black texels.
 fn is_black(texture: &ColorTexture) -> bool {
     let ColorTexture::Image(map) = texture else {
         return false;

@@ -1,4 +1,4 @@
-//! Where meshes go: the maps of joints, and the places that a node's instancing names.
+//! The placement of meshes: the maps of joints, and the places of a node's instances.
 
 use crate::gltf::document::Document;
 use crate::gltf::json::Node;
@@ -7,7 +7,7 @@ use crate::gltf::place::{GltfFault, Place};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// The maps of a node's skin from the mesh to where it is rendered, by joint.
+/// Returns the maps of a node's skin from the mesh to the render space, by joint.
 pub(in crate::gltf) fn joints(
     document: &Document,
     render_from_node: &[Option<DAffine3>],
@@ -46,7 +46,7 @@ pub(in crate::gltf) fn joints(
     of_skin.joints.iter().enumerate().map(of_joint).collect()
 }
 
-/// The places of a mesh in its node: one, or those that EXT_mesh_gpu_instancing names.
+/// Returns the places of a mesh in its node: one, or those of EXT_mesh_gpu_instancing.
 pub(in crate::gltf) fn places(
     document: &Document,
     node: &Node,

@@ -1,4 +1,4 @@
-//! Surfaces put into place: whole, or as joints move their vertices.
+//! Places surfaces in the world, rigidly or by their joints.
 
 use super::{Surface, UvMap};
 use crate::error::ErrorKind;
@@ -8,12 +8,11 @@ use bidir::math::Vec3;
 use bidir::shape::{Mesh, Orientation};
 use glam::{DAffine3, DVec3};
 
-/// The farthest that anything is from the origin: squares of distances stay finite below it.
+/// Maximum distance from the origin, below which squared distances stay finite.
 const FARTHEST: f64 = 1e12;
 
 impl Surface {
-    /// The mesh where `world_from_mesh` puts it, of which `survey` takes note. Errors: it reaches too
-    /// far.
+    /// Returns the mesh placed by `world_from_mesh`, and adds it to `survey`. Errors: it extends too far.
     pub(in crate::gltf) fn place(
         &self,
         world_from_mesh: &DAffine3,
@@ -36,7 +35,7 @@ impl Surface {
         self.mesh(vertices, (orientation, uv, survey), place)
     }
 
-    /// The mesh as its joints move it, each by a map from the mesh to the world.
+    /// Returns the mesh moved by its joints, each of which has a map from the mesh to the world.
     pub(in crate::gltf) fn skinned(
         &self,
         joints: &[DAffine3],
@@ -102,7 +101,7 @@ fn unit(v: DVec3) -> Vec3 {
     v.normalize_or_zero().as_vec3()
 }
 
-/// The map of normals, up to scale: the matrix of cofactors, which exists for flat maps too.
+/// Returns the map of normals up to scale: the matrix of cofactors, which exists for singular maps too.
 fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
     let m = map.matrix3;
     let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -110,7 +109,7 @@ fn normal_matrix(map: &DAffine3) -> glam::DMat3 {
     glam::DMat3::from_cols(y.cross(z) * sign, z.cross(x) * sign, x.cross(y) * sign)
 }
 
-/// The weighted mean of joints' maps. None: there is no such joint.
+/// Returns the weighted mean of the maps of joints. None: a joint does not exist.
 fn blend(vertex: &[(u32, f32); 4], joints: &[DAffine3]) -> Option<DAffine3> {
     let total: f64 = vertex.iter().map(|&(_, weight)| f64::from(weight)).sum();
     if total <= 0.0 {

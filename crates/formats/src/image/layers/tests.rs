@@ -12,7 +12,7 @@ fn ramp(step: f32) -> Vec<[f32; 3]> {
     pixels.map(|pixel| [pixel, pixel * step, -pixel]).collect()
 }
 
-/// Writes a crop of a larger picture, with albedo, to `a.exr`.
+/// Writes a crop of a picture, with albedo, to `a.exr`.
 fn example() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let layer = |name, data| ExrLayer {
@@ -63,7 +63,7 @@ fn channels_have_names_and_numbers() {
 }
 
 #[test]
-fn what_is_not_changed_is_written_as_it_was() {
+fn everything_that_is_not_changed_is_written_as_it_was() {
     let folder = example();
     let [from, to] = ["a.exr", "b.exr"].map(|name| folder.path().join(name));
     let mut layers = read_layers(&from).unwrap();
@@ -98,7 +98,7 @@ fn numbers_of_16_bits_and_standard_attributes_are_kept() {
             .map(::exr::prelude::f16::from_f32);
         channel.sample_data = FlatSamples::F16(halves.collect());
     }
-    // The standard's own attributes are kept as well.
+    // Standard attributes are kept as well.
     layers.image.layer_data.attributes.owner = Some("none".into());
     let again = decode(&to_bytes(&layers.image).unwrap()).unwrap();
     assert_eq!(again, layers);
@@ -118,7 +118,7 @@ fn other_sizes_are_refused() {
 }
 
 #[test]
-fn what_is_no_exr_of_one_part_is_refused() {
+fn files_other_than_an_exr_of_one_part_are_refused() {
     let folder = example();
     let missing = read_layers(&folder.path().join("b.exr")).unwrap_err();
     assert_eq!(missing.kind(), ErrorKind::MissingFile);
@@ -134,7 +134,7 @@ fn what_is_no_exr_of_one_part_is_refused() {
     assert_eq!(decode(&two_parts()).unwrap_err().to_string(), expected);
 }
 
-/// A file with the same part twice.
+/// Returns a file with two parts.
 fn two_parts() -> Vec<u8> {
     let layers = decode(&BYTES).unwrap();
     let parts = ["one", "two"].map(|name| {

@@ -13,31 +13,31 @@ use bidir::camera::{
 use bidir::math::{Affine3A, Vec2};
 use glam::DVec3;
 
-/// A camera but for the film's size.
+/// A camera without the film's size.
 pub(super) struct CameraSettings {
     /// Seconds between opening and closing of the shutter.
     pub(super) exposure_time: f32,
-    /// Its position. Space: world.
+    /// The position. Space: world.
     pub(super) eye: DVec3,
-    /// To the space that is rendered in.
+    /// The map from the camera to the render space.
     render_from_camera: Affine3A,
     view: View,
     pub(super) span: Span,
 }
 
-/// The view of a camera.
+/// The projection of a camera.
 enum View {
-    /// The angle `fov` spans the screen from -1 to 1. Unit: degrees.
+    /// Perspective: the angle `fov` spans the screen from -1 to 1. Unit: degrees.
     Perspective {
         fov: f32,
         screen: Screen,
     },
-    /// A screen in the scene's unit.
+    /// Orthographic: the screen is in the scene's unit.
     Orthographic(Screen),
     Spherical(SphericalMapping),
 }
 
-/// The film's place in front of the lens.
+/// The screen window and the lens.
 struct Screen {
     aspect: Option<f32>,
     window: Option<[f32; 4]>,
@@ -45,7 +45,7 @@ struct Screen {
     focal_distance: f32,
 }
 
-/// Reads the camera; without one it is the format's default.
+/// Reads the camera, or returns the format's default.
 pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
     let Some(camera) = &context.document.camera else {
         let place = (&*context, &Transforms::default());
@@ -74,7 +74,7 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         "orthographic" => View::Orthographic(Screen::read(&mut reader)?),
         "spherical" => {
             let mapping = mapping(&mut reader)?;
-            // The format lets it have a screen, which it has no use for.
+            // The format allows a screen, which has no effect.
             Screen::read(&mut reader)?;
             View::Spherical(mapping)
         }
@@ -133,7 +133,7 @@ impl Screen {
         })
     }
 
-    /// Top left and bottom right corner, for a film of this size.
+    /// Returns the top left and bottom right corner for a film of this size.
     fn corners(&self, film: Vec2) -> [Vec2; 2] {
         let aspect = self.aspect.unwrap_or(film.x / film.y);
         let [left, right, bottom, top] = self.window.unwrap_or(if aspect > 1.0 {
@@ -146,7 +146,7 @@ impl Screen {
 }
 
 impl CameraSettings {
-    /// The format's default camera at a place.
+    /// Returns the format's default camera with a transformation.
     fn default_at(span: Span, (context, camera_from_world): (&Context<'_>, &Transforms)) -> Self {
         let world_from_camera = camera_from_world.inverse();
         Self {
@@ -166,12 +166,12 @@ impl CameraSettings {
         }
     }
 
-    /// True where the film's edges lie next to each other in the scene.
+    /// Returns true if the view is a whole sphere, so that opposite edges of the film meet.
     pub(super) fn sees_all_around(&self) -> bool {
         matches!(self.view, View::Spherical(_))
     }
 
-    /// The camera in front of a film of `resolution`, with the view of one of `own_resolution`.
+    /// Returns the camera for a film of `resolution`, with the view of one of `own_resolution`.
     pub(super) fn camera(
         &self,
         resolution: [u32; 2],
@@ -185,8 +185,8 @@ impl CameraSettings {
                 let corners = screen.corners(own).map(|corner| corner * half);
                 self.lens(screen, film, corners)
             }
-            // Rays from all over a lens through a point in focus are those of any lens: the point
-            // lies where the parallel ray crosses the plane of focus.
+            // The rays of a film position meet where the parallel ray crosses the plane of focus, as those of a
+            // perspective camera whose film, at z = 1, is divided by the focal distance.
             View::Orthographic(screen) if screen.lens_radius > 0.0 => {
                 let corners = screen.corners(own);
                 self.lens(screen, film, corners.map(|c| c / screen.focal_distance))
@@ -208,7 +208,7 @@ impl CameraSettings {
         })
     }
 
-    /// A lens in front of a film with these corners on the plane z = 1.
+    /// Returns a lens camera whose film has these corners on the plane z = 1.
     fn lens(&self, screen: &Screen, resolution: Vec2, corners: [Vec2; 2]) -> Option<Camera> {
         let settings = PerspectiveSettings {
             world_from_camera: self.render_from_camera,

@@ -1,4 +1,4 @@
-//! Colours as linear Rec. 709, however the file gives them.
+//! Converts colours of any type to linear Rec. 709.
 
 use super::context::Context;
 use super::reader::{Reader, three};
@@ -11,19 +11,19 @@ use crate::spectra::{self, Primaries, Spectrum};
 use bidir::spectrum::Rgb;
 use glam::DVec3;
 
-/// What a colour is for: what values it may have.
+/// The purpose of a colour, which determines its valid values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Purpose {
-    /// Between 0 and 1.
+    /// An albedo: between 0 and 1.
     Albedo,
-    /// Not negative.
+    /// Any colour that is not negative.
     Unbounded,
-    /// Not negative; relative to the white of its colour space.
+    /// Emission: not negative, and relative to the white of its colour space.
     Illuminant,
 }
 
 impl Purpose {
-    /// The largest value.
+    /// Returns the largest valid value.
     fn most(self) -> f32 {
         match self {
             Self::Albedo => 1.0,
@@ -32,7 +32,7 @@ impl Purpose {
     }
 }
 
-/// Reads a colour given as `rgb`, `spectrum` or `blackbody`. None: where the file gives none.
+/// Reads a colour given as `rgb`, `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -48,7 +48,7 @@ pub(super) fn read(
     of_spectrum(&spectrum, parameter, purpose).map(Some)
 }
 
-/// A spectrum as a colour. That of a light is its hue alone: the luminance is 1, as the format has it.
+/// Returns the colour of a spectrum. That of a light has luminance 1, as the format demands.
 fn of_spectrum(spectrum: &Spectrum, parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
     if !spectrum.is_positive() {
         let message = format!("the spectrum `{}` has negative values", parameter.name);
@@ -70,10 +70,10 @@ fn above_one(parameter: &Parameter) -> Fault {
     Fault::scene(parameter.value_span, message)
 }
 
-/// The most that anything emits: products with areas and distances stay finite below it.
+/// Maximum emission, below which products with areas and distances stay finite.
 const BRIGHTEST: f32 = 1e12;
 
-/// Refuses emission that is no number or too large to compute with.
+/// Refuses emission that is NaN or too large to compute with.
 pub(super) fn check_emission(span: Span, emission: Rgb) -> Result<Rgb, Fault> {
     if emission.iter().all(|&channel| channel <= BRIGHTEST) {
         return Ok(emission);
@@ -98,8 +98,8 @@ fn rgb(parameter: &Parameter, purpose: Purpose) -> Result<Rgb, Fault> {
     Ok(value.map(|channel| channel.clamp(0.0, purpose.most())))
 }
 
-/// Linear Rec. 709 of a colour in another space. White reflects everything in all of them; white
-/// light is what the space says it is.
+/// Converts a colour from another space to linear Rec. 709. A white reflectance is 1 in all spaces; white
+/// light is the white of the space.
 fn to_rec709(space: ColorSpace, color: Rgb, purpose: Purpose) -> Rgb {
     let rec709 = Primaries::rec709();
     let from = match space {

@@ -1,4 +1,4 @@
-//! What shapes emit.
+//! The emission of shapes.
 
 use super::color::{self, Purpose};
 use super::context::Context;
@@ -16,17 +16,16 @@ use bidir::spectrum::luminance;
 use bidir::texture::{Beyond, Change, ColorTexture, ImageFilter, ImageMap, Mapping, Wrap};
 use std::sync::Arc;
 
-/// What an area light says about emission.
+/// The emission of an area light.
 #[derive(Clone)]
 pub(super) struct AreaEmission {
     radiance: [f32; 3],
-    /// What it is multiplied by over the surface's parameters, with the mean luminance.
+    /// A texture over the surface's parameters that scales the radiance, and its mean luminance.
     pattern: Option<(ColorTexture, f32)>,
     sides: EmissionSides,
-    /// The power that each primitive emits, in the space that is rendered in. None: the radiance is as
-    /// given.
+    /// The power of each primitive in the render space. None: the file gives the radiance.
     power: Option<f32>,
-    /// The name of its group of lights.
+    /// The name of its light group.
     pub(super) group: Option<String>,
     span: Span,
 }
@@ -50,7 +49,7 @@ impl AreaEmission {
         let group = group::read(&mut reader)?;
         reader.finish()?;
         let radiance = radiance.unwrap_or([1.0; 3]).map(|channel| channel * scale);
-        // Power per area is the same in every unit, as is power per square of a distance.
+        // Power per area does not depend on the unit, nor does power per squared distance.
         let power = power.map(|power| context.layout.space.intensity(power));
         Ok(Self {
             radiance,
@@ -62,8 +61,8 @@ impl AreaEmission {
         })
     }
 
-    /// The emission of a shape. Where power is given, every primitive has to be a shape of its own:
-    /// see [`parts`](Self::parts).
+    /// Returns the emission of a shape. If the file gives power, every primitive has to be a shape of its
+    /// own: see [`parts`](Self::parts).
     pub(super) fn of(&self, shape: &Shape) -> Result<Emission, Fault> {
         let factor = match self.power {
             Some(power) => {
@@ -91,7 +90,7 @@ impl AreaEmission {
         })
     }
 
-    /// How many [`parts`](Self::parts) a shape has.
+    /// Returns the number of [`parts`](Self::parts) of a shape.
     pub(super) fn part_count(&self, geometry: &Geometry) -> u64 {
         match (self.power, geometry) {
             (Some(_), Geometry::Mesh(_)) => geometry.primitives(),
@@ -99,7 +98,7 @@ impl AreaEmission {
         }
     }
 
-    /// The parts of a shape that emit each for itself.
+    /// Returns the parts of a shape that are lights of their own.
     pub(super) fn parts(&self, shape: Shape) -> Vec<Shape> {
         match (self.power, shape) {
             (Some(_), Shape::Mesh(mesh)) => split(&mesh),
@@ -108,7 +107,7 @@ impl AreaEmission {
     }
 }
 
-/// The image of a light, laid over its shape. None: it is even.
+/// Reads the image of a light over its shape. None: the emission is uniform.
 fn pattern(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -132,7 +131,7 @@ fn pattern(
     Ok(Some((pattern, mean as f32)))
 }
 
-/// A mesh for every triangle.
+/// Returns a mesh for every triangle.
 fn split(mesh: &Mesh) -> Vec<Shape> {
     let corners = |triangle: &[u32; 3]| triangle.map(|corner| corner as usize);
     let triangles = mesh.triangles.iter().map(corners).map(|corners| Mesh {

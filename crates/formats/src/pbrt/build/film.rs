@@ -12,20 +12,20 @@ use crate::pbrt::scene::{ColorSpace, Entity, FilmDescription};
 use crate::source::{Fault, SourceMap, Span};
 use bidir::film::{Aov, FilmSettings};
 
-/// A film with what its description says beside.
+/// A film with the other properties of its description.
 pub(super) struct BuiltFilm {
     /// The film.
     pub(super) settings: FilmSettings,
-    /// Width and height as the file has them: the view of the camera goes by them, so that another
-    /// size shows the same picture.
+    /// Width and height in the file, which determine the camera's view, so that another size shows the same
+    /// picture.
     pub(super) own_resolution: [u32; 2],
     /// The name of the image.
     pub(super) output: Option<String>,
-    /// The images that it has beside the picture.
+    /// The layers.
     pub(super) aovs: Vec<Aov>,
 }
 
-/// Builds the film that is exposed by `camera`.
+/// Builds the film of `camera`.
 pub(super) fn build(
     context: &mut Context<'_>,
     camera: &CameraSettings,
@@ -65,7 +65,7 @@ pub(super) fn build(
     })
 }
 
-/// The film of a scene that describes none.
+/// Returns the film of a scene without one.
 fn default_film() -> FilmDescription {
     FilmDescription {
         entity: Entity {
@@ -106,7 +106,7 @@ fn warn_of_stretching(context: &mut Context<'_>, span: Span, own: [u32; 2], reso
     }
 }
 
-/// The images of a `gbuffer` film beside the picture.
+/// The layers of a film of type `gbuffer`.
 const GBUFFER: [Aov; 5] = [
     Aov::Albedo,
     Aov::Position,
@@ -115,7 +115,7 @@ const GBUFFER: [Aov; 5] = [
     Aov::Variance,
 ];
 
-/// The images that this kind of film has beside the picture.
+/// Returns the layers of this type of film.
 fn film_kind(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -159,8 +159,8 @@ fn film_kind(
     }
 }
 
-/// `cropwindow`, else `pixelbounds`, which count pixels of the film's `own` resolution. None: where
-/// the file gives neither.
+/// Reads `cropwindow`, else `pixelbounds`, which counts pixels of the film's `own` resolution. None: the
+/// file has neither.
 fn read_crop(
     reader: &mut Reader<'_>,
     own: [u32; 2],
@@ -183,7 +183,7 @@ fn read_crop(
     })
 }
 
-/// None: these are no four fractions; so below, no four pixel numbers.
+/// Reads the crop of `cropwindow`. None: it is not four valid fractions.
 fn window_crop(values: &[f32]) -> Option<Crop> {
     let window: [f32; 4] = values.try_into().ok()?;
     let inside = window.iter().all(|edge| (0.0..=1.0).contains(edge));

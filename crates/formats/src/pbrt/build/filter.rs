@@ -11,17 +11,17 @@ use bidir::math::Vec2;
 /// The range of half widths. Unit: pixels.
 const RADII: [f32; 2] = [1e-3, 32.0];
 
-/// The range of the numbers that shape a filter: beyond it one is a point, or flat, and its integral
-/// not to be computed.
+/// The valid range of a filter's parameters. Beyond it, a filter is a point or constant, and its integral
+/// cannot be computed.
 const SHAPES: [f32; 2] = [0.05, 100.0];
 
-/// A filter that is narrower than this along an axis is warned of. Unit: pixels.
+/// The radius along an axis below which a filter causes a warning. Unit: pixels.
 const NARROW: f32 = 0.25;
 
-/// Builds the pixel filter of what `camera` sees; without one it is the format's default.
+/// Builds the pixel filter, or returns the format's default.
 ///
-/// Where a camera sees all around, the film's edges meet, which no filter reaches over: there it is
-/// a box of one pixel.
+/// If `camera` sees all around, it is a box of one pixel, as no filter crosses the edges of the film, which
+/// meet.
 pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Result<Filter, Fault> {
     let pixel = Filter::new(FilterKind::Box, Vec2::splat(0.5));
     let Some(entity) = &context.document.filter else {
@@ -55,7 +55,7 @@ pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Resul
     Ok(Filter::new(kind, radius))
 }
 
-/// The kind of a filter, and the radius of that kind where the file gives none.
+/// Reads the kind of a filter. Returns it with its default radius.
 fn read_kind(reader: &mut Reader<'_>, entity: &Entity) -> Result<(FilterKind, f32), Fault> {
     Ok(match entity.kind.as_str() {
         "box" => (FilterKind::Box, 0.5),
@@ -76,9 +76,9 @@ fn read_kind(reader: &mut Reader<'_>, entity: &Entity) -> Result<(FilterKind, f3
     })
 }
 
-/// The radius of the box that is as high as the filter, along one axis. A splat is weighted by the
-/// height, but n_j, the number of splats that weights count on, knows no filter: the variance of
-/// the light image grows with the height, and no other strategy takes over.
+/// Returns the radius of the box with the same maximum as the filter, along one axis. Splats are scaled by
+/// the filter, but MIS weights ignore it: the variance of the light image grows with the maximum, and no
+/// other strategy compensates.
 fn effective_radius(kind: FilterKind, radius: f32) -> f32 {
     let height = Filter::new(kind, Vec2::splat(radius)).eval(Vec2::ZERO);
     0.5 / height.sqrt()

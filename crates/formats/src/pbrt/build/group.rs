@@ -1,15 +1,15 @@
-//! The groups of lights: `string lightgroup`, a parameter of our own of every light.
+//! Light groups: `string lightgroup`, our own parameter of every light.
 //!
-//! As `Attribute "light" "string lightgroup" "lamps"` it stays a scene of the format: parameters of
-//! an attribute that nobody asks for are no error.
+//! With `Attribute "light" "string lightgroup" "lamps"`, the scene stays valid for other programs:
+//! parameters of an attribute that are not used are no error.
 
 use super::reader::Reader;
 use crate::source::Fault;
 
-/// The longest name: channels of image files are named after it.
+/// Maximum length of a name, which becomes part of the names of channels.
 const LONGEST: usize = 64;
 
-/// The name of the light's group. None: it is in that of its kind.
+/// Reads the name of the light's group. None: the light is in the default group of its kind.
 pub(super) fn read(reader: &mut Reader<'_>) -> Result<Option<String>, Fault> {
     let Some((name, span)) = reader.string("lightgroup")? else {
         return Ok(None);

@@ -22,10 +22,10 @@ pub(super) struct ImageSettings {
     mapping: Mapping,
 }
 
-/// An image and what its bytes mean.
+/// An image file and its encoding.
 pub(super) struct ImageFile {
     path: PathBuf,
-    /// Of the file's name.
+    /// The place of the file's name.
     span: Span,
     encoding: Option<Encoding>,
 }
@@ -70,7 +70,7 @@ impl ImageSettings {
         })
     }
 
-    /// The normals of an image.
+    /// Returns the settings of a normal map.
     pub(super) fn of_normals(context: &Context<'_>, name: &str, span: Span) -> Self {
         Self {
             file: ImageFile {
@@ -150,10 +150,10 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
     }
 }
 
-/// The key of image textures that share texels: the file, and the meaning of its bytes.
+/// The file and the encoding: image textures with equal keys share their texels.
 type Key = (PathBuf, String);
 
-/// Images that are read already: each file once for colours and once for numbers.
+/// The images that were read: each file once for colours and once for numbers.
 #[derive(Default)]
 pub(super) struct Files {
     colors: BTreeMap<Key, Arc<Image<3>>>,
@@ -182,7 +182,7 @@ impl Files {
     }
 }
 
-/// The numbers of an image: alpha where it says something, else the mean of the colours.
+/// Returns the numbers of an image: alpha if any pixel is not opaque, else the mean of the colours.
 fn numbers(data: &ImageData) -> Vec<f32> {
     let alpha = data.data.chunks_exact(4).map(|pixel| pixel[3]);
     if data.channels == 4 && alpha.clone().any(|alpha| alpha < 1.0) {
@@ -191,7 +191,7 @@ fn numbers(data: &ImageData) -> Vec<f32> {
     data.rgb().map(|[r, g, b]| (r + g + b) / 3.0).collect()
 }
 
-/// The image of a file, with smaller copies where they are looked up.
+/// Returns the image of a file, with a pyramid of smaller copies if the filter needs one.
 fn shared<const N: usize>(
     images: &mut BTreeMap<Key, Arc<Image<N>>>,
     context: &mut Context<'_>,

@@ -1,4 +1,4 @@
-//! Lights that are no shapes.
+//! Lights that are not shapes.
 
 use super::color::{self, Purpose};
 use super::context::Context;
@@ -14,8 +14,7 @@ use bidir::spectrum::{Rgb, luminance};
 use bidir::texture::Image;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Builds a light, with the name of its group if it has one. None: its substitute
-/// is nothing.
+/// Builds a light, with the name of its group if it has one. None: it is not supported and left out.
 pub(super) fn build(
     context: &mut Context<'_>,
     light: &LightDescription,
@@ -55,7 +54,7 @@ pub(super) fn build(
     Ok(Some((built, group)))
 }
 
-/// The colour `name` times `scale`, and times `power` / `per_unit` where there is power.
+/// Reads the colour `name` times `scale`, and times `power` / `per_unit` if the file gives power.
 fn emission(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -91,7 +90,7 @@ fn point(
     })
 }
 
-/// The intensity of a light in a point, whose power goes to a solid angle.
+/// Reads the intensity of a point light, whose power is spread over a solid angle.
 fn intensity(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -101,7 +100,7 @@ fn intensity(
     Ok(intensity.map(|channel| context.layout.space.intensity(channel)))
 }
 
-/// A point of the world in the space that is rendered in.
+/// Maps a point from the world to the render space.
 fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, Fault> {
     shape::check_point(span, world)?;
     Ok(context
@@ -111,7 +110,7 @@ fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, 
         .as_vec3())
 }
 
-/// The position of the light, and the world direction from there to its target.
+/// Reads the position of a light and the world direction of its axis.
 fn aim(reader: &mut Reader<'_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
     let from = vector(reader.point3("from", [0.0; 3])?);
     let to = vector(reader.point3("to", [0.0, 0.0, 1.0])?);
@@ -220,7 +219,8 @@ pub(super) fn radiance_image(
     Image::new(data.width, texels).ok_or_else(|| Fault::scene(span, "the image has no pixels"))
 }
 
-/// The format's measure of an environment: (2π/N) Σ luminance · cosθ over the upper half.
+/// Computes the illuminance of an environment as the format defines it: (2π/N) Σ luminance · cosθ over the
+/// upper half.
 fn illuminance(image: &Image<3>) -> f32 {
     let (width, height) = (image.width(), image.height());
     let mut sum = 0.0;
@@ -234,7 +234,7 @@ fn illuminance(image: &Image<3>) -> f32 {
     2.0 * PI * (sum / (width * height) as f64) as f32
 }
 
-/// The rotation (or mirroring) in a map; an even scale does not matter to directions.
+/// Returns the rotation or reflection of a map; a uniform scale has no effect on directions.
 fn rotation(context: &mut Context<'_>, span: Span, matrix: &DMat3) -> Result<Mat3, Fault> {
     let scale = matrix.x_axis.length();
     let scaled = *matrix * (1.0 / scale);

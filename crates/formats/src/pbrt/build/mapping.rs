@@ -1,4 +1,4 @@
-//! From surfaces to textures: the parameter `mapping`, and the space of a `Texture` directive.
+//! Maps from surfaces to textures: the parameter `mapping`, and the space of a `Texture` directive.
 
 use super::context::Context;
 use super::reader::Reader;
@@ -10,7 +10,7 @@ use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::texture::{Mapping, TextureSpace};
 use glam::DAffine3;
 
-/// The map from the space that is rendered in to that of a texture.
+/// Returns the map from the render space to that of a texture.
 fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result<DAffine3, Fault> {
     let span = texture.entity.span;
     if texture.transforms.is_animated() {
@@ -27,7 +27,7 @@ fn from_world(context: &mut Context<'_>, texture: &TextureDescription) -> Result
     Err(Fault::scene(span, message))
 }
 
-/// The space of a texture of space.
+/// Returns the space of a texture of three dimensions.
 pub(super) fn space(
     context: &mut Context<'_>,
     texture: &TextureDescription,
@@ -36,7 +36,7 @@ pub(super) fn space(
     Ok(TextureSpace::new(from_world.as_affine3a()))
 }
 
-/// A direction of texture space in the world, unit length.
+/// Reads a direction of texture space. Returns the unit vector in the world.
 pub(super) fn direction(
     texture: &TextureDescription,
     reader: &mut Reader<'_>,
@@ -51,7 +51,7 @@ pub(super) fn direction(
     })
 }
 
-/// Reads how a surface's points become those of a texture of the plane.
+/// Reads the map from points of a surface to those of a texture of two dimensions.
 pub(super) fn read(
     context: &mut Context<'_>,
     texture: &TextureDescription,

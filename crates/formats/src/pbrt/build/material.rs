@@ -1,6 +1,6 @@
 //! Materials.
 //!
-//! A mixture names its parts, which are built before it; what names itself through others is refused.
+//! A mixture names its parts, which are built before it; a cycle of mixtures is an error.
 
 use super::color::Purpose;
 use super::context::Context;
@@ -24,9 +24,9 @@ use std::sync::Arc;
 /// Builds the materials of a description one by one.
 pub(super) struct Materials<'a> {
     described: &'a [MaterialDescription],
-    /// Those with names, by name.
+    /// The named materials by name.
     named: BTreeMap<&'a str, usize>,
-    /// Those that are being built, the innermost last: a mixture must not be part of itself.
+    /// The materials in construction, the innermost last, to find cycles of mixtures.
     open: Vec<usize>,
 }
 
@@ -42,11 +42,10 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Builds material number `index`; without an entity it is the one that shapes have before any is
-    /// named.
+    /// Builds material number `index`; one without an entity is the default material.
     ///
-    /// None: there is no surface: rays pass, shadow rays too. What bounds no medium need not be kept
-    /// then, and does not emit.
+    /// None: the surface is not visible, and rays pass through it, shadow rays included. Such a shape does
+    /// not emit, and can be left out as it bounds no medium.
     pub(super) fn build(
         &mut self,
         context: &mut Context<'_>,
@@ -116,7 +115,7 @@ impl<'a> Materials<'a> {
         })))
     }
 
-    /// Builds the part of a mixture that is called `name`.
+    /// Builds the part `name` of a mixture.
     fn part(
         &mut self,
         context: &mut Context<'_>,
@@ -143,7 +142,7 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// Mixtures within mixtures: each doubles what is built.
+/// Maximum depth of mixtures, as each level doubles the number of materials.
 const DEEPEST: usize = 8;
 
 fn grey() -> Material {
@@ -152,7 +151,7 @@ fn grey() -> Material {
     }
 }
 
-/// Reads what turns the shading frame: an image of normals, or else a texture of heights.
+/// Reads the normal map, or else the bump map, which is a texture of heights.
 fn relief(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
@@ -170,7 +169,7 @@ fn relief(
     Ok(height.map(|height| Relief::Displacement(in_space(height, &context.layout.space))))
 }
 
-/// Heights of the world in the unit of a space.
+/// Converts heights from the world to the unit of a space.
 fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
     if *space == RenderSpace::WORLD {
         return height;
@@ -218,7 +217,7 @@ fn conductor(
     })
 }
 
-/// The index of a metal, whose parts are called `eta` and `k`.
+/// Reads the index of refraction of a metal, whose parts are called `eta` and `k`.
 fn conductor_index(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
@@ -296,7 +295,7 @@ fn coated_conductor(
     )))
 }
 
-/// A layer, whose index and roughness have these names.
+/// Reads a layer, whose index and roughness have these names.
 fn coat(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,
@@ -319,13 +318,13 @@ fn coat(
 
 /// The names of a roughness: in both directions, along u, along v.
 const SURFACE: [&str; 3] = ["roughness", "uroughness", "vroughness"];
-/// That of a layer's interface.
+/// The names of the roughness of a layer's interface.
 const INTERFACE: [&str; 3] = [
     "interface.roughness",
     "interface.uroughness",
     "interface.vroughness",
 ];
-/// That of the metal under a layer.
+/// The names of the roughness of the metal under a layer.
 const METAL: [&str; 3] = [
     "conductor.roughness",
     "conductor.uroughness",

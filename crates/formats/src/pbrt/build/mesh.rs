@@ -1,4 +1,4 @@
-//! Meshes of triangles, of patches, and to be subdivided.
+//! Meshes of triangles, of patches, and subdivision surfaces.
 
 use super::context::Context;
 use super::patches::PatchMesh;
@@ -35,7 +35,7 @@ pub(super) fn ply_mesh(
     Ok(mesh)
 }
 
-/// The attributes of vertices; the lists are empty, or as long as that of the positions.
+/// The attributes of vertices; lists are empty, or as long as the positions.
 struct Vertices {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -99,7 +99,7 @@ pub(super) fn patch_mesh(
     let vertices = Vertices::read(reader)?;
     let patches = faces(context, reader, vertices.positions.len())?;
     reader.ignore(context, ParameterType::Integer, "faceIndices");
-    // It guides the reference program's choice of points on a light, and is not what is emitted.
+    // It guides sampling in the reference program, and does not change the emission.
     reader.ignore(context, ParameterType::String, "emissionfilename");
     let mesh = PatchMesh {
         positions: vertices.positions,
@@ -147,7 +147,7 @@ fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
     values.unwrap_or_default().as_chunks::<3>().0.to_vec()
 }
 
-/// Faces of `N` corners; without a list of them the vertices are one face.
+/// Reads faces of `N` corners; without a list, the vertices are one face.
 fn faces<const N: usize>(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,

@@ -1,34 +1,34 @@
-//! Bilinear patches as triangles: p(u, v) = (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11.
+//! Converts bilinear patches to triangles: p(u, v) = (1-u)(1-v) p00 + u(1-v) p10 + (1-u)v p01 + uv p11.
 //!
-//! A parallelogram is two triangles, exactly. Any other patch becomes a grid of n² cells of two
-//! triangles, with the patch's own normals. All patches of a mesh have the same n, and a point on an
-//! edge is computed from the edge's two ends in one order, so that neighbours have no gap.
+//! A parallelogram becomes two triangles, exactly. Any other patch becomes a grid of n² cells of two
+//! triangles, with the normals of the patch. All patches of a mesh have the same n, and a point on an edge
+//! is computed from the edge's ends in one order, so that there are no gaps between neighbours.
 
 use crate::ply::PlyMesh;
 use glam::DVec3;
 
-/// Cells along each side of a patch that is no parallelogram.
+/// Number of cells along each side of a patch that is not a parallelogram.
 const CELLS: usize = 16;
 
 /// Patches that share vertices.
 pub(super) struct PatchMesh {
     pub(super) positions: Vec<[f32; 3]>,
-    /// Empty, or as many as positions.
+    /// The normals: empty, or as many as positions.
     pub(super) normals: Vec<[f32; 3]>,
-    /// Empty, or as many as positions; without them a patch has its own u and v.
+    /// The texture coordinates: empty, or as many as positions. By default those of each patch.
     pub(super) uvs: Vec<[f32; 2]>,
-    /// The corners 00, 10, 01 and 11 of each.
+    /// The corners 00, 10, 01 and 11 of each patch.
     pub(super) patches: Vec<[u32; 4]>,
 }
 
 impl PatchMesh {
-    /// The number of vertices that [`triangulated`](Self::triangulated) makes.
+    /// Returns the number of vertices that [`triangulated`](Self::triangulated) makes.
     pub(super) fn vertices(&self) -> u64 {
         let row = self.cells() as u64 + 1;
         self.patches.len() as u64 * row * row
     }
 
-    /// Cells along each side of every patch.
+    /// Returns the number of cells along each side of every patch.
     fn cells(&self) -> usize {
         let mut patches = self.patches.iter();
         if patches.all(|patch| self.is_parallelogram(patch)) {
@@ -38,7 +38,7 @@ impl PatchMesh {
         }
     }
 
-    /// The triangles of all patches.
+    /// Returns the triangles of all patches.
     pub(super) fn triangulated(&self) -> PlyMesh {
         let cells = self.cells();
         let mut mesh = PlyMesh::default();
@@ -85,8 +85,8 @@ impl PatchMesh {
         blend(patch.map(|corner| self.uvs[corner as usize]), [u, v])
     }
 
-    /// The corner `[i, j]` of the grid; on an edge by the edge's two ends from the lower vertex to the
-    /// higher, whichever patch asks.
+    /// Returns the corner `[i, j]` of the grid. On an edge, it is computed from the end with the lower index
+    /// to the other, so that both patches get the same point.
     fn point(&self, patch: &[u32; 4], [i, j]: [usize; 2], cells: usize) -> [f32; 3] {
         let [c00, c10, c01, c11] = *patch;
         let [u, v] = [i, j].map(|i| i as f64 / cells as f64);
@@ -104,8 +104,8 @@ impl PatchMesh {
         point.as_vec3().to_array()
     }
 
-    /// The normal given at the corners, blended, or else that of a curved patch. None: the triangle's
-    /// own is right.
+    /// Returns the interpolated normal of the corners, or else that of a curved patch. None: the triangle's
+    /// geometric normal is right.
     fn normal(&self, patch: &[u32; 4], [u, v]: [f64; 2], cells: usize) -> Option<[f32; 3]> {
         if !self.normals.is_empty() {
             return Some(blend(
@@ -123,7 +123,7 @@ impl PatchMesh {
     }
 }
 
-/// (1-u)(1-v) a + u(1-v) b + (1-u)v c + uv d.
+/// Returns (1-u)(1-v) a + u(1-v) b + (1-u)v c + uv d.
 fn blend<const N: usize>([a, b, c, d]: [[f32; N]; 4], [u, v]: [f64; 2]) -> [f32; N] {
     let weights = [(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v];
     std::array::from_fn(|i| {
@@ -149,7 +149,7 @@ mod tests {
             ],
             normals: Vec::new(),
             uvs: Vec::new(),
-            // The second is turned: its left edge is the first one's right, the other way round.
+            // The second patch is rotated: its left edge is the right edge of the first, reversed.
             patches: vec![[0, 1, 2, 3], [5, 3, 4, 1]],
         }
     }
@@ -177,7 +177,7 @@ mod tests {
         let row = CELLS + 1;
         let second = row * row;
         for k in 0..=CELLS {
-            // The first one's edge from corner 1 to corner 3, and the second one's from 3 to 1.
+            // The first patch has the edge from corner 1 to 3, the second from 3 to 1.
             let of_first = mesh.positions[k * row + CELLS];
             let of_second = mesh.positions[second + (CELLS - k) * row + CELLS];
             assert_eq!(

@@ -1,4 +1,4 @@
-//! Reading an entity's parameters, and noticing those that nobody reads.
+//! Reads an entity's parameters, and refuses those that are not read.
 
 use super::context::Context;
 use crate::pbrt::lexer::shorten;
@@ -7,33 +7,33 @@ use crate::pbrt::scene::Entity;
 use crate::source::{Fault, Span};
 use crate::text::number;
 
-/// Reads the parameters of one entity. What is asked for is what is known: anything else that the
-/// file gives is an error when the reader [finishes](Self::finish).
+/// Reads the parameters of one entity. Parameters that are never read are unknown, and are errors when
+/// the reader [finishes](Self::finish).
 pub(super) struct Reader<'a> {
     entity: &'a Entity,
-    asked: Vec<(ParameterType, &'static str)>,
+    read: Vec<(ParameterType, &'static str)>,
 }
 
 impl<'a> Reader<'a> {
     pub(super) fn new(entity: &'a Entity) -> Self {
         Self {
             entity,
-            asked: Vec::new(),
+            read: Vec::new(),
         }
     }
 
-    /// The entity's type word, for errors that concern all of it.
+    /// Returns the place of the entity's type word, for errors about the whole entity.
     pub(super) fn span(&self) -> Span {
         self.entity.span
     }
 
-    /// The parameter of this type and name. None: where the file gives none.
+    /// Returns the parameter of this type and name. None: the file has none.
     pub(super) fn find(
         &mut self,
         kind: ParameterType,
         name: &'static str,
     ) -> Option<&'a Parameter> {
-        self.asked.push((kind, name));
+        self.read.push((kind, name));
         self.entity.parameters.get(kind, name)
     }
 
@@ -44,7 +44,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A number. None: where the file gives none.
+    /// Reads a number. None: the file has none.
     pub(super) fn optional_float(&mut self, name: &'static str) -> Result<Option<f32>, Fault> {
         let Some(parameter) = self.find(ParameterType::Float, name) else {
             return Ok(None);
@@ -59,7 +59,7 @@ impl<'a> Reader<'a> {
         Ok(self.optional_float(name)?.unwrap_or(default))
     }
 
-    /// A number within `[min, max]`.
+    /// Reads a number within `[min, max]`.
     pub(super) fn float_within(
         &mut self,
         name: &'static str,
@@ -83,7 +83,7 @@ impl<'a> Reader<'a> {
         let parameter = self.entity.parameters.get(kind, name);
         let span = parameter.map_or(self.entity.span, |parameter| parameter.value_span);
         let range = match [min, max] {
-            // Numbers between are too near 0 to count with.
+            // Subnormal numbers are too small to compute with.
             [f32::MIN_POSITIVE, f32::MAX] => "above 0".to_owned(),
             [min, f32::MAX] => format!("at least {}", number(min)),
             [min, max] => format!("between {} and {}", number(min), number(max)),
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// An integer of at least `min`.
+    /// Reads an integer of at least `min`.
     pub(super) fn integer(
         &mut self,
         name: &'static str,
@@ -130,12 +130,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A string and its place.
+    /// Reads a string. Returns it with its place.
     pub(super) fn string(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
         self.one_string(ParameterType::String, name)
     }
 
-    /// The name of a texture and its place.
+    /// Reads the name of a texture. Returns it with its place.
     pub(super) fn texture(&mut self, name: &'static str) -> Result<Option<(&'a str, Span)>, Fault> {
         self.one_string(ParameterType::Texture, name)
     }
@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
         self.triple(ParameterType::Point3, name, default)
     }
 
-    /// Three numbers of a parameter of this type.
+    /// Reads three numbers of a parameter of this type.
     pub(super) fn triple(
         &mut self,
         kind: ParameterType,
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
         three(parameter)
     }
 
-    /// A parameter that the format has and that changes nothing here: a warning.
+    /// Warns of a parameter of the format that has no effect here.
     pub(super) fn ignore(
         &mut self,
         context: &mut Context<'_>,
@@ -191,7 +191,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A parameter that the format has and the renderer has not.
+    /// Refuses a parameter of the format that the renderer does not support.
     pub(super) fn unsupported(
         &mut self,
         context: &mut Context<'_>,
@@ -207,23 +207,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Refuses parameters that nobody asked for.
+    /// Refuses parameters that were not read.
     pub(super) fn finish(self) -> Result<(), Fault> {
-        let is_asked = |p: &&Parameter| self.asked.iter().any(|&(k, n)| k == p.kind && n == p.name);
-        let Some(unknown) = self
-            .entity
-            .parameters
-            .explicit
-            .iter()
-            .find(|p| !is_asked(p))
-        else {
+        let is_read = |p: &&Parameter| self.read.iter().any(|&(k, n)| k == p.kind && n == p.name);
+        let Some(unknown) = self.entity.parameters.explicit.iter().find(|p| !is_read(p)) else {
             return Ok(());
         };
         let (name, word) = (shorten(&unknown.name), unknown.kind.word());
         let types: Vec<&str> = self
-            .asked
+            .read
             .iter()
-            .filter(|(_, asked)| *asked == unknown.name)
+            .filter(|(_, read)| *read == unknown.name)
             .map(|(kind, _)| kind.word())
             .collect();
         if !types.is_empty() {
@@ -235,12 +229,12 @@ impl<'a> Reader<'a> {
             "unknown parameter `{name}` of `{}`",
             shorten(&self.entity.kind)
         );
-        let known = self.asked.iter().map(|(_, name)| *name);
+        let known = self.read.iter().map(|(_, name)| *name);
         Err(Fault::scene(unknown.span, message).with_nearest(&unknown.name, known))
     }
 }
 
-/// The only one of `values`.
+/// Returns the only one of `values`.
 pub(super) fn single<'v, T>(parameter: &Parameter, values: &'v [T]) -> Result<&'v T, Fault> {
     match values {
         [value] => Ok(value),
@@ -248,7 +242,7 @@ pub(super) fn single<'v, T>(parameter: &Parameter, values: &'v [T]) -> Result<&'
     }
 }
 
-/// The three numbers of a parameter with one value.
+/// Returns the three numbers of a parameter with one value.
 pub(super) fn three(parameter: &Parameter) -> Result<[f32; 3], Fault> {
     match &parameter.values {
         Values::Floats(values) => values

@@ -1,4 +1,4 @@
-//! The film's sensor: how light becomes numbers.
+//! The film's sensor, which converts light to pixel values.
 
 use super::context::Context;
 use super::reader::Reader;
@@ -8,13 +8,12 @@ use crate::spectra;
 use crate::text::number;
 use bidir::film::Sensor;
 
-/// Temperatures of a white that the film is balanced for. Unit: K.
+/// The range of temperatures of the white balance. Unit: K.
 const WHITES: [f32; 2] = [1000.0, 25000.0];
-/// Cooler whites are those of a blackbody, others those of daylight. Unit: K.
+/// The temperature below which white is that of a blackbody, and from which it is daylight. Unit: K.
 const COOLEST_DAYLIGHT: f32 = 4000.0;
 
-/// Reads the parameters of all films that say how they respond to light, which is multiplied by
-/// `exposure` after.
+/// Reads the sensor parameters that all films have. `exposure` is applied after the sensor.
 pub(super) fn build(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -33,7 +32,7 @@ pub(super) fn build(
     })
 }
 
-/// The matrix that makes a white of the temperature that the file gives white.
+/// Returns the matrix that maps light of the file's colour temperature to white.
 fn balance(reader: &mut Reader<'_>) -> Result<Option<bidir::math::Mat3>, Fault> {
     if reader.float("whitebalance", 0.0)? == 0.0 {
         return Ok(None);
@@ -47,7 +46,7 @@ fn balance(reader: &mut Reader<'_>) -> Result<Option<bidir::math::Mat3>, Fault> 
     Ok(Some(spectra::adapted(white).as_mat3()))
 }
 
-/// The largest value of a sample. None: there is no limit.
+/// Returns the largest value of a sample. None: there is no limit.
 fn limit(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,

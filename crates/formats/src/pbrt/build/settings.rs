@@ -28,7 +28,7 @@ pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<Scene
     Ok(settings)
 }
 
-/// The averaging of textures over pixels.
+/// Returns whether textures are filtered.
 pub(super) fn texture_filtering(description: &SceneDescription) -> Result<TextureFiltering, Fault> {
     let mut filtering = TextureFiltering::AsAsked;
     let options = description.options.iter();
@@ -52,8 +52,8 @@ fn options(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
                 let wrong = |_| Fault::scene(option.span, "the seed is not a whole number");
                 settings.seed = Some(value.parse().map_err(wrong)?);
             }
-            // Choices of precision or of what is recorded, what the scene itself knows, and defaults
-            // spelled out.
+            // Options of precision or recording, information that the scene contains anyway, and explicit
+            // defaults.
             ("rendercoordsys" | "pixelstats" | "wavefront" | "disabletexturefiltering", _)
             | (_, "false") => {}
             (name, _) => {

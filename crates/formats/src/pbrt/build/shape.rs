@@ -14,19 +14,19 @@ use bidir::shape::{Cylinder, Disk, Mesh, Orientation, Shape, Sphere};
 use bidir::texture::FloatTexture;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// A shape in its own space, ready to be placed any number of times.
+/// A shape in its own space, which can be placed any number of times.
 pub(super) enum Geometry {
     Mesh(PlyMesh),
-    /// Radius, then lowest and highest z and largest azimuth (radians).
+    /// A sphere: radius, then lowest and highest z and largest azimuth (radians).
     Sphere(f32, Vec3),
-    /// Height, inner and outer radius, largest azimuth (radians).
+    /// A disk: height, inner and outer radius, largest azimuth (radians).
     Disk(f32, [f32; 2], f32),
-    /// Radius, then lowest and highest z and largest azimuth (radians).
+    /// A cylinder: radius, then lowest and highest z and largest azimuth (radians).
     Cylinder(f32, Vec3),
 }
 
 impl Geometry {
-    /// Reads a shape with its alpha (None: it is opaque). None: its substitute is nothing.
+    /// Reads a shape and its coverage (None: it is opaque). None: the shape is not supported and left out.
     pub(super) fn read(
         context: &mut Context<'_>,
         textures: &mut Textures<'_>,
@@ -72,7 +72,7 @@ impl Geometry {
         Ok(Some((geometry, alpha)))
     }
 
-    /// The number of primitives.
+    /// Returns the number of primitives.
     pub(super) fn primitives(&self) -> u64 {
         match self {
             Self::Mesh(mesh) => mesh.triangles.len() as u64,
@@ -80,7 +80,7 @@ impl Geometry {
         }
     }
 
-    /// The number of vertices that are kept.
+    /// Returns the number of stored vertices.
     pub(super) fn vertices(&self) -> u64 {
         match self {
             Self::Mesh(mesh) => mesh.positions.len() as u64,
@@ -88,7 +88,7 @@ impl Geometry {
         }
     }
 
-    /// Two corners of a box around a quadric. None: it is a mesh.
+    /// Returns two corners of a box around a quadric. None: the shape is a mesh.
     fn quadric_box(&self) -> Option<[DVec3; 2]> {
         let (radius, low, high) = match self {
             Self::Mesh(_) => return None,
@@ -99,7 +99,7 @@ impl Geometry {
         Some([corner(-1.0, low.min(high)), corner(1.0, low.max(high))])
     }
 
-    /// The error of the vertices as the file holds them, of a shape that `linear` takes to the world.
+    /// Returns the rounding error of the file's vertices, for a shape that `linear` maps to the world.
     pub(super) fn vertex_error(&self, linear: &DMat3) -> Option<VertexError> {
         match self {
             Self::Mesh(mesh) => VertexError::of(&mesh.positions, linear),
@@ -107,8 +107,8 @@ impl Geometry {
         }
     }
 
-    /// The shape at a place, of which `survey` takes note. Mirroring does not change which side is the front: of a quadric it is
-    /// the outside, of a mesh what its corners say in its own space.
+    /// Returns the shape at a place, and adds it to `survey`. A reflection does not change the front: of a
+    /// quadric it is the outside, of a mesh it follows from the order of corners in its own space.
     pub(super) fn place(
         &self,
         world_from_local: &DAffine3,
@@ -136,7 +136,7 @@ impl Geometry {
     }
 }
 
-/// The farthest that anything is from the origin: squares of distances stay finite below it.
+/// Maximum distance from the origin, below which squared distances stay finite.
 const FARTHEST: f32 = 1e12;
 
 fn too_far(span: Span) -> Fault {
@@ -149,7 +149,7 @@ fn too_far(span: Span) -> Fault {
 
 /// Refuses points of the world that are too far away.
 pub(super) fn check_point(span: Span, point: DVec3) -> Result<(), Fault> {
-    // Also true for NaN.
+    // NaN fails the comparison, too.
     if point.abs().max_element() <= f64::from(FARTHEST) && point.is_finite() {
         Ok(())
     } else {
@@ -157,7 +157,7 @@ pub(super) fn check_point(span: Span, point: DVec3) -> Result<(), Fault> {
     }
 }
 
-/// Refuses instances that reach too far, of an object between two corners.
+/// Refuses an instance that extends too far, of an object between two corners.
 pub(super) fn check_instance(
     span: Span,
     world_from_object: &DAffine3,
@@ -167,7 +167,7 @@ pub(super) fn check_instance(
     corners.try_for_each(|corner| check_point(span, world_from_object.transform_point3(corner)))
 }
 
-/// Refuses shapes that reach too far to compute with.
+/// Refuses a shape that extends too far to compute with.
 pub(super) fn check_extent(span: Span, shape: &Shape) -> Result<(), Fault> {
     let is_near = |p: Vec3| p.is_finite() && p.abs().max_element() <= FARTHEST;
     let fits = match shape {
@@ -195,7 +195,7 @@ fn place_mesh(
         survey.include(placed);
         placed.as_vec3()
     };
-    // Normalised, so that interpolation weighs the corners as the file means it.
+    // Normals are normalised, so that interpolation weights the corners as in the file.
     let normal = |n| ((normal_matrix * vector(n)).normalize_or_zero() * sign).as_vec3();
     Mesh {
         positions: mesh.positions.iter().map(point).collect(),
@@ -211,7 +211,7 @@ fn place_mesh(
     }
 }
 
-/// The front of a shape by the file, whatever its place.
+/// Returns the orientation in the file, which does not depend on the shape's place.
 pub(super) fn orientation(shape: &ShapeDescription) -> Orientation {
     if shape.reverse_orientation {
         Orientation::Reversed

@@ -1,4 +1,4 @@
-//! Parameters that are spectra: samples, names, files, temperatures.
+//! Reads spectra given by samples, names, files or temperatures.
 
 use super::context::Context;
 use super::reader::{Reader, single};
@@ -10,13 +10,13 @@ use crate::text::number;
 use bidir::names::nearest;
 use bidir::spectrum::Rgb;
 
-/// Temperatures beyond which light is all outside of the visible. Unit: K.
+/// The range of temperatures, beyond which no light is visible. Unit: K.
 const TEMPERATURES: [f32; 2] = [100.0, 1e8];
 
-/// The D line of helium, at which glasses are measured. Unit: nm.
+/// The d line of helium, at which glasses are specified. Unit: nm.
 const D_LINE: f64 = 587.56;
 
-/// Reads a parameter given as `spectrum` or `blackbody`. None: where the file gives none.
+/// Reads a parameter given as `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read<'a>(
     context: &mut Context<'_>,
     reader: &mut Reader<'a>,
@@ -58,7 +58,7 @@ fn spectrum(context: &mut Context<'_>, parameter: &Parameter) -> Result<Spectrum
     }
 }
 
-/// A spectrum of the format, or else a file.
+/// Returns a named spectrum of the format, or else that of a file.
 fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result<Spectrum, Fault> {
     if let Some(spectrum) = spectra::named(name) {
         return Ok(spectrum);
@@ -80,8 +80,8 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
     })
 }
 
-/// The index of a metal whose parts, called `eta` and `k`, are spectra or not given: copper's.
-/// None: one of them is something else.
+/// Reads the index of refraction of a metal from the spectra `eta` and `k`, by default those of copper.
+/// None: one of them is not a spectrum.
 pub(super) fn read_metal(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,
@@ -102,7 +102,7 @@ pub(super) fn read_metal(
     })
 }
 
-/// η and k of copper: what a conductor is made of unless the file says otherwise.
+/// Returns η and k of copper, the default of conductors.
 pub(super) fn copper() -> (Rgb, Rgb) {
     let parts = (spectra::named("metal-Cu-eta"), spectra::named("metal-Cu-k"));
     match parts {
@@ -111,8 +111,8 @@ pub(super) fn copper() -> (Rgb, Rgb) {
     }
 }
 
-/// Reads the index of refraction of a dielectric, called `name`: a number, or a spectrum's at the
-/// D line.
+/// Reads the index of refraction `name` of a dielectric: a number, or the value of a spectrum at the d
+/// line.
 pub(super) fn read_eta(
     context: &mut Context<'_>,
     reader: &mut Reader<'_>,

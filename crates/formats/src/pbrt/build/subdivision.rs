@@ -1,5 +1,5 @@
-//! Loop's subdivision of triangle meshes: each step splits every triangle in four and smooths; at the
-//! end points and normals move to the surface that infinitely many steps would give \[Loop87\].
+//! Loop's subdivision of triangle meshes: each step splits every triangle in four and smooths; finally,
+//! points and normals move to the limit surface of infinitely many steps \[Loop87\].
 //!
 //! With n neighbours p_j and the weight β(n), 3/16 for n = 3 and 3/8n else \[Warren95\]:
 //!
@@ -19,10 +19,10 @@ pub(super) struct ControlMesh {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// Why a mesh cannot be subdivided.
+/// The reason why a mesh cannot be subdivided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SubdivisionError {
-    /// Two triangles go along an edge in the same direction.
+    /// Two triangles have an edge in the same direction.
     Edge([u32; 2]),
     /// A triangle has a vertex twice.
     Degenerate(usize),
@@ -44,17 +44,16 @@ impl fmt::Display for SubdivisionError {
     }
 }
 
-/// No half-edge.
+/// Stands for no half-edge.
 const NONE: u32 = u32::MAX;
 
 /// The directed edges of a mesh: number 3i + k begins at corner k of triangle i.
 ///
-/// A step of subdivision gives each of them two, and the neighbours of these follow by arithmetic
-/// \[Vanhoey22\].
+/// A step of subdivision splits each half-edge in two, whose neighbours follow by arithmetic \[Vanhoey22\].
 struct HalfEdges {
-    /// The one in the other direction, or [`NONE`] on a border.
+    /// The half-edges in the opposite direction, or [`NONE`] on a border.
     twins: Vec<u32>,
-    /// One that begins at each vertex, on a border the first one counterclockwise, or [`NONE`].
+    /// A half-edge that begins at each vertex, on a border the first one counterclockwise, or [`NONE`].
     outgoing: Vec<u32>,
 }
 
@@ -66,7 +65,7 @@ struct Ring {
 }
 
 impl ControlMesh {
-    /// The mesh after `levels` steps, moved to the limit surface, with its normals.
+    /// Returns the mesh after `levels` steps, moved to the limit surface, with its normals.
     pub(super) fn subdivide(mut self, levels: u32) -> Result<(Self, Vec<DVec3>), SubdivisionError> {
         let mut edges = HalfEdges::of(&self)?;
         for _ in 0..levels {
@@ -81,7 +80,7 @@ impl ControlMesh {
         Ok((Self { points, ..self }, normals))
     }
 
-    /// One step.
+    /// Returns the mesh after one step.
     fn refined(&self, edges: &HalfEdges) -> Self {
         let mut points = self.at_vertices(edges, |v, ring| {
             self.mixed(v, ring, smoothing(ring.neighbours.len() as f64), 0.125)
@@ -107,7 +106,7 @@ impl ControlMesh {
         }
     }
 
-    /// A value for each vertex by its ring.
+    /// Computes a value for each vertex from its ring.
     fn at_vertices(
         &self,
         edges: &HalfEdges,
@@ -121,12 +120,13 @@ impl ControlMesh {
         (0..self.points.len()).map(of_vertex).collect()
     }
 
-    /// The vertex that a half-edge begins at.
+    /// Returns the vertex at which a half-edge begins.
     fn origin(&self, h: u32) -> u32 {
         self.triangles[h as usize / 3][h as usize % 3]
     }
 
-    /// A vertex and its ring: `weight` for each neighbour, or `border` for the two along a border.
+    /// Returns the weighted sum of a vertex and its ring: `weight` for each neighbour, or `border` for the two
+    /// along a border.
     fn mixed(&self, v: usize, ring: &Ring, weight: f64, border: f64) -> DVec3 {
         let point = |&v: &u32| self.points[v as usize];
         match (&*ring.neighbours, ring.is_border) {
@@ -140,7 +140,7 @@ impl ControlMesh {
         }
     }
 
-    /// The middle of an edge, of which `h` and `twin` are the two directions.
+    /// Returns the middle of the edge with the half-edges `h` and `twin`.
     fn middle(&self, h: u32, twin: u32) -> DVec3 {
         let point = |h: u32| self.points[self.origin(h) as usize];
         let ends = point(h) + point(next(h));
@@ -150,7 +150,7 @@ impl ControlMesh {
         ends * 0.375 + (point(previous(h)) + point(previous(twin))) * 0.125
     }
 
-    /// The normal of the limit surface: that of two tangents by the ring \[Biermann00\].
+    /// Returns the normal of the limit surface, by two tangents from the ring \[Biermann00\].
     fn normal(&self, v: usize, ring: &Ring) -> DVec3 {
         let points = ring.neighbours.iter().map(|&v| self.points[v as usize]);
         let points: Vec<_> = points.collect();
@@ -186,23 +186,23 @@ fn border_tangents(v: DVec3, ring: &[DVec3]) -> [DVec3; 2] {
     [*first - *last, inwards]
 }
 
-/// β.
+/// Returns β.
 fn smoothing(n: f64) -> f64 {
     if n < 3.5 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) }
 }
 
-/// The half-edge that follows in its triangle.
+/// Returns the next half-edge of the triangle.
 fn next(h: u32) -> u32 {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// The half-edge before in its triangle.
+/// Returns the previous half-edge of the triangle.
 fn previous(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 impl HalfEdges {
-    /// The half-edges of a mesh. Errors: it is no oriented surface.
+    /// Returns the half-edges of a mesh. Errors: it is not an oriented surface.
     fn of(mesh: &ControlMesh) -> Result<Self, SubdivisionError> {
         let mut known = HashMap::with_capacity(3 * mesh.triangles.len());
         for (i, &[a, b, c]) in mesh.triangles.iter().enumerate() {
@@ -252,7 +252,7 @@ impl HalfEdges {
         Ok(())
     }
 
-    /// The half-edges of `mesh`, which is one step further.
+    /// Returns the half-edges of `mesh`, the result of the next step.
     ///
     /// Triangle i becomes 4i + k at its corner k, and 4i + 3 in the middle.
     fn refined(&self, mesh: &ControlMesh) -> Self {
@@ -275,7 +275,7 @@ impl HalfEdges {
 }
 
 impl Ring {
-    /// Becomes the ring of vertex `v`.
+    /// Sets this to the ring of vertex `v`.
     fn walk(&mut self, mesh: &ControlMesh, edges: &HalfEdges, v: usize) {
         self.neighbours.clear();
         self.is_border = false;
@@ -314,7 +314,7 @@ mod tests {
         }
     }
 
-    /// A plane of two by two squares, bent by `height`.
+    /// Returns a plane of two by two squares, displaced by `height`.
     fn sheet(height: impl Fn(f64, f64) -> f64) -> ControlMesh {
         let n = 6;
         let at = |i: u32| f64::from(i) / f64::from(n);
@@ -345,7 +345,7 @@ mod tests {
         }
     }
 
-    /// Further steps move no point of the limit surface.
+    /// Further steps do not move points of the limit surface.
     #[test]
     fn the_limit_does_not_depend_on_the_number_of_steps() {
         let bent = || sheet(|x, y| x * x - 0.5 * x * y + 0.2 * y);
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_surface_is_refused() {
+    fn meshes_that_are_no_surfaces_are_refused() {
         let refuse = |triangles: &[[u32; 3]], error| {
             let mesh = ControlMesh {
                 points: vec![DVec3::ZERO; 5],

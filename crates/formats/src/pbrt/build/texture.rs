@@ -1,7 +1,7 @@
-//! Textures: built when something asks for them, as what it needs them for.
+//! Textures, which are built when they are first used, for the purpose of that use.
 //!
-//! Numbers and colours go one way, [`Element`] says what is different. What a texture's parameters say
-//! is a [`Source`]; only those that are used become textures, and only then are images read.
+//! Numbers and colours share the code that is generic over [`Element`]. A texture's parameters are a
+//! [`Source`]; only used ones become textures, and only then are images read.
 
 use super::color::{self, Purpose};
 use super::context::Context;
@@ -19,31 +19,31 @@ use bidir::texture::{ColorTexture, FloatTexture, ImageMap, Texture, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Built textures, by number; colours are checked for each purpose.
+/// The built textures by number and purpose, for which values are checked.
 type Built<T> = BTreeMap<(usize, Purpose), Texture<T>>;
 
 /// The textures of a scene.
 pub(super) struct Textures<'a> {
     described: &'a [TextureDescription],
-    /// The number of each.
+    /// The number of each texture by kind and name.
     names: BTreeMap<(TextureKind, &'a str), usize>,
-    asked: BTreeSet<usize>,
+    used: BTreeSet<usize>,
     colors: Built<Rgb>,
     floats: Built<f32>,
-    /// How many are being built, each a part of the one before.
+    /// The depth of nested textures that are being built.
     depth: usize,
     files: Files,
 }
 
 /// A number or a colour.
 pub(super) trait Element: Value + 'static {
-    /// The textures that give it.
+    /// The kind of textures with such values.
     const KIND: TextureKind;
 
-    /// The same number in every channel.
+    /// Returns the same number in every channel.
     fn splat(value: f32) -> Self;
 
-    /// Reads a constant. None: where the file gives none.
+    /// Reads a constant. None: the file has none.
     fn read(
         context: &mut Context<'_>,
         reader: &mut Reader<'_>,
@@ -119,24 +119,24 @@ impl Element for Rgb {
     }
 }
 
-/// What a parameter that may be textured says.
+/// The value of a parameter that may be a texture.
 #[derive(Clone, Copy)]
 pub(super) enum Operand<T> {
-    /// The same everywhere.
+    /// A constant.
     Value(T),
-    /// The texture of this number.
+    /// The texture with this number.
     Texture(usize),
 }
 
 impl<'a> Textures<'a> {
-    /// The textures of a description, none of which is built.
+    /// Returns the textures of a description, none of which is built yet.
     pub(super) fn new(description: &'a SceneDescription) -> Self {
         let numbered = description.textures.iter().enumerate();
         let names = numbered.map(|(i, texture)| ((texture.kind, texture.name.as_str()), i));
         Self {
             described: &description.textures,
             names: names.collect(),
-            asked: BTreeSet::new(),
+            used: BTreeSet::new(),
             colors: BTreeMap::new(),
             floats: BTreeMap::new(),
             depth: 0,
@@ -144,7 +144,7 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// Reads a colour or the name of a texture. None: where the file gives none.
+    /// Reads a colour or the name of a texture. None: the file has none.
     pub(super) fn color(
         &mut self,
         context: &mut Context<'_>,
@@ -155,7 +155,7 @@ impl<'a> Textures<'a> {
         self.get(context, reader, name, purpose)
     }
 
-    /// Reads a number or the name of a texture. None: where the file gives none.
+    /// Reads a number or the name of a texture. None: the file has none.
     pub(super) fn float(
         &mut self,
         context: &mut Context<'_>,
@@ -165,7 +165,7 @@ impl<'a> Textures<'a> {
         self.get(context, reader, name, Purpose::Unbounded)
     }
 
-    /// The normals of an image, as colours between 0 and 1. None: where the file gives none.
+    /// Reads a normal map as colours between 0 and 1. None: the file has none.
     pub(super) fn normals(
         &mut self,
         context: &mut Context<'_>,
@@ -192,7 +192,7 @@ impl<'a> Textures<'a> {
         operand.map(build).transpose()
     }
 
-    /// Reads a value or the name of a texture. None: where the file gives none.
+    /// Reads a value or the name of a texture. None: the file has none.
     pub(super) fn operand<T: Element>(
         &self,
         context: &mut Context<'_>,
@@ -223,8 +223,8 @@ impl<'a> Textures<'a> {
         Err(fault.with_nearest(name, of_kind.map(|&(_, name)| name)))
     }
 
-    /// Refuses what texture number `user` must not be made of: images exist before all others, then
-    /// numbers and colours are made, both in the order of the file.
+    /// Refuses a part that texture number `user` cannot have: images exist before all others; then numbers
+    /// are made, then colours, each in the order of the file.
     pub(super) fn check_order(&self, part: usize, user: usize, span: Span) -> Result<(), Fault> {
         let (part_of, user_of) = (&self.described[part], &self.described[user]);
         let is_image = matches!(part_of.entity.kind.as_str(), "imagemap" | "ptex");
@@ -237,7 +237,7 @@ impl<'a> Textures<'a> {
         Err(Fault::scene(span, message).with_hint(hint))
     }
 
-    /// Builds what a parameter says.
+    /// Builds the value of a parameter.
     pub(super) fn resolve<T: Element>(
         &mut self,
         context: &mut Context<'_>,
@@ -251,7 +251,7 @@ impl<'a> Textures<'a> {
         if let Some(built) = T::built(self).get(&(number, purpose)) {
             return Ok(built.clone());
         }
-        self.asked.insert(number);
+        self.used.insert(number);
         self.depth += 1;
         let built = self.build::<T>(context, number, purpose);
         self.depth -= 1;
@@ -292,10 +292,10 @@ impl<'a> Textures<'a> {
         &self.described[number]
     }
 
-    /// Looks through the parameters of the textures that nothing asked for. No image is read.
+    /// Checks the parameters of unused textures. Reads no images.
     pub(super) fn check_unused(&self, context: &mut Context<'_>) -> Result<(), Fault> {
         for (number, texture) in self.described.iter().enumerate() {
-            if self.asked.contains(&number) {
+            if self.used.contains(&number) {
                 continue;
             }
             let any = Purpose::Unbounded;

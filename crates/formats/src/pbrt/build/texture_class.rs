@@ -1,4 +1,4 @@
-//! The classes of textures: their parameters, and what is built of them.
+//! The classes of textures: reads their parameters, and builds them.
 
 use super::color::Purpose;
 use super::context::Context;
@@ -16,7 +16,7 @@ use bidir::texture::{
 };
 use std::sync::Arc;
 
-/// What a texture's parameters say: nothing is read but them, and parts are but names.
+/// The parameters of a texture. Its images are not read and its parts not built yet.
 pub(super) enum Source<T: Element> {
     /// A texture without parts.
     Whole(Texture<T>),
@@ -28,7 +28,7 @@ pub(super) enum Source<T: Element> {
     Dots([Operand<T>; 2], bidir::texture::Mapping),
 }
 
-/// The finest octave of noise that anything shows.
+/// Maximum number of octaves of noise; further ones are not visible.
 const MOST_OCTAVES: u32 = 64;
 
 impl<T: Element> Source<T> {
@@ -53,7 +53,7 @@ impl<T: Element> Source<T> {
                 class.reader.finish()?;
                 Ok(source)
             }
-            // What is not supported has parameters that nobody knows here.
+            // The parameters of an unsupported class are not checked.
             None => Ok(Self::Whole(Texture::Constant(T::splat(0.5)))),
         }
     }
@@ -112,7 +112,7 @@ struct Class<'t, 'a> {
 }
 
 impl Class<'_, '_> {
-    /// None: the class is not supported, and has a substitute.
+    /// Reads the parameters of the class. None: the class is not supported and replaced.
     fn source<T: Element>(
         &mut self,
         context: &mut Context<'_>,
@@ -219,7 +219,7 @@ impl Class<'_, '_> {
         }
     }
 
-    /// Refuses a class that gives only values of another kind.
+    /// Refuses a class that has only values of another kind.
     fn expect(&self, kind: TextureKind) -> Result<(), Fault> {
         if self.texture.kind == kind {
             return Ok(());

@@ -1,4 +1,4 @@
-//! What each directive does.
+//! Applies directives to the state of the parser.
 
 mod transforms;
 mod world;
@@ -19,7 +19,7 @@ type Done = Result<(), Fault>;
 
 /// Applies the directive `word`, whose arguments follow in `tokens`.
 ///
-/// `word` is one of [`known::DIRECTIVES`] and stands in a block where it may.
+/// `word` is one of [`known::DIRECTIVES`] and stands in a valid block.
 pub(super) fn apply(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, span: Span) -> Done {
     match word {
         "Include" | "Import" => files(parser, tokens, word),
@@ -186,7 +186,7 @@ fn attribute(parser: &mut Parser, tokens: &mut Tokens<'_>) -> Done {
         }
     };
     let all = Arc::make_mut(list);
-    // Of two with the same type and name the last counts.
+    // Of two parameters with the same type and name, the last counts.
     let same = |a: &Parameter, b: &Parameter| a.kind == b.kind && a.name == b.name;
     all.retain(|old| !parameters.iter().any(|new| same(old, new)));
     all.extend(parameters);

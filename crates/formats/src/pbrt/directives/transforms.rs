@@ -83,7 +83,7 @@ pub(super) fn change(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, s
     Ok(())
 }
 
-/// Exactly `N` numbers without brackets.
+/// Reads exactly `N` numbers without brackets.
 pub(super) fn numbers<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N], Fault> {
     let mut values = [0.0; N];
     for value in &mut values {
@@ -93,7 +93,7 @@ pub(super) fn numbers<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N
     Ok(values)
 }
 
-/// Exactly `N` numbers within brackets.
+/// Reads exactly `N` numbers within brackets.
 fn bracketed<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N], Fault> {
     expect_bracket(tokens, &TokenKind::Open, "`[`")?;
     let values = numbers(tokens)?;

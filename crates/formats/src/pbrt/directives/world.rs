@@ -1,4 +1,4 @@
-//! The directives that put things into the world.
+//! The directives that define the world: objects, materials, textures, lights, shapes and media.
 
 use super::Done;
 use crate::pbrt::known;
@@ -42,7 +42,7 @@ pub(super) fn object(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str, s
     Ok(())
 }
 
-/// The current transformation for something placed by it: it has to be invertible.
+/// Returns the current transformation, which has to be invertible.
 pub(super) fn placement(parser: &Parser, span: Span) -> Result<Transforms, Fault> {
     let transforms = parser.scope.state.transforms;
     if transform::is_invertible(&transforms.start) && transform::is_invertible(&transforms.end) {
@@ -80,7 +80,7 @@ pub(super) fn material(parser: &mut Parser, tokens: &mut Tokens<'_>, word: &str)
     Ok(())
 }
 
-/// The entity whose type word is the parameter `"string type"`.
+/// Returns the entity whose type word is the parameter `"string type"`.
 fn typed_entity(
     mut explicit: Vec<Parameter>,
     defaults: Arc<Vec<Parameter>>,

@@ -1,4 +1,4 @@
-//! The exact words of errors.
+//! The exact messages of errors.
 
 use crate::pbrt::parse_text;
 use miette::{GraphicalReportHandler, GraphicalTheme};
@@ -9,7 +9,7 @@ fn check(text: &str, expected: &str) {
     assert_eq!(error.to_string(), expected);
 }
 
-/// The error of `text` after `WorldBegin` on the first line.
+/// Checks the error of `text` after `WorldBegin` on the first line.
 #[track_caller]
 fn check_world(text: &str, expected: &str) {
     check(&format!("WorldBegin\n{text}"), expected);
@@ -93,7 +93,7 @@ fn grammar() {
     );
 }
 
-/// A string that is not closed ends where the next one would begin.
+/// An unclosed string ends where the next one begins.
 #[test]
 fn closing_quotes() {
     check(

@@ -1,4 +1,4 @@
-//! What valid texts mean.
+//! The meaning of valid texts.
 
 use crate::pbrt::{
     ColorSpace, ParameterType, SceneDescription, TextureKind, Values, parse_file, parse_text,
@@ -18,7 +18,7 @@ fn world(text: &str) -> SceneDescription {
     parse(&format!("WorldBegin {text}"))
 }
 
-/// Where the shapes put (1, 0, 0).
+/// Returns the images of (1, 0, 0) under the transformations of the shapes.
 fn places(scene: &SceneDescription) -> Vec<[f64; 3]> {
     let place = |p: DVec3| (p * 1e6).round() / 1e6 + 0.0;
     let shapes = scene.shapes.iter();
@@ -108,7 +108,7 @@ fn transformations_multiply_from_the_right_and_blocks_restore_them() {
 }
 
 #[test]
-fn world_begin_wipes_the_transformation_but_names_the_camera() {
+fn world_begin_resets_the_transformation_but_names_the_camera() {
     let scene = parse(
         "Translate 0 0 5 Camera \"perspective\" WorldBegin Shape \"sphere\"\n\
          CoordSysTransform \"camera\" Shape \"sphere\" CoordSysTransform \"nowhere\"",
@@ -136,7 +136,7 @@ fn active_transforms_move_one_end_of_the_interval() {
 }
 
 #[test]
-fn shapes_take_over_the_state() {
+fn shapes_have_the_current_state() {
     let scene = world(
         "Shape \"disk\" AttributeBegin ReverseOrientation NamedMaterial \"later\"\n\
          AreaLightSource \"diffuse\" \"float scale\" 2 MediumInterface \"fog\" \"\" Shape \"sphere\"\n\
@@ -162,7 +162,7 @@ fn shapes_take_over_the_state() {
 }
 
 #[test]
-fn objects_hold_shapes_and_instances_may_come_first() {
+fn objects_contain_shapes_and_instances_may_come_first() {
     let scene = world(
         "Translate 1 0 0 ObjectInstance \"o\" ObjectBegin \"o\" Scale 2 2 2 Shape \"sphere\" ObjectEnd\n\
          Shape \"disk\"",

@@ -1,4 +1,4 @@
-//! Whatever the bytes: an error or a scene, never a panic.
+//! Parsing any bytes gives an error or a scene, never a panic.
 
 use crate::pbrt::parse_text;
 use proptest::prelude::*;

@@ -4,7 +4,7 @@ use flate2::{Compression, write::GzEncoder};
 use std::collections::BTreeMap;
 use std::io::Write;
 
-/// Files by name. Each has a lowest bit in its last byte that may be either.
+/// Files by name. The lowest bit of each last byte may be flipped.
 type Files = BTreeMap<&'static str, Vec<u8>>;
 
 const SCENE: &str = r#"
@@ -38,7 +38,7 @@ fn files() -> Files {
     files.map(|(name, text)| (name, text.into())).into()
 }
 
-/// The digest of the scene `name` in a new folder with `files`.
+/// Returns the digest of the scene `name` in a new folder with `files`.
 #[track_caller]
 fn digest(name: &str, files: &Files, options: &LoadOptions) -> SceneDigest {
     let folder = tempfile::tempdir().unwrap();
@@ -49,7 +49,7 @@ fn digest(name: &str, files: &Files, options: &LoadOptions) -> SceneDigest {
     loaded.unwrap_or_else(|error| panic!("{error}")).digest
 }
 
-/// Flips a bit of the file `name`: the scene is another one, or not.
+/// Flips a bit of the file `name`, and checks whether that makes another scene.
 #[track_caller]
 fn check_flip(name: &str, is_another: bool) {
     let mut flipped = files();
@@ -59,7 +59,7 @@ fn check_flip(name: &str, is_another: bool) {
 }
 
 #[test]
-fn every_file_that_is_read_makes_the_scene_what_it_is() {
+fn the_digest_depends_on_every_file_that_is_read() {
     check_flip("s.pbrt", true);
     check_flip("part.pbrt", true);
     check_flip("import.pbrt", true);
@@ -70,7 +70,7 @@ fn every_file_that_is_read_makes_the_scene_what_it_is() {
 }
 
 #[test]
-fn folders_packing_and_options_do_not_matter() {
+fn the_digest_does_not_depend_on_folders_packing_and_options() {
     let mut files = files();
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(&files["s.pbrt"]).unwrap();
@@ -87,7 +87,7 @@ fn folders_packing_and_options_do_not_matter() {
 }
 
 #[test]
-fn where_one_file_ends_and_the_next_begins_matters() {
+fn the_digest_depends_on_the_boundaries_between_files() {
     let split = |a: &str, b: &str| {
         let main = "WorldBegin Include \"a\" Include \"b\"";
         let files = [("s.pbrt", main), ("a", a), ("b", b)];
@@ -99,7 +99,7 @@ fn where_one_file_ends_and_the_next_begins_matters() {
 }
 
 #[test]
-fn a_scene_in_memory_is_that_of_its_file() {
+fn a_scene_in_memory_has_the_digest_of_its_file() {
     let text = "WorldBegin Shape \"sphere\"";
     let of_file = digest("s.pbrt", &[("s.pbrt", text.into())].into(), &STRICT);
     assert_eq!(super::load_text(text, &STRICT).digest, of_file);

@@ -20,33 +20,33 @@ fn the_caller_may_choose_size_and_crop() {
     assert_eq!((film.crop.min, film.crop.max), ([1, 2], [3, 20]));
 }
 
-/// Checks what is said of a scene that is to be rendered with `options`, and whose fault it is.
+/// Checks the error of a scene with `options`, and its kind.
 #[track_caller]
-fn check_asked(text: &str, options: &LoadOptions, kind: ErrorKind, expected: &str) {
+fn check_error(text: &str, options: &LoadOptions, kind: ErrorKind, expected: &str) {
     let error = refusal(text, options);
     assert_eq!((error.kind(), &*error.to_string()), (kind, expected));
 }
 
 #[test]
-fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
+fn the_callers_size_and_crop_are_checked_with_and_without_a_film() {
     let small = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20 WorldBegin";
     let crop = |crop| LoadOptions {
         crop: Some(crop),
         ..STRICT
     };
-    check_asked(
+    check_error(
         small,
         &crop(Crop::Pixels([40, 50, 0, 10])),
         ErrorKind::Options,
         "s.pbrt:1:6: the crop lies outside the film of 40 × 20 pixels",
     );
-    check_asked(
+    check_error(
         "WorldBegin",
         &crop(Crop::Pixels([1300, 1400, 0, 10])),
         ErrorKind::Options,
         "s.pbrt:1:1: the crop lies outside the film of 1280 × 720 pixels",
     );
-    check_asked(
+    check_error(
         "WorldBegin",
         &crop(Crop::Fractions([0.0, 1.0, 0.5, 0.5])),
         ErrorKind::Options,
@@ -59,7 +59,7 @@ fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
     for (resolution, name) in [([0, 4], "0 × 4"), ([4, 65537], "4 × 65537")] {
         let expected =
             format!("s.pbrt:1:1: the film has {name} pixels; each side can have 1 to 65536");
-        check_asked("WorldBegin", &size(resolution), ErrorKind::Limit, &expected);
+        check_error("WorldBegin", &size(resolution), ErrorKind::Limit, &expected);
     }
     let [warning] = &load_text("WorldBegin", &size([20, 20])).warnings[..] else {
         panic!("the pixels are not square");
@@ -69,7 +69,7 @@ fn what_the_caller_chooses_has_to_fit_whether_or_not_a_film_is_described() {
     assert!(warning.starts_with(expected), "{warning}");
 }
 
-/// Checks the radius that a filter is warned of. None: it is not.
+/// Checks the radius in the warning of a filter. None: there is no warning.
 #[track_caller]
 fn check_narrow(filter: &str, radius: Option<&str>) {
     let loaded = load_text(&format!("PixelFilter {filter} WorldBegin"), &STRICT);
@@ -83,7 +83,7 @@ fn check_narrow(filter: &str, radius: Option<&str>) {
 }
 
 #[test]
-fn filters_much_narrower_than_a_pixel_are_warned_of() {
+fn filters_much_narrower_than_a_pixel_cause_warnings() {
     for kind in ["box", "triangle", "gaussian", "mitchell", "sinc"] {
         check_narrow(&format!("\"{kind}\""), None);
         let narrow = format!("\"{kind}\" \"float xradius\" 0.001");
@@ -102,7 +102,7 @@ fn filters_much_narrower_than_a_pixel_are_warned_of() {
 }
 
 #[test]
-fn an_exposure_beyond_all_numbers_is_refused_where_it_stands() {
+fn an_infinite_exposure_is_refused_with_its_place() {
     check(
         "Camera \"perspective\" \"float shutterclose\" 1e30\nFilm \"rgb\" \"float iso\" \
          1e10\nWorldBegin",

@@ -27,7 +27,7 @@ fn power_goes_to_every_triangle_of_a_mesh() {
 }
 
 #[test]
-fn lights_stand_where_they_are_put() {
+fn lights_have_their_transformations() {
     let scene = world(
         "Translate 1 0 0 LightSource \"point\" \"rgb I\" [1 2 3] \"float scale\" 2 \"point3 \
          from\" [0 1 0]\n\
@@ -119,7 +119,7 @@ fn any_number_of_lights_names_its_group_in_one_block() {
     let scene = world(&lights);
     assert_eq!(scene.group_names().len(), 100);
     assert_eq!((scene.light_group(0), scene.light_group(99)), (0, 99));
-    // Parameters with names of their own are limited.
+    // The number of parameters with different names is limited.
     let odd = (0..65).fold(String::new(), |text, i| {
         text + &format!("\"float p{i}\" 1 ")
     });
@@ -148,7 +148,7 @@ fn a_group_that_cannot_name_a_layer_is_refused() {
 }
 
 #[test]
-fn lamps_that_give_no_light_are_warned_of() {
+fn lamps_that_give_no_light_cause_warnings() {
     let emits = "AttributeBegin AreaLightSource \"diffuse\"";
     let flat =
         "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 1 1 2 2 2] \"integer indices\" [0 1 2]";
@@ -190,7 +190,7 @@ fn lamps_that_give_no_light_are_warned_of() {
             format!("s.pbrt:{line}:{column}: the {warning}: it adds nothing to the image");
         assert_eq!(loaded.warnings, [expected], "{lamp}");
     }
-    // Of one that is given by its power only some triangles have no area.
+    // Only some triangles of a lamp with a given power have no area.
     let partly = flat
         .replace("2 2 2]", "2 2 2 0 1 0]")
         .replace("[0 1 2]", "[0 1 2 0 1 3]");

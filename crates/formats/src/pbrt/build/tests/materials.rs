@@ -5,7 +5,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::{ColorModel, Wavelengths};
 use bidir::texture::TexturePoint;
 
-/// The scattering of the last material, of which `u` chooses a part.
+/// Returns the BSDF of the last material; `u` chooses a part of a mixture.
 #[track_caller]
 fn bsdf(text: &str, u: f32) -> Bsdf {
     let scene = world(&format!("{text} Shape \"sphere\""));
@@ -15,7 +15,7 @@ fn bsdf(text: &str, u: f32) -> Bsdf {
     chosen.bsdf(&at, ColorModel::Rgb, &Wavelengths::default())
 }
 
-/// Checks that two ways to write a material are one.
+/// Checks that two ways to write a material are equal.
 #[track_caller]
 fn check_same(text: &str, spelled_out: &str) {
     assert_eq!(bsdf(text, 0.0), bsdf(spelled_out, 0.0));
@@ -27,7 +27,7 @@ fn check_different(text: &str, other: &str) {
 }
 
 #[test]
-fn what_is_left_out_has_the_defaults_of_the_format() {
+fn omitted_parameters_have_the_defaults_of_the_format() {
     check_same(
         "Material \"coateddiffuse\"",
         "Material \"coateddiffuse\" \"rgb reflectance\" [.5 .5 .5] \"float roughness\" 0 \
@@ -118,7 +118,7 @@ fn a_mixture_is_its_second_material_with_probability_amount() {
 }
 
 #[test]
-fn mixtures_of_what_is_not_there_are_refused() {
+fn mixtures_of_undefined_materials_are_refused() {
     let mix = |parameters: &str| format!("{PARTS}Material \"mix\" {parameters} Shape \"sphere\"");
     check_world(
         &mix(""),

@@ -1,4 +1,4 @@
-//! Scenes in a few lines: what is built of them, and what is refused.
+//! Scenes in a few lines: the built scenes, and errors.
 
 mod digest;
 mod film;
@@ -41,7 +41,7 @@ fn world(text: &str) -> Scene {
     load_text(&format!("WorldBegin {text}"), &STRICT).scene
 }
 
-/// Why a scene that can be parsed is refused.
+/// Returns the error of a scene that can be parsed but not built.
 #[track_caller]
 fn refusal(text: &str, options: &LoadOptions) -> Error {
     let description = parse_text("s.pbrt", text).unwrap_or_else(|error| panic!("{error}"));
@@ -59,7 +59,7 @@ fn check_world(text: &str, expected: &str) {
 }
 
 #[test]
-fn inputs_are_all_files_that_are_named_but_the_film_s() {
+fn inputs_are_all_named_files_except_the_film() {
     let text = "Film \"rgb\" \"string filename\" \"film.exr\" WorldBegin \
         Attribute \"medium\" \"string filename\" \"default.nvdb\" \
         MakeNamedMedium \"m\" \"string type\" \"nanovdb\" \"string filename\" \"smoke.nvdb\"";

@@ -1,5 +1,5 @@
-//! Scenes far from the origin of the world, or of another size than it is thought of: where they
-//! are rendered, and what their vertices lose.
+//! Scenes far from the origin of the world, or of an unusual size: their render space, and the rounding
+//! errors of vertices.
 
 use super::{LENIENT, STRICT, load_text, refusal};
 use bidir::camera::Camera;
@@ -10,8 +10,8 @@ use bidir::scene::{RenderSpace, Scene};
 use bidir::shape::Shape;
 use bidir::texture::TexturePoint;
 
-/// A quad 2 units wide and a sphere beside it, which a camera looks at, in a world that `place`
-/// moves and `away` moves back, with `more` in it.
+/// Returns a scene of a quad, 2 units wide, a sphere and `more`, moved by `place`, and a camera moved by the
+/// inverse, `away`.
 fn scene(away: &str, place: &str, more: &str) -> Scene {
     let text = format!(
         "LookAt 0 1 -4 0 1 0 0 1 0 {away} Camera \"perspective\" \"float lensradius\" 0.25
@@ -34,15 +34,15 @@ fn scaled(by: f64, more: &str) -> Scene {
 }
 
 #[track_caller]
-fn check_near(found: DVec3, expected: [f64; 3], error: f64) {
+fn check_near(actual: DVec3, expected: [f64; 3], error: f64) {
     assert!(
-        found.distance(expected.into()) < error,
-        "{found}, not {expected:?}"
+        actual.distance(expected.into()) < error,
+        "{actual}, not {expected:?}"
     );
 }
 
 #[test]
-fn a_scene_that_is_far_away_keeps_its_shape() {
+fn a_distant_scene_keeps_its_shape() {
     for by in [[1e7, 0.0, 0.0], [1e4, -3e6, 7e5]] {
         let scene = moved(by, "");
         let space = scene.space();
@@ -109,7 +109,7 @@ fn lengths_and_intensities_follow_the_unit() {
 }
 
 #[test]
-fn shared_objects_that_are_far_from_their_origin_have_another() {
+fn shared_objects_far_from_their_origin_get_another_one() {
     let text = "Camera \"perspective\" WorldBegin ObjectBegin \"o\" Translate 1e6 0 0
          Shape \"sphere\" ObjectEnd
          AttributeBegin Translate -1e6 0 3 ObjectInstance \"o\" AttributeEnd
@@ -124,7 +124,7 @@ fn shared_objects_that_are_far_from_their_origin_have_another() {
     assert!(bounds.max.distance(expected[1]) < 1e-4, "{bounds:?}");
 }
 
-/// A quad 2 units wide whose coordinates are beyond `at`.
+/// Returns a quad, 2 units wide, whose coordinates begin at `at`.
 fn written(at: f64) -> String {
     format!(
         "LookAt {at} 1 -4 {at} 1 0 0 1 0 Camera \"perspective\" WorldBegin\n\
@@ -138,7 +138,7 @@ fn written(at: f64) -> String {
 }
 
 #[test]
-fn vertices_that_are_written_far_away_are_warned_of() {
+fn vertices_with_large_coordinates_cause_a_warning() {
     assert!(load_text(&written(1e5), &STRICT).warnings.is_empty());
     assert_eq!(
         load_text(&written(1e6), &STRICT).warnings,
@@ -150,7 +150,7 @@ fn vertices_that_are_written_far_away_are_warned_of() {
 }
 
 #[test]
-fn vertices_that_leave_nothing_of_a_scene_are_refused() {
+fn vertices_with_too_large_coordinates_are_refused() {
     for options in [STRICT, LENIENT] {
         assert_eq!(
             refusal(&written(1e8), &options).to_string(),

@@ -1,7 +1,7 @@
 use super::{LENIENT, check, check_world, load_text, world};
 
 #[test]
-fn wrong_parameters_are_told() {
+fn wrong_parameters_are_errors() {
     check(
         "Camera \"perspective\" \"float fvo\" 3 WorldBegin",
         "s.pbrt:1:22: unknown parameter `fvo` of `perspective`; did you mean `fov`?",
@@ -54,7 +54,7 @@ fn wrong_parameters_are_told() {
 }
 
 #[test]
-fn wrong_worlds_are_told() {
+fn wrong_worlds_are_errors() {
     check_world(
         "Material \"diffuse\" \"rgb reflectance\" [1 2 1]",
         "s.pbrt:2:38: the reflectance `reflectance` is above 1",
@@ -100,7 +100,7 @@ fn wrong_worlds_are_told() {
 }
 
 #[test]
-fn what_is_not_built_is_refused_by_name() {
+fn unsupported_features_are_refused_by_name() {
     check_world(
         "Material \"subsurface\" Shape \"sphere\"",
         "s.pbrt:2:10: the material `subsurface` is not supported; \
@@ -130,7 +130,7 @@ fn what_is_not_built_is_refused_by_name() {
 }
 
 #[test]
-fn with_leniency_something_stands_in_and_is_counted() {
+fn with_leniency_unsupported_features_are_replaced_and_counted() {
     let loaded = load_text(
         "Integrator \"sppm\" WorldBegin\nMaterial \"subsurface\" \"rgb reflectance\" [1 0 0]\n\
          Shape \"sphere\" Shape \"curve\" Shape \"curve\"\nMaterial \"interface\" Shape \"sphere\"",
@@ -149,7 +149,7 @@ fn with_leniency_something_stands_in_and_is_counted() {
 }
 
 #[test]
-fn what_nobody_uses_is_no_reason_to_refuse() {
+fn unused_unsupported_features_are_no_errors() {
     let unused = "Texture \"marble\" \"spectrum\" \"ptex\" \"float scale\" 3\n\
         Texture \"bumps\" \"float\" \"ptex\"\n\
         Texture \"ball\" \"spectrum\" \"imagemap\" \"string filename\" \"no.png\" \"string mapping\" \"spherical\"\n\
@@ -157,13 +157,13 @@ fn what_nobody_uses_is_no_reason_to_refuse() {
         Material \"hair\" Material \"diffuse\" \"texture reflectance\" \"marble\"\n\
         Material \"diffuse\" Shape \"sphere\"";
     assert_eq!(world(unused).materials().len(), 2);
-    // Nothing has to stand in for it either.
+    // They are not replaced either.
     let lenient = load_text(&format!("WorldBegin {unused}"), &LENIENT);
     assert_eq!(lenient.warnings, [""; 0]);
 }
 
 #[test]
-fn what_nobody_uses_is_refused_where_it_is_wrong() {
+fn unused_invalid_features_are_errors() {
     check_world(
         "Texture \"t\" \"spectrum\" \"constant\" \"rgb valeu\" [1 1 1]",
         "s.pbrt:2:35: unknown parameter `valeu` of `constant`; did you mean `value`?",

@@ -7,7 +7,7 @@ use bidir::material::Relief;
 use bidir::math::{Vec2, Vec3};
 use bidir::texture::TexturePoint;
 
-/// A folder with an image of one pixel, which is (0.5, 0.5, 1) as stored, and a scene.
+/// Builds a scene beside an image of one pixel, which is stored as (0.5, 0.5, 1).
 fn with_normals(text: &str) -> Result<crate::pbrt::Loaded, crate::error::Error> {
     let folder = tempfile::tempdir().unwrap();
     let linear = 0.21404114;
@@ -34,7 +34,7 @@ fn materials_have_heights_or_normals() {
     let Some(Relief::NormalMap(map)) = scene.materials()[1].relief() else {
         panic!("the image of normals counts");
     };
-    // Stored values, not those that sRGB would stand for.
+    // Stored values are not decoded from sRGB.
     let stored = Vec3::from(map.texture.eval(&TexturePoint::of_parameters(Vec2::ZERO)));
     assert!(
         stored.distance(Vec3::new(0.5, 0.5, 1.0)) < 0.003,
@@ -49,7 +49,7 @@ fn materials_have_heights_or_normals() {
     );
 }
 
-/// Parts of a mixture have reliefs of their own.
+/// Parts of a mixture have their own bump and normal maps.
 #[test]
 fn mixtures_choose_a_relief_with_the_material() {
     let text = "Texture \"h\" \"float\" \"fbm\"\n\

@@ -3,7 +3,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::shape::Shape;
 
-/// The normal at the first corner of the only mesh.
+/// Returns the normal at the first corner of the only mesh.
 #[track_caller]
 fn front(text: &str) -> Vec3 {
     let scene = world(text);
@@ -17,7 +17,7 @@ fn the_front_follows_winding_mirrors_reversal_and_normals() {
     let triangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
     assert_eq!(front(triangle), Vec3::Z);
     assert_eq!(front(&format!("ReverseOrientation {triangle}")), -Vec3::Z);
-    // Mirrored in x, the triangle is seen from the same side as before.
+    // Mirrored in x, the triangle has its front on the same side as before.
     assert_eq!(front(&format!("Scale -1 1 1 {triangle}")), Vec3::Z);
     assert_eq!(front(&format!("Scale 1 1 -1 {triangle}")), -Vec3::Z);
     let normals = "\"normal N\" [0 0 -1 0 0 -1 0 0 -1]";
@@ -36,7 +36,7 @@ const OBJECT: &str = "ObjectBegin \"o\" Translate 0 1 0 \
     Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] ObjectEnd\n";
 
 #[test]
-fn objects_with_one_place_are_put_there() {
+fn objects_with_one_place_are_not_shared() {
     let once = "ObjectBegin \"unused\" Shape \"sphere\" ObjectEnd Scale 2 2 2 ObjectInstance \"o\"";
     let scene = world(&format!("{OBJECT}{once}"));
     assert_eq!((scene.instance_count(), scene.unique_primitives()), (0, 1));
@@ -44,7 +44,7 @@ fn objects_with_one_place_are_put_there() {
 }
 
 #[test]
-fn objects_with_more_places_are_shared() {
+fn objects_with_several_places_are_shared() {
     let twice = "ObjectInstance \"o\" Scale 2 2 2 ObjectInstance \"o\"";
     let scene = world(&format!("{OBJECT}{twice}"));
     assert_eq!(corners(&scene), [Vec3::new(1.0, 1.0, 0.0)]);
@@ -74,7 +74,7 @@ fn shapes_of_objects_that_emit_are_lights_at_each_place() {
 }
 
 #[test]
-fn places_without_inverse_are_told() {
+fn singular_places_are_errors() {
     let object = "ObjectBegin \"o\" Shape \"sphere\" ObjectEnd ObjectInstance \"o\"";
     // Two axes in nearly the same direction.
     let flat = "ConcatTransform [1 0 0 0 1 1e-9 0 0 0 0 1 0 0 0 0 1]";
@@ -88,7 +88,7 @@ fn places_without_inverse_are_told() {
     );
 }
 
-/// The second corners of all meshes.
+/// Returns the second corners of all meshes.
 fn corners(scene: &Scene) -> Vec<Vec3> {
     let corner = |shape: &Shape| match shape {
         Shape::Mesh(mesh) => mesh.positions[1],
@@ -97,7 +97,7 @@ fn corners(scene: &Scene) -> Vec<Vec3> {
     scene.shapes().iter().map(corner).collect()
 }
 
-/// Whether the front of the only light is the side of its shape's own z axis, or its outside.
+/// Returns true if the only light emits to the side of its shape's own z axis, or to its outside.
 #[track_caller]
 fn emits_to_the_front(world_text: &str) -> bool {
     let scene = world(&format!("AreaLightSource \"diffuse\" {world_text}"));
@@ -105,7 +105,7 @@ fn emits_to_the_front(world_text: &str) -> bool {
     let sample = light.sample_emission(&lights, Vec2::new(0.3, 0.4), Vec2::new(0.2, 0.1));
     let sample = sample.expect("it emits");
     let at = sample.from.at;
-    // What is hit there emits as what was drawn there.
+    // The normal at a hit agrees with that of the sampled point.
     let shape = &scene.shapes()[0];
     let surface = shape.surface_point(0, Vec2::splat(0.3), at.point);
     assert!(surface.n_g.dot(at.n_g) > 0.0);
@@ -123,7 +123,7 @@ fn the_side_that_emits_follows_reversal_and_not_mirrors() {
     let with_normals = format!("{mesh} \"normal N\" [0 0 1 0 0 1 0 0 1]");
     let against = format!("{mesh} \"normal N\" [0 0 -1 0 0 -1 0 0 -1]");
     let (sphere, disk) = ("Shape \"sphere\"", "Shape \"disk\"");
-    // In x the mirror leaves the front of a flat shape where it is, in z it turns with the shape.
+    // A mirror in x keeps the front of a flat shape, a mirror in z turns it with the shape.
     for (shape, front) in [
         (mesh, true),
         (&with_normals, true),
@@ -151,7 +151,7 @@ fn the_side_that_emits_follows_reversal_and_not_mirrors() {
     }
 }
 
-/// The only mesh of a scene.
+/// Returns the only mesh of a scene.
 fn mesh(text: &str) -> bidir::shape::Mesh {
     let scene = world(text);
     match scene.shapes() {

@@ -5,7 +5,7 @@ use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 use bidir::texture::{ColorTexture, TexturePoint};
 
-/// A folder with a scene and an image of two rows: red above, green below.
+/// Returns a scene with an image of two rows: red above, green below.
 fn textured(parameters: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("t.png");
@@ -35,7 +35,7 @@ fn check_texture(parameters: &str, uv: Vec2, expected: [f32; 3]) {
 }
 
 #[test]
-fn images_stand_upright_and_are_scaled_before_they_are_inverted() {
+fn images_are_upright_and_are_scaled_before_they_are_inverted() {
     let (low, high) = (Vec2::new(0.5, 0.25), Vec2::new(0.5, 0.75));
     check_texture("", high, [1.0, 0.0, 0.0]);
     check_texture("", low, [0.0, 1.0, 0.0]);
@@ -51,14 +51,14 @@ fn images_stand_upright_and_are_scaled_before_they_are_inverted() {
 
 const TWO: &str = "Texture \"two\" \"spectrum\" \"constant\" \"rgb value\" [2 2 2]";
 
-/// The material of the only shape.
+/// Returns the material of the only shape.
 #[track_caller]
 pub(super) fn material(text: &str) -> Material {
     world(&format!("{text} Shape \"sphere\"")).materials()[1].clone()
 }
 
 #[test]
-fn a_constant_is_checked_for_what_it_is_used_for() {
+fn a_constant_is_checked_for_each_purpose() {
     let text =
         format!("{TWO}\nMaterial \"conductor\" \"texture eta\" \"two\" \"texture k\" \"two\"");
     let Material::Conductor {
@@ -73,7 +73,7 @@ fn a_constant_is_checked_for_what_it_is_used_for() {
         [eta, k].map(|part| Vec3::from(part.eval(&at))),
         [Vec3::splat(2.0); 2]
     );
-    // Also after it was used for something that may be so large.
+    // Also after a use for which the value is valid.
     check_world(
         &format!("{text}\nMaterial \"diffuse\" \"texture reflectance\" \"two\" Shape \"sphere\""),
         "s.pbrt:2:49: the reflectance `value` is above 1",
@@ -98,7 +98,7 @@ fn a_substitute_is_counted_once_however_often_it_is_used() {
     );
 }
 
-/// The reflectance of the only shape, which is the texture `t`.
+/// Returns the reflectance of the only shape, which is the texture `t`.
 #[track_caller]
 fn reflectance(text: &str) -> ColorTexture {
     let material = material(&format!(
@@ -167,9 +167,9 @@ fn classes_have_the_parameters_and_defaults_of_the_format() {
     );
 }
 
-/// Points go to texture space by the inverse of the transformation at the directive.
+/// Points are mapped to texture space by the inverse of the transformation at the directive.
 #[test]
-fn textures_stand_where_their_directive_does() {
+fn textures_have_the_transformation_of_their_directive() {
     let at = |x: f32, y: f32, z: f32| TexturePoint {
         point: Vec3::new(x, y, z),
         ..TexturePoint::of_parameters(Vec2::ZERO)
@@ -198,7 +198,7 @@ fn textures_are_made_of_textures_above_them() {
     let amount = "Texture \"a\" \"float\" \"scale\" \"float tex\" .5 \"float scale\" .5";
     let mix = "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"b\" \"texture amount\" \"a\"";
     let at = |u| TexturePoint::of_parameters(Vec2::new(u, 0.5));
-    // Numbers may stand below the colours that are made with them.
+    // Numbers may be defined after the colours that use them.
     let text = format!("{half} {board} {mix} {amount}");
     check_value(&text, &at(0.5), [0.625; 3]);
     check_value(&text, &at(1.5), [0.25; 3]);
@@ -219,7 +219,7 @@ fn textures_are_made_of_textures_above_them() {
 }
 
 #[test]
-fn wrong_textures_are_told() {
+fn wrong_textures_are_errors() {
     for (text, expected) in [
         (
             "\"float\" \"marble\"",
@@ -254,7 +254,7 @@ fn wrong_textures_are_told() {
     }
 }
 
-/// A chain that is too long is refused, and one that doubles at each step.
+/// Refuses a chain that is too long, and one that doubles at each step.
 #[test]
 fn nesting_has_limits() {
     let chain = |class: &str, count: usize| {
@@ -283,7 +283,7 @@ fn nesting_has_limits() {
     );
 }
 
-/// A file that several textures look at, each in its way, is kept once.
+/// A file that several textures use with different settings is stored once.
 #[test]
 fn images_are_read_once() {
     let folder = tempfile::tempdir().unwrap();

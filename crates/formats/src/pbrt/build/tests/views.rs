@@ -11,7 +11,7 @@ fn camera(text: &str) -> Camera {
         .camera()
 }
 
-/// The origin and direction of the ray through the middle of the film and of one at its corner.
+/// Returns the origins and directions of the rays through the middle and through a corner of the film.
 fn rays(text: &str) -> [(Vec3, Vec3); 2] {
     let film = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20";
     let camera = camera(&format!("{text} {film}"));
@@ -28,8 +28,7 @@ fn parallel_rays_begin_on_the_screen() {
     assert_eq!(corner, (Vec3::new(-4.0, 2.0, 0.0), Vec3::Z));
 }
 
-/// A lens in front of parallel rays: those of one raster position meet where the parallel one
-/// crosses the plane of focus.
+/// The rays of one raster position meet where the parallel ray crosses the plane of focus.
 #[test]
 fn a_lens_of_parallel_rays_is_sharp_at_its_focal_distance() {
     let camera = camera(
@@ -45,7 +44,7 @@ fn a_lens_of_parallel_rays_is_sharp_at_its_focal_distance() {
 }
 
 #[test]
-fn pictures_of_all_directions_have_the_filter_of_a_pixel() {
+fn spherical_cameras_have_the_filter_of_a_pixel() {
     let loaded = load_text(
         "Camera \"spherical\" \"string mapping\" \"equirectangular\" \"float lensradius\" 1
          PixelFilter \"gaussian\" WorldBegin",
@@ -71,7 +70,7 @@ fn pictures_of_all_directions_have_the_filter_of_a_pixel() {
 }
 
 #[test]
-fn a_sensor_is_balanced_and_cut() {
+fn a_sensor_has_white_balance_and_a_limit() {
     let film = |text: &str| {
         let text = format!("Film \"rgb\" \"float iso\" 200 {text} WorldBegin");
         load_text(&text, &STRICT).scene.film().clone()
@@ -81,7 +80,7 @@ fn a_sensor_is_balanced_and_cut() {
     let [r, g, b] = warm.sensor.respond([1.0; 3]);
     assert!(r < 0.5 && (g - 1.1).abs() < 0.1 && b > 2.5, "{r} {g} {b}");
     let limited = film("\"float maxcomponentvalue\" 10");
-    // Before exposure, which doubles it.
+    // The limit applies before exposure, which doubles it.
     let cut = Vec3::from(limited.sensor.respond([10.0, 5.0, 0.0]));
     assert!((cut - Vec3::new(5.0, 2.5, 0.0)).length() < 1e-6, "{cut}");
     check(
@@ -100,7 +99,7 @@ fn a_sensor_is_balanced_and_cut() {
 }
 
 #[test]
-fn a_gbuffer_has_images_beside_the_picture() {
+fn a_gbuffer_has_layers() {
     let loaded = load_text(
         "Film \"gbuffer\" \"string coordinatesystem\" \"world\" WorldBegin",
         &STRICT,
