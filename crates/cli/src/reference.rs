@@ -121,7 +121,7 @@ fn plan(
             *settings = flags.0.apply(settings);
         }
     }
-    if plan.is_its_own_witness() {
+    if plan.is_its_own_cross_check() {
         let message =
             "--estimator and --against may be the same estimator, which cannot cross-check itself";
         let hint = "give --against another integrator, or other settings than the seed; \

@@ -105,8 +105,8 @@ pub(crate) fn render_block<'py>(
     let silent = |_: Python<'_>, _: Heard| Ok(());
     let done = wait(py, silent, |stop, sender| {
         let mut reporter = Reporter::new(stop, sender);
-        let from = (&files, &reference);
-        experiment::render_block(&experiment.experiment, &block, from, &mut reporter)
+        let experiment = &experiment.experiment;
+        experiment::render_block(experiment, &block, &files, &reference, &mut reporter)
     })?;
     let done = done.map_err(|error| of_experiment(py, &error))?;
     let tuple = |Done { record, image }| {

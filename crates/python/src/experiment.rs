@@ -42,7 +42,7 @@ impl<'a> Reporter<'a> {
 }
 
 impl Observer for Reporter<'_> {
-    fn tell(&mut self, event: Event<'_>) {
+    fn notify(&mut self, event: Event<'_>) {
         let told = match event {
             Event::Warning(text) => ("warning", text.to_owned(), 0, 0),
             Event::Reference { scene, passes, of } => ("reference", scene.to_owned(), passes, of),
@@ -109,7 +109,7 @@ impl Experiment {
     /// How many renders there are, but those of references.
     #[getter]
     fn cells(&self) -> usize {
-        self.experiment.cells()
+        self.experiment.run_count()
     }
 
     /// Runs what has no record yet, and tells `hear` what happens. Returns the results as JSON, and

@@ -40,21 +40,21 @@ LABORATORY = [
     ),
     (
         "all replicates of an experiment with one seed",
-        "crates/lab/src/experiment/cell.rs",
+        "crates/lab/src/experiment/run.rs",
         "settings.seed = self.seed;",
         "settings.seed = 0 * self.seed;",
         experiment("every_cell"),
     ),
     (
         "equal rays with a pass too many",
-        "crates/lab/src/experiment/cell.rs",
+        "crates/lab/src/experiment/run.rs",
         "(next - target).abs() < (now - target).abs()",
         "next.min(target) > 0.0 && now < target * 1.2",
         experiment("equal_rays"),
     ),
     (
         "training that costs no rays",
-        "crates/lab/src/experiment/cell.rs",
+        "crates/lab/src/experiment/run.rs",
         "training.map_or(0, |training| training.rays.total())",
         "training.map_or(0, |training| 0 * training.rays.total())",
         experiment("training"),
@@ -62,7 +62,7 @@ LABORATORY = [
     (
         "records of another experiment gone on from",
         "crates/lab/src/experiment/identity.rs",
-        "            stage.digest,\n",
+        "            loaded.digest,\n",
         "            0,\n",
         experiment("another_experiment"),
     ),

@@ -5,11 +5,12 @@
 //! any order, to [`Prepared::add`]; and calls [`run`](super::run()) at the end, which then finds all
 //! records there. All machines have to be alike, as times are compared.
 
-use super::cell::{Cell, write_image};
 use super::error::ExperimentError;
-use super::journal::{Journal, Owner};
-use super::run::{End, Observer, Ready, Setup, Work, begin};
-use super::stage::{Reference, Stage};
+use super::journal::{Journal, RecordsKey};
+use super::loaded_scene::{LoadedScene, Reference};
+use super::observer::Observer;
+use super::run::{Run, write_image};
+use super::run_set::{Begun, End, Ready, RunSet, Setup, begin};
 use super::{Experiment, pyramid, reference};
 use crate::image::Pixels;
 use crate::results::Record;
@@ -53,7 +54,7 @@ pub struct Prepared {
     pub scenes: Vec<PreparedScene>,
     /// What has no record yet.
     pub blocks: Vec<Block>,
-    owner: Owner,
+    key: RecordsKey,
     folder: PathBuf,
 }
 
@@ -72,48 +73,48 @@ pub fn prepare(
     setup: &Setup,
     observer: &mut dyn Observer,
 ) -> Result<Option<Prepared>> {
-    let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner, observer)?;
-    let Some(scenes) = reference::obtain_all(experiment, stages, given, setup, observer)? else {
+    let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
+    let mut journal = Journal::start(setup, &key, observer)?;
+    let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
         return Ok(None);
     };
     let Ready {
-        stages, references, ..
-    } = scenes;
-    if pyramid::complete(experiment, &stages, setup, &mut journal, observer)? == End::Stopped {
+        scenes, references, ..
+    } = ready;
+    if pyramid::complete(experiment, &scenes, setup, &mut journal, observer)? == End::Stopped {
         return Ok(None);
     }
-    let work = Work {
+    let run_set = RunSet {
         experiment,
         setup,
-        stages: &stages,
+        scenes: &scenes,
         references: &references,
     };
-    let blocks = blocks(&work, &journal);
-    let scenes = stages.iter().zip(references);
-    let scenes = scenes.map(|(stage, reference)| PreparedScene {
-        name: stage.spec.name.clone(),
-        path: stage.spec.path.clone(),
-        files: stage.shared_files(),
+    let blocks = blocks(&run_set, &journal);
+    let scenes = scenes.iter().zip(references);
+    let scenes = scenes.map(|(loaded, reference)| PreparedScene {
+        name: loaded.spec.name.clone(),
+        path: loaded.spec.path.clone(),
+        files: loaded.shared_files(),
         reference: reference.pixels,
     });
     Ok(Some(Prepared {
         scenes: scenes.collect(),
         blocks,
-        owner,
+        key,
         folder: setup.folder.clone(),
     }))
 }
 
 /// What has no record, in order.
-fn blocks(work: &Work<'_>, journal: &Journal) -> Vec<Block> {
+fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
-    for (cell, _) in work.cells().filter(|(cell, _)| !journal.has(cell)) {
+    for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run)) {
         let block = Block {
-            scene: cell.stage.spec.name.clone(),
-            budget: cell.budget.name.clone(),
-            seed: cell.seed,
-            methods: vec![cell.method.name.clone()],
+            scene: run.scene.spec.name.clone(),
+            budget: run.budget.name.clone(),
+            seed: run.seed,
+            methods: vec![run.method.name.clone()],
         };
         match blocks.last_mut() {
             Some(last) if last.is_beside(&block) => last.methods.extend(block.methods),
@@ -136,7 +137,7 @@ impl Prepared {
     ///
     /// Errors: the folder has records of another experiment by now, or cannot be written.
     pub fn add(&self, done: Vec<Done>) -> Result<()> {
-        let mut journal = Journal::open(&self.folder, &self.owner)?;
+        let mut journal = Journal::open(&self.folder, &self.key)?;
         for Done { record, image } in done {
             if let (Some(name), Some(pixels)) = (&record.image, &image) {
                 write_image(&self.folder.join(name), pixels)?;
@@ -155,7 +156,8 @@ impl Prepared {
 pub fn render_block(
     experiment: &Experiment,
     block: &Block,
-    (files, reference): (&Files, &Pixels),
+    files: &Files,
+    reference: &Pixels,
     observer: &mut dyn Observer,
 ) -> Result<Option<Vec<Done>>> {
     let missing = || ExperimentError::Mismatch(PathBuf::from(&block.scene));
@@ -167,7 +169,7 @@ pub fn render_block(
     let budget = budgets
         .find(|budget| budget.name == block.budget)
         .ok_or_else(missing)?;
-    let stage = Stage::load(experiment, spec, files)?;
+    let loaded = LoadedScene::load(experiment, spec, files)?;
     let reference = Reference {
         pixels: reference.clone(),
         words: String::new(),
@@ -178,20 +180,20 @@ pub fn render_block(
     let mut all = Vec::new();
     for name in &block.methods {
         let mut methods = experiment.methods.iter();
-        let cell = Cell {
-            stage: &stage,
+        let run = Run {
+            scene: &loaded,
             method: methods
                 .find(|method| method.name == *name)
                 .ok_or_else(missing)?,
             budget,
             seed: block.seed,
         };
-        let Some(rendered) = cell.render(experiment.threads, observer)? else {
+        let Some(rendered) = run.render(experiment.threads, observer)? else {
             return Ok(None);
         };
-        let mut record = cell.record(&rendered, &reference, &experiment.metrics);
+        let mut record = run.record(&rendered, &reference, &experiment.metrics);
         let is_first = block.seed == experiment.seeds.first;
-        record.image = is_first.then(|| cell.image());
+        record.image = is_first.then(|| run.image());
         let image = is_first.then(|| rendered.pixels());
         all.push(Done { record, image });
     }

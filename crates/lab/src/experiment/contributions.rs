@@ -6,7 +6,7 @@
 //! claims treat passes as they treat seeds.
 
 use super::error::ExperimentError;
-use super::stage::Stage;
+use super::loaded_scene::LoadedScene;
 use super::{Experiment, MethodSpec};
 use crate::results::Contributions;
 use bidir::driver::Settings;
@@ -66,45 +66,45 @@ impl Contributions {
 /// All contributions that a description asks for.
 pub(super) fn measure(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
 ) -> Result<Vec<Contributions>, ExperimentError> {
     let Some(spec) = &experiment.contributions else {
         return Ok(Vec::new());
     };
     let is_shown = |name: &String| spec.scenes.is_empty() || spec.scenes.contains(name);
-    let stages = stages.iter().filter(|stage| is_shown(&stage.spec.name));
+    let scenes = scenes.iter().filter(|loaded| is_shown(&loaded.spec.name));
     let methods = || {
         let methods = experiment.methods.iter();
         methods.filter(|method| spec.methods.contains(&method.name))
     };
-    let pairs = stages.flat_map(|stage| methods().map(move |method| (stage, method)));
+    let pairs = scenes.flat_map(|loaded| methods().map(move |method| (loaded, method)));
     pairs
-        .map(|(stage, method)| of_method(stage, method, spec.spp))
+        .map(|(loaded, method)| of_method(loaded, method, spec.spp))
         .collect()
 }
 
 fn of_method(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     method: &MethodSpec,
     spp: u64,
 ) -> Result<Contributions, ExperimentError> {
-    let settings = method.changes.apply(&stage.settings);
+    let settings = method.request.apply(&loaded.settings);
     if settings.integrator != IntegratorKind::Bdpt {
         return Err(ExperimentError::Contributions {
-            scene: stage.spec.name.clone(),
+            scene: loaded.spec.name.clone(),
             method: method.name.clone(),
         });
     }
     let passes = (0..spp).into_par_iter();
     let passes: Vec<_> = passes
-        .map(|pass| terms(&stage.scene, &settings, pass))
+        .map(|pass| terms(&loaded.scene, &settings, pass))
         .collect();
     let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {
         let pass = |terms: &Vec<[f64; 2]>| sorted(terms.iter().map(which).collect());
         passes.iter().map(pass).collect()
     };
     let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
-    let samples = stage.scene.film().crop.area() as f64;
+    let samples = loaded.scene.film().crop.area() as f64;
     let both = weighted.iter().zip(&unweighted);
     let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
         let numbers = [weighted, unweighted].map(|values| figures(values, samples));
@@ -115,7 +115,7 @@ fn of_method(
             .collect::<BTreeMap<_, _>>()
     };
     Ok(Contributions {
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         method: method.name.clone(),
         passes: both.map(pass).collect(),
         weighted: histogram(&sorted_all(&weighted)),

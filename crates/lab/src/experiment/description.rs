@@ -78,12 +78,12 @@ impl Experiment {
                 return Err(section.fault("there is a second [settings]"));
             }
             section.only(&borrowed(&names()), &OLD_SETTINGS)?;
-            defaults = changes(&mut section, None)?;
+            defaults = request(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
         let (scenes, absent) = scene::all(&mut top, folder, &defaults, memory)?;
         let method = |section: &mut Section<'_>| method(section, &defaults);
-        let shown = [top.take("pyramid"), top.take("pyramid-spp")];
+        let (shown, shown_spp) = (top.take("pyramid"), top.take("pyramid-spp"));
         let mut experiment = Self {
             title: or(text_of(&mut top, "title")?, "Experiment"),
             description: or(text_of(&mut top, "description")?, ""),
@@ -101,7 +101,7 @@ impl Experiment {
             tables: Vec::new(),
             quick: quick(&mut top)?,
         };
-        experiment.pyramid = pyramid(shown, &experiment.methods)?;
+        experiment.pyramid = pyramid(shown, shown_spp, &experiment.methods)?;
         if let (Some(pyramid), scenes) =
             (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?)
         {
@@ -166,7 +166,8 @@ fn quick(top: &mut Section<'_>) -> Result<Quick> {
 
 /// The method whose strategies are shown, and with how many samples.
 fn pyramid(
-    [method, spp]: [Option<Entry<'_>>; 2],
+    method: Option<Entry<'_>>,
+    spp: Option<Entry<'_>>,
     methods: &[MethodSpec],
 ) -> Result<Option<PyramidSpec>> {
     let Some(entry) = method else {
@@ -182,7 +183,7 @@ fn pyramid(
         };
         return Err(entry.fault_with(format!("there is no method `{name}`"), hint));
     };
-    let integrator = method.changes.integrator;
+    let integrator = method.request.integrator;
     if integrator.is_some_and(|integrator| integrator != IntegratorKind::Bdpt) {
         let message = format!("the method `{name}` is not bidirectional");
         let hint = "strategies (s, t) are those of a method whose integrator is \"bdpt\"";
@@ -307,8 +308,8 @@ impl Named for BudgetSpec {
 /// The settings of a table, under the names of flags; `inherited` is the integrator of `[settings]`.
 ///
 /// Errors: a setting without effect on the integrator.
-fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
-    let mut changes = Request::default();
+fn request(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
+    let mut request = Request::default();
     let mut entries = Vec::new();
     for name in names() {
         let entry = match &*name {
@@ -316,18 +317,18 @@ fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Resu
             _ => section.take(&name),
         };
         if let Some(entry) = entry {
-            entry.read(|value| changes.set(&name, value))?;
+            entry.read(|value| request.set(&name, value))?;
             entries.push((name, entry));
         }
     }
-    let Some(integrator) = changes.integrator.or(inherited) else {
-        return Ok(changes);
+    let Some(integrator) = request.integrator.or(inherited) else {
+        return Ok(request);
     };
-    let ignored = changes.ignored(&Settings::new(integrator));
+    let ignored = request.ignored(&Settings::new(integrator));
     match entries.iter().find(|(name, _)| ignored.contains(name)) {
-        None => Ok(changes),
+        None => Ok(request),
         Some((name, entry)) => {
-            let hint = changes.integrator.is_none().then_some(INHERITED);
+            let hint = request.integrator.is_none().then_some(INHERITED);
             Err(entry.fault_hinted(no_effect(name, integrator), hint))
         }
     }
@@ -339,7 +340,7 @@ fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
-        changes: changes(section, defaults.integrator)?.over(defaults),
+        request: request(section, defaults.integrator)?.over(defaults),
         scenes: list(section, "scenes")?,
     })
 }

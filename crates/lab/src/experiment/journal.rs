@@ -4,7 +4,8 @@
 //! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Each line has its checksum.
 
 use super::error::ExperimentError;
-use super::run::{Event, Observer, Setup, Start};
+use super::observer::{Event, Observer};
+use super::run_set::{Setup, Start};
 use crate::results::{Machine, Pyramid, Record};
 use crate::seal::{self, Seal};
 use serde::{Deserialize, Serialize};
@@ -22,12 +23,12 @@ const UNSEALED: u32 = 2;
 struct Head {
     format: u32,
     #[serde(flatten)]
-    owner: Owner,
+    key: RecordsKey,
 }
 
 /// Whose records they are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Owner {
+pub(super) struct RecordsKey {
     /// The hash of everything that records depend on, but for their times.
     pub(super) experiment: String,
     /// The program with its version.
@@ -36,19 +37,19 @@ pub(super) struct Owner {
     pub(super) machine: Machine,
 }
 
-impl Owner {
+impl RecordsKey {
     /// In what else than the experiment this one differs from another, on which times depend. None: in
     /// nothing.
     fn difference(&self, here: &Self) -> Option<String> {
-        let parts = |owner: &Self| {
+        let parts = |key: &Self| {
             let Machine {
                 processor,
                 threads,
                 isa,
                 system,
-            } = owner.machine.clone();
+            } = key.machine.clone();
             let threads = format!("{threads} threads");
-            [owner.program.clone(), processor, threads, isa, system]
+            [key.program.clone(), processor, threads, isa, system]
         };
         let pairs = parts(self).into_iter().zip(parts(here));
         // A processor whose name could not be read may be any.
@@ -83,16 +84,16 @@ impl Journal {
     /// A journal without records, in place of what is there.
     ///
     /// Errors: it cannot be written.
-    pub(super) fn begin(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
-        let journal = Self::new(folder, owner);
+    pub(super) fn begin(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
+        let journal = Self::new(folder, key);
         journal.write()?;
         Ok(journal)
     }
 
-    fn new(folder: &Path, owner: &Owner) -> Self {
+    fn new(folder: &Path, key: &RecordsKey) -> Self {
         let head = Head {
             format: FORMAT,
-            owner: owner.clone(),
+            key: key.clone(),
         };
         Self {
             path: folder.join(FILE),
@@ -107,8 +108,8 @@ impl Journal {
     ///
     /// Errors: it cannot be read, is damaged, of another experiment, or of another machine or program:
     /// times that are compared are of one.
-    pub(super) fn open(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
-        let mut journal = Self::new(folder, owner);
+    pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
+        let mut journal = Self::new(folder, key);
         let bytes = match std::fs::read(&journal.path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
@@ -117,12 +118,17 @@ impl Journal {
                 return Err(ExperimentError::Folder { path, error });
             }
         };
-        journal.read(&bytes, folder, owner)?;
+        journal.read(&bytes, folder, key)?;
         Ok(journal)
     }
 
     /// Takes what is in the file.
-    fn read(&mut self, bytes: &[u8], folder: &Path, owner: &Owner) -> Result<(), ExperimentError> {
+    fn read(
+        &mut self,
+        bytes: &[u8],
+        folder: &Path,
+        key: &RecordsKey,
+    ) -> Result<(), ExperimentError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = bytes.iter().take(error.valid_up_to());
             let line = 1 + before.filter(|byte| **byte == b'\n').count();
@@ -130,7 +136,7 @@ impl Journal {
         })?;
         let mut lines = (1..).zip(text.split_terminator('\n'));
         let (_, head) = lines.next().unwrap_or((1, ""));
-        self.read_head(folder, head, owner)?;
+        self.read_head(folder, head, key)?;
         lines.try_for_each(|(number, line)| self.read_line(line, number))
     }
 
@@ -139,7 +145,7 @@ impl Journal {
         &mut self,
         folder: &Path,
         line: &str,
-        owner: &Owner,
+        key: &RecordsKey,
     ) -> Result<(), ExperimentError> {
         let others = || ExperimentError::Mismatch(folder.to_owned());
         if seal::check(line) == Seal::Broken {
@@ -150,11 +156,11 @@ impl Journal {
         let head = head.filter(is_known).ok_or_else(others)?;
         self.is_sealed = head.format != UNSEALED;
         self.check(line, 1)?;
-        let there = head.owner;
-        if there.experiment != owner.experiment {
+        let there = head.key;
+        if there.experiment != key.experiment {
             return Err(others());
         }
-        let difference = there.difference(owner);
+        let difference = there.difference(key);
         difference.map_or(Ok(()), |difference| {
             let folder = folder.to_owned();
             Err(ExperimentError::Elsewhere { folder, difference })
@@ -196,17 +202,17 @@ impl Journal {
     /// The journal of a run that begins.
     pub(super) fn start(
         setup: &Setup,
-        owner: &Owner,
+        key: &RecordsKey,
         observer: &mut dyn Observer,
     ) -> Result<Self, ExperimentError> {
         if setup.start == Start::Anew {
-            return Self::begin(&setup.folder, owner);
+            return Self::begin(&setup.folder, key);
         }
-        let journal = Self::open(&setup.folder, owner)?;
+        let journal = Self::open(&setup.folder, key)?;
         if !journal.is_sealed {
             let path = journal.path.display();
             let text = format!("{path}: of a version without checksums: damage in it is not seen");
-            observer.tell(Event::Warning(&text));
+            observer.notify(Event::Warning(&text));
         }
         Ok(journal)
     }
@@ -250,8 +256,8 @@ impl Journal {
         })
     }
 
-    pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {
-        self.records.iter().any(|record| cell.is_of(record))
+    pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {
+        self.records.iter().any(|record| run.is_of(record))
     }
 }
 
@@ -267,8 +273,8 @@ mod tests {
 
     const PLACE: &str = "out";
 
-    fn owner() -> Owner {
-        Owner {
+    fn key() -> RecordsKey {
+        RecordsKey {
             experiment: "a hash".to_owned(),
             program: "bidir 0".to_owned(),
             machine: Machine::default(),
@@ -287,13 +293,13 @@ mod tests {
 
     /// A journal of two records, as it is written.
     fn written() -> String {
-        let journal = Journal::new(Path::new(PLACE), &owner());
+        let journal = Journal::new(Path::new(PLACE), &key());
         journal.text + &line(&record(1)) + &line(&record(2))
     }
 
     fn read(bytes: &[u8]) -> Result<Journal, ExperimentError> {
-        let mut journal = Journal::new(Path::new(PLACE), &owner());
-        journal.read(bytes, Path::new(PLACE), &owner())?;
+        let mut journal = Journal::new(Path::new(PLACE), &key());
+        journal.read(bytes, Path::new(PLACE), &key())?;
         Ok(journal)
     }
 

@@ -42,7 +42,7 @@
 pub mod analysis;
 mod block;
 mod builtin;
-mod cell;
+
 pub mod claims;
 pub mod contributions;
 mod description;
@@ -53,7 +53,9 @@ mod identity;
 mod journal;
 #[cfg(test)]
 mod keys;
+mod loaded_scene;
 mod names;
+mod observer;
 mod outputs;
 mod page;
 mod pyramid;
@@ -61,17 +63,18 @@ mod reader;
 mod reference;
 mod room;
 mod run;
+mod run_set;
 mod settings;
-mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use builtin::{BUILTIN, Builtin};
 pub use error::{ExperimentError, Fault, Place};
 pub use extent::{Extent, Quick};
+pub use observer::{Event, Observer};
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use room::{Lamp, Room};
-pub use run::{End, Event, Observer, Outcome, Setup, Start, run};
+pub use run_set::{End, Outcome, Setup, Start, run};
 pub use settings::{names, texts};
 
 use crate::metric::Metric;
@@ -164,8 +167,10 @@ pub struct SceneSpec {
     pub reference: ReferenceSpec,
     /// Whether it may be left out.
     pub presence: Presence,
-    /// Where a description names the file, and the reference that is there. None: it does not.
-    pub places: [Option<Place>; 2],
+    /// The place in the description that names the file. None: no description names it.
+    pub file_place: Option<Place>,
+    /// The place in the description that names an existing reference. None: it names none.
+    pub reference_place: Option<Place>,
 }
 
 /// Whether a scene may be left out.
@@ -191,10 +196,10 @@ pub enum ReferenceSpec {
         /// Samples per pixel.
         spp: u64,
         /// Settings on which the expectation depends, such as the strategies that take part.
-        changes: Box<Request>,
+        request: Box<Request>,
         /// The estimator of the witness. None: path tracing, which shares least with the other, but for
         /// references without some strategies.
-        witness: Option<IntegratorKind>,
+        cross_check: Option<IntegratorKind>,
     },
 }
 
@@ -204,7 +209,7 @@ pub struct MethodSpec {
     /// Its name, unlike all others.
     pub name: String,
     /// Its settings, over those of the scene.
-    pub changes: Request,
+    pub request: Request,
     /// The names of the scenes in which it is rendered; empty: all.
     pub scenes: Vec<String>,
 }
@@ -276,7 +281,7 @@ impl Experiment {
     }
 
     /// The number of renders, without those of references.
-    pub fn cells(&self) -> usize {
+    pub fn run_count(&self) -> usize {
         let scenes = self.scenes.iter();
         let renders: usize = scenes.map(|scene| self.renders(&scene.name).count()).sum();
         self.seeds.count as usize * renders

@@ -1,9 +1,9 @@
 //! The files that an experiment writes: none of them is one that it reads.
 
-use super::cell::Cell;
 use super::error::ExperimentError;
-use super::run::Setup;
-use super::stage::Stage;
+use super::loaded_scene::LoadedScene;
+use super::run::Run;
+use super::run_set::Setup;
 use super::{Experiment, PAGE, ReferenceSpec, journal, pyramid, reference};
 use formats::outputs::Output;
 use std::path::{Path, PathBuf};
@@ -20,16 +20,22 @@ pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
 
 /// Fails where a file of the results would replace one of a scene or of a reference that is there, or
 /// another one.
-pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>], setup: &Setup) -> Result<()> {
+pub(super) fn check(
+    experiment: &Experiment,
+    scenes: &[LoadedScene<'_>],
+    setup: &Setup,
+) -> Result<()> {
     let mut written = always(&setup.folder);
-    let images = stages.iter().flat_map(|stage| images(experiment, stage));
-    let sheets = pyramid::files(experiment, stages);
+    let images = scenes.iter().flat_map(|loaded| images(experiment, loaded));
+    let sheets = pyramid::files(experiment, scenes);
     written.extend(images.chain(sheets).map(|name| setup.folder.join(name)));
-    for stage in stages {
-        written.extend(reference::written(stage, setup));
+    for loaded in scenes {
+        written.extend(reference::written(loaded, setup));
     }
-    let given = stages.iter().flat_map(given);
-    let inputs = stages.iter().flat_map(|stage| stage.inputs.iter().cloned());
+    let given = scenes.iter().flat_map(given);
+    let inputs = scenes
+        .iter()
+        .flat_map(|loaded| loaded.inputs.iter().cloned());
     let read: Vec<_> = inputs.chain(given).collect();
     check_all(read.iter().map(PathBuf::as_path), &written)
 }
@@ -51,12 +57,12 @@ fn always(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// The names of the images of a scene, which are those of the first seed.
-fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
-    let renders = experiment.renders(&stage.spec.name);
+fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
+    let renders = experiment.renders(&loaded.spec.name);
     let images = renders.map(|(budget, method)| {
         let seed = experiment.seeds.first;
-        Cell {
-            stage,
+        Run {
+            scene: loaded,
             method,
             budget,
             seed,
@@ -67,8 +73,8 @@ fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
 }
 
 /// The files of a reference that is there.
-fn given(stage: &Stage<'_>) -> Vec<PathBuf> {
-    match &stage.spec.reference {
+fn given(loaded: &LoadedScene<'_>) -> Vec<PathBuf> {
+    match &loaded.spec.reference {
         ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),
         ReferenceSpec::There(path) => vec![path.clone()],
         ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Vec::new(),

@@ -5,9 +5,10 @@
 
 use super::error::ExperimentError;
 use super::journal::Journal;
+use super::loaded_scene::LoadedScene;
 use super::names::file_name;
-use super::run::{End, Event, Observer, Setup};
-use super::stage::Stage;
+use super::observer::{Event, Observer};
+use super::run_set::{End, Setup};
 use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec};
 use crate::pyramid::{self, Figures, Kind};
 use crate::results::{Pyramid, StrategyInfo};
@@ -20,16 +21,16 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 /// Renders what the journal has not, scene by scene. Nothing to do where none is wanted.
 pub(super) fn complete(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
     setup: &Setup,
     journal: &mut Journal,
     observer: &mut dyn Observer,
 ) -> Result<End> {
-    for work in works(experiment, stages, setup) {
-        if journal.pyramids().iter().any(|found| work.is(found)) {
+    for run in runs(experiment, scenes, setup) {
+        if journal.pyramids().iter().any(|found| run.is(found)) {
             continue;
         }
-        let Some(found) = work.at_size_of_a_tile(observer)? else {
+        let Some(found) = run.at_size_of_a_tile(observer)? else {
             return Ok(End::Stopped);
         };
         journal.add_pyramid(found)?;
@@ -40,47 +41,47 @@ pub(super) fn complete(
 /// What was found of it so far; a journal may also have what was wanted before.
 pub(super) fn found(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
     setup: &Setup,
     journal: &Journal,
 ) -> Vec<Pyramid> {
-    let works = works(experiment, stages, setup);
-    let found = works.filter_map(|work| journal.pyramids().iter().find(|found| work.is(found)));
+    let runs = runs(experiment, scenes, setup);
+    let found = runs.filter_map(|run| journal.pyramids().iter().find(|found| run.is(found)));
     found.cloned().collect()
 }
 
 /// The names of the files of all contact sheets, relative to the folder of the results.
-pub(super) fn files(experiment: &Experiment, stages: &[Stage<'_>]) -> Vec<String> {
+pub(super) fn files(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Vec<String> {
     let Some((spec, _)) = wanted(experiment) else {
         return Vec::new();
     };
-    let shown = stages.iter().filter(|stage| is_shown(spec, stage));
-    let files = shown.flat_map(|stage| ["weighted", "raw"].map(|word| file(stage, word)));
+    let shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
+    let files = shown.flat_map(|loaded| ["weighted", "raw"].map(|word| file(loaded, word)));
     files.collect()
 }
 
 /// The name of a contact sheet.
-fn file(stage: &Stage<'_>, word: &str) -> String {
+fn file(loaded: &LoadedScene<'_>, word: &str) -> String {
     // No image of a method has this name: those end in `.exr`.
     format!(
         "images/{}--strategies-{word}.png",
-        file_name(&stage.spec.name)
+        file_name(&loaded.spec.name)
     )
 }
 
 /// Refuses a method that is not bidirectional in one of the scenes.
-pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>]) -> Result<()> {
+pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Result<()> {
     let Some((spec, method)) = wanted(experiment) else {
         return Ok(());
     };
-    let is_other = |stage: &&Stage<'_>| {
-        method.changes.apply(&stage.settings).integrator != IntegratorKind::Bdpt
+    let is_other = |loaded: &&LoadedScene<'_>| {
+        method.request.apply(&loaded.settings).integrator != IntegratorKind::Bdpt
     };
-    let mut shown = stages.iter().filter(|stage| is_shown(spec, stage));
+    let mut shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
     match shown.find(is_other) {
         None => Ok(()),
-        Some(stage) => Err(ExperimentError::Pyramid {
-            scene: stage.spec.name.clone(),
+        Some(loaded) => Err(ExperimentError::Pyramid {
+            scene: loaded.spec.name.clone(),
             method: method.name.clone(),
         }),
     }
@@ -94,43 +95,43 @@ fn wanted(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
 }
 
 /// True for a scene whose strategies are shown.
-fn is_shown(spec: &PyramidSpec, stage: &Stage<'_>) -> bool {
-    spec.scenes.is_empty() || spec.scenes.contains(&stage.spec.name)
+fn is_shown(spec: &PyramidSpec, loaded: &LoadedScene<'_>) -> bool {
+    spec.scenes.is_empty() || spec.scenes.contains(&loaded.spec.name)
 }
 
-fn works<'a>(
+fn runs<'a>(
     experiment: &'a Experiment,
-    stages: &'a [Stage<'a>],
+    scenes: &'a [LoadedScene<'a>],
     setup: &'a Setup,
-) -> impl Iterator<Item = Work<'a>> {
+) -> impl Iterator<Item = PyramidRun<'a>> {
     let wanted = wanted(experiment);
-    let works = wanted.map(move |(spec, method)| {
-        let stages = stages.iter().filter(move |stage| is_shown(spec, stage));
-        stages.map(move |stage| Work {
+    let runs = wanted.map(move |(spec, method)| {
+        let scenes = scenes.iter().filter(move |loaded| is_shown(spec, loaded));
+        scenes.map(move |loaded| PyramidRun {
             experiment,
             setup,
-            stage,
+            scene: loaded,
             spec,
             method,
         })
     });
-    works.into_iter().flatten()
+    runs.into_iter().flatten()
 }
 
 /// The strategies of a method in a scene.
 #[derive(Clone, Copy)]
-struct Work<'a> {
+struct PyramidRun<'a> {
     experiment: &'a Experiment,
     setup: &'a Setup,
-    stage: &'a Stage<'a>,
+    scene: &'a LoadedScene<'a>,
     spec: &'a PyramidSpec,
     method: &'a MethodSpec,
 }
 
-impl Work<'_> {
+impl PyramidRun<'_> {
     /// True where this is what was found.
     fn is(&self, found: &Pyramid) -> bool {
-        found.scene == self.stage.spec.name
+        found.scene == self.scene.spec.name
             && found.method == self.method.name
             && found.seed == self.experiment.seeds.first
             && found.spp == self.spec.spp
@@ -138,32 +139,32 @@ impl Work<'_> {
 
     /// Renders the scene, smaller where it is large. None: the observer stopped it.
     fn at_size_of_a_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
-        let longest = self.stage.size()[0].max(self.stage.size()[1]);
+        let longest = self.scene.size()[0].max(self.scene.size()[1]);
         if longest <= pyramid::TILE {
             return self.render(observer);
         }
-        let resolution = self.stage.scene.film().resolution;
+        let resolution = self.scene.scene.film().resolution;
         let small = |side: u32| (u64::from(side) * pyramid::TILE as u64 / longest as u64).max(1);
         let spec = SceneSpec {
             size: Some(resolution.map(|side| small(side) as u32)),
-            ..self.stage.spec.clone()
+            ..self.scene.spec.clone()
         };
-        let stage = Stage::load(self.experiment, &spec, &spec.files)?;
-        Work {
-            stage: &stage,
+        let loaded = LoadedScene::load(self.experiment, &spec, &spec.files)?;
+        PyramidRun {
+            scene: &loaded,
             ..*self
         }
         .render(observer)
     }
 
     fn render(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
-        let mut settings = self.method.changes.apply(&self.stage.settings);
+        let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.experiment.seeds.first;
         settings.layers = Layers::new(&[], &[], pyramid::VERTICES.into()).with_raw();
-        let mut session = self.stage.session(settings, self.experiment.threads)?;
+        let mut session = self.scene.session(settings, self.experiment.threads)?;
         for passes in 0..self.spec.spp {
-            observer.tell(Event::Pyramid {
-                scene: &self.stage.spec.name,
+            observer.notify(Event::Pyramid {
+                scene: &self.scene.spec.name,
                 passes,
                 of: self.spec.spp,
             });
@@ -181,9 +182,9 @@ impl Work<'_> {
 
     /// Writes a contact sheet, and gives its name relative to the folder of the results.
     fn sheet(&self, session: &Session<'_>, kind: Kind, word: &str) -> Result<String> {
-        let scene = &self.stage.spec.name;
+        let scene = &self.scene.spec.name;
         let pixels = pyramid::sheet(session.film(), kind, scene);
-        let name = file(self.stage, word);
+        let name = file(self.scene, word);
         let size = pixels.size.map(|side| side as u32);
         formats::image::write_png(&self.setup.folder.join(&name), size, &pixels.data)?;
         Ok(name)
@@ -192,11 +193,11 @@ impl Work<'_> {
     fn told(&self, session: &Session<'_>, weighted: String, raw: String) -> Pyramid {
         let all = Figures::all(session);
         Pyramid {
-            scene: self.stage.spec.name.clone(),
+            scene: self.scene.spec.name.clone(),
             method: self.method.name.clone(),
             seed: self.experiment.seeds.first,
             spp: self.spec.spp,
-            size: self.stage.size(),
+            size: self.scene.size(),
             vertices: pyramid::VERTICES,
             mean: pyramid::mean(session.film()),
             longer: pyramid::mean_of_longer(session.film()),

@@ -1,11 +1,12 @@
 //! What images are compared with: a picture that is there, or one that is made once and kept.
 
-use super::cell::write_image;
 use super::error::{ExperimentError, Place};
+use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::run::{Event, Observer, Ready, Setup};
+use super::observer::{Event, Observer};
+use super::run::write_image;
+use super::run_set::{Ready, Setup};
 use super::settings::texts;
-use super::stage::{Reference, Stage};
 use super::{Absent, Experiment, Presence, ReferenceSpec};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Made, Plan, Subject};
@@ -25,11 +26,11 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 ///
 /// Errors: it cannot be read, is damaged or stale, its estimators disagree, it is of another scene or
 /// size, or it has pixels that are not finite.
-pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
-    match &stage.spec.reference {
-        ReferenceSpec::There(path) if path.is_dir() => load(stage, path, None).map(Some),
+pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
+    match &loaded.spec.reference {
+        ReferenceSpec::There(path) if path.is_dir() => load(loaded, path, None).map(Some),
         ReferenceSpec::There(path) => Ok(Some(Reference {
-            pixels: read(path, stage)?,
+            pixels: read(path, loaded)?,
             words: format!("the image {}", path.display()),
             image: None,
             mse: stored_mse(path),
@@ -45,23 +46,23 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
 /// Errors: as [`obtain`]; no scene is left.
 pub(super) fn obtain_all<'a>(
     experiment: &Experiment,
-    stages: Vec<Stage<'a>>,
+    scenes: Vec<LoadedScene<'a>>,
     given: Vec<Option<Reference>>,
     setup: &Setup,
     observer: &mut dyn Observer,
 ) -> Result<Option<Ready<'a>>> {
     let mut ready = Ready {
-        stages: Vec::new(),
+        scenes: Vec::new(),
         references: Vec::new(),
         absent: experiment.absent.clone(),
     };
-    for (stage, given) in stages.into_iter().zip(given) {
-        let given = given.or_else(|| shared(&ready, &stage));
+    for (loaded, given) in scenes.into_iter().zip(given) {
+        let given = given.or_else(|| shared(&ready, &loaded));
         let threads = experiment.threads;
-        match obtain(&stage, given, setup, threads, observer) {
-            Err(error) if stage.spec.presence == Presence::Optional && is_contradicted(&error) => {
+        match obtain(&loaded, given, setup, threads, observer) {
+            Err(error) if loaded.spec.presence == Presence::Optional && is_contradicted(&error) => {
                 let scene = Absent {
-                    name: stage.spec.name.clone(),
+                    name: loaded.spec.name.clone(),
                     reason: error.to_string(),
                 };
                 scene.warn(observer);
@@ -71,24 +72,24 @@ pub(super) fn obtain_all<'a>(
                 let Some(reference) = found? else {
                     return Ok(None);
                 };
-                ready.stages.push(stage);
+                ready.scenes.push(loaded);
                 ready.references.push(reference);
             }
         }
     }
-    match (&ready.stages[..], ready.absent.last()) {
+    match (&ready.scenes[..], ready.absent.last()) {
         ([], Some(absent)) => Err(ExperimentError::NoScenes(absent.reason.clone())),
         _ => Ok(Some(ready)),
     }
 }
 
 /// The reference of the scene that this one names, as its light is the same.
-fn shared(ready: &Ready<'_>, stage: &Stage<'_>) -> Option<Reference> {
-    let ReferenceSpec::Of(name) = &stage.spec.reference else {
+fn shared(ready: &Ready<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
+    let ReferenceSpec::Of(name) = &loaded.spec.reference else {
         return None;
     };
-    let mut stages = ready.stages.iter().zip(&ready.references);
-    let found = stages.find(|(other, _)| other.spec.name == *name && other.size() == stage.size());
+    let mut scenes = ready.scenes.iter().zip(&ready.references);
+    let found = scenes.find(|(other, _)| other.spec.name == *name && other.size() == loaded.size());
     found.map(|(_, reference)| reference.clone())
 }
 
@@ -106,36 +107,36 @@ fn is_contradicted(error: &ExperimentError) -> bool {
 /// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
 /// it.
 fn obtain(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     given: Option<Reference>,
     setup: &Setup,
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    match (&stage.spec.reference, given) {
+    match (&loaded.spec.reference, given) {
         (
             ReferenceSpec::Make {
                 spp,
-                changes,
-                witness,
+                request,
+                cross_check,
             },
             _,
         ) => {
-            let plan = plan(stage, *spp, changes, *witness);
-            make(stage, &plan, setup, threads, observer)
+            let plan = plan(loaded, *spp, request, *cross_check);
+            make(loaded, &plan, setup, threads, observer)
         }
-        (ReferenceSpec::There(_), Some(reference)) => copied(stage, reference, setup).map(Some),
+        (ReferenceSpec::There(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
         (ReferenceSpec::There(_) | ReferenceSpec::Of(_), None) => {
-            Err(ExperimentError::NoReference(stage.spec.name.clone()))
+            Err(ExperimentError::NoReference(loaded.spec.name.clone()))
         }
     }
 }
 
 /// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
 /// report shows.
-fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
-    let name = copy(stage);
+fn copied(loaded: &LoadedScene<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
+    let name = copy(loaded);
     write_image(&setup.folder.join(&name), &reference.pixels)?;
     Ok(Reference {
         image: Some(name),
@@ -144,37 +145,37 @@ fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Refe
 }
 
 /// The name of the picture of a reference that lies elsewhere, in the folder of the results.
-fn copy(stage: &Stage<'_>) -> String {
-    format!("references/{}.exr", file_name(&stage.spec.name))
+fn copy(loaded: &LoadedScene<'_>) -> String {
+    format!("references/{}.exr", file_name(&loaded.spec.name))
 }
 
 /// The files that are written for the reference of a scene.
-pub(super) fn written(stage: &Stage<'_>, setup: &Setup) -> Vec<PathBuf> {
-    match &stage.spec.reference {
-        ReferenceSpec::There(_) => vec![setup.folder.join(copy(stage))],
+pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
+    match &loaded.spec.reference {
+        ReferenceSpec::There(_) => vec![setup.folder.join(copy(loaded))],
         ReferenceSpec::Of(_) => Vec::new(),
         ReferenceSpec::Make {
             spp,
-            changes,
-            witness,
+            request,
+            cross_check,
         } => {
-            let plan = plan(stage, *spp, changes, *witness);
-            references::files(&setup.folder.join(folder(stage, &plan)))
+            let plan = plan(loaded, *spp, request, *cross_check);
+            references::files(&setup.folder.join(folder(loaded, &plan)))
         }
     }
 }
 
 /// A reference that is there; `name` is its folder in that of the results, if it lies there.
-fn load(stage: &Stage<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
-    let of_scene = |error| failed(stage, error);
-    let loaded = references::Reference::load(folder).map_err(of_scene)?;
-    let checked = loaded.check(&stage.digest, stage.scene.film());
+fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
+    let of_scene = |error| failed(loaded, error);
+    let reference = references::Reference::load(folder).map_err(of_scene)?;
+    let checked = reference.check(&loaded.digest, loaded.scene.film());
     checked.map_err(of_scene)?;
-    new(stage, loaded, name)
+    new(loaded, reference, name)
 }
 
 fn new(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     reference: references::Reference,
     name: Option<&str>,
 ) -> Result<Reference> {
@@ -183,35 +184,35 @@ fn new(
         warning: reference.warning(),
         words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
-        pixels: finite(reference.picture, &reference.folder, stage)?,
+        pixels: finite(reference.picture, &reference.folder, loaded)?,
     })
 }
 
-fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
+fn failed(loaded: &LoadedScene<'_>, error: references::Error) -> ExperimentError {
     ExperimentError::Reference {
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         error,
     }
 }
 
 /// Reads an image, which has the size of the scene's.
-fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let image = formats::image::read(path, None);
-    let place = stage.spec.places[1].as_ref();
+    let place = loaded.spec.reference_place.as_ref();
     let pixels = Pixels::from(&image.map_err(|error| Place::of_named(place, error))?);
-    if pixels.size != stage.size() {
+    if pixels.size != loaded.size() {
         return Err(ExperimentError::Size {
             path: path.to_owned(),
-            scene: stage.spec.name.clone(),
+            scene: loaded.spec.name.clone(),
             found: pixels.size,
-            expected: stage.size(),
+            expected: loaded.size(),
         });
     }
-    finite(pixels, path, stage)
+    finite(pixels, path, loaded)
 }
 
 /// Refuses pixels that are not finite: no error is a number there.
-fn finite(pixels: Pixels, path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
     let Some(first) = pixels.data.iter().position(is_bad) else {
         return Ok(pixels);
@@ -219,7 +220,7 @@ fn finite(pixels: Pixels, path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
     let width = pixels.size[0];
     Err(ExperimentError::NotFinite {
         path: path.to_owned(),
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         count: pixels.data.iter().filter(|pixel| is_bad(pixel)).count(),
         first: [first % width, first / width],
     })
@@ -235,20 +236,25 @@ fn stored_mse(path: &Path) -> Option<f64> {
     variance.mean().filter(|mse| mse.is_finite())
 }
 
-/// How a reference is made: as usual, or with another witness, where all strategies take part. Else paths
-/// may be missing, which path tracing has: unless another is named, the witness then has the same
+/// How a reference is made: as usual, or with another cross_check, where all strategies take part. Else paths
+/// may be missing, which path tracing has: unless another is named, the cross_check then has the same
 /// strategies under other weights. Those of the power heuristic have light tails; uniform ones would be
-/// more different, but have infinite variance near edges, and a witness whose mean is skewed is refused
+/// more different, but have infinite variance near edges, and a cross_check whose mean is skewed is refused
 /// more often than the level says.
-fn plan(stage: &Stage<'_>, spp: u64, changes: &Request, named: Option<IntegratorKind>) -> Plan {
-    let mut plan = Plan::usual(&stage.settings, spp);
-    let of_picture = changes.apply(&plan.estimators[0]).path.strategies;
+fn plan(
+    loaded: &LoadedScene<'_>,
+    spp: u64,
+    request: &Request,
+    named: Option<IntegratorKind>,
+) -> Plan {
+    let mut plan = Plan::usual(&loaded.settings, spp);
+    let of_picture = request.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();
-    let witness = named.or((!has_all).then_some(IntegratorKind::Bdpt));
-    if let Some(witness) = witness {
-        plan.estimators[1].set_integrator(witness);
+    let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));
+    if let Some(cross_check) = cross_check {
+        plan.estimators[1].set_integrator(cross_check);
     }
-    plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
+    plan.estimators = plan.estimators.map(|settings| request.apply(&settings));
     if named.is_none() && !has_all {
         plan.estimators[0].path.mis = MisHeuristic::Balance;
         plan.estimators[1].path.mis = MisHeuristic::Power;
@@ -257,7 +263,7 @@ fn plan(stage: &Stage<'_>, spp: u64, changes: &Request, named: Option<Integrator
 }
 
 /// The folder of a reference in that of the results: another reference has another name.
-fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
+fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
     let settings = plan.estimators.each_ref().map(|settings| {
         // References made under the older name are found again.
         let mut texts = texts(settings);
@@ -265,45 +271,49 @@ fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
         texts.extend(start.map(|start| ("emission".to_owned(), start)));
         texts
     });
-    let [width, height] = stage.size();
+    let [width, height] = loaded.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
-        stage.digest, plan.spp
+        loaded.digest, plan.spp
     );
     let hash = sha256(identity.as_bytes());
-    format!("references/{}-{}", file_name(&stage.spec.name), &hash[..12])
+    format!(
+        "references/{}-{}",
+        file_name(&loaded.spec.name),
+        &hash[..12]
+    )
 }
 
 fn make(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     plan: &Plan,
     setup: &Setup,
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    let name = folder(stage, plan);
+    let name = folder(loaded, plan);
     let path = setup.folder.join(&name);
-    if let Ok(reference) = load(stage, &path, Some(&name)) {
+    if let Ok(reference) = load(loaded, &path, Some(&name)) {
         reference.warn(observer);
         return Ok(Some(reference));
     }
     let subject = Subject {
-        name: &stage.spec.file,
-        digest: &stage.digest,
-        scene: &stage.scene,
+        name: &loaded.spec.file,
+        digest: &loaded.digest,
+        scene: &loaded.scene,
     };
     let resources = Resources {
         threads,
         ..Resources::default()
     };
-    let watch = Watch::new(stage, plan, observer);
+    let watch = Watch::new(loaded, plan, observer);
     let made = references::make(&path, &subject, plan, &resources, &watch);
-    let Made::Whole(reference) = made.map_err(|error| failed(stage, error))? else {
+    let Made::Whole(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
     let usable = reference.provenance.check_usable(&path);
-    usable.map_err(|error| failed(stage, error))?;
-    new(stage, *reference, Some(&name)).map(Some)
+    usable.map_err(|error| failed(loaded, error))?;
+    new(loaded, *reference, Some(&name)).map(Some)
 }
 
 /// Tells an observer of a reference that is made.
@@ -316,10 +326,10 @@ struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    fn new(stage: &'a Stage<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
+    fn new(loaded: &'a LoadedScene<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
         Self {
-            scene: &stage.spec.name,
-            samples_per_pass: stage.scene.film().crop.area().max(1),
+            scene: &loaded.spec.name,
+            samples_per_pass: loaded.scene.film().crop.area().max(1),
             passes: 2 * plan.rounded_spp(),
             samples: AtomicU64::new(0),
             observer: Mutex::new(observer),
@@ -346,7 +356,7 @@ impl Host for Watch<'_> {
     fn should_end(&self) -> bool {
         let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
         self.with(|observer| {
-            observer.tell(Event::Reference {
+            observer.notify(Event::Reference {
                 scene: self.scene,
                 passes,
                 of: self.passes,

@@ -29,13 +29,13 @@
 //! extended, or stopped and gone on with, has the bits of one that was made at once.
 
 mod agreement;
+mod cross_check;
 mod make;
 mod picture;
 mod provenance;
 mod replicate;
 #[cfg(test)]
 mod tests;
-mod witness;
 
 pub use agreement::{Agreement, Comparison};
 pub use make::{Host, Made, Plan, Subject, clear, files, make};

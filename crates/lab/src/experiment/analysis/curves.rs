@@ -44,7 +44,7 @@ fn series(results: &Results, scene: &SceneInfo, kind: BudgetKind, metric: &str) 
     let curve = |method: &str| {
         let mut points: Vec<([f64; 2], Option<[f64; 2]>)> = Vec::new();
         for budget in results.budgets.iter().filter(|budget| budget.kind == kind) {
-            let records = records_of(results, [&scene.name, &budget.name, method]);
+            let records = records_of(results, &scene.name, &budget.name, method);
             points.extend(point(&records, cost(kind, scene), metric));
         }
         points.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));

@@ -54,7 +54,12 @@ pub fn sections(results: &Results) -> Vec<Section> {
 }
 
 /// The records of a scene, a budget and a method, by seed.
-pub fn records_of<'a>(results: &'a Results, [scene, budget, method]: [&str; 3]) -> Vec<&'a Record> {
+pub fn records_of<'a>(
+    results: &'a Results,
+    scene: &str,
+    budget: &str,
+    method: &str,
+) -> Vec<&'a Record> {
     let is_one = |record: &&Record| {
         record.scene == scene && record.budget == budget && record.method == method
     };
@@ -104,7 +109,7 @@ fn tables(results: &Results, scene: &SceneInfo) -> Vec<Table> {
     for budget in &results.budgets {
         let rows: Vec<(&str, Vec<&Record>)> = (results.methods.iter())
             .map(|method| {
-                let records = records_of(results, [&scene.name, &budget.name, &method.name]);
+                let records = records_of(results, &scene.name, &budget.name, &method.name);
                 (&*method.name, records)
             })
             .filter(|(_, records)| !records.is_empty())

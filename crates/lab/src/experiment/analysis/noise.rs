@@ -58,7 +58,7 @@ fn noise_of<'a>(results: &'a Results, scene: &'a SceneInfo) -> Option<ReferenceN
         methods.map(move |method| (&*budget.name, &*method.name))
     });
     let errors = cells.filter_map(|(budget, method)| {
-        let mse = mse(&records_of(results, [&scene.name, budget, method]))?;
+        let mse = mse(&records_of(results, &scene.name, budget, method))?;
         Some((mse, budget, method))
     });
     let (least, budget, method) = errors.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -27,7 +27,7 @@ fn overrun(
     budget: &BudgetInfo,
     method: &str,
 ) -> Option<String> {
-    let records = records_of(results, [&scene.name, &budget.name, method]);
+    let records = records_of(results, &scene.name, &budget.name, method);
     let of_one_pass = records.iter().filter(|record| record.spp == 1);
     let rays = of_one_pass.map(|record| record.rays.total()).max()?;
     let [width, height] = scene.size;

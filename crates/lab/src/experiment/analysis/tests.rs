@@ -115,7 +115,7 @@ fn seeds_that_one_method_lacks_are_left_out() {
     results
         .records
         .retain(|record| record.seed != 1 || record.method == "first");
-    let of = |method| records_of(&results, ["room", "64 spp", method]);
+    let of = |method| records_of(&results, "room", "64 spp", method);
     let rmse = |record: &Record| record.metrics.get("rmse").copied();
     let interval = ratio(&of("second"), &of("first"), rmse).unwrap();
     assert!((interval.value - 0.5).abs() < 1e-12, "{interval:?}");

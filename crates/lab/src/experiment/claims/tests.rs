@@ -403,7 +403,7 @@ fn built_in_descriptions_are_whole() {
     // Gains are over methods that are rendered, and nothing is rendered twice.
     let mut settings = BTreeSet::new();
     for method in &beyond.methods {
-        let own = method.changes.apply(&bidir::driver::Settings::default());
+        let own = method.request.apply(&bidir::driver::Settings::default());
         let own = format!("{:?}", crate::experiment::texts(&own));
         assert!(settings.insert(own), "{} is rendered twice", method.name);
     }

@@ -148,7 +148,8 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result
         reference,
         file: source.file,
         presence,
-        places: [source.place, at],
+        file_place: source.place,
+        reference_place: at,
     })
 }
 
@@ -223,8 +224,8 @@ fn reference(
         (None, Some(spp)) => {
             let made = ReferenceSpec::Make {
                 spp: spp.whole(1)?,
-                changes: Box::new(reference_changes(strategies, defaults)?),
-                witness: cross_check.as_ref().map(cross_check_of).transpose()?,
+                request: Box::new(reference_request(strategies, defaults)?),
+                cross_check: cross_check.as_ref().map(cross_check_of).transpose()?,
             };
             Ok((made, None))
         }
@@ -236,35 +237,35 @@ fn reference(
 }
 
 /// What decides the expectation of the images is that of all methods.
-fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
-    let mut changes = Request {
+fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
+    let mut request = Request {
         strategies: defaults.strategies.clone(),
         max_depth: defaults.max_depth,
         ..Request::default()
     };
     if let Some(entry) = strategies {
         entry.read(|value| {
-            changes
+            request
                 .set("strategies", value)
                 .map_err(|error| error.to_string())
         })?;
     }
-    Ok(changes)
+    Ok(request)
 }
 
 /// An estimator that can contradict that of the picture.
 fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
-    let mut changes = Request::default();
+    let mut request = Request::default();
     entry.read(|value| {
-        changes
+        request
             .set("integrator", value)
             .map_err(|error| error.to_string())
     })?;
-    match changes.integrator {
+    match request.integrator {
         Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
             "an estimator cannot cross-check itself".to_owned(),
             "references are made by `bdpt`: use path, light or lvc".to_owned(),
         )),
-        Some(witness) => Ok(witness),
+        Some(other) => Ok(other),
     }
 }

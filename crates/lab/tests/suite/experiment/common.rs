@@ -131,7 +131,7 @@ impl Watch {
 }
 
 impl Observer for Watch {
-    fn tell(&mut self, event: Event<'_>) {
+    fn notify(&mut self, event: Event<'_>) {
         match event {
             Event::Record(_) => self.renders += 1,
             Event::Pyramid { .. } => self.strategy_passes += 1,

@@ -195,7 +195,7 @@ fn methods_have_the_common_settings() {
         + "mis = \"power\"\n[[budget]]\nrays = 50.5\n";
     let experiment = place.read(&text).unwrap();
     let names = experiment.methods.iter().map(|method| {
-        let mis = method.changes.mis.unwrap();
+        let mis = method.request.mis.unwrap();
         (method.name.clone(), format!("{mis:?}"))
     });
     let expected = [("all", "Uniform"), ("one", "Power")];
@@ -206,14 +206,14 @@ fn methods_have_the_common_settings() {
     );
     let ReferenceSpec::Make {
         spp: 16,
-        changes,
-        witness: None,
+        request,
+        cross_check: None,
     } = &experiment.scenes[0].reference
     else {
         panic!("{:?}", experiment.scenes);
     };
-    assert_eq!(changes.strategies.as_ref().unwrap().to_string(), "all,-t1");
-    assert_eq!(changes.mis, None);
+    assert_eq!(request.strategies.as_ref().unwrap().to_string(), "all,-t1");
+    assert_eq!(request.mis, None);
 }
 
 #[test]

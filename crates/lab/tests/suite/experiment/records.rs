@@ -46,7 +46,7 @@ fn a_budget_may_be_of_some_methods() {
     let text = with_budget("samples = 1") + "[[budget]]\nsamples = 2\n";
     let mut experiment = place.read(&text).unwrap();
     experiment.budgets[1].methods.push("one".to_owned());
-    assert_eq!(experiment.cells(), 6);
+    assert_eq!(experiment.run_count(), 6);
     let setup = Setup {
         folder: place.path("out"),
         start: Start::Resume,

@@ -6,12 +6,12 @@ use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
 
 impl Plan {
-    /// True where the witness is, or by `auto` may be, the estimator of the picture but for its seed: it
+    /// True where the cross_check is, or by `auto` may be, the estimator of the picture but for its seed: it
     /// would agree whatever is wrong with both.
-    pub fn is_its_own_witness(&self) -> bool {
-        let [picture, witness] = &self.estimators;
-        let may_be = may_become(picture, witness) || may_become(witness, picture);
-        may_be || in_effect(picture) == in_effect(witness)
+    pub fn is_its_own_cross_check(&self) -> bool {
+        let [picture, cross_check] = &self.estimators;
+        let may_be = may_become(picture, cross_check) || may_become(cross_check, picture);
+        may_be || in_effect(picture) == in_effect(cross_check)
     }
 }
 
