@@ -43,7 +43,7 @@ LABORATORY = [
         "crates/lab/src/experiment/run.rs",
         "settings.seed = self.seed;",
         "settings.seed = 0 * self.seed;",
-        experiment("every_cell"),
+        experiment("every_run"),
     ),
     (
         "equal rays with a pass too many",
@@ -57,7 +57,7 @@ LABORATORY = [
         "crates/lab/src/experiment/run.rs",
         "training.map_or(0, |training| training.rays.total())",
         "training.map_or(0, |training| 0 * training.rays.total())",
-        experiment("training"),
+        experiment("rays_of_training"),
     ),
     (
         "records of another experiment gone on from",

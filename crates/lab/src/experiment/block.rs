@@ -1,9 +1,9 @@
 //! Parts of an experiment, for several machines.
 //!
-//! Who has machines calls [`prepare`], which makes references and images of strategies where they are
-//! not there yet; has every [`Block`] rendered by [`render_block`] somewhere; gives what comes back, in
-//! any order, to [`Prepared::add`]; and calls [`run`](super::run()) at the end, which then finds all
-//! records there. All machines have to be alike, as times are compared.
+//! The host calls [`prepare`], which renders missing references and images of strategies; has every
+//! [`Block`] rendered by [`render_block`] on some machine; passes the results, in any order, to
+//! [`Prepared::add`]; and at the end calls [`run`](super::run()), which then finds all records. All machines
+//! have to be alike, since times are compared.
 
 use super::error::ExperimentError;
 use super::journal::{Journal, RecordsKey};
@@ -20,8 +20,8 @@ use std::path::PathBuf;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Some methods under one seed in one scene and with one budget. What is compared is rendered on one
-/// machine.
+/// Runs of several methods in one scene with the same budget and seed: one machine renders all runs that
+/// are compared with each other.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
     /// The name of the scene.
@@ -30,44 +30,44 @@ pub struct Block {
     pub budget: String,
     /// The seed.
     pub seed: u64,
-    /// The names of the methods that have no record yet.
+    /// The names of the methods without a record.
     pub methods: Vec<String>,
 }
 
-/// A scene of an experiment that is ready.
+/// A scene of an experiment with its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedScene {
     /// Its name.
     pub name: String,
     /// Its file.
     pub path: PathBuf,
-    /// All files that were read for it.
+    /// All files read for it.
     pub files: Vec<PathBuf>,
-    /// What its images are compared with.
+    /// The reference of its images.
     pub reference: Pixels,
 }
 
-/// An experiment that has its references.
+/// An experiment with complete references.
 #[derive(Debug)]
 pub struct Prepared {
     /// The scenes.
     pub scenes: Vec<PreparedScene>,
-    /// What has no record yet.
+    /// The runs without a record.
     pub blocks: Vec<Block>,
     key: RecordsKey,
     folder: PathBuf,
 }
 
-/// A render with its image, if one is kept.
+/// A finished run with its image, if that is kept.
 #[derive(Clone, Debug)]
 pub struct Done {
     /// The record.
     pub record: Record,
-    /// The image of the first seed.
+    /// The image, kept for the first seed only.
     pub image: Option<Pixels>,
 }
 
-/// Makes everything but records. None: the observer stopped it.
+/// Renders everything except the runs. None: the observer stopped it.
 pub fn prepare(
     experiment: &Experiment,
     setup: &Setup,
@@ -106,7 +106,7 @@ pub fn prepare(
     }))
 }
 
-/// What has no record, in order.
+/// Groups the runs without a record, in order.
 fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run)) {
@@ -125,7 +125,7 @@ fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
 }
 
 impl Block {
-    /// Whether both differ in their methods alone.
+    /// Returns true if both differ only in their methods.
     fn is_beside(&self, other: &Self) -> bool {
         let of = |block: &Self| (block.scene.clone(), block.budget.clone(), block.seed);
         of(self) == of(other)
@@ -133,9 +133,9 @@ impl Block {
 }
 
 impl Prepared {
-    /// Adds what was rendered; a record that is there already stays.
+    /// Adds finished runs; existing records stay.
     ///
-    /// Errors: the folder has records of another experiment by now, or cannot be written.
+    /// Errors: the folder meanwhile has records of another experiment, or cannot be written.
     pub fn add(&self, done: Vec<Done>) -> Result<()> {
         let mut journal = Journal::open(&self.folder, &self.key)?;
         for Done { record, image } in done {
@@ -150,9 +150,9 @@ impl Prepared {
     }
 }
 
-/// Renders a block, whose scene has its files in `files`. None: the observer stopped it.
+/// Renders a block, whose scene files come from `files`. None: the observer stopped it.
 ///
-/// Errors: the experiment has no such scene, budget or method; those of its renders.
+/// Errors: the experiment has no such scene, budget or method; a render fails.
 pub fn render_block(
     experiment: &Experiment,
     block: &Block,

@@ -54,3 +54,25 @@ fn reference(spec: &ReferenceSpec, given: Option<&Reference>) -> String {
         (None, _) => format!("{spec:?}"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bidir::integrator::IntegratorKind;
+    use bidir::settings::Request;
+
+    #[test]
+    fn made_references_are_identified_as_in_earlier_versions() {
+        let request = Request::default();
+        let expected = format!(
+            "Make {{ spp: 16, changes: {request:?}, witness: Some({:?}) }}",
+            IntegratorKind::Lvc
+        );
+        let spec = ReferenceSpec::Make {
+            spp: 16,
+            request: Box::new(request),
+            cross_check: Some(IntegratorKind::Lvc),
+        };
+        assert_eq!(reference(&spec, None), expected);
+    }
+}

@@ -1,7 +1,7 @@
-//! The records so far, on the disk.
+//! The file of the records so far.
 //!
-//! The first line says whose they are, and of which machine; every other line is a record, or
-//! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Each line has its checksum.
+//! The first line names experiment, program and machine; every other line is a record, or
+//! `{"pyramid": ...}` with the figures of strategies. Each line has a checksum. Each write replaces the file.
 
 use super::error::ExperimentError;
 use super::observer::{Event, Observer};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
 const FORMAT: u32 = 3;
-/// The version before, whose lines have no checksums.
+/// The previous version, whose lines have no checksums.
 const UNSEALED: u32 = 2;
 
 /// The first line.
@@ -26,20 +26,19 @@ struct Head {
     key: RecordsKey,
 }
 
-/// Whose records they are.
+/// The origin of records; records with different keys are not comparable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct RecordsKey {
-    /// The hash of everything that records depend on, but for their times.
+    /// The hash of everything that records depend on, except their times.
     pub(super) experiment: String,
     /// The program with its version.
     pub(super) program: String,
-    /// What it ran on.
+    /// The machine.
     pub(super) machine: Machine,
 }
 
 impl RecordsKey {
-    /// In what else than the experiment this one differs from another, on which times depend. None: in
-    /// nothing.
+    /// Describes the differences of program and machine, which times depend on. None: there are none.
     fn difference(&self, here: &Self) -> Option<String> {
         let parts = |key: &Self| {
             let Machine {
@@ -52,7 +51,7 @@ impl RecordsKey {
             [key.program.clone(), processor, threads, isa, system]
         };
         let pairs = parts(self).into_iter().zip(parts(here));
-        // A processor whose name could not be read may be any.
+        // An unknown processor may be the same one.
         let is_known = |name: &str| name != Machine::UNKNOWN;
         let different =
             pairs.filter(|(there, here)| there != here && is_known(there) && is_known(here));
@@ -63,7 +62,7 @@ impl RecordsKey {
     }
 }
 
-/// A line of what was found of strategies.
+/// A line with the figures of strategies.
 #[derive(Serialize, Deserialize)]
 struct PyramidLine {
     pyramid: Pyramid,
@@ -74,16 +73,16 @@ struct PyramidLine {
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
-    /// False where it was read from a file without checksums.
+    /// False if it was read from a file without checksums.
     is_sealed: bool,
     records: Vec<Record>,
     pyramids: Vec<Pyramid>,
 }
 
 impl Journal {
-    /// A journal without records, in place of what is there.
+    /// Replaces the file by a journal without records.
     ///
-    /// Errors: it cannot be written.
+    /// Errors: the file cannot be written.
     pub(super) fn begin(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
         let journal = Self::new(folder, key);
         journal.write()?;
@@ -104,10 +103,10 @@ impl Journal {
         }
     }
 
-    /// The journal that is there, or an empty one.
+    /// Reads the existing journal, or creates an empty one.
     ///
-    /// Errors: it cannot be read, is damaged, of another experiment, or of another machine or program:
-    /// times that are compared are of one.
+    /// Errors: the file cannot be read, is damaged, or belongs to another experiment, or to another machine
+    /// or program, whose times would not be comparable.
     pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
         let mut journal = Self::new(folder, key);
         let bytes = match std::fs::read(&journal.path) {
@@ -122,7 +121,7 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Takes what is in the file.
+    /// Reads the content of the file.
     fn read(
         &mut self,
         bytes: &[u8],
@@ -140,7 +139,7 @@ impl Journal {
         lines.try_for_each(|(number, line)| self.read_line(line, number))
     }
 
-    /// Takes the first line.
+    /// Reads the first line.
     fn read_head(
         &mut self,
         folder: &Path,
@@ -167,7 +166,7 @@ impl Journal {
         })
     }
 
-    /// Takes a line of a record or of what was found of strategies.
+    /// Reads a line with a record or with figures of strategies.
     fn read_line(&mut self, line: &str, number: usize) -> Result<(), ExperimentError> {
         self.check(line, number)?;
         if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
@@ -199,7 +198,7 @@ impl Journal {
         ExperimentError::Damaged { path, line, reason }
     }
 
-    /// The journal of a run that begins.
+    /// Opens or replaces the journal, as the setup asks, when an experiment starts.
     pub(super) fn start(
         setup: &Setup,
         key: &RecordsKey,
@@ -224,7 +223,7 @@ impl Journal {
         self.write()
     }
 
-    /// Adds what was found of strategies.
+    /// Adds figures of strategies.
     pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<(), ExperimentError> {
         let found = PyramidLine { pyramid };
         self.text += &line(&found);
@@ -245,7 +244,7 @@ impl Journal {
         &self.pyramids
     }
 
-    /// Whether there is a record of the same render.
+    /// Returns true if there is a record of the same run.
     pub(super) fn has_like(&self, record: &Record) -> bool {
         self.records.iter().any(|other| {
             let key = |record: &Record| {
@@ -291,7 +290,7 @@ mod tests {
         serde_json::from_value(record).unwrap()
     }
 
-    /// A journal of two records, as it is written.
+    /// Writes a journal of two records.
     fn written() -> String {
         let journal = Journal::new(Path::new(PLACE), &key());
         journal.text + &line(&record(1)) + &line(&record(2))
@@ -304,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn every_flip_of_a_bit_is_an_error_with_its_line() {
+    fn every_flipped_bit_is_an_error_with_its_line() {
         let text = written();
         let journal = read(text.as_bytes()).unwrap();
         assert!(journal.records == [record(1), record(2)] && journal.text == text);
@@ -315,7 +314,7 @@ mod tests {
             let expected = 1 + before.matches('\n').count();
             match read(&bytes) {
                 Err(ExperimentError::Damaged { line, .. }) => assert_eq!(line, expected),
-                // Half a checksum of the first line leaves no sign whose it is.
+                // Without a readable checksum, the first line names no experiment.
                 Err(ExperimentError::Mismatch(_)) => assert_eq!(expected, 1),
                 other => panic!("bit {bit}: {other:?}"),
             }
@@ -328,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn records_of_before_are_read_and_get_checksums() {
+    fn records_of_the_previous_version_are_read_and_get_checksums() {
         let unsealed: Vec<_> = written()
             .lines()
             .map(|line| {

@@ -1,4 +1,4 @@
-//! The files that an experiment writes: none of them is one that it reads.
+//! The files that an experiment writes; they never replace a file that it reads.
 
 use super::error::ExperimentError;
 use super::loaded_scene::LoadedScene;
@@ -10,16 +10,16 @@ use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The name of the results in their folder.
+/// The name of the results file.
 pub(super) const RESULTS: &str = "results.json";
 
-/// Fails where the description `file` is one of the files that its results in `folder` are written to.
+/// Fails if the results in `folder` would replace the description `file`.
 pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
     check_all([file], &always(folder))
 }
 
-/// Fails where a file of the results would replace one of a scene or of a reference that is there, or
-/// another one.
+/// Fails if a file of the results would replace a file of a scene, of an existing reference, or another
+/// file of the results.
 pub(super) fn check(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
@@ -49,14 +49,14 @@ fn check_all<'a>(read: impl IntoIterator<Item = &'a Path>, written: &[PathBuf]) 
     Ok(formats::outputs::check(read, &outputs)?)
 }
 
-/// The files that every experiment has.
+/// Returns the files that every experiment writes.
 fn always(folder: &Path) -> Vec<PathBuf> {
     [journal::FILE, RESULTS, PAGE]
         .map(|name| folder.join(name))
         .into()
 }
 
-/// The names of the images of a scene, which are those of the first seed.
+/// Returns the names of the images of a scene, which only the first seed has.
 fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
     let renders = experiment.renders(&loaded.spec.name);
     let images = renders.map(|(budget, method)| {
@@ -72,7 +72,7 @@ fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
     images.collect()
 }
 
-/// The files of a reference that is there.
+/// Returns the files of an existing reference.
 fn given(loaded: &LoadedScene<'_>) -> Vec<PathBuf> {
     match &loaded.spec.reference {
         ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),

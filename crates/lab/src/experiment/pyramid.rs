@@ -1,7 +1,7 @@
-//! What each strategy of one method does in every scene: rendered apart from the records, once.
+//! Images of each strategy (s, t) of one method, rendered once in every scene, apart from the runs.
 //!
-//! Images of strategies take kilobytes for each pixel, and a contact sheet shows them small: a scene
-//! whose images are larger than a tile is rendered at the size of one.
+//! Images of strategies take kilobytes per pixel, and a contact sheet shows them as small tiles: scenes with
+//! larger images are rendered at the size of a tile.
 
 use super::error::ExperimentError;
 use super::journal::Journal;
@@ -18,7 +18,7 @@ use bidir::integrator::IntegratorKind;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Renders what the journal has not, scene by scene. Nothing to do where none is wanted.
+/// Renders the pyramids that the journal lacks, scene by scene.
 pub(super) fn complete(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
@@ -27,10 +27,10 @@ pub(super) fn complete(
     observer: &mut dyn Observer,
 ) -> Result<End> {
     for run in runs(experiment, scenes, setup) {
-        if journal.pyramids().iter().any(|found| run.is(found)) {
+        if journal.pyramids().iter().any(|found| run.is_of(found)) {
             continue;
         }
-        let Some(found) = run.at_size_of_a_tile(observer)? else {
+        let Some(found) = run.render_tile(observer)? else {
             return Ok(End::Stopped);
         };
         journal.add_pyramid(found)?;
@@ -38,7 +38,8 @@ pub(super) fn complete(
     Ok(End::Complete)
 }
 
-/// What was found of it so far; a journal may also have what was wanted before.
+/// Returns the description's pyramids so far; the journal may also contain pyramids of earlier versions of
+/// the description.
 pub(super) fn found(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
@@ -46,13 +47,13 @@ pub(super) fn found(
     journal: &Journal,
 ) -> Vec<Pyramid> {
     let runs = runs(experiment, scenes, setup);
-    let found = runs.filter_map(|run| journal.pyramids().iter().find(|found| run.is(found)));
+    let found = runs.filter_map(|run| journal.pyramids().iter().find(|found| run.is_of(found)));
     found.cloned().collect()
 }
 
-/// The names of the files of all contact sheets, relative to the folder of the results.
+/// Returns the file names of all contact sheets, relative to the folder of the results.
 pub(super) fn files(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Vec<String> {
-    let Some((spec, _)) = wanted(experiment) else {
+    let Some((spec, _)) = requested(experiment) else {
         return Vec::new();
     };
     let shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
@@ -60,9 +61,9 @@ pub(super) fn files(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Vec<
     files.collect()
 }
 
-/// The name of a contact sheet.
+/// Returns the file name of a contact sheet.
 fn file(loaded: &LoadedScene<'_>, word: &str) -> String {
-    // No image of a method has this name: those end in `.exr`.
+    // Images of methods end in `.exr`, so the names never clash.
     format!(
         "images/{}--strategies-{word}.png",
         file_name(&loaded.spec.name)
@@ -71,7 +72,7 @@ fn file(loaded: &LoadedScene<'_>, word: &str) -> String {
 
 /// Refuses a method that is not bidirectional in one of the scenes.
 pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Result<()> {
-    let Some((spec, method)) = wanted(experiment) else {
+    let Some((spec, method)) = requested(experiment) else {
         return Ok(());
     };
     let is_other = |loaded: &&LoadedScene<'_>| {
@@ -87,14 +88,14 @@ pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Resu
     }
 }
 
-/// What is asked for, with its method.
-fn wanted(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
+/// Returns the description's pyramid with its method.
+fn requested(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
     let spec = experiment.pyramid.as_ref()?;
     let mut methods = experiment.methods.iter();
     Some((spec, methods.find(|method| method.name == spec.method)?))
 }
 
-/// True for a scene whose strategies are shown.
+/// Returns true if the pyramid includes the scene.
 fn is_shown(spec: &PyramidSpec, loaded: &LoadedScene<'_>) -> bool {
     spec.scenes.is_empty() || spec.scenes.contains(&loaded.spec.name)
 }
@@ -104,8 +105,7 @@ fn runs<'a>(
     scenes: &'a [LoadedScene<'a>],
     setup: &'a Setup,
 ) -> impl Iterator<Item = PyramidRun<'a>> {
-    let wanted = wanted(experiment);
-    let runs = wanted.map(move |(spec, method)| {
+    let runs = requested(experiment).map(move |(spec, method)| {
         let scenes = scenes.iter().filter(move |loaded| is_shown(spec, loaded));
         scenes.map(move |loaded| PyramidRun {
             experiment,
@@ -118,7 +118,7 @@ fn runs<'a>(
     runs.into_iter().flatten()
 }
 
-/// The strategies of a method in a scene.
+/// A render of the strategies of a method in a scene.
 #[derive(Clone, Copy)]
 struct PyramidRun<'a> {
     experiment: &'a Experiment,
@@ -129,16 +129,16 @@ struct PyramidRun<'a> {
 }
 
 impl PyramidRun<'_> {
-    /// True where this is what was found.
-    fn is(&self, found: &Pyramid) -> bool {
+    /// Returns true if `found` is the result of this render.
+    fn is_of(&self, found: &Pyramid) -> bool {
         found.scene == self.scene.spec.name
             && found.method == self.method.name
             && found.seed == self.experiment.seeds.first
             && found.spp == self.spec.spp
     }
 
-    /// Renders the scene, smaller where it is large. None: the observer stopped it.
-    fn at_size_of_a_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
+    /// Renders the scene at most at the size of a tile. None: the observer stopped it.
+    fn render_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
         let longest = self.scene.size()[0].max(self.scene.size()[1]);
         if longest <= pyramid::TILE {
             return self.render(observer);
@@ -177,10 +177,10 @@ impl PyramidRun<'_> {
             self.sheet(&session, Kind::Weighted, "weighted")?,
             self.sheet(&session, Kind::Raw, "raw")?,
         ];
-        Ok(Some(self.told(&session, weighted, raw)))
+        Ok(Some(self.summary(&session, weighted, raw)))
     }
 
-    /// Writes a contact sheet, and gives its name relative to the folder of the results.
+    /// Writes a contact sheet; returns its name relative to the folder of the results.
     fn sheet(&self, session: &Session<'_>, kind: Kind, word: &str) -> Result<String> {
         let scene = &self.scene.spec.name;
         let pixels = pyramid::sheet(session.film(), kind, scene);
@@ -190,7 +190,7 @@ impl PyramidRun<'_> {
         Ok(name)
     }
 
-    fn told(&self, session: &Session<'_>, weighted: String, raw: String) -> Pyramid {
+    fn summary(&self, session: &Session<'_>, weighted: String, raw: String) -> Pyramid {
         let all = Figures::all(session);
         Pyramid {
             scene: self.scene.spec.name.clone(),
@@ -208,7 +208,7 @@ impl PyramidRun<'_> {
     }
 }
 
-/// A strategy that has images.
+/// Converts the figures of a strategy. None: it has no images.
 fn strategy(figures: &Figures) -> Option<StrategyInfo> {
     let images = figures.images?;
     Some(StrategyInfo {

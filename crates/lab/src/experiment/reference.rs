@@ -1,4 +1,4 @@
-//! What images are compared with: a picture that is there, or one that is made once and kept.
+//! References of an experiment: existing images, or references rendered once and kept.
 
 use super::error::{ExperimentError, Place};
 use super::loaded_scene::{LoadedScene, Reference};
@@ -22,10 +22,10 @@ use std::sync::{Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The reference of a scene, where it is there already.
+/// Reads the existing reference of a scene. None: the description names none.
 ///
-/// Errors: it cannot be read, is damaged or stale, its estimators disagree, it is of another scene or
-/// size, or it has pixels that are not finite.
+/// Errors: it cannot be read, is damaged or stale, its estimators disagree, it belongs to another scene or
+/// has another size, or its pixels are not finite.
 pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
     match &loaded.spec.reference {
         ReferenceSpec::There(path) if path.is_dir() => load(loaded, path, None).map(Some),
@@ -40,10 +40,10 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
     }
 }
 
-/// The scenes with their references; `given` are those that lie elsewhere. An optional scene whose
-/// reference is contradicted is left out, with a warning. None: the observer stopped it.
+/// Obtains the references of all scenes; `given` holds the existing ones. Leaves out optional scenes whose
+/// reference is contradicted, with a warning. None: the observer stopped it.
 ///
-/// Errors: as [`obtain`]; no scene is left.
+/// Errors: those of [`obtain`]; no scene is left.
 pub(super) fn obtain_all<'a>(
     experiment: &Experiment,
     scenes: Vec<LoadedScene<'a>>,
@@ -83,7 +83,7 @@ pub(super) fn obtain_all<'a>(
     }
 }
 
-/// The reference of the scene that this one names, as its light is the same.
+/// Returns the reference of the scene that this one names as having the same light.
 fn shared(ready: &Ready<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
     let ReferenceSpec::Of(name) = &loaded.spec.reference else {
         return None;
@@ -93,7 +93,7 @@ fn shared(ready: &Ready<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
     found.map(|(_, reference)| reference.clone())
 }
 
-/// True where the two estimators of a reference disagree: nothing is compared with it.
+/// Returns true if the two estimators of a reference disagree, so that it is not used.
 fn is_contradicted(error: &ExperimentError) -> bool {
     let ExperimentError::Reference { error, .. } = error else {
         return false;
@@ -101,11 +101,10 @@ fn is_contradicted(error: &ExperimentError) -> bool {
     matches!(error, references::Error::Disagree { .. })
 }
 
-/// The reference of a scene: the [`given`] one, whose picture is copied into the folder of the results,
-/// or else it is made. None: the observer stopped that.
+/// Obtains the reference of a scene: copies the image of the [`given`] one into the folder of the results,
+/// or renders a new one. None: the observer stopped it.
 ///
-/// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
-/// it.
+/// Errors: it cannot be rendered, or its estimators disagree; the folder of such a reference stays.
 fn obtain(
     loaded: &LoadedScene<'_>,
     given: Option<Reference>,
@@ -133,7 +132,7 @@ fn obtain(
     }
 }
 
-/// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
+/// Copies the image of an existing reference into the folder of the results, which holds everything that a
 /// report shows.
 fn copied(loaded: &LoadedScene<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
     let name = copy(loaded);
@@ -144,12 +143,12 @@ fn copied(loaded: &LoadedScene<'_>, reference: Reference, setup: &Setup) -> Resu
     })
 }
 
-/// The name of the picture of a reference that lies elsewhere, in the folder of the results.
+/// Returns the name of the copied image of an existing reference, in the folder of the results.
 fn copy(loaded: &LoadedScene<'_>) -> String {
     format!("references/{}.exr", file_name(&loaded.spec.name))
 }
 
-/// The files that are written for the reference of a scene.
+/// Returns the files written for the reference of a scene.
 pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     match &loaded.spec.reference {
         ReferenceSpec::There(_) => vec![setup.folder.join(copy(loaded))],
@@ -165,7 +164,7 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     }
 }
 
-/// A reference that is there; `name` is its folder in that of the results, if it lies there.
+/// Reads an existing reference; `name` is its folder within that of the results. None: it lies elsewhere.
 fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
     let of_scene = |error| failed(loaded, error);
     let reference = references::Reference::load(folder).map_err(of_scene)?;
@@ -195,7 +194,7 @@ fn failed(loaded: &LoadedScene<'_>, error: references::Error) -> ExperimentError
     }
 }
 
-/// Reads an image, which has the size of the scene's.
+/// Reads an image of the scene's size.
 fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let image = formats::image::read(path, None);
     let place = loaded.spec.reference_place.as_ref();
@@ -211,7 +210,7 @@ fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     finite(pixels, path, loaded)
 }
 
-/// Refuses pixels that are not finite: no error is a number there.
+/// Refuses pixels that are not finite, where errors would not be finite either.
 fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
     let Some(first) = pixels.data.iter().position(is_bad) else {
@@ -226,7 +225,7 @@ fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixel
     })
 }
 
-/// The mean square error of an image that has the variances of its pixels beside it.
+/// Computes the mean square error of an image from its variance layer. None: it has none.
 fn stored_mse(path: &Path) -> Option<f64> {
     let layers = formats::image::read_layers(path).ok()?;
     let variance = Pixels {
@@ -236,11 +235,11 @@ fn stored_mse(path: &Path) -> Option<f64> {
     variance.mean().filter(|mse| mse.is_finite())
 }
 
-/// How a reference is made: as usual, or with another cross_check, where all strategies take part. Else paths
-/// may be missing, which path tracing has: unless another is named, the cross_check then has the same
-/// strategies under other weights. Those of the power heuristic have light tails; uniform ones would be
-/// more different, but have infinite variance near edges, and a cross_check whose mean is skewed is refused
-/// more often than the level says.
+/// Plans the two estimators of a reference. With all strategies, path tracing is the default cross-check.
+/// Without some, `bdpt` may miss paths that path tracing samples, so the default cross-check is `bdpt` with
+/// the same strategies and other weights: those of the power heuristic. Uniform weights would differ more,
+/// but their variance is infinite near edges, and the skewed mean would fail the test more often than its
+/// level.
 fn plan(
     loaded: &LoadedScene<'_>,
     spp: u64,
@@ -262,10 +261,10 @@ fn plan(
     plan
 }
 
-/// The folder of a reference in that of the results: another reference has another name.
+/// Returns the folder of a reference within that of the results; its name contains a hash of the plan.
 fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
     let settings = plan.estimators.each_ref().map(|settings| {
-        // References made under the older name are found again.
+        // The older name keeps existing folders valid.
         let mut texts = texts(settings);
         let start = texts.remove("light-start");
         texts.extend(start.map(|start| ("emission".to_owned(), start)));
@@ -316,7 +315,7 @@ fn make(
     new(loaded, *reference, Some(&name)).map(Some)
 }
 
-/// Tells an observer of a reference that is made.
+/// Passes the progress of a reference on to an observer.
 struct Watch<'a> {
     scene: &'a str,
     samples_per_pass: u64,

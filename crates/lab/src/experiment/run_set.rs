@@ -98,7 +98,7 @@ pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) 
     }
     results.claims = experiment.judge(&results);
     for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
-        observer.notify(Event::Warning(&noise.words()));
+        observer.notify(Event::Warning(&noise.warning()));
     }
     for warning in overruns(&results) {
         observer.notify(Event::Warning(&warning));

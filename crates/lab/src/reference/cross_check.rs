@@ -1,4 +1,4 @@
-//! Whether two estimators could contradict each other.
+//! A check that the two estimators of a reference differ.
 
 use super::Plan;
 use bidir::driver::Settings;
@@ -6,8 +6,8 @@ use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
 
 impl Plan {
-    /// True where the cross_check is, or by `auto` may be, the estimator of the picture but for its seed: it
-    /// would agree whatever is wrong with both.
+    /// Returns true if both estimators are equal except for their seeds, or may become equal by `auto`: such
+    /// a cross-check cannot detect an error.
     pub fn is_its_own_cross_check(&self) -> bool {
         let [picture, cross_check] = &self.estimators;
         let may_be = may_become(picture, cross_check) || may_become(cross_check, picture);
@@ -15,12 +15,12 @@ impl Plan {
     }
 }
 
-/// True where one that may choose takes what the other does.
+/// Returns true if `auto` may choose the integrator of the other.
 fn may_become(auto: &Settings, other: &Settings) -> bool {
     auto.integrator == IntegratorKind::Auto && other.integrator != IntegratorKind::Light
 }
 
-/// The settings that an estimator depends on, but its seed.
+/// Returns the settings that an estimator depends on, except its seed.
 fn in_effect(settings: &Settings) -> Request {
     Request {
         seed: None,

@@ -1,7 +1,7 @@
-//! A browser without a window opens a report from a file and uses its viewer.
+//! A headless browser opens a report from a file and uses its viewer.
 //!
-//! `CHROME` names the browser; otherwise the first of the usual names on the path is taken. Without
-//! one the test is skipped, and says so.
+//! `CHROME` names the browser; otherwise the test takes the first common name on the path. Without a browser,
+//! the test is skipped with a message.
 
 #[path = "../../examples/report/sample.rs"]
 mod sample;
@@ -31,7 +31,7 @@ fn browser() -> Option<PathBuf> {
     places.into_iter().find(|place| place.is_file())
 }
 
-/// What a browser says of a page after its scripts have run.
+/// Returns the DOM of a page after its scripts have run.
 fn opened(browser: &Path, folder: &Path, address: &str) -> io::Result<String> {
     let dom = folder.join("dom.html");
     let out = std::fs::File::create(&dom)?;
@@ -48,7 +48,7 @@ fn opened(browser: &Path, folder: &Path, address: &str) -> io::Result<String> {
             "--disable-background-networking",
             "--disable-component-update",
         ])
-        // Whatever would be asked for elsewhere is not found.
+        // Requests to other hosts fail.
         .arg("--host-resolver-rules=MAP * ~NOTFOUND")
         .arg(format!(
             "--user-data-dir={}",
@@ -67,7 +67,7 @@ fn opened(browser: &Path, folder: &Path, address: &str) -> io::Result<String> {
     std::fs::read_to_string(dom)
 }
 
-/// Waits for a minute and a half at most.
+/// Waits at most 90 seconds.
 fn wait(mut child: Child) -> io::Result<()> {
     let start = Instant::now();
     while child.try_wait()?.is_none() {
