@@ -60,7 +60,7 @@ def times(args):
     settings = bidir.Bdpt()
     _, first = timed(lambda: bidir.render(scene, settings, spp=2))
     spp = max(4, round(args.seconds / first * 2))
-    # Ray's workers let all others go first, unless told otherwise: a busy machine would be measured.
+    # By default Ray's workers have a low priority, so that other processes would affect the measurement.
     even = {"worker_niceness": 0}
     ray.init(address="local", include_dashboard=False, log_to_driver=False, _system_config=even)
     rows = []

@@ -1,4 +1,4 @@
-"""Keeps this tool alive without any peer: both scenes, a render of each, and its error."""
+"""Checks this tool without any peer: writes both scenes, renders each, and measures the error."""
 
 import os
 import sys

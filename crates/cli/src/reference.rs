@@ -114,7 +114,7 @@ fn plan(
             Failure::new(Exit::FilmMismatch, message)
         });
     }
-    let mut plan = Plan::usual(&loaded.settings, args.spp.unwrap_or(loaded.spp));
+    let mut plan = Plan::with_defaults(&loaded.settings, args.spp.unwrap_or(loaded.spp));
     let flags = [&args.estimator, &args.against];
     for (settings, flags) in plan.estimators.iter_mut().zip(flags) {
         if let Some(flags) = flags {

@@ -112,7 +112,7 @@ impl Experiment {
         self.experiment.run_count()
     }
 
-    /// Runs what has no record yet, and tells `hear` what happens. Returns the results as JSON, and
+    /// Renders every run without a record, and calls `hear` with events. Returns the results as JSON, and
     /// their tables as text.
     fn run(
         &self,

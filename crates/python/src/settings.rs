@@ -70,13 +70,13 @@ pub(crate) fn resolve(
 /// Resolves the number of threads; warns if it was reduced.
 ///
 /// Errors: the number exceeds the limit, as `SettingsError`.
-pub(crate) fn threads_of(py: Python<'_>, asked: usize) -> PyResult<Threads> {
+pub(crate) fn threads_of(py: Python<'_>, requested: usize) -> PyResult<Threads> {
     let most = Threads::MOST;
-    if asked > most {
-        let message = format!("threads: expected a whole number up to {most}, not {asked}");
+    if requested > most {
+        let message = format!("threads: expected a whole number up to {most}, not {requested}");
         return Err(raise(py, "SettingsError", &message));
     }
-    let threads = Threads::new(asked);
+    let threads = Threads::new(requested);
     threads.warning().map_or(Ok(()), |text| warn(py, &text))?;
     Ok(threads)
 }

@@ -91,7 +91,7 @@ impl Experiment {
             let size = scene.size.or(self.size);
             match &mut scene.reference {
                 // The size of an existing image is fixed.
-                ReferenceSpec::There(_) => scene.size = size,
+                ReferenceSpec::Existing(_) => scene.size = size,
                 ReferenceSpec::Of(_) => scene.size = Some(quick.size(size.unwrap_or([64, 48]))),
                 ReferenceSpec::Make { spp, .. } => {
                     scene.size = Some(quick.size(size.unwrap_or([64, 48])));
@@ -159,10 +159,10 @@ impl Experiment {
 impl SceneSpec {
     fn extend(&mut self, extent: &Extent) {
         self.size = extent.size.or(self.size);
-        if let (ReferenceSpec::Make { spp, .. }, Some(wanted)) =
+        if let (ReferenceSpec::Make { spp, .. }, Some(samples)) =
             (&mut self.reference, extent.reference_spp)
         {
-            *spp = wanted;
+            *spp = samples;
         }
     }
 }

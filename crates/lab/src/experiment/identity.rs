@@ -38,11 +38,13 @@ pub(super) fn identity(
     sha256(text.as_bytes())
 }
 
+/// The name of the cross-check in hashes, which existing folders of results contain.
+const OLD_NAME: &str = "witness";
+
 /// Identifies an existing reference by its pixels, and any other by the way it is made.
 fn reference(spec: &ReferenceSpec, given: Option<&Reference>) -> String {
     match (given, spec) {
         (Some(given), _) => format!("pixels {}", digest(&[&given.pixels])),
-        // Folders of earlier versions have hashes of this text.
         (
             None,
             ReferenceSpec::Make {
@@ -50,7 +52,7 @@ fn reference(spec: &ReferenceSpec, given: Option<&Reference>) -> String {
                 request,
                 cross_check,
             },
-        ) => format!("Make {{ spp: {spp}, changes: {request:?}, witness: {cross_check:?} }}"),
+        ) => format!("Make {{ spp: {spp}, changes: {request:?}, {OLD_NAME}: {cross_check:?} }}"),
         (None, _) => format!("{spec:?}"),
     }
 }

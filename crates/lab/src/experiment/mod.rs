@@ -3,7 +3,7 @@
 //! - [`Experiment`]: the description, from TOML by [`Experiment::read`] or made by hand.
 //! - [`run()`]: renders every run without a record, and returns [`Results`](crate::results::Results).
 //! - [`claims`]: statements about the records with their verdicts, and tables.
-//! - [`analysis`]: the usual tables and plots of records.
+//! - [`analysis`]: the default tables and plots of records.
 //! - [`BUILTIN`]: descriptions built into the program.
 //!
 //! # The folder of the results
@@ -187,7 +187,7 @@ pub enum Presence {
 pub enum ReferenceSpec {
     /// An existing [reference](mod@crate::reference) folder, or an image with finite pixels. Only its pixels
     /// identify it: another folder with the same pixels gives the same experiment.
-    There(PathBuf),
+    Existing(PathBuf),
     /// The reference of the scene with this name, which has the same light.
     Of(String),
     /// A reference that is rendered first and kept in the folder of the results: by `bdpt`, which traces

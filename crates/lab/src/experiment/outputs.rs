@@ -75,8 +75,8 @@ fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
 /// Returns the files of an existing reference.
 fn given(loaded: &LoadedScene<'_>) -> Vec<PathBuf> {
     match &loaded.spec.reference {
-        ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),
-        ReferenceSpec::There(path) => vec![path.clone()],
+        ReferenceSpec::Existing(path) if path.is_dir() => crate::reference::files(path),
+        ReferenceSpec::Existing(path) => vec![path.clone()],
         ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Vec::new(),
     }
 }

@@ -28,8 +28,8 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 /// has another size, or its pixels are not finite.
 pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
     match &loaded.spec.reference {
-        ReferenceSpec::There(path) if path.is_dir() => load(loaded, path, None).map(Some),
-        ReferenceSpec::There(path) => Ok(Some(Reference {
+        ReferenceSpec::Existing(path) if path.is_dir() => load(loaded, path, None).map(Some),
+        ReferenceSpec::Existing(path) => Ok(Some(Reference {
             pixels: read(path, loaded)?,
             words: format!("the image {}", path.display()),
             image: None,
@@ -124,9 +124,9 @@ fn obtain(
             let plan = plan(loaded, *spp, request, *cross_check);
             make(loaded, &plan, setup, threads, observer)
         }
-        (ReferenceSpec::There(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
+        (ReferenceSpec::Existing(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
-        (ReferenceSpec::There(_) | ReferenceSpec::Of(_), None) => {
+        (ReferenceSpec::Existing(_) | ReferenceSpec::Of(_), None) => {
             Err(ExperimentError::NoReference(loaded.spec.name.clone()))
         }
     }
@@ -151,7 +151,7 @@ fn copy(loaded: &LoadedScene<'_>) -> String {
 /// Returns the files written for the reference of a scene.
 pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     match &loaded.spec.reference {
-        ReferenceSpec::There(_) => vec![setup.folder.join(copy(loaded))],
+        ReferenceSpec::Existing(_) => vec![setup.folder.join(copy(loaded))],
         ReferenceSpec::Of(_) => Vec::new(),
         ReferenceSpec::Make {
             spp,
@@ -246,7 +246,7 @@ fn plan(
     request: &Request,
     named: Option<IntegratorKind>,
 ) -> Plan {
-    let mut plan = Plan::usual(&loaded.settings, spp);
+    let mut plan = Plan::with_defaults(&loaded.settings, spp);
     let of_picture = request.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();
     let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));

@@ -171,11 +171,11 @@ impl Moment {
     }
 }
 
-/// Returns true if another pass follows `passes`: always the first one, and later ones if `is_wanted`
+/// Returns true if another pass follows `passes`: always the first one, and later ones if `accepts`
 /// accepts the expected cost after them. `now` is the cost so far, `training` the part before the first
 /// pass.
-fn another(passes: u64, now: f64, training: f64, is_wanted: impl Fn(f64) -> bool) -> bool {
-    passes == 0 || is_wanted(now + (now - training) / passes as f64)
+fn another(passes: u64, now: f64, training: f64, accepts: impl Fn(f64) -> bool) -> bool {
+    passes == 0 || accepts(now + (now - training) / passes as f64)
 }
 
 /// Computes 1 / (MSE · cost): zero if the error is unknown, the largest number if it is zero.
@@ -209,9 +209,9 @@ fn distances(
     let Some(pair) = Pair::new(&image, &reference.pixels) else {
         return BTreeMap::new();
     };
-    let wanted = |metric| metric == Metric::Rmse || metrics.contains(&metric);
+    let is_included = |metric| metric == Metric::Rmse || metrics.contains(&metric);
     let names = Metric::NAMES.into_iter();
-    let names = names.filter(|(_, metric)| wanted(*metric));
+    let names = names.filter(|(_, metric)| is_included(*metric));
     let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
     values.filter(|(_, value)| value.is_finite()).collect()
 }

@@ -72,7 +72,7 @@ pub struct Plan {
 impl Plan {
     /// Makes the default plan: bidirectional path tracing with all strategies renders the image, path tracing
     /// cross-checks it, both with the independent sampler and with the maximum depth and seed of `scene`.
-    pub fn usual(scene: &Settings, spp: u64) -> Self {
+    pub fn with_defaults(scene: &Settings, spp: u64) -> Self {
         let of = |integrator| {
             let mut settings = Settings {
                 sampler: SamplerKind::Independent,

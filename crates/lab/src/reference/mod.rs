@@ -104,7 +104,7 @@ pub enum Error {
     },
     /// A film has more passes than requested.
     #[error(
-        "{} has {found} samples per pixel already, more than the {asked} requested",
+        "{} has {found} samples per pixel already, more than the {requested} requested",
         folder.display()
     )]
     TooLong {
@@ -113,7 +113,7 @@ pub enum Error {
         /// Samples per pixel of its longest replicate, times the number of replicates.
         found: u64,
         /// Requested samples per pixel.
-        asked: u64,
+        requested: u64,
     },
     /// The folder has films of another render.
     #[error("{} is the film of another render: {difference}", path.display())]

@@ -71,11 +71,11 @@ impl EstimatorRecord {
     /// Summarizes it in a line, such as `bdpt, 4096 samples per pixel`, with the settings that differ from
     /// the defaults of the integrator.
     pub fn summary(&self) -> String {
-        let usual = self.usual();
+        let defaults = self.defaults();
         let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
         let setting = |name: &str| self.settings.get(name).map_or("", String::as_str);
         let named = self.settings.iter().filter(|(name, value)| {
-            !ignored.contains(&name.as_str()) && usual.get(*name) != Some(value)
+            !ignored.contains(&name.as_str()) && defaults.get(*name) != Some(value)
         });
         let named = named.map(|(name, value)| format!(" --{name} {value}"));
         let named = named.collect::<String>();
@@ -84,7 +84,7 @@ impl EstimatorRecord {
     }
 
     /// Returns the default settings of its integrator.
-    fn usual(&self) -> BTreeMap<String, String> {
+    fn defaults(&self) -> BTreeMap<String, String> {
         let integrator = self.settings.get("integrator");
         let integrator = integrator.and_then(|name| name.parse().ok());
         let settings = Settings::new(integrator.unwrap_or_default());
@@ -196,9 +196,9 @@ impl Provenance {
     /// Describes the difference from the scene with this digest and film. None: there is none.
     fn difference(&self, digest: &str, film: &FilmSettings) -> Option<String> {
         if self.scene_digest != digest {
-            let (found, wanted) = (short(&self.scene_digest), short(digest));
+            let (found, expected) = (short(&self.scene_digest), short(digest));
             return Some(format!(
-                "another scene, or one that has changed since: its digest is {found}, not {wanted}"
+                "another scene, or one that has changed since: its digest is {found}, not {expected}"
             ));
         }
         let ([width, height], [w, h]) = (self.resolution, film.resolution);
@@ -208,10 +208,10 @@ impl Provenance {
             ));
         }
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
-        let wanted = [left, top, right, bottom];
+        let expected = [left, top, right, bottom];
         let text = |crop: [u32; 4]| crop.map(|edge| edge.to_string()).join(",");
-        let (crop, asked) = (text(self.crop), text(wanted));
-        (self.crop != wanted).then(|| format!("another crop: {crop}, not {asked}"))
+        let (found, wanted) = (text(self.crop), text(expected));
+        (self.crop != expected).then(|| format!("another crop: {found}, not {wanted}"))
     }
 }
 

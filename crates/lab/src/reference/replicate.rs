@@ -112,7 +112,7 @@ impl Estimator<'_> {
         Err(Error::TooLong {
             folder: self.folder.to_owned(),
             found: most.saturating_mul(REPLICATES),
-            asked: self.passes.saturating_mul(REPLICATES),
+            requested: self.passes.saturating_mul(REPLICATES),
         })
     }
 

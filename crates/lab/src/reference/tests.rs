@@ -70,7 +70,7 @@ impl Workplace {
     fn make(&self, name: &str, plan: &Plan) -> Reference {
         match self.made(name, plan, &()).unwrap() {
             Made::Whole(reference) => *reference,
-            Made::Stopped => panic!("nobody asked to stop"),
+            Made::Stopped => panic!("the host never stops"),
         }
     }
 
@@ -84,7 +84,7 @@ impl Workplace {
 fn plan(spp: u64) -> Plan {
     let mut scene = Settings::default();
     scene.path.max_depth = Some(3);
-    Plan::usual(&scene, spp)
+    Plan::with_defaults(&scene, spp)
 }
 
 #[test]

@@ -161,8 +161,8 @@ fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(Stri
     let mut section = section.bound(binding);
     let name = text_of(&mut section, "part")?;
     let quantity = quantity(&mut section, names)?;
-    let usual = || format!("{}, {}", quantity.method, quantity.scene);
-    Ok((name.unwrap_or_else(usual), quantity))
+    let default = || format!("{}, {}", quantity.method, quantity.scene);
+    Ok((name.unwrap_or_else(default), quantity))
 }
 
 /// Reads the range from `below`, `above`, or both.

@@ -219,8 +219,8 @@ fn reference(
                     "leave this out, or have the reference made with `reference-spp`".to_owned(),
                 ));
             }
-            let there = ReferenceSpec::There(folder.join(image.text()?));
-            Ok((there, Some(image.at())))
+            let existing = ReferenceSpec::Existing(folder.join(image.text()?));
+            Ok((existing, Some(image.at())))
         }
         (None, Some(spp)) => {
             let made = ReferenceSpec::Make {
