@@ -160,7 +160,7 @@ class Session:
             strategy_layers: Keep one layer per strategy, for paths of up to this many vertices, 2 to 16.
             threads: Number of threads, 0 is one per processor; does not change the image. More than 4 per
                 processor are not used, with a `RuntimeWarning`; more than 1024 are an error. Where the system
-                starts fewer, the session warns and goes on with those, or with the calling thread alone.
+                starts fewer, the session warns and continues with those, or with the calling thread only.
 
         Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """

@@ -121,7 +121,7 @@ class Journal:
 
 
 def slow(journal: Journal, seconds: float = 0.1, gate: int = 24) -> type[Renderer]:
-    """Return an actor whose passes take so long at least, and are written down.
+    """Return an actor that records its passes, which have a least duration.
 
     From pass ``gate`` on it waits until the journal's gate is open, so that what happens in the middle
     of a render does so on machines of any speed.

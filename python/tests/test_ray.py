@@ -56,7 +56,7 @@ class Rendering:
     """A render in a thread, while this one kills and adds: nodes are those of the main thread."""
 
     def __init__(self, scene: bidir.Scene, journal: Journal, seconds: float = 0.1, **more: Any):
-        """Begin a render whose passes take so long at least, in tasks of about four."""
+        """Start a render with a least duration of passes, in tasks of about four."""
         settings = {"spp": SPP, "task_seconds": 4 * seconds, "fan_in": 2, **more}
         self._journal, self._result, self._error = journal, None, None
 
@@ -71,7 +71,7 @@ class Rendering:
         self._thread.start()
 
     def wait_for(self, ranges: int) -> None:
-        """Wait until so many ranges were begun."""
+        """Wait until a number of ranges have started."""
 
         def is_there() -> bool:
             assert self._thread.is_alive(), f"the render ended too early: {self._error}"

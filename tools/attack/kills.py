@@ -150,7 +150,7 @@ class Tree:
 
 
 def continued(kills, tree, folder):
-    """A reference or an experiment: the same command goes on."""
+    """A killed reference or experiment, which the same command resumes."""
     for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
         part.write(folder, file, text)
     fault = kills.insist(tree.name, tree.command, folder, tree.seconds)

@@ -1,4 +1,4 @@
-"""What a render over Ray costs beside the same render without, on this machine, and in memory.
+"""Measures the cost in time and memory of a render over Ray, relative to the same render without it.
 
     python3 tools/bench_ray                     both tables, in Markdown; some minutes
     python3 tools/bench_ray --only time         one of them

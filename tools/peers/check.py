@@ -10,7 +10,7 @@ from bench import Record
 from renderers import Job, Ours
 
 PASSES = 8
-RATIO = 0.005  # more than four standard errors of so many passes
+RATIO = 0.005  # more than four standard errors with this number of passes
 
 
 def check(program):

@@ -7,7 +7,7 @@ import subprocess
 import score
 from renderers import Failed
 
-RATIO = 0.003         # the mean of an image may differ from the reference's by so much
+RATIO = 0.003         # allowed relative difference between the means of an image and the reference
 SIGNIFICANCE = 0.001  # a difference of less probability is no noise
 SYSTEMATIC = 0.01     # the part of a render's error that need not be noise
 
