@@ -1,4 +1,4 @@
-"""Prints what the authors' FLIP says of the images in crates/lab/src/flip/tests.rs.
+"""Prints the results of the authors' FLIP for the images in crates/lab/src/flip/tests.rs.
 
 Needs the packages flip-evaluator and numpy; the images are those formulas in numpy.
 """

@@ -17,7 +17,7 @@ pub fn experiment(bytes: &[u8]) {
 fn description(text: &str) {
     match Experiment::read(text, Path::new("experiment.toml")) {
         Ok(experiment) => {
-            let _ = (experiment.cells(), experiment.quick().cells());
+            let _ = (experiment.run_count(), experiment.quick().run_count());
         }
         Err(error) => drop(error.to_string()),
     }

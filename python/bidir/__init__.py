@@ -64,7 +64,7 @@ from bidir.settings import (
 )
 
 ESTIMATOR_VERSION: int = _bidir.ESTIMATOR_VERSION
-"""Which estimates the package makes: films of different numbers are never added."""
+"""The version of the estimators; films of different versions cannot be merged."""
 __version__: str = _bidir.VERSION
 
 __all__ = [

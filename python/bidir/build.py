@@ -1,4 +1,4 @@
-"""Scenes made in Python, of arrays."""
+"""Scenes built in Python from arrays."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Texture:
     name: str
 
 
-#: What a parameter of a material, a light or a shape can be. Numbers, flags and texts are as they are,
+#: The value of a parameter of a material, a light or a shape: numbers, flags and texts keep their type;
 #: three numbers are a colour, linear Rec. 709.
 Value: TypeAlias = float | int | bool | str | Rgb | Texture
 
@@ -91,7 +91,7 @@ class SceneBuilder:
         if focal_distance is None:
             focal_distance = float(np.linalg.norm(np.subtract(target_, eye_)))
         place = " ".join(_number(x) for x in (*eye_, *target_, *up_))
-        # pbrt's space is left-handed: a picture of a right-handed world would be mirrored.
+        # pbrt's space is left-handed, which would mirror the image of a right-handed world.
         self._camera = (
             f'Scale -1 1 1\nLookAt {place}\nCamera "perspective" "float fov" {_number(fov)} '
             f'"float lensradius" {_number(lens_radius)} '
@@ -129,7 +129,7 @@ class SceneBuilder:
             raise SettingsError(f"texture: the shape {array.shape} is not that of an image")
         name = self._name("texture")
         head = f"{'PF' if is_color else 'Pf'}\n{array.shape[1]} {array.shape[0]}\n-1.0\n"
-        # The rows of the format go upwards.
+        # The format stores the bottom row first.
         self._files[f"{name}.pfm"] = head.encode() + array[::-1].tobytes()
         kind = "spectrum" if is_color else "float"
         self._world.append(f'Texture "{name}" "{kind}" "imagemap" "string filename" "{name}.pfm"\n')
@@ -266,7 +266,7 @@ def _list(parameters: dict[str, Value]) -> str:
 
 
 def _parameter(name: str, value: Value) -> str:
-    """Return a parameter as the format writes it; a type in front of the name stays."""
+    """Return a parameter in the notation of the format; a type in front of the name stays."""
     kind, text = _typed(name, value)
     full = name if " " in name else f"{kind} {name}"
     return f'"{full}" {text}'
@@ -280,7 +280,7 @@ def _typed(name: str, value: Value) -> tuple[str, str]:
     if isinstance(value, str):
         return "string", _text(value)
     if isinstance(value, (int, np.integer)):
-        # A whole number for what is measured is a number all the same.
+        # Whole numbers are valid values of real parameters.
         return ("integer" if name in _INTEGERS else "float"), str(int(value))
     if isinstance(value, (float, np.floating)):
         return "float", _number(value)
@@ -288,7 +288,7 @@ def _typed(name: str, value: Value) -> tuple[str, str]:
     return "rgb", f"[{numbers}]"
 
 
-#: The parameters of materials and lights that are whole numbers.
+#: The integer parameters of materials and lights.
 _INTEGERS = {"maxdepth", "nsamples"}
 
 

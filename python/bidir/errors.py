@@ -79,7 +79,7 @@ class _PlacedError(BidirError):
         self.column = column
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Pickles the place with the text, so that errors of other processes keep it."""
+        """Pickle the place with the text, so that errors of other processes keep it."""
         return (_restore, (type(self), str(self), self.__dict__))
 
 
@@ -109,7 +109,7 @@ class FileError(_PlacedError, OSError):
     """The system cannot read or write a file."""
 
     def __str__(self) -> str:
-        """Tell the place and the reason, as all errors about files do."""
+        """Return the place and the reason, as all errors about files do."""
         return str(self.args[0]) if self.args else ""
 
 

@@ -181,6 +181,6 @@ def _toml(value: object) -> str:
 
 
 def _setting(flag: str, value: str) -> str:
-    """Return a setting as descriptions have it: numbers are numbers."""
+    """Return a setting in the notation of descriptions, with numbers unquoted."""
     numbers = {"max-depth", "candidates", "next-events", "samples-per-subpath"}
     return value if flag in numbers and value.isdigit() else _toml(value)

@@ -25,7 +25,7 @@ class Film:
     """
 
     def __init__(self, native: _bidir.Film) -> None:
-        """Wrap what the native half made; use :meth:`load` or :attr:`bidir.Image.film`."""
+        """Wrap a native film; use :meth:`load` or :attr:`bidir.Image.film`."""
         self._native = native
 
     @classmethod
@@ -130,7 +130,7 @@ class Film:
         return self._native.noise
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether both are of the same passes of the same render, bit for bit."""
+        """Return True if both have the same passes of the same render, bit for bit."""
         if not isinstance(other, Film):
             return NotImplemented
         return self._native.equals(other._native)
@@ -142,6 +142,6 @@ class Film:
         return (Film.from_bytes, (self.to_bytes(),))
 
     def __repr__(self) -> str:
-        """Tell the scene, the passes and the beginning of the identity."""
+        """Return the scene, the passes and the beginning of the identity."""
         passes = ", ".join(f"{part.start}..{part.stop}" for part in self.passes) or "none"
         return f"<bidir.Film {self.scene!r} passes {passes} {self.identity[:12]}>"

@@ -1,4 +1,4 @@
-"""Images: pictures with what lies beside them, as arrays of numpy."""
+"""Images with their layers, as numpy arrays."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ class Image:
         return np.array(self._pixels, dtype=dtype)
 
     def __repr__(self) -> str:
-        """Tell the size, the samples per pixel and the noise."""
+        """Return the size, the samples per pixel and the noise."""
         height, width, _ = self.shape
         film = self._film
         return f"<bidir.Image {width} x {height}, {film.spp} spp, noise {film.noise:.3g}>"

@@ -1,4 +1,4 @@
-"""How far an image is from a reference.
+"""Error metrics of an image against a reference.
 
 Numbers are those of ``bidir compare``, over red, green and blue of all pixels; ε = 0.01. Images are
 linear Rec. 709, of one shape: (rows, columns, 3).

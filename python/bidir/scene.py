@@ -89,7 +89,7 @@ class Scene:
         return [os.fspath(name) for name in self._native.files]
 
     def __repr__(self) -> str:
-        """Tell the file, the size and the beginning of the digest."""
+        """Return the file, the size and the beginning of the digest."""
         width, height = self.size
         return f"<bidir.Scene {self.name!r} {width} x {height} {self.digest[:12]}>"
 
@@ -125,7 +125,7 @@ def _unpack(name: str, source: Mapping[str, Any], digest: str) -> Scene:
 
 
 def _told(scene: Scene) -> Scene:
-    """Tell the warnings of a scene to who asked for it."""
+    """Warn the caller of each warning of a scene."""
     for text in scene.warnings:
         warnings.warn(_bidir.printable(text), SceneWarning, stacklevel=3)
     return scene

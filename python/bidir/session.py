@@ -18,7 +18,7 @@ from bidir.image import Image
 from bidir.scene import Scene, StrPath, load
 from bidir.settings import Integrator
 
-__all__ = ["LAYERS", "Progress", "ProgressBar", "Session", "Wanted", "render"]
+__all__ = ["LAYERS", "Progress", "ProgressBar", "RenderRequest", "Session", "render"]
 
 #: The names of all layers.
 LAYERS: tuple[str, ...] = tuple(_bidir.LAYERS)
@@ -30,16 +30,16 @@ class ProgressBar(Protocol):
     total: Any
 
     def update(self, n: int) -> Any:
-        """Tell that ``n`` passes more are done."""
+        """Report ``n`` more finished passes."""
         ...
 
     def close(self) -> Any:
-        """Tell that nothing more comes."""
+        """End the bar."""
         ...
 
 
-#: Who is told of progress: a bar, a class of bars such as ``tqdm``, which is called with ``total`` and
-#: ``unit``, or a function of the passes that are done and of all, None where there is no limit.
+#: A receiver of progress: a bar; a class of bars such as ``tqdm``, called with ``total`` and ``unit``; or a
+#: function of the numbers of finished passes and of all passes, None if there is no limit.
 Progress: TypeAlias = ProgressBar | Callable[[int, int | None], object] | type
 
 
@@ -47,7 +47,7 @@ class Reporter(AbstractContextManager["Reporter"]):
     """Reports to a :data:`Progress`."""
 
     def __init__(self, progress: Progress | None, total: int | None, done: int = 0) -> None:
-        """Begin where ``done`` of ``total`` passes are there."""
+        """Begin with ``done`` of ``total`` passes finished."""
         self._total = total
         self._done = done
         self._own = isinstance(progress, type)
@@ -64,7 +64,7 @@ class Reporter(AbstractContextManager["Reporter"]):
             self._call = progress
 
     def advance(self, passes: int) -> None:
-        """Tell that so many passes more are done."""
+        """Report more finished passes."""
         self._done += passes
         if self._bar is not None:
             self._bar.update(passes)
@@ -77,30 +77,30 @@ class Reporter(AbstractContextManager["Reporter"]):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close a bar that was made here."""
+        """Close the bar if this reporter made it."""
         if self._own and self._bar is not None:
             self._bar.close()
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """The part of a scene that is rendered, and all else but the passes that a film depends on."""
+class RenderRequest:
+    """The requested settings of a render: everything that a film depends on except scene and passes."""
 
-    #: The estimator; None is the scene's.
+    #: The integrator. None: that of the scene.
     integrator: Integrator | None = None
-    #: The seed; None is the scene's, or 0.
+    #: The seed. None: that of the scene, or 0.
     seed: int | None = None
     #: Names of :data:`LAYERS`.
     layers: tuple[str, ...] = ()
-    #: Whether every group of lights has an image.
+    #: True if every light group has a layer.
     light_groups: bool = False
-    #: The most vertices of paths whose strategies have images.
+    #: The largest number of vertices of paths whose strategies have layers.
     strategy_layers: int = 0
 
     def native(self, scene: Scene) -> dict[str, Any]:
-        """Return the same as the native half takes it.
+        """Return the settings for the native module.
 
-        Errors: :class:`bidir.SettingsError` where a number is none that can be meant.
+        Errors: :class:`bidir.SettingsError` if a number is out of range.
         """
         if self.seed is not None and not 0 <= self.seed < 1 << 64:
             raise SettingsError(f"seed: {self.seed} is not from 0 to 2**64 - 1")
@@ -118,17 +118,17 @@ class Wanted:
         }
 
 
-def wanted(
+def render_request(
     integrator: Integrator | None,
     seed: int | None,
     layers: Iterable[str],
     light_groups: bool,
     strategy_layers: int,
-) -> Wanted:
-    """Return the same as a value."""
+) -> RenderRequest:
+    """Return the arguments of a render as a value."""
     if isinstance(layers, str):
         layers = layers.split(",")
-    return Wanted(integrator, seed, tuple(layers), light_groups, strategy_layers)
+    return RenderRequest(integrator, seed, tuple(layers), light_groups, strategy_layers)
 
 
 class Session:
@@ -160,13 +160,13 @@ class Session:
             strategy_layers: Keep one layer per strategy, for paths of up to this many vertices, 2 to 16.
             threads: Number of threads, 0 is one per processor; does not change the image. More than 4 per
                 processor are not used, with a `RuntimeWarning`; more than 1024 are an error. Where the system
-                starts fewer, the session warns and goes on with those, or with the calling thread alone.
+                starts fewer, the session warns and continues with those, or with the calling thread only.
 
         Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """
         self.scene = scene if isinstance(scene, Scene) else load(scene)
-        self.wanted = wanted(integrator, seed, layers, light_groups, strategy_layers)
-        native = self.wanted.native(self.scene)
+        self.request = render_request(integrator, seed, layers, light_groups, strategy_layers)
+        native = self.request.native(self.scene)
         if threads < 0:
             raise SettingsError(f"threads: {threads} is below 0")
         self._native = _bidir.Session(self.scene._native, native, threads)
@@ -243,7 +243,7 @@ class Session:
         return self._native.identity
 
     def __repr__(self) -> str:
-        """Tell the scene and how many passes are rendered."""
+        """Return the scene and the number of finished passes."""
         return f"<bidir.Session {self.scene.name!r}, {sum(map(len, self.passes))} passes>"
 
 
@@ -314,7 +314,7 @@ def render(
 
 
 class _Budget:
-    """Whether another pass is rendered; there is always a first."""
+    """The limits of a render: decides if another pass is rendered; there is always a first one."""
 
     def __init__(self, spp: int | None, time: float | None, noise: float | None) -> None:
         self._spp, self._time, self._noise = spp, time, noise
@@ -339,12 +339,12 @@ class _Budget:
         if self._time is None or self._rendered == 0:
             return False
         elapsed = clock.monotonic() - self._begin
-        # A pass is expected to take as long as those before.
+        # The next pass is expected to take the mean time of earlier ones.
         return elapsed + elapsed / max(self._rendered, 1) > self._time
 
 
 class _Keeper:
-    """Writes a film file now and then."""
+    """Writes checkpoints at intervals."""
 
     def __init__(self, session: Session, path: StrPath | None, every: float, limit: int | None) -> None:
         self._session, self._every = session, every

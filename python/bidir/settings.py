@@ -147,7 +147,7 @@ def _warn(older: str, today: str) -> None:
 
 
 def _text(value: object) -> str:
-    """Return a setting as flags have it: numbers that belong together have commas between them."""
+    """Return a setting in the notation of flags: tuples of numbers are separated by commas."""
     return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 

@@ -1,4 +1,4 @@
-"""A scene of arrays: a wavy surface with a checkered texture under a lamp."""
+"""A scene from arrays: a wavy surface with a checkered texture under a lamp."""
 
 import numpy as np
 

@@ -1,11 +1,11 @@
-"""A render over the nodes of a Ray cluster, which goes on where a driver died."""
+"""A render on the nodes of a Ray cluster, which survives the death of its driver."""
 
 import bidir
 import bidir.ray
 
 
 def main(address: str | None, spp: int) -> bidir.Image:
-    """Render; the same call with the same file goes on."""
+    """Render; the same call with the same checkpoint continues."""
     scene = bidir.load("scenes/apartment.pbrt", size=(160, 90))
     return bidir.ray.render(
         scene,

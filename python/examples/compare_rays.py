@@ -1,4 +1,4 @@
-"""Rules for shadow rays against each other: what one ray for each pair of subpaths costs and saves."""
+"""A comparison of rules for shadow rays: cost and benefit of one ray for each pair of subpaths."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ METHODS: dict[str, bidir.Integrator] = {
 
 
 def main(folder: Path) -> bidir.Results:
-    """Run the experiment; the same call goes on where it was stopped."""
+    """Run the experiment; the same call continues after an interruption."""
     experiment = bidir.Experiment.of(
         title="Shadow rays in the Cornell box",
         scenes={"cornell": "scenes/cornell.pbrt"},

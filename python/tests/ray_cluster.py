@@ -84,7 +84,7 @@ class Nodes:
         return str(node.node_id)
 
     def has_lost_any(self) -> bool:
-        """Tell whether a node is gone that no test has killed."""
+        """Return True if a node has died that no test killed."""
         return sum(not node["Alive"] for node in ray.nodes()) > self._killed
 
     @property
@@ -94,7 +94,7 @@ class Nodes:
 
 
 def wait_for(what: Callable[[], bool], seconds: float = 120) -> None:
-    """Wait until something is true; fail where it is not for long."""
+    """Wait until a condition is true; fail after a long time."""
     end = time.monotonic() + seconds
     while not what():
         assert time.monotonic() < end, "waited too long"
@@ -102,7 +102,7 @@ def wait_for(what: Callable[[], bool], seconds: float = 120) -> None:
 
 
 class Journal:
-    """What actors did: a file for each range that was begun; and a gate that holds them."""
+    """A record of the actors' work, one file per started range, and a gate that holds them."""
 
     def __init__(self) -> None:
         """Begin an empty journal."""
@@ -110,18 +110,18 @@ class Journal:
         atexit.register(shutil.rmtree, self.folder, ignore_errors=True)
 
     def open_gate(self) -> None:
-        """Let actors begin ranges of the second half."""
+        """Let actors start ranges of the second half."""
         (self.folder / "open").touch()
 
     def entries(self) -> list[tuple[int, int, int, str]]:
-        """Return begin, end, process and node of all ranges, in the order of their beginning."""
+        """Return begin, end, process and node of all ranges, in the order of their start."""
         found = sorted(self.folder.glob("*.range"), key=lambda path: path.stat().st_mtime_ns)
         parts = [path.stem.split("_") for path in found]
         return [(int(a), int(b), int(pid), node) for a, b, pid, node, _ in parts]
 
 
 def slow(journal: Journal, seconds: float = 0.1, gate: int = 24) -> type[Renderer]:
-    """Return an actor whose passes take so long at least, and are written down.
+    """Return an actor that records its passes, which have a least duration.
 
     From pass ``gate`` on it waits until the journal's gate is open, so that what happens in the middle
     of a render does so on machines of any speed.

@@ -38,12 +38,12 @@ def test_an_experiment_has_results(experiment: bidir.Experiment, tmp_path: Path)
     assert "ratios to all" in str(results)
     assert json.loads((tmp_path / "results.json").read_text()) == results.data
     assert (tmp_path / "report.html").stat().st_size > 10_000
-    # Records that are there are not made again: their times stay.
+    # Existing records are kept with their times.
     again = bidir.Experiment(experiment.text, threads=2).run(tmp_path)
     assert again.data == results.data
 
 
-def test_what_is_wrong_with_a_description(tmp_path: Path) -> None:
+def test_errors_of_descriptions_have_their_place(tmp_path: Path) -> None:
     path = tmp_path / "e.toml"
     path.write_text(
         'seeds = 2\n[[scene]]\nfile = "a"\nreference-spp = 4\n'

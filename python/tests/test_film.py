@@ -23,7 +23,7 @@ def films(cornell: bidir.Scene) -> list[bidir.Film]:
     return films
 
 
-def test_films_tell_their_passes(films: list[bidir.Film]) -> None:
+def test_films_list_their_passes(films: list[bidir.Film]) -> None:
     merged = bidir.Film.merge(films)
     assert merged.passes == [range(3), range(4, 6)]
     assert merged.spp == 5
@@ -79,7 +79,7 @@ def test_outputs_replace_no_file_of_the_scene(tmp_path: Path) -> None:
     image.save(tmp_path / "wood.exr")
 
 
-def test_films_are_kept_in_files(films: list[bidir.Film], tmp_path: Path) -> None:
+def test_films_survive_files(films: list[bidir.Film], tmp_path: Path) -> None:
     path = tmp_path / "a.film"
     films[0].save(path)
     assert bidir.Film.load(path) == films[0] == pickle.loads(pickle.dumps(films[0]))
@@ -97,7 +97,7 @@ def test_films_are_kept_in_files(films: list[bidir.Film], tmp_path: Path) -> Non
         films[0].save(tmp_path / "missing" / "a.film")
 
 
-def test_images_are_kept_in_files(cornell: bidir.Scene, tmp_path: Path) -> None:
+def test_images_survive_files(cornell: bidir.Scene, tmp_path: Path) -> None:
     image = bidir.render(cornell, spp=2, layers=["albedo"])
     image.save(tmp_path / "a.exr")
     assert bidir.identical(bidir.read_image(tmp_path / "a.exr"), image)
@@ -128,7 +128,7 @@ def test_metrics_are_as_defined() -> None:
     assert numbers["rmse"] == bidir.rmse(a, b)
 
 
-def test_flip_sees_what_differs() -> None:
+def test_flip_is_zero_for_equal_images_only() -> None:
     black, white = np.zeros((16, 16, 3)), np.ones((16, 16, 3))
     assert bidir.flip(black, black) == 0
     assert bidir.flip_hdr(white, white) == 0
@@ -136,7 +136,7 @@ def test_flip_sees_what_differs() -> None:
     assert set(bidir.compare(black, white, ["flip"])) == {"flip"}
 
 
-def test_metrics_refuse_what_has_none() -> None:
+def test_metrics_refuse_images_of_different_shapes() -> None:
     image = np.zeros((4, 4, 3))
     with pytest.raises(bidir.SettingsError, match="differ in shape"):
         bidir.rmse(image, image[:2])

@@ -1,4 +1,4 @@
-"""Renders over nodes that die, come and fail: the bits are those of one machine."""
+"""Renders on nodes that die, join and fail have the bits of one machine."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ import bidir.ray  # noqa: E402
 from bidir.ray._crew import Limits  # noqa: E402
 from bidir.ray._render import Keeper, Renderer, RenderWork, versions  # noqa: E402
 from bidir.ray._tree import Tree  # noqa: E402
-from bidir.session import Reporter, Wanted  # noqa: E402
+from bidir.session import RenderRequest, Reporter  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(__file__))
 from ray_cluster import Journal, Nodes, slow, wait_for  # noqa: E402
@@ -56,7 +56,7 @@ class Rendering:
     """A render in a thread, while this one kills and adds: nodes are those of the main thread."""
 
     def __init__(self, scene: bidir.Scene, journal: Journal, seconds: float = 0.1, **more: Any):
-        """Begin a render whose passes take so long at least, in tasks of about four."""
+        """Start a render with a least duration of passes, in tasks of about four."""
         settings = {"spp": SPP, "task_seconds": 4 * seconds, "fan_in": 2, **more}
         self._journal, self._result, self._error = journal, None, None
 
@@ -71,7 +71,7 @@ class Rendering:
         self._thread.start()
 
     def wait_for(self, ranges: int) -> None:
-        """Wait until so many ranges were begun."""
+        """Wait until a number of ranges have started."""
 
         def is_there() -> bool:
             assert self._thread.is_alive(), f"the render ended too early: {self._error}"
@@ -113,7 +113,7 @@ def test_a_killed_worker(nodes: Nodes, cornell: bidir.Scene, local: bidir.Film) 
     os.kill(pid, signal.SIGKILL)
     journal.open_gate()
     check(rendering.film(), local)
-    # What the process had begun was begun again, on its node or on another.
+    # Another process repeated the ranges of the killed one.
     assert sum(end - begin for begin, end, _, _ in journal.entries()) > SPP
     assert not nodes.has_lost_any()
     assert node in {other for *_, other in journal.entries()}
@@ -178,7 +178,7 @@ def test_a_killed_driver(
     rendering = Rendering(cornell, again, checkpoint=path, progress=lambda done, of: tell(done))
     check(rendering.film(), local)
     assert bidir.Film.load(path) == local
-    # What was kept is not rendered again.
+    # Passes in the checkpoint are not rendered again.
     begun = {p for begin, end, _, _ in again.entries() for p in range(begin, end)}
     assert not begun & {p for part in kept.passes for p in part}
     assert told[-1] == SPP
@@ -232,11 +232,11 @@ def test_nodes_of_another_version_are_refused(nodes: Nodes, cornell: bidir.Scene
         ({"identity": "b"}, "its films are of another render"),
     ],
 )
-def test_what_nodes_must_have_in_common(
+def test_nodes_that_differ_are_refused(
     nodes: Nodes, cornell: bidir.Scene, told: dict[str, Any], words: str | None
 ) -> None:
     keeper = Keeper(None, 0, 1, cornell.digest)
-    work = RenderWork(cornell, Wanted(), None, range(1), 1, Tree(2), keeper, Reporter(None, 1))
+    work = RenderWork(cornell, RenderRequest(), None, range(1), 1, Tree(2), keeper, Reporter(None, 1))
     usual = {**versions(), "scene": cornell.digest, "identity": "a"}
     assert work.check(usual) is None
     reason = work.check({**usual, **told})
@@ -281,7 +281,7 @@ def test_an_experiment_has_the_records_of_one_machine(nodes: Nodes, tmp_path: Pa
 
     told: list[tuple[str, int, int]] = []
     with contextlib.suppress(RuntimeError):
-        # A driver that stops has kept what was done before.
+        # A stopped driver keeps finished records.
         bidir.ray.experiment(experiment, tmp_path / "ray", progress=stopping(4))
     results = bidir.ray.experiment(experiment, tmp_path / "ray", progress=lambda *a: told.append(a))
     assert [done for what, done, _ in told if "seed" in what] == [6, 8]
@@ -290,7 +290,7 @@ def test_an_experiment_has_the_records_of_one_machine(nodes: Nodes, tmp_path: Pa
 
 
 def stopping(at: int) -> Any:
-    """Return a function that is told of progress, and raises where so much is done."""
+    """Return a progress function that raises after some progress."""
 
     def tell(what: str, done: int, of: int) -> None:
         if "seed" in what and done >= at:

@@ -59,7 +59,7 @@ def test_layers_have_names_and_shapes(cornell: bidir.Scene) -> None:
     assert {"Albedo", "P", "N", "Ns", "Z", "Samples", "Variance", "Rays"} <= everything.keys()
 
 
-def test_strategies_add_up_to_the_picture(cornell: bidir.Scene) -> None:
+def test_strategies_add_up_to_the_image(cornell: bidir.Scene) -> None:
     image = bidir.render(cornell, bidir.Bdpt(max_depth=2), spp=4, strategy_layers=4)
     total = sum(layer.astype(float) for layer in image.layers.values())
     np.testing.assert_allclose(total, image.pixels, atol=1e-4)
@@ -91,12 +91,12 @@ def test_threads_and_parts_change_no_bit(cornell: bidir.Scene, integrator: bidir
     assert bidir.Film.merge(last, first) == bidir.Film.merge([first, last]) == whole
 
 
-def test_seeds_change_the_picture(cornell: bidir.Scene) -> None:
+def test_seeds_change_the_image(cornell: bidir.Scene) -> None:
     a, b = (bidir.render(cornell, spp=1, seed=seed) for seed in (1, 2))
     assert not bidir.identical(a, b)
 
 
-def test_a_session_goes_on_from_a_film(cornell: bidir.Scene, tmp_path: Path) -> None:
+def test_a_session_continues_from_a_film(cornell: bidir.Scene, tmp_path: Path) -> None:
     session = bidir.Session(cornell, bidir.Path())
     session.step(2)
     assert bidir.identical(session.snapshot(), bidir.render(cornell, bidir.Path(), spp=2))
@@ -113,7 +113,7 @@ def test_a_session_goes_on_from_a_film(cornell: bidir.Scene, tmp_path: Path) -> 
         other.resume(tmp_path / "a.film")
 
 
-def test_render_goes_on_from_its_checkpoint(cornell: bidir.Scene, tmp_path: Path) -> None:
+def test_render_continues_from_its_checkpoint(cornell: bidir.Scene, tmp_path: Path) -> None:
     path = tmp_path / "a.film"
     bidir.render(cornell, spp=2, checkpoint=path)
     told: list[tuple[int, int | None]] = []
@@ -127,7 +127,7 @@ def test_render_goes_on_from_its_checkpoint(cornell: bidir.Scene, tmp_path: Path
 
 
 class Bar:
-    """A bar that remembers."""
+    """A bar that records its calls."""
 
     def __init__(self, total: Any = None, unit: str = "", initial: int = 0) -> None:
         self.total, self.unit, self.n, self.closed = total, unit, initial, False
@@ -142,7 +142,7 @@ class Bar:
         self.closed = True
 
 
-def test_progress_is_told_to_bars(cornell: bidir.Scene) -> None:
+def test_progress_reaches_bars_and_functions(cornell: bidir.Scene) -> None:
     bar = Bar()
     bidir.render(cornell, spp=3, progress=bar)
     assert (bar.n, bar.total, bar.closed) == (3, 3, False)
@@ -150,7 +150,7 @@ def test_progress_is_told_to_bars(cornell: bidir.Scene) -> None:
     assert (Bar.last.n, Bar.last.total, Bar.last.unit, Bar.last.closed) == (2, 2, "pass", True)
 
 
-def test_tqdm_is_such_a_bar(cornell: bidir.Scene) -> None:
+def test_tqdm_is_a_progress_bar(cornell: bidir.Scene) -> None:
     tqdm = pytest.importorskip("tqdm", reason="tqdm is not installed")
     with tqdm.tqdm(disable=False, file=open(os.devnull, "w")) as bar:
         bidir.render(cornell, spp=3, progress=bar)
@@ -164,7 +164,7 @@ def test_limits_end_a_render(cornell: bidir.Scene) -> None:
     by_noise = bidir.render(cornell, noise=0.2)
     assert by_noise.film.stopping == "noise"
     assert by_noise.film.noise <= 0.2
-    # One pass would do: from 16 on it is looked at, as by the command.
+    # One pass would suffice, but the noise is checked from pass 16 on, as by the command.
     assert bidir.render(cornell, noise=1e6).film.spp == 16
     assert bidir.render(cornell, spp=1, time=1e6).film.stopping == "fixed"
     for wrong in (
@@ -198,14 +198,14 @@ def test_other_threads_run_meanwhile(scenes: Path) -> None:
         turns += 1
         time.sleep(0.001)
     thread.join()
-    # With the GIL held there would be one turn or two.
+    # With the GIL held, there would be one or two turns.
     assert turns > 10
     assert session.next_pass == 2
 
 
 INTERRUPTED = """
 import signal, sys, bidir
-# Shells start what runs in the background with this signal ignored.
+# Shells start background processes with this signal ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = bidir.load(sys.argv[1], size=(512, 512))
 def tell(done, of):

@@ -1,4 +1,4 @@
-"""Scenes: files, texts, arrays, and what is wrong with them."""
+"""Scenes from files, texts and arrays, and their errors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SKY = 'WorldBegin\nLightSource "infinite"\n'
 QUAD = ([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], [[0, 3, 2, 1]])
 
 
-def test_a_scene_tells_what_it_is(scenes: Path) -> None:
+def test_a_scene_has_its_properties(scenes: Path) -> None:
     scene = bidir.load(scenes / "cornell.pbrt", size=(40, 40), crop=(4, 2, 14, 30))
     assert (scene.size, scene.crop, scene.shape) == ((40, 40), (4, 2, 14, 30), (28, 10, 3))
     assert scene.settings["integrator"] == "bdpt"
@@ -40,7 +40,7 @@ def test_errors_have_a_place(scenes: Path, name: str, line: int, column: int) ->
     assert (type(again), str(again), again.column) == (type(error), str(error), column)
 
 
-def test_what_is_odd_is_a_warning(scenes: Path) -> None:
+def test_scenes_have_warnings(scenes: Path) -> None:
     with pytest.warns(bidir.SceneWarning, match=r"cornell.pbrt:\d+:\d+: the scene's film") as told:
         scene = bidir.load(scenes / "cornell.pbrt", size=(40, 30))
     assert [str(warning.message) for warning in told] == scene.warnings
@@ -55,19 +55,19 @@ def test_hints_are_given() -> None:
         bidir.from_text(SKY + 'Shape "curve" "point3 P" [0 0 0 1 0 0 1 1 0 1 1 1]')
 
 
-def test_a_file_that_is_not_there() -> None:
+def test_a_missing_file_is_an_error() -> None:
     with pytest.raises(bidir.MissingFileError, match="no such file"):
         bidir.load("no-such-scene.pbrt")
     with pytest.raises(FileNotFoundError):
         bidir.load("no-such-scene.pbrt")
 
 
-def test_a_crop_outside_of_the_film(scenes: Path) -> None:
+def test_a_crop_outside_the_film_is_refused(scenes: Path) -> None:
     with pytest.raises(bidir.SettingsError):
         bidir.load(scenes / "cornell.pbrt", size=(8, 8), crop=(9, 9, 12, 12))
 
 
-def test_a_text_with_files_in_memory() -> None:
+def test_a_scene_from_text_reads_files_in_memory() -> None:
     part = 'LightSource "point"\n'
     scene = bidir.from_text(
         'WorldBegin\nInclude "part.pbrt"\n', files={"part.pbrt": part.encode()}, size=(16, 9)
@@ -92,7 +92,7 @@ def test_pickled_scenes_need_no_files(tmp_path: Path) -> None:
         bidir.load(path)
 
 
-def test_a_scene_that_changed_is_not_packed_as_what_it_was(tmp_path: Path) -> None:
+def test_a_scene_with_a_changed_file_cannot_be_pickled(tmp_path: Path) -> None:
     path = tmp_path / "s.pbrt"
     path.write_text(SKY)
     scene = bidir.load(path, size=(16, 9))
@@ -101,7 +101,7 @@ def test_a_scene_that_changed_is_not_packed_as_what_it_was(tmp_path: Path) -> No
         pickle.loads(pickle.dumps(scene))
 
 
-def test_a_built_scene_has_the_light_that_it_should() -> None:
+def test_a_built_scene_has_the_expected_radiance() -> None:
     builder = bidir.SceneBuilder((9, 9)).camera((0, 5, 0), (0, 0, 0), up=(0, 0, -1), fov=10)
     grey = builder.material("diffuse", reflectance=(0.5, 0.25, 0.0))
     builder.mesh(*QUAD, grey).light("infinite", L=(1, 1, 1))
@@ -142,13 +142,13 @@ def test_a_transform_moves_a_mesh() -> None:
         ((QUAD[0], [[0.0, 1.0, 2.0]]), "whole numbers"),
     ],
 )
-def test_meshes_of_wrong_shapes(arguments: tuple[list, list], words: str) -> None:
+def test_meshes_of_wrong_shapes_are_refused(arguments: tuple[list, list], words: str) -> None:
     builder = bidir.SceneBuilder()
     with pytest.raises(bidir.SettingsError, match=words):
         builder.mesh(*arguments, builder.material("diffuse"))
 
 
-def test_a_builder_says_what_is_wrong() -> None:
+def test_a_builder_reports_errors() -> None:
     builder = bidir.SceneBuilder()
     with pytest.raises(bidir.SettingsError, match="no camera"):
         builder.build()

@@ -51,7 +51,7 @@ def test_settings_are_those_of_the_flags() -> None:
 def test_classes_have_the_settings_of_the_command(kind: type[bidir.Integrator]) -> None:
     own = {field.name.replace("_", "-") for field in dataclasses.fields(kind)}
     if kind is bidir.Auto:
-        # It is a kind of Lvc, and ignores this one.
+        # It is a subclass of Lvc, but ignores this setting.
         own.remove("samples-per-subpath")
     assert {"integrator", *own} == set(_bidir.settings_of(kind.__name__.lower()))
 
@@ -98,7 +98,7 @@ def test_rules_reach_the_render(cornell: bidir.Scene, rule: bidir.Selector) -> N
     assert session.film() == bidir.render(cornell, bidir.Bdpt(shadow_rays=str(rule)), spp=1).film
 
 
-def test_auto_decides(cornell: bidir.Scene) -> None:
+def test_auto_chooses_an_integrator(cornell: bidir.Scene) -> None:
     assert bidir.Session(cornell, bidir.Auto()).settings["integrator"] in {"path", "lvc"}
 
 
@@ -125,6 +125,6 @@ def test_estimators_are_values() -> None:
         bdpt.max_depth = 4  # type: ignore[misc]
 
 
-def test_layers_that_are_not_known(cornell: bidir.Scene) -> None:
+def test_unknown_layers_are_refused(cornell: bidir.Scene) -> None:
     with pytest.raises(bidir.SettingsError, match="layers: there is no `albeda`: did you mean `albedo`"):
         bidir.render(cornell, spp=1, layers=["albeda"])

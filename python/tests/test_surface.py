@@ -1,4 +1,4 @@
-"""The public surface: it agrees with its types, and all of it is documented."""
+"""The public interface agrees with its types and is documented."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PACKAGE = Path(bidir.__file__).parent
 
 
 def names_of(module: ModuleType) -> set[str]:
-    """Return the names of what a module has for others."""
+    """Return the public names of a module."""
     return {name for name in dir(module) if not name.startswith("_")}
 
 
@@ -33,7 +33,7 @@ def members(tree: ast.ClassDef) -> dict[str, list[str]]:
     return found
 
 
-def test_the_native_half_is_what_its_stub_says() -> None:
+def test_the_native_module_agrees_with_its_stub() -> None:
     tree = ast.parse((PACKAGE / "_bidir.pyi").read_text())
     functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
@@ -82,7 +82,7 @@ def test_everything_public_is_listed_and_documented() -> None:
                     assert inspect.getdoc(value), f"{name}.{member}"
 
 
-def test_arrays_tell_their_shape() -> None:
+def test_array_types_document_their_shape() -> None:
     for thing in (bidir.Image.pixels, bidir.Image.layers, bidir.read_image, bidir.error_map):
         assert "hape: (" in (inspect.getdoc(thing) or ""), thing
 

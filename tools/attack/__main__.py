@@ -62,7 +62,7 @@ def arguments():
 
 
 def complete(options):
-    """What is left out gets its value."""
+    """Sets the defaults of missing options."""
     options.parts = options.parts or list(PARTS)
     options.bidir, options.mutations = map(os.path.abspath, (options.bidir, options.mutations))
     options.root = ROOT

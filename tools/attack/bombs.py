@@ -9,13 +9,13 @@ import part
 import runs
 
 HEAD = 'Camera "perspective" WorldBegin LightSource "infinite"\n'
-# With as much time again for a machine that does other things.
+# Twice the documented time, for a busy machine.
 LIMITS = runs.Limits(cpu=4, wall=300, memory=runs.GIB)
 MEBI = 1 << 20
 
 
 def zeros(size, head=b"", footer=b"", byte=b"\0"):
-    """A raw deflate stream of `head`, so many times the same byte, and `footer`, made in no time."""
+    """Makes a raw deflate stream of `head`, a repeated byte, and `footer`, without compressing all of it."""
     packer = zlib.compressobj(9, zlib.DEFLATED, -15)
     begin = packer.compress(head) + packer.flush(zlib.Z_FULL_FLUSH)
     piece = packer.compress(byte * (16 * MEBI)) + packer.flush(zlib.Z_FULL_FLUSH)
@@ -33,7 +33,7 @@ def gzip(size, head=b"", footer=b"", byte=b"\0"):
 
 
 def png(side, depth, colours):
-    """A black image of so many pixels a side, of bits and a colour type."""
+    """Makes a black square image with a number of bits and a colour type."""
     def chunk(name, data):
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
@@ -98,7 +98,7 @@ def subdivided(times):
 
 
 def sparse():
-    """Three hundred million points of which one is there."""
+    """Makes a file that announces three hundred million points and contains one."""
     indices, values = {"bufferView": 0, "componentType": 5125}, {"bufferView": 0}
     return gltf({"count": 3 * 10 ** 8, "sparse": {"count": 1, "indices": indices, "values": values}})
 

@@ -35,7 +35,7 @@ max-depth = 3
 samples = 2
 """
 RENDER = ("render", "room.pbrt", "-q", "--threads", "1", "--size", "24x16")
-# By name: arguments, and the files that come out with the same contents every time.
+# By name: arguments, and the outputs with reproducible contents.
 COMMANDS = {
     "render": ((*RENDER, "--spp", "8", "-o", "out.exr", "--checkpoint", "a.film", "--resume"),
                ("out.exr", "out.png")),

@@ -9,7 +9,7 @@ import part
 import runs
 from worlds import INTEGRATORS, LAMP, ROOM, WALLS
 
-# Beyond what eight by eight pixels need, there is room for threads and for the program itself.
+# The memory of eight by eight pixels, plus that of threads and of the program itself.
 LIMITS = runs.Limits(cpu=10, wall=300, memory=runs.GIB // 2)
 HEAD = 'LookAt 0 0 -4 0 0 0 0 1 0\nCamera "perspective"\nWorldBegin\n'
 INSIDE = 'LookAt 0 0 -0.5 0 0 0 0 1 0\nCamera "perspective"\nWorldBegin\n'
@@ -94,7 +94,7 @@ FLAGS = {
 
 
 def not_finite(path):
-    """The number of values of the image that are infinite or no numbers; depth may be infinite."""
+    """Returns the number of values of the image that are infinite or NaN; depth may be infinite."""
     pixels = exr.read(path)
     return sum(not math.isfinite(value) for name in pixels if name[-1] in "RGB" for value in pixels[name])
 

@@ -1,4 +1,4 @@
-"""System calls that fail: the program says so, or does its work all the same, and loses nothing.
+"""Failing system calls: the program reports the error or succeeds nevertheless, and loses no data.
 
 A case lets one call of a command fail with an error that it may have, or do half of what it was asked to.
 If the exit code is 0, the results are right. Afterwards all inputs are as before, and the same command
@@ -50,8 +50,8 @@ class Target:
         return folder
 
     def damage(self, folder, ended):
-        """The reason why a run did not do what it should have; None where it did."""
-        # A render goes on with its own film, which is then another one.
+        """Returns the fault of a run. None: it behaved as specified."""
+        # A render continues from its own film, which therefore changes.
         own = {"a.film"} if self.name == "render" else set()
         after = part.digest(folder, self.inputs)
         changed = [name for name in self.inputs if name not in own and after.get(name) != self.inputs[name]]

@@ -122,7 +122,7 @@ class Kinds:
         part.write(folder, "small.toml", text)
         command = self.work.bidir("experiment", "small.toml", "-o", "out", "-q", "--quick", "--threads", "1")
         ended = runs.run(command, folder, LIMITS, kill_after=PATIENCE)
-        # A description may honestly ask for work without end.
+        # A valid description may take unlimited time.
         return "small.toml", None if ended.code == -9 else ended.fault(), command
 
     def copy(self, folder, names):
@@ -134,7 +134,7 @@ class Kinds:
                 shutil.copy(source, os.path.join(folder, name))
 
     def damage(self, folder, names):
-        """Damages one of these files: flips a bit, cuts, or removes it. Returns what was done."""
+        """Damages one of these files: flips a bit, cuts, or removes it. Returns a description."""
         name = self.random.choice(names)
         data = part.read(folder, name)
         kind = self.random.choice(("flip", "flip", "flip", "cut"))
@@ -154,7 +154,7 @@ class Kinds:
         return title, fault, command
 
     def records(self, folder):
-        """An experiment that goes on has the results that it had, or is refused."""
+        """A resumed experiment has the same results, or is refused."""
         self.copy(folder, ("room.pbrt", "small.toml", "out-results"))
         os.remove(os.path.join(folder, "out-results", "results.json"))
         title = self.damage(folder, ("out-results/records.ndjson",))

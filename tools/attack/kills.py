@@ -1,4 +1,4 @@
-"""Renders, shares of renders, and merges that are killed go on to the bits of one that was not.
+"""Killed and resumed renders, shares of renders, and merges have the bits of an uninterrupted render.
 
 Half of the kills come at a random moment, half at a random system call. The last run of each render ends
 by itself: its image must have all bits, and no file may be left over.
@@ -14,7 +14,7 @@ import tracer
 from worlds import INTEGRATORS, ROOM
 
 LIMITS = runs.Limits(cpu=60, wall=300)
-# A render is killed so often before it may end.
+# The number of kills before a render may end.
 KILLS = 4
 # Calls that touch files: between two of them the files do not change.
 FILES = ("openat", "write", "fsync", "fdatasync", "rename", "renameat", "renameat2", "linkat", "link", "unlink",
@@ -24,7 +24,7 @@ SPP = 64
 
 
 class Whole:
-    """A render that nothing interrupts, by an integrator."""
+    """An uninterrupted render by an integrator."""
 
     def __init__(self, work, integrator, folder):
         self.integrator, self.folder = integrator, folder
@@ -73,7 +73,7 @@ class Kills:
 
 
 def left_over(folder, wanted):
-    """The reason why the files of a folder are not those wanted."""
+    """Returns the difference of the files of a folder from the expected ones."""
     surplus = sorted(set(os.listdir(folder)) - set(wanted) - {".said", "room.pbrt"})
     return "leaves %s behind" % ", ".join(surplus) if surplus else None
 
@@ -126,7 +126,7 @@ def merged(kills, films, folder):
 
 
 class Tree:
-    """What a command leaves that writes a folder of results, from a run that nothing interrupts."""
+    """The outputs of an uninterrupted command that writes a folder of results."""
 
     def __init__(self, work, name, folder):
         self.name = name
@@ -150,7 +150,7 @@ class Tree:
 
 
 def continued(kills, tree, folder):
-    """A reference or an experiment: the same command goes on."""
+    """A killed reference or experiment, which the same command resumes."""
     for file, text in (("room.pbrt", ROOM), ("small.toml", commands.EXPERIMENT)):
         part.write(folder, file, text)
     fault = kills.insist(tree.name, tree.command, folder, tree.seconds)

@@ -13,7 +13,7 @@ import time
 import part
 import runs
 
-# Parsers and their shares: those that build scenes are slower and have more to say.
+# Parsers and their shares of the cases; those that build scenes are slower and have more code.
 TARGETS = {"pbrt": 2, "gltf": 2, "ply": 3, "image": 2, "film": 3, "spectrum": 1, "experiment": 3}
 # Of processors, for one input; and of all of a process. Unit: seconds, bytes.
 SLOW = 10
@@ -73,7 +73,7 @@ def impose():
 
 
 def keep(work, target, number, problem):
-    """A failure whose input is made again."""
+    """Keeps a failure with its input, which is generated again."""
     file = os.path.join(work.out, "%s-%d" % (target, number))
     command = [work.options.mutations, target, str(work.options.seed), str(number), file]
     subprocess.run(command, check=True)
@@ -81,7 +81,7 @@ def keep(work, target, number, problem):
 
 
 def batch(work, target, begin, end):
-    """Reads a range. Returns where to go on, which is before the end after an input that ended the process."""
+    """Reads a range. Returns the next input, which lies before the end if an input ended the process."""
     with work.folder() as folder:
         reader = Reader(work, target, begin, end, folder)
         slow = reader.wait()

@@ -27,7 +27,7 @@ class Part:
         self.last = self.begin
 
     def count(self):
-        """How many cases this part has to try."""
+        """Returns the number of cases of this part."""
         return self.options.counts[self.name]
 
     def bidir(self, *arguments):

@@ -37,7 +37,7 @@ class Limits:
 
 
 class Ended:
-    """How a run ended."""
+    """The end of a run."""
 
     def __init__(self, command, status, usage, seconds, limits, said):
         self.command, self.seconds, self.limits, self.said = command, seconds, limits, said
@@ -47,7 +47,7 @@ class Ended:
         self.memory = usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
     def fault(self):
-        """The reason why this is a failure; None where it is none."""
+        """Returns the reason why this is a failure. None: it is none."""
         if "panicked at" in self.said:
             return "panics"
         if self.seconds > self.limits.wall:
@@ -65,7 +65,7 @@ class Ended:
         return None
 
     def wrong(self, code):
-        """The same, where the exit code has to be this one."""
+        """Returns the reason why this is a failure, if another exit code is one."""
         fault = self.fault()
         if fault or self.code == code:
             return fault
@@ -81,12 +81,12 @@ def start(command, folder, limits):
 
 
 def environment():
-    """That of the caller without settings of the program, which would change the results."""
+    """Returns the caller's environment without settings of the program, which would change the results."""
     return {name: value for name, value in os.environ.items() if not name.startswith("BIDIR_")}
 
 
 def wait(process, limits, kill_after=None):
-    """Waits for the end, or kills the process after so many seconds."""
+    """Waits for the end, or kills the process after a number of seconds."""
     begin, pause = time.monotonic(), 0.001
     patience = min(limits.wall, kill_after or limits.wall)
     while True:
@@ -110,7 +110,7 @@ def said(folder):
 
 
 def run(command, folder, limits=None, kill_after=None):
-    """Runs a command in a folder to its end, or kills it after so many seconds."""
+    """Runs a command in a folder to its end, or kills it after a number of seconds."""
     limits = limits or Limits()
     process = start(command, folder, limits)
     status, usage, seconds = wait(process, limits, kill_after)

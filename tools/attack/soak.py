@@ -1,4 +1,4 @@
-"""A server under siege: `bidir view --bind` with many clients of all kinds, for as many seconds as asked.
+"""A stress test of the server: `bidir view --bind` with many clients of all kinds, for a number of seconds.
 
 Some watch, some read slowly or not at all, some leave in the middle, some send what is no request or name
 no token, some give commands. Meanwhile the status has to answer; at the end the server does so at once,
@@ -25,11 +25,11 @@ from worlds import ROOM
 LIMITS = runs.Limits(cpu=1e6, wall=1e6, memory=2 * runs.GIB)
 # Clients at once.
 CLIENTS = 48
-# The status answers within this even under siege, with room for a busy machine. Unit: seconds.
+# The longest response time of the status under load, on a busy machine. Unit: seconds.
 ANSWER = 20
-# The memory of the server after warming up may grow by so much. Unit: bytes.
+# The allowed growth of the server's memory after warming up. Unit: bytes.
 GROWTH = 64 << 20
-# Connections that say nothing, and what a client may wait for beside them. Unit: seconds.
+# Silent connections, and the longest wait of a client beside them. Unit: seconds.
 IDLE = 256
 CROWDED = 10
 GARBAGE = (b"\0" * 64, b"GET", b"GET / HTTP/9.9\r\n\r\n", b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03",
@@ -77,7 +77,7 @@ class Server:
         return socket.create_connection(("127.0.0.1", self.port), ANSWER)
 
     def status(self):
-        """Seconds until the status is there. Raises OSError where it does not come."""
+        """Returns the response time of the status in seconds. Raises OSError if there is no response."""
         begin = time.monotonic()
         url = "http://127.0.0.1:%d%s" % (self.port, self.target("status"))
         with urllib.request.urlopen(url, timeout=ANSWER) as answer:
@@ -229,7 +229,7 @@ def besiege(work, server, seconds, folder):
 
 
 def crowded(server):
-    """The reason why a client does not get in beside many that say nothing, or None."""
+    """Returns the reason why a client cannot connect beside many silent ones. None: it can."""
     idle = []
     try:
         idle += [server.connect() for _ in range(IDLE)]

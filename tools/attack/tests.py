@@ -129,7 +129,7 @@ for number in range(int(sys.argv[3]), int(sys.argv[4])):
 
 
 class Options:
-    """What a part needs of the command line."""
+    """The options of the command line that a part needs."""
     seed, counts = 1, {}
 
     def __init__(self, folder):

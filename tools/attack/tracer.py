@@ -47,7 +47,7 @@ def ptrace(request, pid, address=0, data=0):
 
 
 def absent():
-    """The reason why nothing can be traced here; None where it can."""
+    """Returns the reason why tracing is impossible here. None: it works."""
     if platform.system() != "Linux" or platform.machine() != "x86_64":
         return "system calls are traced on x86-64 Linux only"
     try:

@@ -1,16 +1,15 @@
-"""What `auto` takes to the same noise, beside the estimators that it chooses from, in many scenes.
+"""Compares the time of `auto` to the same noise with that of the estimators that it chooses from.
 
     python3 tools/bench_auto                                  the project's own scenes, in Markdown
     python3 tools/bench_auto SCENE.pbrt ... --size 160x120    others, or larger; also folders of scenes
 
-Needs the Python package: pip install . The figure is the variance of a pixel, relative to the square
-of its mean (plus 0.01), per sample, times microseconds of a thread per sample: lower is better, and
-half of it is half of the time to the same noise. The variance is that between renders with other
-seeds, without the noisiest thousandth of the pixels; in brackets it is 256 times that of means of
-blocks of 16 x 16, which is the same where pixels have nothing in common. Times are the least of all
-seeds with the same plan, without training. Scenes without noise are told and left out. All estimators
-must find the same light: a scene of whose light `path` misses some, such as a point light's behind
-glass, is nothing to compare them by.
+Needs the Python package: pip install . The figure is the variance of a pixel per sample, relative to the
+square of its mean (plus 0.01), times microseconds of a thread per sample: lower is better, and half of it
+means half of the time to the same noise. The variance is that between renders with different seeds, without
+the noisiest thousandth of the pixels. The figure in brackets is 256 times that of means over blocks of
+16 x 16, which is equal if pixels are uncorrelated. Times are the least of all seeds with the same plan,
+without training. Scenes without noise are reported and left out. All estimators must sample the same light:
+a scene of which `path` misses some, such as the light of a point light behind glass, allows no comparison.
 """
 
 import argparse
@@ -50,7 +49,7 @@ def size(text):
 
 
 def scene_files(places):
-    """Return the files of scenes that `places` are or have in them."""
+    """Return the scene files among `places`, and those in its folders."""
     found = []
     for place in places:
         inside = sorted([*place.glob("*.pbrt"), *place.glob("*.gltf"), *place.glob("*.glb")])
@@ -72,7 +71,7 @@ def main():
                     print(f"{row.scene}: {row.behind():.2f}, {row.plan()}", file=sys.stderr, flush=True)
                     rows.append(row)
     finally:
-        # What was measured is told, whatever becomes of the rest.
+        # Finished rows are printed even after an error.
         if rows:
             print(figures.table(rows))
     if not rows:

@@ -1,4 +1,4 @@
-"""From images of several seeds to what an estimator takes to the same noise."""
+"""The time of estimators to the same noise, from images with several seeds."""
 
 import math
 from collections import Counter
@@ -8,29 +8,29 @@ import numpy as np
 
 #: Added to the square of a pixel's mean, as by `bidir compare`.
 EPSILON = 0.01
-#: The part of the pixels, the noisiest, that is left out.
+#: The fraction of the noisiest pixels that is left out.
 TRIMMED = 1e-3
-#: Pixels of a side of the blocks, which see what neighbours have in common.
+#: The side of blocks, which measure the correlated noise of neighbours. Unit: pixels.
 BLOCK = 16
 
 
 @dataclass
 class Row:
-    """What the estimators take in one scene."""
+    """The figures of all estimators in one scene."""
 
     scene: str
-    #: By estimator: of pixels, and of blocks; None where the film is smaller than a block.
+    #: By estimator, of pixels and of blocks; None if the film is smaller than a block.
     products: dict[str, tuple[float, float | None]]
-    #: What `auto` rendered with, by seed.
+    #: The plans of `auto`, by seed.
     plans: list[str]
 
     def behind(self):
-        """Return what `auto` takes of what the better of `path` and `bdpt` does."""
+        """Return the figure of `auto` relative to the better of `path` and `bdpt`."""
         pixels = {name: product[0] for name, product in self.products.items()}
         return pixels["auto"] / min(pixels["path"], pixels["bdpt"])
 
     def plan(self):
-        """Return the plan of most seeds, and of how many."""
+        """Return the most frequent plan, and its number of seeds."""
         [(plan, count)] = Counter(self.plans).most_common(1)
         return f"{plan} ({count} of {len(self.plans)})"
 
@@ -75,7 +75,7 @@ def blocks(images):
 
 
 def table(rows):
-    """Return Markdown, and what `auto` takes of the better of `path` and `bdpt` over all scenes."""
+    """Return Markdown, with the geometric mean of `auto` relative to the better of `path` and `bdpt`."""
     names = list(rows[0].products)
     lines = [
         f"| | {' | '.join(f'`{name}`' for name in names)} | `auto` over the better | plan |",
@@ -91,5 +91,5 @@ def table(rows):
 
 
 def cell(pixels, of_blocks):
-    """Return both figures as they are printed."""
+    """Format both figures."""
     return f"{pixels:.3g}" + ("" if of_blocks is None else f" ({of_blocks * BLOCK**2:.3g})")

@@ -1,4 +1,4 @@
-"""Renders of a scene by each estimator, in a process of their own."""
+"""Renders a scene by each estimator, in a separate process."""
 
 import time
 import warnings
@@ -23,12 +23,12 @@ def rendered(scene, integrator, seed, spp):
 
 
 def least(runs):
-    """Return the seconds of each run, the least of all that have its plan: others were disturbed."""
+    """Return the seconds of each run: the least of all runs with its plan, as slower ones were disturbed."""
     return np.array([min(other[1] for other in runs if other[2] == run[2]) for run in runs])
 
 
 def measured(path, args):
-    """Return what all estimators need in a scene, as figures.Row; a text where that cannot be said."""
+    """Return the figures of all estimators in a scene as figures.Row, or a text with the reason why not."""
     warnings.simplefilter("ignore")
     try:
         scene = bidir.load(path, size=args.size)

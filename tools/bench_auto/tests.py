@@ -8,7 +8,7 @@ SPP = 4
 
 
 def noisy(variance, seeds, seed, common=0.0):
-    """Return images of mean 1, whose samples have so much variance, and blocks some in common."""
+    """Return images of mean 1 with a given variance of samples, and a common part of blocks."""
     rng = np.random.default_rng(seed)
     own = rng.normal(1.0, np.sqrt(variance / SPP), (seeds, 48, 64, 3))
     shared = np.sqrt(common / SPP) * rng.normal(size=(seeds, 3, 4, 3))

@@ -1,15 +1,15 @@
 """Instructions of samples and of their stages, counted by valgrind's callgrind.
 
-    python3 tools/bench_instr               tables in Markdown; what changed since the figures kept
-    python3 tools/bench_instr --check       the same; exits with 1 where something changed
-    python3 tools/bench_instr --save        keeps the figures in tools/bench_instr/figures.json
-    python3 tools/bench_instr --self-test   tests of this tool, which need neither
+    python3 tools/bench_instr               tables in Markdown, and changes since the stored figures
+    python3 tools/bench_instr --check       the same; exits with 1 if a figure changed
+    python3 tools/bench_instr --save        stores the figures in tools/bench_instr/figures.json
+    python3 tools/bench_instr --self-test   tests of this tool, which need neither program nor valgrind
 
-Counts do not depend on what else the machine does. Two renders of one and of three samples per
-pixel are subtracted, so that start, scene and image cancel; rays are traced by the instruction set
-that every machine has. Changes above 3 % are shown. The exit code is 0 where all is well, 1 where
-a render failed or `--check` found a change, 2 where the command line is wrong or there is no
-program, and 3 where valgrind is not installed. Standard library only.
+Counts do not depend on other work of the machine. The counts of renders with one and three samples per
+pixel are subtracted, so that start, scene and image cancel; rays are traced with the instruction set that
+every machine has. Changes above 3 % are shown. The exit code is 0 on success, 1 if a render failed or
+`--check` found a change, 2 if the command line is wrong or there is no program, and 3 if valgrind is not
+installed. Standard library only.
 """
 
 import argparse

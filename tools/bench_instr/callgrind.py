@@ -22,7 +22,7 @@ class Profile(NamedTuple):
         return self.own[name] + self.called[name]
 
     def minus(self, other):
-        """What this run did more than another."""
+        """Returns the additional instructions of this run over another."""
         def difference(a, b):
             return Counter({name: a[name] - b[name] for name in a | b if a[name] != b[name]})
         return Profile(difference(self.own, other.own), difference(self.called, other.called))

@@ -1,16 +1,16 @@
-"""Figures as tables, kept in a file, and compared with those that were kept."""
+"""Figures: tables, the file that stores them, and comparisons with it."""
 
 import json
 import os
 
-# What is shown as a change: more than compilers and libraries move counts by.
+# Relative changes above this are shown; compilers and libraries cause smaller ones.
 TOLERANCE = 0.03
-# Parts of a sample below this have no weight: their changes are not told. Unit: instructions.
+# Changes of smaller parts of a sample are ignored. Unit: instructions.
 LEAST = 200.0
 
 
 def from_measured(measured, made_with):
-    """Figures as they are kept: the programs that made them, and numbers by name, per sample."""
+    """Converts figures for the file: the versions that made them, and numbers per sample by name."""
     return {
         "made_with": made_with,
         "samples": {"%s, %s" % (row.scene, row.method): {
@@ -24,7 +24,7 @@ def from_measured(measured, made_with):
 
 
 def load(path):
-    """The figures that were kept; none where there is no file."""
+    """Reads the stored figures; empty if there is no file."""
     if not os.path.exists(path):
         return {"made_with": "", "samples": {}, "stages": {}, "functions": []}
     with open(path, encoding="utf-8") as file:
@@ -38,7 +38,7 @@ def save(path, figures):
 
 
 def changes(new, kept):
-    """What is more than the tolerance away from what was kept: (name, before, now)."""
+    """Returns the figures that differ from the stored ones by more than the tolerance: (name, before, now)."""
     found = []
     for name, row in new["samples"].items():
         if name in kept["samples"]:
@@ -51,20 +51,20 @@ def changes(new, kept):
 
 
 def _is_change(name, before, now):
-    # `other` has the waking of threads, which depends on the machine.
+    # `other` contains the waking of threads, which depends on the machine.
     if name == "stage other" or (name.startswith("stage ") and max(before, now) < LEAST):
         return False
     return abs(now - before) > TOLERANCE * before
 
 
 def missing(new, kept):
-    """Names that were not kept."""
+    """Returns the names without a stored figure."""
     return ([name for name in new["samples"] if name not in kept["samples"]]
             + ["stage %s" % name for name in new["stages"] if name not in kept["stages"]])
 
 
 def report(new, kept):
-    """Tables, and what changed."""
+    """Formats the tables and the changes."""
     parts = [_table(new["samples"])]
     if new["stages"]:
         parts += [_stages(new["stages"]), _functions(new)]
@@ -83,7 +83,7 @@ def _list(title, lines):
 
 
 def _table(samples):
-    """Scenes in rows, methods in columns."""
+    """Formats a table with scenes in rows and methods in columns."""
     pairs = [name.split(", ", 1) for name in samples]
     scenes, methods = [list(dict.fromkeys(pair[i] for pair in pairs)) for i in (0, 1)]
     lines = ["| thousands of instructions per sample (rays per sample, instructions per ray) | "

@@ -19,9 +19,9 @@ METHODS = {
     "bdpt per-pair": ["--integrator", "bdpt", "--shadow-rays", "per-pair"],
     "lvc": ["--integrator", "lvc"],
 }
-# The row whose stages and functions are told apart.
+# The row with figures of stages and functions.
 PROFILED = ("room-indirect", "bdpt")
-# By the names that `--stats` has for them, the functions that are a stage of `bdpt`.
+# The functions of each stage of `bdpt`, by the names of the stages in `--stats`.
 STAGES = {
     "walk": r"^bidir::(path::walk::(camera|light)_subpath|integrator::workspace::camera_ray)$",
     "hits": r"^bidir::integrator::bdpt::hits$",
@@ -48,7 +48,7 @@ class Row(NamedTuple):
 
 
 class Figures:
-    """Everything that was counted."""
+    """All counts."""
 
     def __init__(self):
         self.rows = []
@@ -57,20 +57,20 @@ class Figures:
 
 
 def rows(text):
-    """Scenes and methods whose names contain a text."""
+    """Returns the scenes and methods whose names contain a text."""
     return ((scene, method) for scene in SCENES for method in METHODS
             if text in "%s, %s" % (scene, method))
 
 
 class Bench(NamedTuple):
-    """The program, its scenes, and where profiles go."""
+    """The program, its scenes, and the folder of profiles."""
 
     program: str
     scenes: str
     folder: str
 
     def count(self, scene, method, figures):
-        """Adds a row, and the profile of the one that is told apart."""
+        """Adds a row, and the profile of the row with figures of stages."""
         (few, before), (many, after) = [self._run(scene, method, spp) for spp in PASSES]
         samples = after["samples"] - before["samples"]
         profile = many.minus(few)
@@ -81,14 +81,14 @@ class Bench(NamedTuple):
             figures.functions = functions(profile, samples)
 
     def _run(self, scene, method, spp):
-        """The profile of a render, and what it counted."""
+        """Returns the profile of a render, and its counters."""
         path = [os.path.join(self.folder, name) for name in ("profile", "image.exr", "stats.json")]
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=" + path[0],
                    "--dump-line=no", self.program, "render",
                    os.path.join(self.scenes, scene + ".pbrt"), "-q", "-o", path[1],
                    "--size", SIZE, "--spp", str(spp), "--threads", "1", "--seed", "0",
                    "--stats", path[2]] + METHODS[method]
-        # Settings of the caller must not change what is counted.
+        # Environment variables of the caller must not change the counts.
         environment = {name: value for name, value in os.environ.items()
                        if not name.startswith("BIDIR_")}
         environment["BIDIR_ISA"] = "sse2"
@@ -103,7 +103,7 @@ class Bench(NamedTuple):
 
 
 def made_with(program):
-    """Versions that counts depend on; the compiler is that of today."""
+    """Returns the versions that counts depend on, with the current compiler."""
     said = []
     for command in ([program, "--version"], ["rustc", "--version"], ["valgrind", "--version"]):
         try:
@@ -136,7 +136,7 @@ def functions(profile, samples, most=16):
 
 
 def short(name):
-    """A function's name, as people say it: the type without its path, and the function."""
+    """Shortens the name of a function to the type without its path, and the function."""
     name = re.sub(r"<impl ([^<>]*)>", r"\1", name)
     name = re.sub(r"^<([^<>]*) as ([^<>]*)>", r"\1", name)
     parts = re.split(r"::(?![^<]*>)", name)

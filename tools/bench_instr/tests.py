@@ -57,7 +57,7 @@ class Parsing(unittest.TestCase):
         whole = {name: self.profile.inclusive(name) for name in self.profile.own}
         self.assertEqual(whole, {"crate::a": 313, "crate::b": 300, "plain": 40})
 
-    def test_what_both_runs_did_cancels(self):
+    def test_counts_of_both_runs_cancel(self):
         twice = callgrind.parse((PROFILE + PROFILE[PROFILE.index("fn=(2)\n"):]).splitlines())
         difference = twice.minus(self.profile)
         self.assertEqual(dict(difference.own), {"crate::b": 250, "plain": 40})
@@ -117,29 +117,29 @@ class Comparing(unittest.TestCase):
         place[path[-1]] *= factor
         return new
 
-    def told(self, new):
+    def changes(self, new):
         return [name for name, _, _ in figures.changes(new, self.KEPT)]
 
     def test_three_percent_are_shown_in_both_directions(self):
         for factor in (0.969, 1.031):
             new = self.changed("samples", "room, path", "instructions", factor=factor)
-            self.assertEqual(self.told(new), ["room, path: instructions"])
+            self.assertEqual(self.changes(new), ["room, path: instructions"])
             self.assertIn("%+.1f %%" % (100 * (factor - 1)), figures.report(new, self.KEPT))
-            self.assertEqual(self.told(self.changed("stages", "walk", factor=factor)),
+            self.assertEqual(self.changes(self.changed("stages", "walk", factor=factor)),
                              ["stage walk"])
         for factor in (0.971, 1.0, 1.029):
             new = self.changed("samples", "room, path", "instructions", factor=factor)
-            self.assertEqual(self.told(new), [])
+            self.assertEqual(self.changes(new), [])
             self.assertIn("than 3 %: nothing.", figures.report(new, self.KEPT))
 
     def test_rays_count_and_small_stages_do_not(self):
         rays = self.changed("samples", "room, path", "rays", factor=1.1)
-        self.assertEqual(self.told(rays), ["room, path: rays"])
-        self.assertEqual(self.told(self.changed("stages", "select", factor=1.5)), [])
-        self.assertEqual(self.told(self.changed("stages", "select", factor=3)), ["stage select"])
-        self.assertEqual(self.told(self.changed("stages", "other", factor=3)), [])
+        self.assertEqual(self.changes(rays), ["room, path: rays"])
+        self.assertEqual(self.changes(self.changed("stages", "select", factor=1.5)), [])
+        self.assertEqual(self.changes(self.changed("stages", "select", factor=3)), ["stage select"])
+        self.assertEqual(self.changes(self.changed("stages", "other", factor=3)), [])
 
-    def test_new_rows_are_told_and_are_no_change(self):
+    def test_new_rows_are_listed_but_are_no_change(self):
         empty = figures.load("there is no such file")
         self.assertEqual(figures.changes(self.KEPT, empty), [])
         self.assertIn("room, path: new", figures.report(self.KEPT, empty))

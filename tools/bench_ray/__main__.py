@@ -1,4 +1,4 @@
-"""What a render over Ray costs beside the same render without, on this machine, and in memory.
+"""Measures the cost in time and memory of a render over Ray, relative to the same render without it.
 
     python3 tools/bench_ray                     both tables, in Markdown; some minutes
     python3 tools/bench_ray --only time         one of them
@@ -60,7 +60,7 @@ def times(args):
     settings = bidir.Bdpt()
     _, first = timed(lambda: bidir.render(scene, settings, spp=2))
     spp = max(4, round(args.seconds / first * 2))
-    # Ray's workers let all others go first, unless told otherwise: a busy machine would be measured.
+    # By default Ray's workers have a low priority, so that other processes would affect the measurement.
     even = {"worker_niceness": 0}
     ray.init(address="local", include_dashboard=False, log_to_driver=False, _system_config=even)
     rows = []

@@ -1,13 +1,13 @@
-"""How speed and memory grow with threads, triangles, instances, pixels, lights and bounces.
+"""Measures speed and memory against threads, triangles, instances, pixels, lights and bounces.
 
     python3 tools/bench_scaling                 all tables, in Markdown; some five minutes
     python3 tools/bench_scaling --only lights   one of them
     python3 tools/bench_scaling --self-test     tests of this tool, which need no program
 
-The scenes are written anew each time, apart from two of the project's own. Figures are medians
-over rounds in which all cases take turns; columns `of the first` are ratios within a table. The
-exit code is 0, 1 where a render failed, and 2 where the command line is wrong or there is no
-program. Needs Linux or macOS; standard library only.
+The scenes are generated each time, except two of the project's own. Figures are medians over rounds in
+which all cases take turns; columns `of the first` are ratios within a table. The exit code is 0, 1 if a
+render failed, and 2 if the command line is wrong or there is no program. Needs Linux or macOS; standard
+library only.
 """
 
 import argparse
@@ -43,7 +43,7 @@ def arguments():
 
 
 def machine():
-    """The processor, as a line."""
+    """Describes the processor in a line."""
     model = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:

@@ -1,4 +1,4 @@
-"""Renders and what they cost: speed, loading, memory."""
+"""Renders and their cost: speed, loading, memory."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import sys
 from typing import NamedTuple
 
 
-# What the system counts memory in. Unit: bytes.
+# The system's unit of memory. Unit: bytes.
 RSS_UNIT = 1 if sys.platform == "darwin" else 1024
 
 
@@ -17,7 +17,7 @@ class Failed(Exception):
 
 
 class Case(NamedTuple):
-    """One render: how much of what is varied, the method, the scene, and flags."""
+    """One render: the amount of the varied quantity, the method, the scene, and flags."""
 
     size: int
     method: str
@@ -26,7 +26,7 @@ class Case(NamedTuple):
 
 
 class Cost(NamedTuple):
-    """What a render took: medians over its repetitions."""
+    """The cost of a render: medians over its repetitions."""
 
     samples_per_second: float
     rays_per_sample: float
@@ -37,7 +37,7 @@ class Cost(NamedTuple):
 
 
 class Runner(NamedTuple):
-    """How renders are started."""
+    """The settings of all renders."""
 
     program: str
     folder: str
@@ -45,8 +45,8 @@ class Runner(NamedTuple):
     rounds: int
 
     def measure(self, cases):
-        """Medians of all cases; they take turns, so that what else the machine does falls on all:
-        {(size, method): cost}."""
+        """Returns medians of all cases: {(size, method): cost}. Cases take turns, so that other work of
+        the machine affects all of them."""
         costs = {(case.size, case.method): [] for case in cases}
         for number in range(self.rounds):
             turn = cases if number % 2 == 0 else reversed(cases)
@@ -65,7 +65,7 @@ class Runner(NamedTuple):
                        if not name.startswith("BIDIR_")}
         with open(os.path.join(self.folder, "said"), "w+b") as said:
             child = subprocess.Popen(command, env=environment, stdout=said, stderr=said)
-            # Unlike `wait`, this tells the memory of this very child.
+            # Unlike `wait`, this returns the memory of this child only.
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
             if child.returncode != 0:

@@ -1,4 +1,4 @@
-"""What is varied, and the table of each."""
+"""The varied quantities, and their tables."""
 
 import os
 from typing import NamedTuple
@@ -20,7 +20,7 @@ class Sweep(NamedTuple):
     values: object
 
     def table(self, costs):
-        """The costs in Markdown."""
+        """Formats the costs as Markdown."""
         methods = list(dict.fromkeys(case.method for case in self.cases))
         speeds = [name for method in methods
                   for name in ("`%s`, samples per second" % method, "of the first")]
@@ -44,9 +44,9 @@ def _speeds(at, first):
 
 
 def amount(number):
-    """Three digits, with k or M."""
+    """Formats a number with three digits, and with k or M."""
     for unit, letter in ((1e6, " M"), (1e3, " k")):
-        # What would be rounded to a thousand is of the next unit.
+        # Numbers that round to 1000 get the next unit.
         if number >= 0.9995 * unit:
             return "%.3g%s" % (number / unit, letter)
     return "%.3g" % number

@@ -27,8 +27,8 @@ Material "diffuse" "rgb reflectance" [0.6 0.6 0.6]
 
 
 class Ceiling(NamedTuple):
-    """Where lamps are: over a square around (0, height, centre), `part` of each one's own square
-    wide."""
+    """The positions of lamps over a square around (0, height, centre); each covers the fraction `part` of
+    its own square."""
 
     side: float = 1.0
     part: float = 1.0
@@ -37,14 +37,14 @@ class Ceiling(NamedTuple):
 
 
 class Folder:
-    """Where scenes are written."""
+    """The folder of generated scenes."""
 
     def __init__(self, path):
         self.path = path
 
     def _mesh(self, name, points, triangles):
-        """Writes a mesh as binary PLY; points and triangles are numbers and iterables of triples,
-        which are not kept: the memory of a render is at least that of who started it."""
+        """Writes a mesh as binary PLY from numbers and iterables of points and triangles. These are not
+        stored, since a child process counts at least the memory of its parent."""
         head = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n"
                 "property float y\nproperty float z\nelement face %d\n"
                 "property list uchar int vertex_indices\nend_header\n")
@@ -61,13 +61,13 @@ class Folder:
         return path
 
     def triangles(self, count):
-        """A terrain of about so many triangles in one mesh: (scene, triangles)."""
+        """Makes a terrain with about this number of triangles in one mesh: (scene, triangles)."""
         side = max(1, round(math.sqrt(count / 2)))
         body = self._mesh("terrain-%d.ply" % count, *_terrain(side)) + self._lamps(1)
         return self._scene("triangles-%d" % count, body), 2 * side * side
 
     def instances(self, places, side=22):
-        """A terrain of 2 · side² triangles, placed so many times: (scene, triangles)."""
+        """Makes instances of a terrain of 2 · side² triangles: (scene, triangles)."""
         across = max(1, round(math.sqrt(places)))
         body = 'ObjectBegin "patch"\n%sObjectEnd\n' % self._mesh("patch.ply", *_terrain(side))
         body += "".join(
@@ -79,12 +79,12 @@ class Folder:
         return self._scene("instances-%d" % places, body), 2 * side * side * across * across
 
     def lamps(self, count):
-        """So many small triangles that emit, with the same power together: (scene, lamps)."""
+        """Makes small emissive triangles with a constant total power: (scene, lamps)."""
         across = max(1, round(math.sqrt(count)))
         return self._scene("lamps-%d" % count, self._lamps(across)), across * across
 
     def hall(self, count):
-        """The same all over a hall of 40 m, with a terrain on its floor: (scene, lamps)."""
+        """Makes such lamps all over a hall of 40 m with a terrain on its floor: (scene, lamps)."""
         across = max(1, round(math.sqrt(count)))
         body = ('AttributeBegin\nTranslate 0 0 -17\nScale 20 2 20\n%sAttributeEnd\n'
                 % self._mesh("terrain.ply", *_terrain(60)))
@@ -92,9 +92,9 @@ class Folder:
         return self._scene("hall-%d" % count, body, HALL), across * across
 
     def _lamps(self, across, ceiling=None):
-        """A square of lamps under the ceiling that face down."""
+        """Makes a square of downward lamps under the ceiling."""
         side, part, height, centre = ceiling or Ceiling()
-        # A lamp is half a square, so that their area does not depend on their number.
+        # A lamp is half a square, so that the total area does not depend on the number.
         spacing = side / across
         count = across * across
         points = ((x, height, z) for i in range(count)

@@ -1,15 +1,15 @@
-"""What it costs a render to be watched: samples per second with clients and without.
+"""Measures the cost of watching a render: samples per second with and without clients.
 
     python3 tools/bench_view                    a table, in Markdown; some four minutes
     python3 tools/bench_view --clients 64       other numbers of clients
     python3 tools/bench_view --self-test        tests of this tool, which need no program
 
-One `bidir view` renders all the time. With clients and without take turns: a pair is both, one after
-the other, and the order changes from pair to pair. Clients take every frame; one of them says hello
-and never reads. All run on the machine that renders, so that what they take themselves counts too.
-Speed is whole passes by the time between their ends; the processor time of the server for a sample
-tells the same where other programs disturb, but for what the clients take. The exit code is 0, 1 where the server failed,
-and 2 where the command line is wrong or there is no program. Needs Linux; standard library only.
+One `bidir view` renders all the time. Measurements with and without clients alternate in pairs, whose
+order changes from pair to pair. Clients receive every frame; one of them connects and never reads. All
+run on the rendering machine, so that their own cost counts, too. Speed is the number of whole passes per
+time between their ends. The processor time of the server per sample is less sensitive to other programs,
+but excludes the cost of the clients. The exit code is 0, 1 if the server failed, and 2 if the command line
+is wrong or there is no program. Needs Linux; standard library only.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def arguments():
 
 
 def measured(options):
-    """The rates of all pairs, and the memory of the server."""
+    """Measures the rates of all pairs, and the memory of the server."""
     pairs = []
     with server.View(options.bidir, options.scene, options.size) as view:
         view.settle()

@@ -1,4 +1,4 @@
-"""From pairs of rates to a table."""
+"""Pairs of rates, and their table."""
 
 import statistics
 
@@ -12,17 +12,17 @@ class Pair:
         self.watched = watched
 
     def speed(self):
-        """With clients, of that without."""
+        """Returns the speed with clients relative to that without."""
         return self.watched[0] / self.alone[0]
 
     def cost(self):
-        """The processor time, likewise."""
+        """Returns the processor time with clients relative to that without."""
         return self.watched[1] / self.alone[1]
 
 
 def median_interval(values):
-    """Bounds that the median of what is measured is between, with a confidence of 95 % or more: order
-    statistics, by the binomial distribution of how many values are below it."""
+    """Returns bounds of the median with a confidence of at least 95 %: order statistics, by the binomial
+    distribution of the number of values below the median."""
     ordered = sorted(values)
     count = len(ordered)
     below = 0.0
@@ -38,7 +38,7 @@ def median_interval(values):
 
 
 def table(pairs, memory, clients):
-    """Markdown; `memory` is the server's at first, at last and at most, in bytes."""
+    """Formats Markdown; `memory` is the server's first, last and largest memory in bytes."""
     first, last, most = ("%.0f MB" % (size / 1e6) for size in memory)
     alone = statistics.median(pair.alone[0] for pair in pairs)
     watched = statistics.median(pair.watched[0] for pair in pairs)
@@ -55,5 +55,5 @@ def table(pairs, memory, clients):
 
 
 def interval(ratios):
-    """Their median with its bounds."""
+    """Formats the median with its bounds."""
     return "%.3f (%.3f to %.3f)" % (statistics.median(ratios), *median_interval(ratios))

@@ -1,4 +1,4 @@
-"""A `bidir view` that runs, and clients of it."""
+"""A running `bidir view`, and its clients."""
 
 import base64
 import json
@@ -13,11 +13,11 @@ import threading
 import time
 import urllib.request
 
-# What may be waited for. Unit: seconds.
+# The longest wait. Unit: seconds.
 PATIENCE = 60.0
-# How often it is asked whether a pass has ended. Unit: seconds.
+# The interval between checks for the end of a pass. Unit: seconds.
 GAP = 0.005
-# In its first seconds a render shows itself more often than later. Unit: seconds.
+# The first part of a render, which sends frames more often. Unit: seconds.
 YOUTH = 4.0
 
 
@@ -26,7 +26,7 @@ class Failed(Exception):
 
 
 class View:
-    """A server, as long as the block lasts."""
+    """A server for the duration of the block."""
 
     def __init__(self, program, scene, size):
         command = [program, "view", scene, "--size", size, "--port", "0", "-q"]
@@ -46,20 +46,20 @@ class View:
         self.process.wait(PATIENCE)
 
     def lane(self):
-        """The numbers of the render, and the samples of a pass."""
+        """Returns the numbers of the render, and the samples of a pass."""
         with urllib.request.urlopen(self.url + "status", timeout=PATIENCE) as answer:
             status = json.load(answer)
         left, top, right, bottom = status["film"]["crop"]
         return status["lanes"][0]["passes"], (right - left) * (bottom - top)
 
     def settle(self):
-        """Waits until the render is as it will be."""
+        """Waits until the render is in its steady state."""
         time.sleep(YOUTH)
         self.pass_end()
         self.first_memory = self.status_memory("VmRSS")
 
     def pass_end(self):
-        """Waits for the end of a pass. Returns when that was, its number, and the samples of one."""
+        """Waits for the end of a pass. Returns its time, its number, and the samples of a pass."""
         before, _ = self.lane()
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
@@ -70,8 +70,8 @@ class View:
         raise Failed("the render makes no passes")
 
     def rate(self, seconds):
-        """Samples per second, and processor seconds per sample, of whole passes in about so many
-        seconds."""
+        """Returns samples per second, and processor seconds per sample, of whole passes in about this
+        many seconds."""
         begin, first, samples = self.pass_end()
         used = self.processor_time()
         time.sleep(seconds)
@@ -80,7 +80,7 @@ class View:
         return count / (end - begin), (self.processor_time() - used) / count
 
     def processor_time(self):
-        """Of all threads of the server, with what the system does for them. Unit: seconds."""
+        """Returns the user and system time of all threads of the server. Unit: seconds."""
         with open("/proc/%d/stat" % self.process.pid, encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
@@ -90,12 +90,12 @@ class View:
             return 1024 * int(re.search(name + r":\s+(\d+) kB", file.read())[1])
 
     def memory(self):
-        """At first, now and at most. Unit: bytes."""
+        """Returns the first, current and largest memory. Unit: bytes."""
         return self.first_memory, self.status_memory("VmRSS"), self.status_memory("VmHWM")
 
 
 def connected(address):
-    """A WebSocket that was welcomed."""
+    """Opens a WebSocket."""
     host, port = address
     peer = socket.create_connection((host, int(port)), PATIENCE)
     key = base64.b64encode(os.urandom(16)).decode()
@@ -114,7 +114,7 @@ def connected(address):
 
 
 class Stream:
-    """What a server sends: messages are counted, and thrown away."""
+    """A receiver that counts and discards the messages of a server."""
 
     def __init__(self):
         self.head = b""
@@ -134,7 +134,7 @@ class Stream:
             self.begin()
 
     def begin(self):
-        """Begins a message where all of its head is there."""
+        """Starts a message if its head is complete."""
         if len(self.head) < 2:
             return
         kind, length = self.head[0] & 15, self.head[1] & 127
@@ -149,7 +149,7 @@ class Stream:
 
 
 class Clients:
-    """Clients, as long as the block lasts, the last of which never reads."""
+    """Clients for the duration of the block; the last one never reads."""
 
     def __init__(self, view, count):
         self.peers = [connected(view.address) for _ in range(count)]
@@ -183,5 +183,5 @@ class Clients:
                     self.ended.wait()
 
     def frames(self):
-        """Frames that were taken, of all clients together."""
+        """Returns the number of frames received by all clients together."""
         return sum(stream.frames for stream in self.streams)

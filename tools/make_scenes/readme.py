@@ -40,7 +40,7 @@ The comment at the head of a file states its purpose.
 |---|---|---|
 """
 
-# Where the title in the file, whose bytes are its identity, could be clearer.
+# Clearer titles than those in the files, whose bytes must not change.
 _TORTURE_NOTES = {
     "shading-normal.pbrt": "Shading normals that differ from the geometric ones.",
     "mirror.pbrt": "Mirroring transforms; one-sided and two-sided lights.",

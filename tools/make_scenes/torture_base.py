@@ -1,4 +1,4 @@
-"""What the small test scenes share: film, camera, quads, a closed room."""
+"""Common parts of the small test scenes: film, camera, quads, a closed room."""
 
 from geometry import Mesh
 from primitives import box

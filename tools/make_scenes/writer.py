@@ -10,7 +10,7 @@ INLINE_LIMIT = 64  # triangles; larger meshes go to meshes/*.ply
 
 
 def num(value):
-    """A number as text: seven digits, no negative zero."""
+    """Formats a number: seven digits, no negative zero."""
     return format(round(value, 12) + 0.0, ".7g")
 
 
@@ -129,7 +129,7 @@ class SceneText:
         self.triangles += self.project.parts[path]
 
     def mesh(self, mesh, normals=None):
-        """An inline trianglemesh; normals where shading needs them, or as told."""
+        """Writes an inline trianglemesh, with normals if shading needs them or they are given."""
         self.triangles += len(mesh.triangles)
         if normals is None:
             normals = not mesh.is_flat_shaded()
@@ -143,7 +143,7 @@ class SceneText:
                 [nums(round(v, 5) for v in n) for n in mesh.normals], 6, indent))
 
     def big_mesh(self, name, mesh):
-        """A PLY file beside the scene, or inline where it is small."""
+        """Writes a PLY file next to the scene, or an inline mesh if it is small."""
         if len(mesh.triangles) <= INLINE_LIMIT:
             self.mesh(mesh)
             return

@@ -1,4 +1,4 @@
-"""A test of the tests: applies one fault after another, each of which must turn some test red.
+"""A test of the tests: applies faults one by one; each must make a test fail.
 
     python3 tools/mutants                 all of them; exits with 1 if one survives
     python3 tools/mutants --only TEXT     those whose name or test contains TEXT
@@ -6,8 +6,8 @@
     python3 tools/mutants --list          names, files and tests
     python3 tools/mutants --check         only that every fault still applies to the sources
 
-Nearly all faults share one build (schemata.py). A fault that cannot be part of it, or that survives
-there, gets a build of its own. Works on copies of the tree in target/mutants, whose builds are kept
+Nearly all faults share one build (schemata.py). A fault that does not fit into it, or that survives there,
+gets a build of its own. The tool works on copies of the tree in target/mutants and keeps their builds
 between runs. Standard library only.
 """
 
@@ -110,7 +110,7 @@ def cargo(tree, test, *arguments, number=0, timeout=TIMEOUT):
 
 
 def passed(output):
-    """How many tests passed."""
+    """Returns the number of passed tests."""
     return sum(int(count) for count in re.findall(r"(\d+) passed", output))
 
 
@@ -133,7 +133,7 @@ def tests_of(package):
 
 
 def stale(mutation):
-    """Why a fault cannot be applied or noticed; None where it can."""
+    """Returns the reason why a fault cannot be applied or detected. None: it can."""
     _, file, old, new, (package, _, filter_) = mutation
     if filter_ and not any(filter_ in test for test in tests_of(package)):
         return "no test is named `%s`" % filter_
@@ -207,7 +207,7 @@ def build_all(mutations):
 
 
 def run_in_all(mutation, seconds):
-    """Whether a fault of the shared build makes its test fail, or run ten times as long."""
+    """Returns True if a fault of the shared build makes its test fail, or run ten times as long."""
     timeout = 60 + 10 * seconds[mutation[4]]
     return cargo(ALL, mutation[4], number=number_of(mutation), timeout=timeout)[0] != 0
 

@@ -19,7 +19,7 @@ pub(crate) fn mutant() -> u32 {
 }
 """ % VARIABLE
 
-# Comments, strings and characters, within which braces mean nothing. A lifetime is no character.
+# Comments, strings and characters, whose braces do not count. A lifetime is no character.
 OPAQUE = re.compile(
     r"""//[^\n]*|/\*.*?\*/|r(\#*)".*?"\1|b?"(?:\\.|[^"\\])*"|b?'(?:\\[^\n]{1,8}?|[^'\\\n])'""", re.DOTALL
 )
@@ -27,7 +27,7 @@ FUNCTION = re.compile(r"\bfn\s+\w+")
 
 
 def blank(text):
-    """The text with spaces for all that braces mean nothing in, each character in its place."""
+    """Replaces comments, strings and characters by spaces of the same length."""
     return OPAQUE.sub(lambda found: re.sub(r"[^\n]", " ", found[0]), text)
 
 
@@ -68,7 +68,7 @@ def with_faults(text, faults):
         body = body_around(text, place, place + len(old))
         if body:
             bodies.setdefault(body, []).append((number, place - body[0], old, new))
-    # A body within another one would be copied with it: its faults are left out.
+    # Faults in nested bodies are left out, as these would be copied with the outer body.
     outer = [b for b in bodies if not any(a[0] <= b[0] and b[1] <= a[1] for a in bodies if a != b)]
     taken = set()
     for begin, end in sorted(outer, reverse=True):

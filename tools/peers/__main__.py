@@ -1,15 +1,15 @@
-"""The same work in other renderers: is bidir faster or slower to the same error?
+"""Compares bidir with other renderers: error in equal CPU time.
 
     python3 tools/peers setup [--with-cycles]   installs the peers into an environment of their own
     python3 tools/peers bench                   error in equal CPU time, as tables in Markdown
-    python3 tools/peers verify                  do all renderers converge to the same image?
+    python3 tools/peers verify                  checks that all renderers converge to the same image
     python3 tools/peers scenes                  writes both scenes, as PLY and pbrt-v4
     python3 tools/peers reference               renders the references of both scenes anew
-    python3 tools/peers check                   that this tool works: needs bidir alone
+    python3 tools/peers check                   checks this tool; needs only bidir
 
-`bench` and `verify` set up what is missing; a peer that cannot be had is left out, and the reason
-printed. The exit code is 0 where everything ran, 1 where a renderer failed, its image is not the
-reference's or no peer could run, and 2 where the command line is wrong.
+`bench` and `verify` install missing peers; a peer that cannot be installed is left out, with a message.
+The exit code is 0 on success, 1 if a renderer failed, if its image differs from the reference or if no
+peer could run, and 2 if the command line is wrong.
 """
 
 import argparse

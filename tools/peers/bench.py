@@ -1,4 +1,4 @@
-"""Error in equal CPU time: every renderer in turn, several times."""
+"""Measures the error of every renderer in equal CPU time, several times in turn."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from renderers import Failed, Job, pixels
 
 
 class Bench(NamedTuple):
-    """What takes part, and where."""
+    """The environment, folder, scenes and renderers of a benchmark."""
 
     environment: object
     program: str
@@ -26,7 +26,7 @@ class Bench(NamedTuple):
         return Job(self.environment.path("scenes"), scene, seconds, self.threads, seed, image)
 
     def image(self, kind, renderer, scene, number):
-        """The file of an image."""
+        """Returns the file of an image."""
         folder = self.environment.path(kind)
         os.makedirs(folder, exist_ok=True)
         name = re.sub(r"[^A-Za-z0-9]+", "-", renderer.name)
@@ -47,23 +47,23 @@ class Record(NamedTuple):
 
     @property
     def merit(self):
-        """relMSE × CPU seconds: the same however long an unbiased renderer runs."""
+        """Returns relMSE × CPU seconds, which is constant over time for an unbiased renderer."""
         return self.relmse * self.cpu
 
     @property
     def variance(self):
-        """relMSE × samples per pixel: the error of one sample."""
+        """Returns relMSE × samples per pixel, the error of one sample."""
         return self.relmse * self.samples
 
     @property
     def speed(self):
-        """Samples per CPU second."""
+        """Returns the samples per CPU second."""
         return self.samples * pixels() / self.cpu
 
 
 def measure(bench, seconds, repetitions):
-    """All records. Renderers take turns within each repetition, so that what else the machine
-    does falls on all of them; the first, which is cold, begins with another one each time."""
+    """Returns all records. Renderers take turns within each repetition, so that other work of the machine
+    affects all of them; another renderer is the first, cold one in each repetition."""
     records, failed = [], set()
     for repetition in range(repetitions):
         for scene in bench.scenes:
@@ -92,7 +92,7 @@ def _measure(bench, renderer, scene, seconds, repetition, reference):
 
 
 class Row(NamedTuple):
-    """Medians over the repetitions of one renderer in one scene."""
+    """Returns medians over the repetitions of one renderer in one scene."""
 
     renderer: str
     ours: bool
@@ -105,7 +105,7 @@ class Row(NamedTuple):
 
 
 def rows(records, scene):
-    """The best first."""
+    """Sorts the renderers, the best first."""
     names = dict.fromkeys((r.renderer, r.ours) for r in records if r.scene == scene)
     found = []
     for name, ours in names:
@@ -125,7 +125,7 @@ def rows(records, scene):
 
 
 def table(records, scene):
-    """The records of a scene as Markdown."""
+    """Formats the records of a scene as Markdown."""
     lines = ["| scene %s | samples per CPU second | relMSE × samples per pixel "
              "| relMSE × CPU seconds | from, to | mean / reference |" % scene,
              "|---|---:|---:|---:|---:|---:|"]
@@ -137,7 +137,7 @@ def table(records, scene):
 
 
 def verdict(records, scene):
-    """Our best against the best peer, as a sentence."""
+    """Compares the best bidir integrator with the best peer, in a sentence."""
     found = rows(records, scene)
     ours = next((row for row in found if row.ours), None)
     peer = next((row for row in found if not row.ours), None)
@@ -150,8 +150,8 @@ def verdict(records, scene):
 
 
 def differing(records):
-    """Renderers whose images cannot be of the same scene, as far as such short runs show: `verify`
-    sees more."""
+    """Returns the renderers whose images differ from the reference, as far as these short runs show it;
+    `verify` is more sensitive."""
     found = []
     for scene in sorted({r.scene for r in records}):
         for row in rows(records, scene):
@@ -164,7 +164,7 @@ def differing(records):
 
 
 def machine(environment):
-    """Processor, cores and versions, as a line."""
+    """Describes processor, cores and versions in a line."""
     model = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:

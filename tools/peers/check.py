@@ -1,4 +1,4 @@
-"""Keeps this tool alive without any peer: both scenes, a render of each, and its error."""
+"""Checks this tool without any peer: writes both scenes, renders each, and measures the error."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ from bench import Record
 from renderers import Job, Ours
 
 PASSES = 8
-RATIO = 0.005  # more than four standard errors of so many passes
+RATIO = 0.005  # more than four standard errors with this number of passes
 
 
 def check(program):

@@ -19,7 +19,7 @@ LLVM = 19
 
 
 class Environment(NamedTuple):
-    """A folder with everything that this tool makes; nothing is written elsewhere."""
+    """The folder of all files that this tool writes."""
 
     folder: str
 
@@ -31,17 +31,17 @@ class Environment(NamedTuple):
         return self.path("venv", "bin", "python")
 
     def has(self, package):
-        """Whether a package can be imported; it is not imported, as some take seconds."""
+        """Returns True if a package can be imported; does not import it, as some take seconds."""
         test = "import importlib.util, sys; sys.exit(not importlib.util.find_spec(%r))" % package
         return os.path.exists(self.python) and subprocess.call([self.python, "-c", test]) == 0
 
     def versions(self):
-        """What is installed: {package: version}."""
+        """Returns the installed packages: {package: version}."""
         lines = _output([self.python, "-m", "pip", "list", "--format=freeze"]).splitlines()
         return dict(line.split("==", 1) for line in lines if "==" in line)
 
     def llvm(self):
-        """The library of LLVM that Mitsuba is to load. None: there is none that it can use."""
+        """Returns the LLVM library for Mitsuba. None: there is no usable one."""
         if os.environ.get("DRJIT_LIBLLVM_PATH"):
             return os.environ["DRJIT_LIBLLVM_PATH"]
         found = []
@@ -53,21 +53,22 @@ class Environment(NamedTuple):
         return min(found)[1] if found else None
 
     def variables(self):
-        """The environment variables under which the scripts of peers run."""
+        """Returns the environment variables of the peers' scripts."""
         variables = dict(os.environ, PYTHONDONTWRITEBYTECODE="1")
         if self.llvm():
             variables["DRJIT_LIBLLVM_PATH"] = self.llvm()
         return variables
 
     def luxcore_variables(self):
-        """LuxCore's allocator has to be loaded before all others, or its sessions do not end."""
+        """Returns the variables for LuxCore, whose allocator must be loaded first, or its sessions never
+        end."""
         libraries = "".join(glob.glob(self.path("venv/lib/python3*/site-packages/pyluxcore.libs")))
         allocator = "".join(glob.glob(libraries + "/libtbbmalloc_proxy*")[:1])
         return dict(self.variables(), LD_PRELOAD=allocator, LD_LIBRARY_PATH=libraries)
 
 
 def set_up(environment, packages):
-    """Installs what is missing, and says what cannot be had."""
+    """Installs missing packages, and reports those that cannot be installed."""
     os.makedirs(environment.folder, exist_ok=True)
     if not os.path.exists(environment.python):
         subprocess.check_call([sys.executable, "-m", "venv", environment.path("venv")])
@@ -83,7 +84,7 @@ def set_up(environment, packages):
 
 
 def _unpack_llvm(environment):
-    """Debian's package, unpacked into the folder: nothing is installed, so root is not needed."""
+    """Unpacks Debian's package into the folder; this installs nothing and needs no root."""
     package = "libllvm%d" % LLVM
     print("unpacking", package, flush=True)
     try:

@@ -1,5 +1,5 @@
-"""EXR files, for the scripts that run in the peers' environment. Images are float arrays of the
-shape (height, width, 3), linear Rec. 709, the top row first."""
+"""EXR files for the scripts in the peers' environment. Images are float arrays of the shape
+(height, width, 3), linear Rec. 709, the top row first."""
 
 import json
 
@@ -10,7 +10,7 @@ HEADER = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
 
 
 def write(path, image, layers=None):
-    """Writes a picture, and layers of one channel each beside it: {channel: (height, width)}."""
+    """Writes an image with layers of one channel each: {channel: (height, width)}."""
     channels = {name: np.ascontiguousarray(image[..., c])
                 for c, name in enumerate("RGB")}
     channels.update(layers or {})
@@ -19,7 +19,7 @@ def write(path, image, layers=None):
 
 
 def read(path, prefix=""):
-    """The triple of channels R, G, B, or of a layer: read(path, "Variance.")."""
+    """Reads the channels R, G, B of an image or of a layer: read(path, "Variance.")."""
     with OpenEXR.File(path, separate_channels=True) as file:
         channels = file.channels()
         return np.stack([np.array(channels[prefix + c].pixels, np.float64) for c in "RGB"], -1)
@@ -31,5 +31,5 @@ def read_channel(path, name):
 
 
 def report(samples, cpu, wall):
-    """Tells the caller what was done; it is the last line that is looked at."""
+    """Reports samples and times to the caller, which reads the last line."""
     print(json.dumps({"samples": samples, "cpu": cpu, "wall": wall}), flush=True)

@@ -88,7 +88,7 @@ def lamp_in_cup():
 
 
 def mesh_path(folder, scene, quad):
-    """Where the mesh of a surface lies, for all renderers that read PLY."""
+    """Returns the path of a surface's mesh, for renderers that read PLY."""
     return os.path.join(folder, "meshes-" + scene, quad.name + ".ply")
 
 

@@ -1,11 +1,11 @@
-"""Makes one image of several, with its variance: runs in the peers' environment.
+"""Combines several images into one, with its variance; runs in the peers' environment.
 
     pool.py mean OUT REFERENCE IMAGE...   the mean of independent images of equal cost
-    pool.py mix OUT PICTURE OTHER         the best mix of two images that know their variances
+    pool.py mix OUT PICTURE OTHER         the best mix of two images with variances
 
 OUT gets the layers `Variance` (of the mean) and `Samples`, by which `bidir compare` tests whether
-a difference is noise. How much noise OUT has, as relMSE (relative to REFERENCE, to PICTURE), is
-told on stdout.
+a difference is noise. The noise of OUT, as relMSE relative to REFERENCE or PICTURE, is printed on
+stdout.
 """
 
 import json
@@ -37,12 +37,12 @@ def mix(paths):
 
 
 def relative(variance, image):
-    """The relMSE that a variance is expected to make."""
+    """Returns the relMSE expected from a variance."""
     return float((variance / (image**2 + EPSILON)).mean())
 
 
 def rounded(values, bits):
-    """Floats of so many bits of mantissa, which take less room."""
+    """Rounds floats to `bits` bits of mantissa, which compress better."""
     mantissa, exponent = np.frexp(values)
     return np.ldexp(np.round(mantissa * 2**bits) / 2**bits, exponent)
 
@@ -50,7 +50,7 @@ def rounded(values, bits):
 def main():
     kind, out, first, *others = sys.argv[1:]
     found = mean(others) if kind == "mean" else mix([first, *others])
-    # What is below the noise is left out, which halves the file.
+    # Rounding digits below the noise halves the file.
     image, variance = rounded(found[0], 12), rounded(found[1], 6)
     layers = {"Variance." + c: np.float32(variance[..., i]) for i, c in enumerate("RGB")}
     layers["Samples"] = np.full(image.shape[:2], found[2], np.float32)

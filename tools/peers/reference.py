@@ -1,4 +1,4 @@
-"""References of both scenes: the best mix of two estimators of ours that agree.
+"""References of both scenes: the best mix of two bidir estimators that agree.
 
 `bidir reference` renders each and tests that they do; `verify` tests that the peers agree, too.
 """
@@ -19,8 +19,8 @@ ESTIMATORS = {
 
 
 def render(bench, seconds):
-    """Renders both estimators for so many CPU seconds, and keeps the mix of both beside this
-    file. Returns an exit code: 1 where they disagree."""
+    """Renders both estimators for a number of CPU seconds, and writes the mix of both next to this
+    file. Returns an exit code: 1 if they disagree."""
     for scene in bench.scenes:
         folder = bench.environment.path("reference-" + scene)
         estimators = ESTIMATORS[scene]
@@ -37,7 +37,7 @@ def render(bench, seconds):
 
 
 def _affordable(bench, scene, flags, seconds):
-    """Samples per pixel of an estimator in so many CPU seconds."""
+    """Returns the samples per pixel of an estimator in a number of CPU seconds."""
     renderer = renderers.Ours(bench.program, flags + " --sampler independent")
     image = bench.image("bench", renderer, scene, "cost")
     run = renderer.render(bench.job(scene, min(seconds, 8.0), 0, image))
@@ -45,7 +45,7 @@ def _affordable(bench, scene, flags, seconds):
 
 
 def keep(bench, scene, folder):
-    """Mixes the two pictures of a folder of `bidir reference`, and tells where they are from."""
+    """Mixes the two images of a folder of `bidir reference`, and records their origin."""
     path = os.path.join(score.REFERENCES, scene + ".exr")
     pictures = [os.path.join(folder, name + ".exr") for name in ("picture", "against")]
     noise = verify.pool(bench.environment, "mix", path, pictures)["noise"]

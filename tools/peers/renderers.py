@@ -1,4 +1,4 @@
-"""The renderers that take part, each with the settings under which its image is the reference.
+"""The compared renderers, each with the settings under which its image converges to the reference.
 
 A job is the same work for all: a scene, CPU seconds, threads, a seed and the image to write.
 """
@@ -32,11 +32,11 @@ class Run(NamedTuple):
 
 
 class Failed(Exception):
-    """A renderer that ended with an error; the text is the end of what it said."""
+    """A renderer ended with an error; the text is the end of its output."""
 
 
 class Ours:
-    """`bidir render` with some flags. All of the process counts: loading, tracing, writing."""
+    """`bidir render` with some flags. The time is that of the whole process: loading, tracing, writing."""
 
     ours = True
 
@@ -47,12 +47,12 @@ class Ours:
         self.cost = {}  # scene -> CPU seconds of a pass, as far as is known
 
     def problem(self, _environment):
-        """It can run everywhere."""
+        """Returns None, since it runs everywhere."""
         return None
 
     def render(self, job):
-        """As many passes as the CPU seconds allow: by the cost of the run before, at first a
-        short one that does not count."""
+        """Renders as many passes as the CPU seconds allow, by the cost of the previous run; the first run
+        is preceded by a short one that does not count."""
         if job.scene not in self.cost:
             self._learn(job)
         passes = max(1, round(job.seconds / self.cost[job.scene]))
@@ -68,7 +68,7 @@ class Ours:
             passes *= 4
 
     def passes(self, job, passes):
-        """A render of so many samples per pixel, whatever they cost."""
+        """Renders a number of samples per pixel, at any cost."""
         scene = os.path.join(job.scenes, job.scene + ".pbrt")
         command = [self.program, "render", scene, "-q", "-o", job.image, "--spp", str(passes),
                    "--seed", str(job.seed), "--threads", str(job.threads), "--integrator"]
@@ -84,8 +84,8 @@ class Ours:
 
 
 class Peer:
-    """Another renderer, driven by a script in its environment. Importing it, compiling kernels
-    and reading the scene do not count."""
+    """Another renderer, driven by a script in its environment. The time excludes importing it, compiling
+    kernels and reading the scene."""
 
     ours = False
 
@@ -96,7 +96,7 @@ class Peer:
         self.settings = settings
 
     def problem(self, environment):
-        """Why it cannot run. None: it can."""
+        """Returns the reason why it cannot run. None: it can."""
         if not environment.has(self.package):
             return "%s is not installed" % self.package
         if self.settings.get("variant", "").startswith("llvm") and environment.llvm() is None:
@@ -112,7 +112,7 @@ class Peer:
         done = subprocess.run([self.environment.python, script, json.dumps(work)], env=variables,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", check=False)
-        # Some write lines of their own beside it, and some do not end cleanly when all is done.
+        # Some print other lines, too, and some crash at the end although the render succeeded.
         found = re.findall(r'\{"samples".*?\}', done.stdout)
         if not found:
             raise Failed(done.stdout[-400:])
@@ -120,7 +120,7 @@ class Peer:
 
 
 def all_renderers(program, environment, variants):
-    """Our integrators as they are, then with other flags, then the peers."""
+    """Returns bidir's integrators, first by default and then with other flags, and the peers."""
     def mitsuba(name, variant, integrator):
         return Peer(name, "mitsuba", environment, variant=variant, integrator=integrator)
 

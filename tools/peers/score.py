@@ -1,4 +1,4 @@
-"""How far images are from a reference, by `bidir compare`: one measure for all renderers."""
+"""Errors of images by `bidir compare`: one measure for all renderers."""
 
 import json
 import os
@@ -11,7 +11,7 @@ PROVENANCE = os.path.join(REFERENCES, "provenance.json")
 
 
 def provenance():
-    """How the references were made: {scene: facts}."""
+    """Returns the provenance of the references: {scene: facts}."""
     if not os.path.exists(PROVENANCE):
         return {}
     with open(PROVENANCE, encoding="utf-8") as file:
@@ -19,7 +19,7 @@ def provenance():
 
 
 class Reference(NamedTuple):
-    """An image that is nearly without noise, and how much it has."""
+    """A nearly noise-free image, and its noise."""
 
     path: str
     noise: float  # its own relMSE, which is in that of every image that is compared with it
@@ -30,11 +30,11 @@ class Reference(NamedTuple):
 
 
 def compare(program, images, reference):
-    """What `bidir compare` says of an image, or of several of independent seeds."""
+    """Runs `bidir compare` for an image, or for several with independent seeds; returns its results."""
     command = [program, "compare", "--json", *images, "--reference", reference.path]
     return json.loads(subprocess.run(command, stdout=subprocess.PIPE, check=True).stdout)
 
 
 def relmse(comparison, reference):
-    """relMSE without the reference's own noise, which is independent of the image's."""
+    """Returns the relMSE without the reference's own noise, which is independent of the image's."""
     return comparison["relmse"] - reference.noise

@@ -1,4 +1,4 @@
-"""Do all renderers converge to the same image? Else their errors could not be compared."""
+"""Checks that all renderers converge to the same image, so that their errors are comparable."""
 
 import json
 import os
@@ -7,7 +7,7 @@ import subprocess
 import score
 from renderers import Failed
 
-RATIO = 0.003         # the mean of an image may differ from the reference's by so much
+RATIO = 0.003         # allowed relative difference between the means of an image and the reference
 SIGNIFICANCE = 0.001  # a difference of less probability is no noise
 SYSTEMATIC = 0.01     # the part of a render's error that need not be noise
 
@@ -17,7 +17,8 @@ def verify(bench, seconds, replicates):
 
     Its own mean has to be within 0.3 %, give or take its noise. Blocks of 16 pixels have to differ
     by noise alone, or else by less than 1 % of the relMSE of one replicate: in Cycles the edge of
-    a lamp lies a hundredth of a pixel elsewhere, which is found, but changes no comparison. Prints a line for each. Returns the number of failures."""
+    a lamp lies a hundredth of a pixel elsewhere, which is detected, but changes no comparison. Prints a line
+    for each renderer. Returns the number of failures."""
     failures = 0
     print("| scene | renderer | mean / reference | p of blocks | systematic part of its error | |")
     print("|---|---|---:|---:|---:|---|")
@@ -52,7 +53,7 @@ def _verify(bench, scene, renderer, seconds, replicates):
 
 
 def pool(environment, kind, out, images):
-    """Runs `pool.py`, which needs the environment's packages: what it tells."""
+    """Runs `pool.py` in the environment, whose packages it needs; returns its report."""
     script = os.path.join(score.HERE, "pool.py")
     command = [environment.python, script, kind, out, *images]
     done = subprocess.run(command, env=environment.variables(), stdout=subprocess.PIPE, check=True)

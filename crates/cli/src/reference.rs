@@ -114,14 +114,14 @@ fn plan(
             Failure::new(Exit::FilmMismatch, message)
         });
     }
-    let mut plan = Plan::usual(&loaded.settings, args.spp.unwrap_or(loaded.spp));
+    let mut plan = Plan::with_defaults(&loaded.settings, args.spp.unwrap_or(loaded.spp));
     let flags = [&args.estimator, &args.against];
     for (settings, flags) in plan.estimators.iter_mut().zip(flags) {
         if let Some(flags) = flags {
             *settings = flags.0.apply(settings);
         }
     }
-    if plan.is_its_own_witness() {
+    if plan.is_its_own_cross_check() {
         let message =
             "--estimator and --against may be the same estimator, which cannot cross-check itself";
         let hint = "give --against another integrator, or other settings than the seed; \

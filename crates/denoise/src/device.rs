@@ -1,4 +1,4 @@
-//! The library's objects, so that they can be used without `unsafe`.
+//! A safe interface to the library's objects.
 
 use crate::error::DenoiseError;
 use crate::ffi::{Api, CPU, FLOAT3, Handle, NO_ERROR};
@@ -6,10 +6,10 @@ use crate::find::Found;
 use std::ffi::{CStr, c_int};
 use std::ptr;
 
-/// What a filter calls an image, and the image.
+/// An image, with its name in a filter.
 pub(crate) struct Image<'a> {
     pub(crate) name: &'static CStr,
-    /// Shape: the size that is given to [`Device::filter`].
+    /// Shape: the `size` passed to [`Device::filter`].
     pub(crate) pixels: &'a mut [[f32; 3]],
 }
 
@@ -17,12 +17,12 @@ pub(crate) struct Image<'a> {
 #[derive(Debug)]
 pub(crate) struct Device {
     api: Api,
-    /// A device that was made by `api`, and is released by dropping this alone.
+    /// A device made by `api`; only dropping this releases it.
     handle: Handle,
 }
 
 impl Device {
-    /// A device with at most `threads` threads; 0 leaves that to the library.
+    /// Creates a device with at most `threads` threads; 0 leaves the number to the library.
     pub(crate) fn new(found: &Found, threads: usize) -> Result<Self, DenoiseError> {
         let api = Api::of(found)?;
         // SAFETY: the function has no other argument.
@@ -39,10 +39,10 @@ impl Device {
             });
         }
         let threads = c_int::try_from(threads).unwrap_or(c_int::MAX);
-        // SAFETY: the device is there, names end with a zero and are not kept.
+        // SAFETY: the device is valid; the names are null-terminated, and the library does not keep them.
         unsafe {
             (api.set_device_int)(handle, c"numThreads".as_ptr(), threads);
-            // Pinned threads would get in the way of a render in the same process.
+            // Pinned threads would disturb a render in the same process.
             (api.set_device_bool)(handle, c"setAffinity".as_ptr(), false);
             (api.commit_device)(handle);
         }
@@ -50,17 +50,17 @@ impl Device {
         Ok(device)
     }
 
-    /// Major, minor and patch version of the library.
+    /// Returns major, minor and patch version of the library.
     pub(crate) fn version(&self) -> [c_int; 3] {
         [c"versionMajor", c"versionMinor", c"versionPatch"].map(|name| {
-            // SAFETY: the device is there, and the name ends with a zero and is not kept.
+            // SAFETY: the device is valid; the name is null-terminated, and the library does not keep it.
             unsafe { (self.api.get_device_int)(self.handle, name.as_ptr()) }
         })
     }
 
-    /// Denoises `image` in place, guided by `guides`; `flags` are switched on.
+    /// Denoises `image` in place, guided by `guides`, with `flags` switched on.
     ///
-    /// Panics: where [`Filter::set_image`] does.
+    /// Panics: if [`Filter::set_image`] does.
     pub(crate) fn filter(
         &self,
         size: [usize; 2],
@@ -74,12 +74,12 @@ impl Device {
             filter.set_image(&[guide.name], size, guide.pixels);
         }
         for flag in flags {
-            // SAFETY: the filter is there, and the name ends with a zero and is not kept.
+            // SAFETY: the filter is valid; the name is null-terminated, and the library does not keep it.
             unsafe { (self.api.set_filter_bool)(filter.handle, flag.as_ptr(), true) };
         }
-        // SAFETY: the filter is there. It reads and writes the images that were set, which are
-        // borrowed until this function returns, and which nobody else uses. The image and the output
-        // may be the same. The filter is released before the images are given back.
+        // SAFETY: the filter is valid. It reads and writes the images set above, which this function
+        // borrows exclusively until it returns. Input and output may be the same image. The filter is
+        // released before the borrows end.
         unsafe {
             (self.api.commit_filter)(filter.handle);
             (self.api.execute_filter)(filter.handle);
@@ -87,10 +87,10 @@ impl Device {
         self.check()
     }
 
-    /// Fails where the library met an error since the last call.
+    /// Returns the library's first error since the last call, if any.
     fn check(&self) -> Result<(), DenoiseError> {
         let mut message = ptr::null();
-        // SAFETY: the device is there, or null, which asks why there is none.
+        // SAFETY: the device is valid, or null, for the error of creating it.
         let error = unsafe { (self.api.get_device_error)(self.handle, &raw mut message) };
         if error == NO_ERROR {
             return Ok(());
@@ -98,7 +98,7 @@ impl Device {
         if message.is_null() {
             return Err(silent());
         }
-        // SAFETY: it ends with a zero, and stays until the next call for an error.
+        // SAFETY: the message is null-terminated, and valid until the next call for an error.
         let message = unsafe { CStr::from_ptr(message) };
         Err(DenoiseError::Library {
             message: message.to_string_lossy().into_owned(),
@@ -109,22 +109,22 @@ impl Device {
 impl Drop for Device {
     fn drop(&mut self) {
         if !self.handle.is_null() {
-            // SAFETY: the device is there, and nothing uses it any more.
+            // SAFETY: the device is valid and no longer used.
             unsafe { (self.api.release_device)(self.handle) };
         }
     }
 }
 
-/// A filter of the kind `RT`, made for images of ray tracing.
+/// A filter of type `RT`, for ray-traced images.
 struct Filter<'d> {
     device: &'d Device,
-    /// A filter that was made by the device, and is released by dropping this alone.
+    /// A filter made by the device; only dropping this releases it.
     handle: Handle,
 }
 
 impl<'d> Filter<'d> {
     fn new(device: &'d Device) -> Result<Self, DenoiseError> {
-        // SAFETY: the device is there, and the name ends with a zero and is not kept.
+        // SAFETY: the device is valid; the name is null-terminated, and the library does not keep it.
         let handle = unsafe { (device.api.new_filter)(device.handle, c"RT".as_ptr()) };
         if handle.is_null() {
             device.check()?;
@@ -133,8 +133,9 @@ impl<'d> Filter<'d> {
         Ok(Self { device, handle })
     }
 
-    /// Tells the filter where the image of these names is; whoever executes the filter has to hold
-    /// it until then. Panics: its shape is not `size`, or a side does not fit into 31 bits.
+    /// Sets the image of these names; the caller must keep it borrowed while the filter executes.
+    ///
+    /// Panics: its shape is not `size`, or a side does not fit into 31 bits.
     fn set_image(&self, names: &[&CStr], size: [usize; 2], pixels: &mut [[f32; 3]]) {
         let [width, height] = size;
         assert_eq!(width * height, pixels.len(), "the shape is the size");
@@ -143,8 +144,8 @@ impl<'d> Filter<'d> {
         let set_image = self.device.api.set_image;
         for name in names {
             let name = name.as_ptr();
-            // SAFETY: the filter is there, the name ends with a zero and is not kept, and from the
-            // first pixel on there are width · height triples of f32 without gaps.
+            // SAFETY: the filter is valid; the name is null-terminated, and the library does not keep it;
+            // `pixels` points to width · height contiguous triples of f32.
             unsafe { set_image(self.handle, name, pixels, FLOAT3, width, height, 0, 0, 0) };
         }
     }
@@ -152,12 +153,12 @@ impl<'d> Filter<'d> {
 
 impl Drop for Filter<'_> {
     fn drop(&mut self) {
-        // SAFETY: the filter is there, and nothing uses it any more.
+        // SAFETY: the filter is valid and no longer used.
         unsafe { (self.device.api.release_filter)(self.handle) };
     }
 }
 
-/// An error of which the library says nothing.
+/// Makes the error for a failure that the library does not explain.
 fn silent() -> DenoiseError {
     DenoiseError::Library {
         message: "an error without a message".to_owned(),

@@ -1,25 +1,25 @@
 use std::path::PathBuf;
 
-/// Why a picture cannot be denoised.
+/// An error of denoising.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DenoiseError {
-    /// The system has no such library.
+    /// The system has no Open Image Denoise library.
     #[error("Open Image Denoise was not found by the names {}; the system says: {reason}", names.join(", "))]
     NotFound {
-        /// The names that were tried.
+        /// The tried names.
         names: Vec<&'static str>,
-        /// What the system says of the first.
+        /// The system's error for the first name.
         reason: String,
     },
-    /// A file is no library, or another one.
+    /// The file is not a library, or another one.
     #[error("{}: cannot be used as Open Image Denoise: {reason}", file.display())]
     Unusable {
-        /// The file, or the folder where it should be.
+        /// The file, or the folder without it.
         file: PathBuf,
-        /// Why not.
+        /// The cause.
         reason: String,
     },
-    /// The library has another major version than 2.
+    /// The major version of the library is not 2.
     #[error("{}: Open Image Denoise {version}, where version 2 is needed", file.display())]
     Version {
         /// The library.
@@ -27,29 +27,29 @@ pub enum DenoiseError {
         /// Its version.
         version: String,
     },
-    /// An image has not the number of pixels that its size tells.
+    /// The number of pixels of an image does not fit the size.
     #[error("the {image} has {pixels} pixels, not {} x {}", size[0], size[1])]
     Size {
-        /// Which image.
+        /// The name of the image.
         image: &'static str,
-        /// How many pixels it has.
+        /// Its number of pixels.
         pixels: usize,
-        /// Width and height of the picture.
+        /// Width and height.
         size: [usize; 2],
     },
-    /// There are normals and no albedo, for which the filter is not made.
+    /// Normals are given without albedo, which the filter does not support.
     #[error("normals can guide only together with albedo")]
     NormalAlone,
-    /// The library refuses or fails.
+    /// The library fails.
     #[error("Open Image Denoise: {message}")]
     Library {
-        /// What it says.
+        /// The library's message.
         message: String,
     },
 }
 
 impl DenoiseError {
-    /// What to do about it. None: where the message says all there is to say.
+    /// Returns a remedy. None: the message implies it.
     pub fn hint(&self) -> Option<&'static str> {
         match self {
             Self::NotFound { .. } => Some(
@@ -65,7 +65,7 @@ impl DenoiseError {
         }
     }
 
-    /// True where there is no library that can be used, whatever the picture.
+    /// Returns true if there is no usable library.
     pub fn is_missing(&self) -> bool {
         matches!(
             self,

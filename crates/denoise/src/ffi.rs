@@ -1,4 +1,4 @@
-//! The functions of the library's interface of C that are used, as `oidn.h` of version 2 has them.
+//! Bindings to the C functions in use, as declared in `oidn.h` of version 2.
 
 use crate::error::DenoiseError;
 use crate::find::Found;
@@ -27,10 +27,10 @@ type SetImage = unsafe extern "C" fn(
     usize,
 );
 
-/// The library's functions. The library is never unloaded, so that they can always be called.
+/// The library's functions. The library is never unloaded, so that the pointers stay valid.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Api {
-    /// `oidnNewDevice(type)`; null where there is none.
+    /// `oidnNewDevice(type)`; null on failure.
     pub(crate) new_device: unsafe extern "C" fn(c_int) -> Handle,
     /// `oidnReleaseDevice(device)`.
     pub(crate) release_device: unsafe extern "C" fn(Handle),
@@ -43,33 +43,33 @@ pub(crate) struct Api {
     /// `oidnGetDeviceInt(device, name)`.
     pub(crate) get_device_int: unsafe extern "C" fn(Handle, *const c_char) -> c_int,
     /// `oidnGetDeviceError(device, message)` takes the first error of this thread since the last
-    /// call; of a null device, why there is none.
+    /// call; for a null device, the error of creating it.
     pub(crate) get_device_error: unsafe extern "C" fn(Handle, *mut *const c_char) -> c_int,
-    /// `oidnNewFilter(device, type)`; null where there is none.
+    /// `oidnNewFilter(device, type)`; null on failure.
     pub(crate) new_filter: unsafe extern "C" fn(Handle, *const c_char) -> Handle,
     /// `oidnReleaseFilter(filter)`.
     pub(crate) release_filter: unsafe extern "C" fn(Handle),
     /// `oidnSetSharedFilterImage(filter, name, pixels, format, width, height, offset, pixel stride,
-    /// row stride)`; strides of 0 are those of pixels without gaps.
+    /// row stride)`; strides of 0 mean contiguous pixels.
     pub(crate) set_image: SetImage,
     /// `oidnSetFilterBool(filter, name, value)`.
     pub(crate) set_filter_bool: unsafe extern "C" fn(Handle, *const c_char, bool),
     /// `oidnCommitFilter(filter)`, after its settings and before its use.
     pub(crate) commit_filter: unsafe extern "C" fn(Handle),
-    /// `oidnExecuteFilter(filter)` returns when the output is written.
+    /// `oidnExecuteFilter(filter)`, which returns when the output is complete.
     pub(crate) execute_filter: unsafe extern "C" fn(Handle),
 }
 
 impl Api {
-    /// Looks up all functions. Errors: one is not there.
+    /// Looks up all functions. Errors: one is missing.
     pub(crate) fn of(found: &Found) -> Result<Self, DenoiseError> {
         check_not_first_version(found)?;
         let unusable = |function: &str| DenoiseError::Unusable {
             file: found.file.clone(),
             reason: format!("it has no function {function}"),
         };
-        // SAFETY: the types of the fields are those of the functions' declarations in `oidn.h`, and
-        // the library stays loaded.
+        // SAFETY: the types of the fields equal the declarations in `oidn.h`, and the library stays
+        // loaded.
         let api = unsafe {
             let library = found.library;
             Self {
@@ -92,7 +92,7 @@ impl Api {
     }
 }
 
-/// Version 1 had other names for functions of the same meaning, and tells itself by them.
+/// Refuses version 1, which is recognized by its older names of functions.
 fn check_not_first_version(found: &Found) -> Result<(), DenoiseError> {
     let has = |name: &str| {
         // SAFETY: the address is not used.
@@ -107,11 +107,11 @@ fn check_not_first_version(found: &Found) -> Result<(), DenoiseError> {
     Ok(())
 }
 
-/// The function of a name. Errors: the name, where there is none.
+/// Looks up a function. Errors: its name, if it is missing.
 ///
 /// # Safety
 ///
-/// `F` is a pointer to a function with that name's arguments and result.
+/// `F` is a pointer to a function with the arguments and result of the function of this name.
 unsafe fn function<'n, F: Copy>(library: &'static Library, name: &'n str) -> Result<F, &'n str> {
     // SAFETY: by the caller's promise.
     let symbol = unsafe { library.get::<F>(name.as_bytes()) };

@@ -1,17 +1,17 @@
-//! Where the library is looked for.
+//! The search for the library.
 
 use crate::error::DenoiseError;
 use libloading::Library;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
-/// The environment variable that names the library's file, or a folder that has it.
+/// The environment variable that names the library's file or folder.
 pub const VARIABLE: &str = "BIDIR_OIDN";
 
-/// Where a folder has the library: at once, or as the project's archives have it.
+/// The subfolders that are searched: the folder itself, and those of the project's archives.
 const FOLDERS: [&str; 3] = ["", "lib", "bin"];
 
-/// The names by which the system is asked for the library, in this order.
+/// Returns the file names of the library on this system, in the order of the search.
 pub fn names() -> &'static [&'static str] {
     if cfg!(windows) {
         &["OpenImageDenoise.dll"]
@@ -22,16 +22,16 @@ pub fn names() -> &'static [&'static str] {
     }
 }
 
-/// A library that was loaded, whichever it is.
+/// A loaded library, not yet checked.
 #[derive(Debug)]
 pub(crate) struct Found {
-    /// Never unloaded: threads of its own may still be in its code.
+    /// The library, never unloaded: its own threads may still run its code.
     pub(crate) library: &'static Library,
-    /// Its file, or the name that the system found it by.
+    /// Its file, or the name by which the system found it.
     pub(crate) file: PathBuf,
 }
 
-/// Loads what is named, a file or a folder; without a name, what the system finds.
+/// Loads the library from a file or folder; without one, the library that the system finds.
 pub(crate) fn find(named: Option<&Path>) -> Result<Found, DenoiseError> {
     let Some(named) = named else {
         return find_by_system();
@@ -60,8 +60,8 @@ fn find_by_system() -> Result<Found, DenoiseError> {
     })
 }
 
-/// The file that is named, or that the folder has; absolute, so that the system does not look for it
-/// elsewhere, and without links, so that the library finds its parts beside it.
+/// Resolves a file, or the library's file in a folder. The path is absolute, so that the system does not
+/// search elsewhere, and without links, so that the library finds its parts next to it.
 fn file_of(named: &Path) -> Result<PathBuf, String> {
     let named = named.canonicalize().map_err(|error| error.to_string())?;
     if !named.is_dir() {
@@ -76,10 +76,10 @@ fn file_of(named: &Path) -> Result<PathBuf, String> {
         .ok_or_else(|| format!("the folder has no {}", names().join(", no ")))
 }
 
-/// Loads a library. Errors: what the system says.
+/// Loads a library. Errors: the system's message.
 fn open(file: &Path) -> Result<Found, String> {
-    // SAFETY: loading runs the library's initialisers. It is the user who names the file, or the
-    // system that has the library under Open Image Denoise's name, as for any program linked to it.
+    // SAFETY: loading runs the library's initialisers. The user names the file, or the system provides a
+    // library with Open Image Denoise's name, as for any program linked to it.
     let library = unsafe { Library::new(file) }.map_err(|error| reason(&error))?;
     Ok(Found {
         library: Box::leak(Box::new(library)),
@@ -87,7 +87,7 @@ fn open(file: &Path) -> Result<Found, String> {
     })
 }
 
-/// What is wrong, in the words of the system where it has some.
+/// Returns the system's message for an error, or else the error's own.
 fn reason(error: &dyn Error) -> String {
     error.source().map_or_else(|| error.to_string(), reason)
 }

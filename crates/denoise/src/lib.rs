@@ -1,7 +1,7 @@
-//! Denoises pictures by Open Image Denoise 2, which is looked for when it is needed.
+//! Denoises images with Open Image Denoise 2, which is loaded at run time.
 //!
-//! The library of C is no part of the build: a machine without it builds and runs everything else,
-//! and [`Denoiser::load`] fails there with the names that were tried and with what to do about it.
+//! The C library is not part of the build: a machine without it builds and runs everything else, and
+//! [`Denoiser::load`] fails there with the tried names and a remedy.
 //!
 //! ```no_run
 //! use bidir_denoise::{Denoiser, Input};
@@ -14,21 +14,20 @@
 //! # Ok::<(), bidir_denoise::DenoiseError>(())
 //! ```
 //!
-//! # What is done
+//! # Method
 //!
-//! The filter `RT` with `hdr` removes the noise of the picture. Guides, which are the albedo and the
-//! normal of what each pixel sees, tell it what is texture or edge, and what is noise. Guides of a
-//! render are noisy themselves, through depth of field, motion or the pixel filter; so each is
-//! denoised by itself first, and the filter is told that its guides are clean (`cleanAux`), as is
-//! recommended for final frames [Afra25, documentation, RT filter].
+//! The filter `RT` with `hdr` removes the noise. The guides, albedo and normal of each pixel's surface, help
+//! it to distinguish texture and edges from noise. Rendered guides are noisy themselves, through depth of
+//! field, motion or the pixel filter; each is therefore denoised separately first, and the flag `cleanAux`
+//! declares them clean, as recommended for final frames [Afra25, documentation, RT filter].
 //!
-//! # What is promised
+//! # Guarantees
 //!
-//! - A library of another major version is refused: its functions may have other arguments.
-//! - What is no number of a picture is brought into range before the filter sees it, see [`Input`].
-//! - The processor does it, with at most as many threads as are asked for.
+//! - A library of another major version is refused, since its functions may have other arguments.
+//! - Only finite numbers in range reach the filter, see [`Input`].
+//! - The filter runs on the CPU, with at most the given number of threads.
 //!
-//! Not here: the choice of noise that is left, pictures of several layers, graphics processors.
+//! Not supported: partial denoising, images with several layers, GPUs.
 
 mod device;
 mod error;
@@ -41,57 +40,56 @@ pub use find::{VARIABLE, names};
 use device::{Device, Image};
 use std::path::Path;
 
-/// A picture with noise, and what guides the filter.
+/// A noisy image, and the guides of the filter.
 ///
-/// Numbers that are not finite are taken as 0, as no number tells how bright they are; others are
-/// brought into range: the colour to what is not negative, albedo to `[0, 1]`, normals to `[-1, 1]`.
+/// Numbers that are not finite count as 0; others are clamped: the colour to at least 0, albedo to `[0, 1]`,
+/// normals to `[-1, 1]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     /// Width and height. Unit: pixels.
     pub size: [usize; 2],
     /// Linear light, red, green and blue. Shape: `size[0] · size[1]`, row by row.
     pub color: &'a [[f32; 3]],
-    /// The share of light that the surface of each pixel reflects. Shape: that of `color`.
+    /// The albedo of each pixel's surface. Shape: that of `color`.
     pub albedo: Option<&'a [[f32; 3]]>,
-    /// The normal of that surface, in any frame. Shape: that of `color`. The filter takes it only
-    /// together with `albedo`.
+    /// The normal of that surface, in any frame. Shape: that of `color`. It requires `albedo`.
     pub normal: Option<&'a [[f32; 3]]>,
 }
 
-/// Open Image Denoise, ready to be used.
+/// A loaded Open Image Denoise.
 #[derive(Debug)]
 pub struct Denoiser {
     device: Device,
 }
 
 impl Denoiser {
-    /// Loads the library that [`VARIABLE`] names, or one that the system finds by [`names`].
+    /// Loads the library that [`VARIABLE`] names, or else one that the system finds by [`names`].
     ///
-    /// `threads` is the most that it takes; 0 leaves that to the library. Once loaded, the library
-    /// stays until the process ends.
+    /// The library uses at most `threads` threads; 0 leaves the number to it. It stays loaded until the
+    /// process ends.
     ///
-    /// Errors: there is none; the one that was found or named is no such library, or of another
-    /// version; it does not run on this processor. A variable that is set is never passed over.
+    /// Errors: there is no library; it is another library or version; it does not run on this processor. A
+    /// variable that is set is never ignored.
     pub fn load(threads: usize) -> Result<Self, DenoiseError> {
         let named = std::env::var_os(VARIABLE).filter(|value| !value.is_empty());
         Self::load_named(named.as_deref().map(Path::new), threads)
     }
 
-    /// The same as [`load`](Self::load), with a file or folder in place of the variable.
+    /// Loads the library as [`load`](Self::load) does, with a file or folder in place of the variable.
     pub fn load_named(named: Option<&Path>, threads: usize) -> Result<Self, DenoiseError> {
         let found = find::find(named)?;
         let device = Device::new(&found, threads)?;
         Ok(Self { device })
     }
 
-    /// The library's version, such as `2.3.1`.
+    /// Returns the library's version, such as `2.3.1`.
     pub fn version(&self) -> String {
         self.device.version().map(|part| part.to_string()).join(".")
     }
 
-    /// The picture without its noise. Shape: that of the input's colour.
+    /// Returns the denoised image. Shape: that of the input's colour.
     ///
-    /// Errors: an image has another size than it should; normals without albedo; the library's own.
+    /// Errors: an image has the wrong size; normals are given without albedo; the library fails.
     pub fn denoise(&self, input: &Input<'_>) -> Result<Vec<[f32; 3]>, DenoiseError> {
         check(input)?;
         let mut color = in_range(input.color, [0.0, f32::MAX]);
@@ -119,10 +117,10 @@ impl Denoiser {
     }
 }
 
-/// Fails where an image does not fit to the size, or the guides do not fit together.
+/// Fails if an image does not fit the size, or normals are given without albedo.
 fn check(input: &Input<'_>) -> Result<(), DenoiseError> {
     let [width, height] = input.size;
-    // The library stores sides in 32 bits with a sign.
+    // The library stores sides in signed 32-bit integers.
     let fits = [width, height]
         .iter()
         .all(|&side| i32::try_from(side).is_ok());
@@ -149,7 +147,7 @@ fn check(input: &Input<'_>) -> Result<(), DenoiseError> {
     Ok(())
 }
 
-/// A copy with every number in `[low, high]`, and 0 for what is not finite.
+/// Copies pixels, clamps numbers to `[low, high]`, and replaces those that are not finite by 0.
 fn in_range(pixels: &[[f32; 3]], [low, high]: [f32; 2]) -> Vec<[f32; 3]> {
     let in_range = |number: f32| {
         if number.is_finite() {
@@ -208,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_that_wrap_around_are_refused() {
+    fn sizes_that_overflow_are_refused() {
         for size in [[usize::MAX, 2], [1 << 63, 2], [1 << 33, 0]] {
             let input = Input {
                 size,
@@ -221,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_brought_into_range() {
+    fn numbers_are_clamped_and_those_that_are_not_finite_become_zero() {
         let pixels = [
             [f32::NAN, f32::INFINITY, f32::NEG_INFINITY],
             [-2.0, 0.5, 2.0],

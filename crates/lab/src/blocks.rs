@@ -2,14 +2,14 @@
 
 use crate::image::Pixels;
 
-/// Images cut into squares; those at the right and lower border may be smaller.
+/// A division of images into square blocks; blocks at the right and lower border may be smaller.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     size: [usize; 2],
     block: usize,
 }
 
-/// The values of a channel in a block, added up.
+/// Sums of the values of a channel in a block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) count: f64,
@@ -24,7 +24,7 @@ impl Tally {
 }
 
 impl Blocks {
-    /// Blocks of `block` × `block` pixels, at least of one.
+    /// Divides images into blocks of `block` × `block` pixels; 0 counts as 1.
     pub(crate) fn new(size: [usize; 2], block: usize) -> Self {
         let largest = size[0].max(size[1]);
         let block = block.clamp(1, largest.max(1));
@@ -35,7 +35,7 @@ impl Blocks {
         self.size[0].div_ceil(self.block)
     }
 
-    /// The sums of every block, row by row. Shape: `blocks · 3`, channels side by side.
+    /// Computes the sums of every block, row by row. Shape: `blocks · 3`, channels side by side.
     pub(crate) fn sums(self, pixels: &Pixels) -> Vec<Tally> {
         let rows = self.size[1].div_ceil(self.block);
         let mut sums = vec![Tally::default(); self.columns() * rows * 3];
@@ -52,13 +52,13 @@ impl Blocks {
         sums
     }
 
-    /// The number of the block that a pixel is in, both row by row from the top left.
+    /// Returns the index of a pixel's block, both row by row from the top left.
     pub(crate) fn of(self, pixel: usize) -> usize {
         let [x, y] = [pixel % self.size[0], pixel / self.size[0]];
         y / self.block * self.columns() + x / self.block
     }
 
-    /// Left, top, right and bottom (exclusive) of the block that sum `index` is of. Unit: pixels.
+    /// Returns left, top, right and bottom (exclusive) of the block of sum `index`. Unit: pixels.
     pub(crate) fn place(self, index: usize) -> [usize; 4] {
         let (x, y) = (index / 3 % self.columns(), index / 3 / self.columns());
         let [left, top] = [x * self.block, y * self.block];

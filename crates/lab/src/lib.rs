@@ -1,19 +1,19 @@
-//! Experiments: images become numbers, and numbers get confidence.
+//! Experiments: renders of scenes, error metrics, and their statistics.
 //!
-//! - [`experiment`]: scenes × methods × budgets × seeds, rendered and compared.
-//! - [`image`]: linear pictures in memory, pairs of them, other sizes.
-//! - [`metric`]: how far an image is from a reference, for every pixel and as one number.
-//! - [`flip`]: the difference that an observer sees when two images alternate.
-//! - [`pyramid`]: what each strategy does, as images and figures.
-//! - [`reference`](mod@reference): pictures that others are measured against, rendered by two estimators that agree.
-//! - [`report`]: what an experiment found, as a page for people.
-//! - [`results`]: what an experiment found, as it is written down.
-//! - [`sample`]: one sample, told step by step.
-//! - [`statistics`]: intervals over independent seeds, ratios of two methods, and whether two
-//!   renders have the same expectation.
+//! - [`experiment`]: renders scenes × methods × budgets × seeds and compares the images with references.
+//! - [`image`]: linear images in memory, image–reference pairs, resampling.
+//! - [`metric`]: the error of an image against a reference, per pixel and as one number.
+//! - [`flip`]: FLIP, the difference that an observer sees when two images alternate.
+//! - [`pyramid`]: contact sheets and figures of each strategy (s, t).
+//! - [`reference`](mod@reference): reference images, rendered by two estimators that agree.
+//! - [`report`]: the results of an experiment as an HTML page.
+//! - [`results`]: the results of an experiment as `results.json`.
+//! - [`sample`]: the replay of one sample, step by step.
+//! - [`statistics`]: intervals over independent seeds, ratios of two methods, and tests for equal
+//!   expectations of two renders.
 //!
-//! All but [`experiment`], [`reference`](mod@reference) and [`sample`] read no file and know no scene: who has
-//! images can ask. Where random numbers are drawn their seed is fixed. Nothing looks at a clock of its own.
+//! Only [`experiment`], [`reference`](mod@reference) and [`sample`] read files or scenes; all other modules
+//! work on images. Random numbers have a fixed seed. No module reads a clock; hosts supply it.
 
 mod blocks;
 pub mod experiment;

@@ -1,7 +1,6 @@
-//! What an experiment found: everything that a report shows and that somebody else may want to
-//! compute with, as it stands in `results.json`.
+//! The results of an experiment, as `results.json` stores them for reports and other programs.
 //!
-//! A [`Record`] is one render. What is concluded from records is a [`Claim`], with its tables and
+//! A [`Record`] describes one render; a [`Claim`] states a conclusion from records, with its tables and
 //! plots. Names are unique within their list, and records refer to them.
 
 use serde::{Deserialize, Serialize};
@@ -10,18 +9,18 @@ use std::collections::BTreeMap;
 /// The version of the format of `results.json`.
 pub const FORMAT: u32 = 1;
 
-/// All that an experiment found.
+/// The results of an experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// [`FORMAT`].
     pub format: u32,
-    /// What the experiment is about.
+    /// The title of the experiment.
     pub title: String,
-    /// A few sentences on what is compared and why.
+    /// A few sentences on the comparison and its purpose.
     pub description: String,
     /// The program with its version.
     pub program: String,
-    /// What it ran on.
+    /// The machine that it ran on.
     pub machine: Machine,
     /// The scenes.
     pub scenes: Vec<SceneInfo>,
@@ -31,17 +30,17 @@ pub struct Results {
     pub budgets: Vec<BudgetInfo>,
     /// One for each render.
     pub records: Vec<Record>,
-    /// What strategies do, one for each scene where it was asked for.
+    /// Figures of the strategies (s, t), one entry for each scene of the description's pyramid.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pyramids: Vec<Pyramid>,
     /// Contributions before visibility, of the methods and scenes that the description names.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contributions: Vec<Contributions>,
-    /// What was concluded.
+    /// The conclusions.
     pub claims: Vec<Claim>,
 }
 
-/// What an experiment ran on.
+/// The machine of an experiment.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor.
@@ -61,30 +60,30 @@ pub struct SceneInfo {
     pub name: String,
     /// The file, as it was named.
     pub file: String,
-    /// Hash of everything that was read for it.
+    /// Hash of everything read for it.
     pub digest: String,
     /// Width and height. Unit: pixels.
     pub size: [usize; 2],
-    /// How the reference was made, in words: estimators, samples per pixel, their agreement.
+    /// A description of the reference: estimators, samples per pixel, their agreement.
     pub reference: String,
     /// The reference image, relative to the folder of the results.
     pub reference_image: Option<String>,
-    /// The mean square error that the reference's own noise makes, and that is in every error: the mean
-    /// variance of its pixels and channels. None: nobody knows, as of an image without variances.
+    /// The mean square error due to the reference's own noise, which every error contains: the mean variance
+    /// of its pixels and channels. None: unknown, as for an image without variances.
     #[serde(default)]
     pub reference_mse: Option<f64>,
 }
 
-/// A method: how scenes are rendered.
+/// A method: the settings of a render.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MethodInfo {
     /// Its name in this experiment.
     pub name: String,
-    /// All settings, as flags are called and write them.
+    /// All settings, by the names of flags and in their notation.
     pub settings: BTreeMap<String, String>,
 }
 
-/// The amounts that are equal for all methods.
+/// The quantity that a budget makes equal for all methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BudgetKind {
@@ -96,34 +95,34 @@ pub enum BudgetKind {
     Seconds,
 }
 
-/// A budget, that a render uses up.
+/// A budget, which a render uses up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetInfo {
     /// Its name in this experiment, such as `64 spp`.
     pub name: String,
-    /// What is counted.
+    /// The quantity.
     pub kind: BudgetKind,
-    /// How much of it.
+    /// The amount, in the unit of `kind`.
     pub amount: f64,
 }
 
 /// Rays by kind, over all pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rays {
-    /// Of camera walks.
+    /// Rays of camera subpaths.
     pub camera: u64,
-    /// Of light walks.
+    /// Rays of light subpaths.
     pub light: u64,
     /// Shadow rays that join s ≥ 1 with t ≥ 2.
     pub connection: u64,
     /// Shadow rays of the light image, t = 1.
     pub light_image: u64,
-    /// Of training, of all kinds.
+    /// Rays of training, of all kinds.
     pub training: u64,
 }
 
 impl Rays {
-    /// All rays.
+    /// Returns the number of all rays.
     pub fn total(&self) -> u64 {
         self.camera + self.light + self.connection + self.light_image + self.training
     }
@@ -144,48 +143,48 @@ pub struct Record {
     pub spp: u64,
     /// Time of rendering and training. Unit: seconds.
     pub seconds: f64,
-    /// What all threads of the process took of the processors for it, as user and as system, which does
-    /// not grow with what else the machine does. Unit: seconds. None: the host cannot tell.
+    /// The processor time of all threads, user and system, which hardly depends on other work of the
+    /// machine. Unit: seconds. None: the host does not measure it.
     #[serde(default)]
     pub processor_seconds: Option<f64>,
-    /// The part of `seconds` before the first pass: training. Unit: seconds. None: nobody measured it.
+    /// The part of `seconds` before the first pass: training. Unit: seconds. None: not measured.
     #[serde(default)]
     pub training_seconds: Option<f64>,
-    /// The part of `processor_seconds` before the first pass. Unit: seconds. None: the host cannot tell.
+    /// The part of `processor_seconds` before the first pass. Unit: seconds. None: not measured.
     #[serde(default)]
     pub training_processor_seconds: Option<f64>,
     /// Rays by kind.
     pub rays: Rays,
-    /// Connection rays that something blocked.
+    /// Blocked connection rays.
     pub connections_blocked: u64,
-    /// Distances from the reference, by the names of [`Metric::NAMES`](crate::metric::Metric::NAMES).
+    /// Errors against the reference, by the names of [`Metric::NAMES`](crate::metric::Metric::NAMES).
     pub metrics: BTreeMap<String, f64>,
     /// 1 / (MSE · rays), training included.
     pub efficiency_rays: f64,
     /// 1 / (MSE · seconds), training included.
     pub efficiency_seconds: f64,
-    /// The image, relative to the folder of the results, where it was kept.
+    /// The image, relative to the folder of the results. None: not kept.
     pub image: Option<String>,
 }
 
-/// How large the contributions of a method's connections are in a scene, before visibility.
+/// The distribution of a method's connection contributions in a scene, before visibility.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contributions {
     /// The name of the scene.
     pub scene: String,
     /// The name of the method.
     pub method: String,
-    /// For each pass its numbers, by the names of
+    /// The numbers of each pass, by the names of
     /// [`FIGURES`](crate::experiment::contributions::FIGURES).
     pub passes: Vec<BTreeMap<String, f64>>,
-    /// The distribution of weighted contributions: the left edge of each bin of log10, and the part of
+    /// The histogram of weighted contributions: the left edge of each bin of log10, and the fraction of
     /// all contributions in it.
     pub weighted: Vec<[f64; 2]>,
-    /// The distribution of contributions without weights.
+    /// The histogram of contributions without weights.
     pub unweighted: Vec<[f64; 2]>,
 }
 
-/// What each strategy (s, t) of a method does in a scene.
+/// Figures of each strategy (s, t) of a method in a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pyramid {
     /// The name of the scene.
@@ -196,73 +195,73 @@ pub struct Pyramid {
     pub seed: u64,
     /// Samples per pixel.
     pub spp: u64,
-    /// Width and height, smaller than those of the renders where these are large. Unit: pixels.
+    /// Width and height; smaller than the renders if these are large. Unit: pixels.
     pub size: [usize; 2],
-    /// The most vertices of paths whose strategies have images.
+    /// The largest number of vertices of paths whose strategies have images.
     pub vertices: u16,
-    /// The mean luminance of the picture.
+    /// The mean luminance of the image.
     pub mean: f64,
-    /// The part of it that longer paths make.
+    /// The part of `mean` due to longer paths.
     pub longer: f64,
-    /// The strategies that something was counted of, shorter paths first.
+    /// The strategies with samples, shorter paths first.
     pub strategies: Vec<StrategyInfo>,
     /// The EXR with their images as layers, relative to the folder of the results.
     pub images: String,
 }
 
-/// What a strategy does.
+/// Figures of one strategy (s, t).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StrategyInfo {
     /// Vertices from the light.
     pub s: u16,
     /// Vertices from the camera.
     pub t: u16,
-    /// The mean luminance of the weighted image: these and that of longer paths add up to the picture's.
+    /// The mean luminance of the weighted image. These means and `longer` add up to the mean of the image.
     pub mean: f64,
     /// The mean luminance of the raw image, without the weight.
     pub raw_mean: f64,
-    /// The variance of what a pass adds to a pixel of the weighted image, in the mean pixel.
+    /// The variance of a pixel of the weighted image in one pass, averaged over pixels.
     pub variance: Option<f64>,
     /// Shadow rays traced; s = 0 needs none.
     pub rays: u64,
-    /// Those that something blocked.
+    /// Blocked shadow rays.
     pub blocked: u64,
-    /// Values that are in the weighted image, but too large for the raw one.
+    /// Values in the weighted image that are too large for the raw one.
     pub raw_dropped: u64,
 }
 
-/// Whether what others said is what was found, or what was aimed at is reached.
+/// The verdict on a claim: a reproduction of a published statement, or a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// It is, and the intervals leave no doubt.
+    /// The statement holds; all intervals lie within the stated range.
     Reproduced,
-    /// It is not, and the intervals leave no doubt.
+    /// The statement fails; an interval lies outside the stated range.
     NotReproduced,
-    /// Intervals overlap.
+    /// An interval overlaps the border of the range.
     Undecided,
-    /// What was aimed at is reached, and the interval leaves no doubt.
+    /// The goal is reached; all intervals lie within its range.
     Met,
-    /// It is not reached, and the interval leaves no doubt.
+    /// The goal is missed; an interval lies outside its range.
     NotMet,
-    /// Nothing was measured that could tell.
+    /// A number of the claim was not measured.
     NotMeasured,
 }
 
-/// A statement, and what was found about it.
+/// A statement, with its verdict and the evidence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Claim {
     /// A short name, such as `table-1-b-uniform`.
     pub id: String,
-    /// What is claimed, in a sentence.
+    /// The statement, in a sentence.
     pub claim: String,
-    /// Where it is claimed.
+    /// The origin of the statement.
     pub source: String,
-    /// Whether it holds.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What was found, in a sentence with figures.
+    /// The finding, in a sentence with figures.
     pub found: String,
-    /// How sure that is: test, level, seeds.
+    /// The statistical method: test, level, seeds.
     pub method: String,
     /// The figures.
     pub tables: Vec<Table>,
@@ -273,11 +272,11 @@ pub struct Claim {
 /// A table of texts and numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// What it shows.
+    /// The caption.
     pub caption: String,
     /// The heads of the columns.
     pub columns: Vec<String>,
-    /// Rows of as many cells.
+    /// Rows, each with one cell per column.
     pub rows: Vec<Vec<Cell>>,
 }
 
@@ -285,13 +284,13 @@ pub struct Table {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Cell {
-    /// Words.
+    /// A text.
     Text(String),
     /// A number.
     Number(f64),
-    /// A number with its interval of confidence.
+    /// A number with its confidence interval.
     Interval {
-        /// The best guess.
+        /// The estimate.
         value: f64,
         /// The lower end.
         low: f64,
@@ -300,26 +299,26 @@ pub enum Cell {
     },
 }
 
-/// How an axis is divided.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Scale {
-    /// Evenly.
+    /// Linear.
     Linear,
-    /// By factors.
+    /// Logarithmic.
     Log,
 }
 
 /// An axis of a plot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// The quantity with its unit.
     pub label: String,
-    /// How it is divided.
+    /// The scale.
     pub scale: Scale,
 }
 
-/// How a series is drawn.
+/// The style of a plot's series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PlotKind {
@@ -332,25 +331,25 @@ pub enum PlotKind {
 /// A plot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plot {
-    /// What it shows.
+    /// The caption.
     pub caption: String,
-    /// How its series are drawn.
+    /// The style of its series.
     pub kind: PlotKind,
-    /// To the right.
+    /// The horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// The vertical axis.
     pub y: Axis,
-    /// What is drawn.
+    /// The series.
     pub series: Vec<Series>,
 }
 
-/// A curve, with its intervals of confidence where they are known.
+/// A curve, with its confidence intervals if known.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Its name.
     pub name: String,
     /// x and y.
     pub points: Vec<[f64; 2]>,
-    /// Lower and upper end of y for each point; empty where they are not known.
+    /// Lower and upper end of y for each point; empty if unknown.
     pub intervals: Vec<[f64; 2]>,
 }

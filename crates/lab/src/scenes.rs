@@ -1,10 +1,10 @@
-//! The project's scenes of built-in experiments, in memory: the program needs no file for them.
+//! The scenes of built-in experiments, embedded in the program.
 
 use formats::scene::{Files, InMemory};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A file of `scenes/` with its bytes.
+/// The name of a file in `scenes/`, and its bytes.
 type File = (&'static str, &'static [u8]);
 
 macro_rules! files {
@@ -13,7 +13,7 @@ macro_rules! files {
     };
 }
 
-/// The scenes, and all that they read.
+/// The scenes, and all files that they read.
 #[rustfmt::skip]
 const FILES: &[File] = files![
     "room-direct.pbrt"
@@ -96,10 +96,10 @@ const FILES: &[File] = files![
     "meshes/worktop-slab.ply"
 ];
 
-/// The folder that their names begin with.
+/// The folder at the beginning of their names.
 const FOLDER: &str = "scenes";
 
-/// The scenes, and nothing else.
+/// Returns the embedded scenes, without access to the disk.
 pub(crate) fn files() -> Files {
     let files = FILES.iter();
     let files = files.map(|(name, bytes)| (path(name), Arc::from(*bytes)));

@@ -1,19 +1,19 @@
-//! Checksums in JSON: the last member of an object, `checksum`, is the SHA-256 of the text before it.
+//! Checksums of JSON objects: the last member, `checksum`, is the SHA-256 of the text before it.
 
 use sha2::{Digest, Sha256};
 
-/// The verdict of the checksum of an object.
+/// The result of checking an object's checksum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seal {
-    /// The text is as it was written.
+    /// The checksum fits the text.
     Whole,
-    /// It is not.
+    /// The checksum does not fit the text.
     Broken,
-    /// It has no checksum.
+    /// There is no checksum.
     Missing,
 }
 
-/// SHA-256 in hexadecimal.
+/// Computes the SHA-256 in hexadecimal.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digits = Sha256::digest(bytes);
     let digit = |nibble: u8| char::from_digit(nibble.into(), 16);
@@ -21,10 +21,10 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
     pairs.filter_map(digit).collect()
 }
 
-/// The name of the member, as JSON has it.
+/// The name of the member, in quotes.
 const KEY: &str = "\"checksum\"";
 
-/// Adds its checksum to an object, which has members.
+/// Adds the checksum to an object with at least one member.
 pub(crate) fn sealed(object: &str) -> String {
     let object = object.trim_end();
     let body = object.strip_suffix('}').unwrap_or(object).trim_end();
@@ -36,9 +36,9 @@ pub(crate) fn sealed(object: &str) -> String {
     }
 }
 
-/// Compares an object with its checksum.
+/// Checks the checksum of an object.
 pub(crate) fn check(object: &str) -> Seal {
-    // In a string its quotes would be escaped.
+    // Within a string, its quotes would be escaped.
     let Some((before, after)) = object.rsplit_once(KEY) else {
         return Seal::Missing;
     };
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_flip_of_a_bit_leaves_a_seal_whole() {
+    fn every_flipped_bit_breaks_the_seal_or_the_json() {
         for object in [
             r#"{"a":1,"b":"\"checksum\""}"#,
             "{\n  \"a\": [\n    1\n  ]\n}\n",

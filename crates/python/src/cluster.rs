@@ -1,7 +1,7 @@
-//! Experiments on several machines: what the driver asks for, and what a node does.
+//! Experiments on several machines: the driver's part and the nodes' part.
 
 use crate::error::{of_experiment, raise};
-use crate::experiment::{Experiment, Heard, Reporter};
+use crate::experiment::{Experiment, Message, Reporter};
 use crate::film::bytes;
 use crate::image::pixels;
 use crate::scene::{MemoryFile, in_memory};
@@ -13,17 +13,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
-/// What times depend on, as JSON.
+/// Describes this machine, on which times depend, as JSON.
 #[pyfunction]
 pub(crate) fn machine() -> String {
     serde_json::to_string(&Machine::here()).unwrap_or_default()
 }
 
-/// An experiment that has its references.
+/// An experiment with complete references.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Prepared(pub(crate) experiment::Prepared);
 
-/// A scene: name, file, all files, width and height and pixels of the reference.
+/// A scene: name, file, all files; size and pixels of the reference.
 type SceneTuple<'py> = (
     String,
     PathBuf,
@@ -44,7 +44,7 @@ fn wrong(py: Python<'_>, error: &serde_json::Error) -> PyErr {
 
 #[pymethods]
 impl Prepared {
-    /// The scenes.
+    /// Returns the scenes.
     #[getter]
     fn scenes<'py>(&self, py: Python<'py>) -> PyResult<Vec<SceneTuple<'py>>> {
         let tuple = |scene: &PreparedScene| {
@@ -66,7 +66,7 @@ impl Prepared {
         self.0.scenes.iter().map(tuple).collect()
     }
 
-    /// What has no record yet, as JSON.
+    /// Returns the blocks without a record, as JSON.
     #[getter]
     fn blocks(&self) -> Vec<String> {
         let blocks = self.0.blocks.iter();
@@ -75,7 +75,7 @@ impl Prepared {
             .collect()
     }
 
-    /// Adds what `render_block` gave.
+    /// Adds the results of `render_block`.
     fn add(&self, py: Python<'_>, done: Vec<DoneTuple<'_>>) -> PyResult<()> {
         let read = |(record, image): DoneTuple<'_>| {
             let image = image.map(|(size, data)| pixels(py, size, data.as_bytes()));
@@ -90,7 +90,7 @@ impl Prepared {
     }
 }
 
-/// Renders a block, given as JSON, of a scene with these files and this reference.
+/// Renders a block, given as JSON, with the files and the reference of its scene.
 #[pyfunction]
 pub(crate) fn render_block<'py>(
     py: Python<'py>,
@@ -102,11 +102,11 @@ pub(crate) fn render_block<'py>(
     let block: Block = serde_json::from_str(block).map_err(|error| wrong(py, &error))?;
     let reference = pixels(py, reference.0, &reference.1)?;
     let files = Files::only(in_memory(files));
-    let silent = |_: Python<'_>, _: Heard| Ok(());
+    let silent = |_: Python<'_>, _: Message| Ok(());
     let done = wait(py, silent, |stop, sender| {
         let mut reporter = Reporter::new(stop, sender);
-        let from = (&files, &reference);
-        experiment::render_block(&experiment.experiment, &block, from, &mut reporter)
+        let experiment = &experiment.experiment;
+        experiment::render_block(experiment, &block, &files, &reference, &mut reporter)
     })?;
     let done = done.map_err(|error| of_experiment(py, &error))?;
     let tuple = |Done { record, image }| {

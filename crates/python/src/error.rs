@@ -1,12 +1,12 @@
-//! Errors as exceptions: the classes are those of `bidir.errors`.
+//! Conversion of errors to exceptions of `bidir.errors`.
 
 use formats::{ErrorKind, printable};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// An exception of `bidir.errors` with a [`printable`] message, as nothing else is between it and a
-/// terminal, and with attributes by name.
+/// Makes an exception of `bidir.errors` with attributes by name. The message is made [`printable`], as it may
+/// reach a terminal unchanged.
 fn exception(py: Python<'_>, class: &str, message: &str, attributes: &Bound<'_, PyDict>) -> PyErr {
     let message = printable(message);
     let made = py
@@ -16,19 +16,19 @@ fn exception(py: Python<'_>, class: &str, message: &str, attributes: &Bound<'_, 
     made.map_or_else(|error| error, PyErr::from_value)
 }
 
-/// An exception of `bidir.errors` that has a message alone.
+/// Makes an exception of `bidir.errors` without attributes.
 pub(crate) fn raise(py: Python<'_>, class: &str, message: &str) -> PyErr {
     exception(py, class, message, &PyDict::new(py))
 }
 
-/// A text as a terminal may have it.
+/// Escapes control characters of a text for a terminal.
 #[pyfunction]
 #[pyo3(name = "printable")]
 pub(crate) fn printable_text(text: &str) -> String {
     printable(text).into_owned()
 }
 
-/// The place of an error, and its remedy.
+/// The attributes of an exception: message, remedy and place.
 struct Details<'a> {
     message: &'a str,
     hint: Option<&'a str>,
@@ -52,12 +52,12 @@ fn detailed(py: Python<'_>, class: &str, text: &str, details: &Details<'_>) -> P
     }
 }
 
-/// The exception of an error with a scene, an image or a film file.
+/// Converts an error about a file.
 pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
     let class = match error.kind() {
         ErrorKind::Unsupported => "UnsupportedError",
         ErrorKind::Options => "SettingsError",
-        // An error at a place of a scene is a fault of the scene.
+        // An error with a place in a scene file is an error of the scene.
         _ if error.has_place() => "SceneError",
         ErrorKind::Syntax | ErrorKind::Scene | ErrorKind::Limit => "SceneError",
         ErrorKind::Data => "DataError",
@@ -75,7 +75,7 @@ pub(crate) fn of_file(py: Python<'_>, error: &formats::Error) -> PyErr {
     detailed(py, class, &error.to_string(), &details)
 }
 
-/// The exception of an experiment that fails.
+/// Converts an error of an experiment.
 pub(crate) fn of_experiment(py: Python<'_>, error: &lab::experiment::ExperimentError) -> PyErr {
     use lab::experiment::ExperimentError;
     if let ExperimentError::File(error) = error {

@@ -11,27 +11,27 @@ use std::path::PathBuf;
 use std::sync::mpsc::Sender;
 use std::time::Instant;
 
-/// A description that was read.
+/// An experiment read from a description.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Experiment {
     pub(crate) experiment: experiment::Experiment,
     file: PathBuf,
 }
 
-/// What happens, for Python: a kind, a text, how much is done, and of how much.
-pub(crate) type Heard = (&'static str, String, u64, u64);
+/// An event for Python: kind, text, finished parts, all parts.
+pub(crate) type Message = (&'static str, String, u64, u64);
 
-/// Passes on what happens.
+/// Passes events on as messages.
 pub(crate) struct Reporter<'a> {
     stop: &'a Stop,
-    sender: Sender<Heard>,
+    sender: Sender<Message>,
     begin: Instant,
-    /// Renders that are done, and all.
+    /// Finished renders, and all renders.
     renders: (u64, u64),
 }
 
 impl<'a> Reporter<'a> {
-    pub(crate) fn new(stop: &'a Stop, sender: &Sender<Heard>) -> Self {
+    pub(crate) fn new(stop: &'a Stop, sender: &Sender<Message>) -> Self {
         Self {
             stop,
             sender: sender.clone(),
@@ -42,8 +42,8 @@ impl<'a> Reporter<'a> {
 }
 
 impl Observer for Reporter<'_> {
-    fn tell(&mut self, event: Event<'_>) {
-        let told = match event {
+    fn notify(&mut self, event: Event<'_>) {
+        let message = match event {
             Event::Warning(text) => ("warning", text.to_owned(), 0, 0),
             Event::Reference { scene, passes, of } => ("reference", scene.to_owned(), passes, of),
             Event::Pyramid { scene, passes, of } => ("pyramid", scene.to_owned(), passes, of),
@@ -57,8 +57,8 @@ impl Observer for Reporter<'_> {
                 ("render", text, self.renders.0, self.renders.1)
             }
         };
-        // Who no longer listens has asked to stop.
-        let _ = self.sender.send(told);
+        // A closed channel means that the receiver has asked to stop.
+        let _ = self.sender.send(message);
     }
 
     fn seconds(&self) -> f64 {
@@ -70,14 +70,14 @@ impl Observer for Reporter<'_> {
     }
 }
 
-/// The results as JSON. None: there are none yet.
+/// Converts the results to JSON. None: there are none yet.
 fn json(results: Option<&Results>) -> Option<String> {
     results.and_then(|results| serde_json::to_string(results).ok())
 }
 
 #[pymethods]
 impl Experiment {
-    /// Reads a description; `file` is what errors call it, and its folder is where files are.
+    /// Reads a description; `file` is its name in errors, and its scenes are relative to that folder.
     #[new]
     #[pyo3(signature = (text, file, *, quick, threads))]
     fn new(
@@ -92,7 +92,7 @@ impl Experiment {
         if quick {
             read = read.quick();
         }
-        // Records have the number.
+        // Records contain the resolved number.
         read.threads = threads_of(py, threads.unwrap_or(read.threads))?.count();
         Ok(Self {
             experiment: read,
@@ -100,20 +100,20 @@ impl Experiment {
         })
     }
 
-    /// The title.
+    /// Returns the title.
     #[getter]
     fn title(&self) -> &str {
         &self.experiment.title
     }
 
-    /// How many renders there are, but those of references.
+    /// Returns the number of renders; references do not count.
     #[getter]
     fn cells(&self) -> usize {
-        self.experiment.cells()
+        self.experiment.run_count()
     }
 
-    /// Runs what has no record yet, and tells `hear` what happens. Returns the results as JSON, and
-    /// tables of them as text.
+    /// Renders every run without a record, and calls `hear` with events. Returns the results as JSON, and
+    /// their tables as text.
     fn run(
         &self,
         py: Python<'_>,
@@ -123,8 +123,8 @@ impl Experiment {
         hear: Option<Py<PyAny>>,
     ) -> PyResult<(Option<String>, String)> {
         let setup = self.setup(py, folder, restart, machine)?;
-        let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
-        let outcome = wait(py, tell, |stop, sender| {
+        let pass_on = |py: Python<'_>, message: Message| pass_on(py, hear.as_ref(), message);
+        let outcome = wait(py, pass_on, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
             experiment::run(&self.experiment, &setup, &mut reporter)
         })?;
@@ -142,7 +142,7 @@ impl Experiment {
         Ok((json(results.as_ref()), tables.join("\n")))
     }
 
-    /// Makes everything but records. None: it was stopped.
+    /// Renders everything except the runs. None: it was stopped.
     fn prepare(
         &self,
         py: Python<'_>,
@@ -152,8 +152,8 @@ impl Experiment {
         hear: Option<Py<PyAny>>,
     ) -> PyResult<Option<Prepared>> {
         let setup = self.setup(py, folder, restart, Some(machine))?;
-        let tell = |py: Python<'_>, told: Heard| tell(py, hear.as_ref(), told);
-        let prepared = wait(py, tell, |stop, sender| {
+        let pass_on = |py: Python<'_>, message: Message| pass_on(py, hear.as_ref(), message);
+        let prepared = wait(py, pass_on, |stop, sender| {
             let mut reporter = Reporter::new(stop, sender);
             experiment::prepare(&self.experiment, &setup, &mut reporter)
         })?;
@@ -163,7 +163,7 @@ impl Experiment {
 }
 
 impl Experiment {
-    /// Where it runs; the results do not replace the description.
+    /// Makes the setup of a run; fails if the results would replace the description.
     fn setup(
         &self,
         py: Python<'_>,
@@ -177,11 +177,12 @@ impl Experiment {
     }
 }
 
-fn tell(py: Python<'_>, hear: Option<&Py<PyAny>>, told: Heard) -> PyResult<()> {
-    hear.map_or(Ok(()), |hear| hear.call1(py, told).map(drop))
+fn pass_on(py: Python<'_>, hear: Option<&Py<PyAny>>, message: Message) -> PyResult<()> {
+    hear.map_or(Ok(()), |hear| hear.call1(py, message).map(drop))
 }
 
-/// Where an experiment runs; `machine` is what `machine()` said there. None: it is this one.
+/// Makes the setup of a run; `machine` is the result of `machine()` on the machine that renders. None: this
+/// one.
 fn setup(py: Python<'_>, folder: PathBuf, restart: bool, machine: Option<&str>) -> PyResult<Setup> {
     let machine = match machine {
         Some(json) => serde_json::from_str(json)

@@ -1,4 +1,4 @@
-//! Films: exact sums, and pictures made of them.
+//! Films: exact sums, and the images developed from them.
 
 use crate::error::{of_file, raise};
 use crate::scene::Scene;
@@ -14,17 +14,17 @@ use pyo3::types::PyBytes;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The exact sums of some passes of a render, with whose they are.
+/// The exact sums of some passes of a render, with the identity of the render.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Film {
     file: FilmFile,
     inputs: Inputs,
 }
 
-/// The files that were read for a film, by absolute names: its outputs do not replace them.
+/// The files read for a film, by absolute names; its outputs must not replace them.
 pub(crate) type Inputs = BTreeSet<PathBuf>;
 
-/// Names that stay right where the working directory changes.
+/// Makes paths absolute, so that they stay valid if the working directory changes.
 pub(crate) fn absolute(paths: impl IntoIterator<Item = PathBuf>) -> Inputs {
     let paths = paths.into_iter();
     paths
@@ -32,13 +32,13 @@ pub(crate) fn absolute(paths: impl IntoIterator<Item = PathBuf>) -> Inputs {
         .collect()
 }
 
-/// Ranges of passes, each with its exclusive end.
+/// Converts passes to ranges, each with its exclusive end.
 pub(crate) fn ranges(passes: &PassSet) -> Vec<(u64, u64)> {
     let ranges = passes.ranges().iter();
     ranges.map(|range| (range.start, range.end)).collect()
 }
 
-/// Numbers as bytes.
+/// Converts numbers to bytes.
 pub(crate) fn bytes<'py>(py: Python<'py>, numbers: &[f32]) -> PyResult<Bound<'py, PyBytes>> {
     PyBytes::new_with(py, size_of_val(numbers), |bytes| {
         for (to, number) in bytes.chunks_exact_mut(4).zip(numbers) {
@@ -48,10 +48,10 @@ pub(crate) fn bytes<'py>(py: Python<'py>, numbers: &[f32]) -> PyResult<Bound<'py
     })
 }
 
-/// An image beside the picture: its name, the channels' names, their numbers side by side.
+/// A layer: its name, the names of the channels, their interleaved numbers.
 type Layer<'py> = (String, Vec<&'static str>, Bound<'py, PyBytes>);
 
-/// Width and height, the picture, the variance, and the images beside it.
+/// Width and height, the image, the variance, and the layers.
 type Developed<'py> = (
     [usize; 2],
     Bound<'py, PyBytes>,
@@ -76,7 +76,7 @@ impl Film {
         &self.inputs
     }
 
-    /// Fails where `path` is one of these files.
+    /// Fails if `path` is one of these files.
     fn check_apart<'a>(
         py: Python<'_>,
         inputs: impl Iterator<Item = &'a PathBuf>,
@@ -99,7 +99,7 @@ impl Film {
         Ok(Self { file, inputs })
     }
 
-    /// Reads the bytes of a film file, which may be a film of `scene`.
+    /// Reads the bytes of a film file; its outputs must not replace the files of `scene`.
     #[staticmethod]
     #[pyo3(signature = (data, scene=None))]
     fn from_bytes(py: Python<'_>, data: &[u8], scene: Option<&Scene>) -> PyResult<Self> {
@@ -109,14 +109,14 @@ impl Film {
         Ok(Self { file, inputs })
     }
 
-    /// The bytes of a film file.
+    /// Encodes a film file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let encoded = beside(py, || encode(&self.file.header, &self.file.film));
         let encoded = encoded.map_err(|error| of_file(py, &error))?;
         Ok(PyBytes::new(py, &encoded))
     }
 
-    /// Writes a film file; it may replace one that it is made of.
+    /// Writes a film file; it may replace a film that it was made from.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let others = self.inputs.iter().filter(|input| !is_film(input));
         Self::check_apart(py, others, &path)?;
@@ -124,7 +124,7 @@ impl Film {
         written.map_err(|error| of_file(py, &error))
     }
 
-    /// The film of both.
+    /// Merges two films.
     fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
         let merged = beside(py, || {
             let (a, b) = (&self.file, &other.file);
@@ -139,13 +139,13 @@ impl Film {
         merged.map_err(|message| raise(py, "FilmError", &message))
     }
 
-    /// Whether both have the same passes of the same render, bit for bit.
+    /// Returns true if both have the same passes of the same render, bit for bit.
     fn equals(&self, py: Python<'_>, other: &Self) -> bool {
         let (a, b) = (&self.file, &other.file);
         a.header.identity == b.header.identity && beside(py, || a.film == b.film)
     }
 
-    /// The picture and the images beside it.
+    /// Develops the image and its layers.
     fn develop<'py>(&self, py: Python<'py>) -> PyResult<Developed<'py>> {
         let film = &self.file.film;
         let (picture, layers) = beside(py, || (film.develop(), film.develop_layers()));
@@ -161,7 +161,7 @@ impl Film {
         ))
     }
 
-    /// Writes the picture: with its layers and attributes to EXR, alone to PNG.
+    /// Writes the image: as EXR with its layers and attributes, or as PNG without them.
     fn write_image(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         Self::check_apart(py, self.inputs.iter(), &path)?;
         let film = &self.file.film;
@@ -186,43 +186,43 @@ impl Film {
         written.map_err(|error| of_file(py, &error))
     }
 
-    /// The passes, each range with its exclusive end.
+    /// Returns the passes, each range with its exclusive end.
     #[getter]
     fn passes(&self) -> Vec<(u64, u64)> {
         ranges(self.file.film.passes())
     }
 
-    /// The hash of everything that the bits depend on but the passes.
+    /// Returns the hash of everything that the bits depend on, except the passes.
     #[getter]
     fn identity(&self) -> &str {
         &self.file.header.identity
     }
 
-    /// What the identity is made of, by name.
+    /// Returns the contents of the identity by name.
     #[getter]
     fn settings(&self) -> BTreeMap<String, String> {
         self.file.header.settings.clone()
     }
 
-    /// The name of the scene file.
+    /// Returns the name of the scene file.
     #[getter]
     fn scene(&self) -> String {
         self.file.header.scene_name()
     }
 
-    /// How the number of passes was decided.
+    /// Returns the stopping rule.
     #[getter]
     fn stopping(&self) -> &'static str {
         self.file.header.stopping.name()
     }
 
-    /// The time that rendering took.
+    /// Returns the render time. Unit: seconds.
     #[getter]
     fn seconds(&self) -> f64 {
         self.file.header.seconds
     }
 
-    /// What was counted, by name.
+    /// Returns the counters by name.
     #[getter]
     fn counts(&self) -> BTreeMap<String, u64> {
         let counts = counts_by_name(&self.file.header).into_iter();
@@ -230,7 +230,7 @@ impl Film {
         counts.collect()
     }
 
-    /// The relative error of the picture.
+    /// Returns the estimated relative error of the image.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
         beside(py, || self.file.film.develop().relative_error())

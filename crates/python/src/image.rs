@@ -1,4 +1,4 @@
-//! Images as arrays: files, the screen, and metrics.
+//! Images as arrays: reading, writing, and metrics.
 
 use crate::error::{of_file, raise};
 use crate::film::bytes;
@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
-/// Pixels of the given width and height, from numbers as bytes.
+/// Converts bytes to pixels of the given width and height.
 pub(crate) fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<Pixels> {
     let channel = |bytes: &[u8]| bytes.try_into().map_or(f32::NAN, f32::from_le_bytes);
     let pixel = |bytes: &[u8]| std::array::from_fn(|i| channel(&bytes[4 * i..4 * i + 4]));
@@ -25,7 +25,7 @@ pub(crate) fn pixels(py: Python<'_>, size: [usize; 2], data: &[u8]) -> PyResult<
     })
 }
 
-/// The bytes of a PNG; values are linear, and clipped to what a screen shows.
+/// Encodes linear pixels as PNG, clipped to [0, 1].
 #[pyfunction]
 pub(crate) fn encode_png<'py>(
     py: Python<'py>,
@@ -40,7 +40,7 @@ pub(crate) fn encode_png<'py>(
     Ok(PyBytes::new(py, &encoded))
 }
 
-/// Writes pixels to EXR as they are, or to PNG as a screen shows them.
+/// Writes pixels as linear EXR, or as PNG for the screen.
 #[pyfunction]
 pub(crate) fn write_image(
     py: Python<'_>,
@@ -78,7 +78,7 @@ pub(crate) fn write_image(
     written.map_err(|error| of_file(py, &error))
 }
 
-/// Width, height and pixels of an image file.
+/// Reads width, height and pixels of an image file.
 #[pyfunction]
 pub(crate) fn read_image(
     py: Python<'_>,
@@ -94,7 +94,7 @@ pub(crate) fn read_image(
 /// The channels of an EXR by name.
 type Channels<'py> = Vec<(String, Bound<'py, PyBytes>)>;
 
-/// Width, height and all channels of an EXR.
+/// Reads width, height and all channels of an EXR.
 #[pyfunction]
 pub(crate) fn read_layers(py: Python<'_>, path: PathBuf) -> PyResult<([usize; 2], Channels<'_>)> {
     let layers = beside(py, || image::read_layers(&path));
@@ -115,7 +115,7 @@ fn named(py: Python<'_>, name: &str) -> PyResult<Metric> {
     })
 }
 
-/// How far an image is from a reference of the same size.
+/// Computes the metric of an image against a reference of the same size.
 #[pyfunction]
 pub(crate) fn metric(
     py: Python<'_>,
@@ -131,7 +131,7 @@ pub(crate) fn metric(
     }))
 }
 
-/// The error of every pixel.
+/// Computes the error of every pixel.
 #[pyfunction]
 pub(crate) fn error_map<'py>(
     py: Python<'py>,

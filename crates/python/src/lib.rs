@@ -1,14 +1,14 @@
-//! What the Python package `bidir` calls: glue, and no more.
+//! The native module behind the Python package `bidir`.
 //!
-//! - Nothing here is for users: `python/bidir` has the classes with their documentation, and
-//!   `python/bidir/_bidir.pyi` the types of what is here.
-//! - Arrays pass as bytes, 32-bit little-endian numbers row by row; numpy is Python's business.
-//! - Whatever takes long lets other Python threads run, and asks for signals meanwhile (`wait`).
+//! - It is internal: `python/bidir` has the public classes with their documentation, and
+//!   `python/bidir/_bidir.pyi` the types of this module.
+//! - Arrays pass as bytes: 32-bit little-endian numbers row by row. Only Python uses numpy.
+//! - Long operations let other Python threads run, and check for signals meanwhile (`wait`).
 //! - Exceptions are the classes of `bidir.errors` (`error`).
 
 #![expect(
     clippy::needless_pass_by_value,
-    reason = "what Python passes is converted to values that the function owns"
+    reason = "arguments from Python are converted to owned values"
 )]
 
 mod cluster;

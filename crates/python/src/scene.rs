@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A scene that was read, with what else its file says.
+/// A scene in memory, with the settings of its file.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Scene {
     pub(crate) shared: Arc<bidir::scene::Scene>,
@@ -24,29 +24,29 @@ pub(crate) struct Scene {
     warnings: Vec<String>,
     summary: Summary,
     files: Vec<PathBuf>,
-    /// The files on the disk that it reads or names.
+    /// The files on the disk that the scene reads or names.
     pub(crate) inputs: Inputs,
 }
 
-/// Names of one file, and its bytes.
+/// The names of one file, and its bytes.
 pub(crate) type MemoryFile = (Vec<PathBuf>, Vec<u8>);
 
-/// How a scene is read.
+/// The options of reading a scene.
 #[derive(FromPyObject)]
 pub(crate) struct Source {
-    /// Whether something simpler may stand in for what is not supported.
+    /// True to replace unsupported features by simpler ones.
     #[pyo3(item)]
     lenient: bool,
-    /// Width and height of the film, instead of the file's.
+    /// Width and height of the film. None: those of the file.
     #[pyo3(item)]
     size: Option<[u32; 2]>,
-    /// Left, top, right, bottom of what is rendered, instead of the file's.
+    /// Left, top, right, bottom of the rendered rectangle. None: that of the file.
     #[pyo3(item)]
     crop: Option<[u32; 4]>,
-    /// Files that are not on the disk, or other than there.
+    /// Files in memory, which replace those on the disk.
     #[pyo3(item)]
     memory: Vec<MemoryFile>,
-    /// Whether others are missing, even if they are on the disk.
+    /// True to ignore the disk and read only files in memory.
     #[pyo3(item)]
     sealed: bool,
 }
@@ -93,62 +93,62 @@ impl Scene {
         })
     }
 
-    /// The hash of all that was read.
+    /// Returns the hash of everything read.
     #[getter]
     fn digest(&self) -> &str {
         &self.digest
     }
 
-    /// The file, as it was named.
+    /// Returns the file, as it was named.
     #[getter]
     fn name(&self) -> &str {
         &self.name
     }
 
-    /// Samples per pixel that the file asks for.
+    /// Returns the samples per pixel that the file sets.
     #[getter]
     fn spp(&self) -> u64 {
         self.spp
     }
 
-    /// What is odd but no error.
+    /// Returns warnings about the file.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
     }
 
-    /// The files that were read, by each name that they were asked for.
+    /// Returns the files read, under every name that refers to them.
     #[getter]
     fn files(&self) -> Vec<PathBuf> {
         self.files.clone()
     }
 
-    /// Width and height of the whole film.
+    /// Returns width and height of the whole film.
     #[getter]
     fn resolution(&self) -> [u32; 2] {
         self.shared.film().resolution
     }
 
-    /// Left, top, right, bottom of what is rendered.
+    /// Returns left, top, right, bottom of the rendered rectangle.
     #[getter]
     fn crop(&self) -> [u32; 4] {
         let crop = self.shared.film().crop;
         [crop.min[0], crop.min[1], crop.max[0], crop.max[1]]
     }
 
-    /// The groups of lights.
+    /// Returns the names of the light groups.
     #[getter]
     fn light_groups(&self) -> Vec<String> {
         self.shared.group_names().to_vec()
     }
 
-    /// The settings of the file, by name.
+    /// Returns the settings of the file by name.
     #[getter]
     fn settings(&self) -> BTreeMap<String, String> {
         lab::experiment::texts(&self.settings)
     }
 
-    /// What the scene is made of, by name.
+    /// Returns the counts of the scene's parts by name.
     #[getter]
     fn summary(&self) -> BTreeMap<&'static str, u64> {
         let Summary {

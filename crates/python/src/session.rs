@@ -1,9 +1,9 @@
-//! Renders that go pass by pass.
+//! Renders, pass by pass.
 
 use crate::error::raise;
 use crate::film::{Film, Inputs};
 use crate::scene::Scene;
-use crate::settings::{Wanted, resolve, threads_of, warn};
+use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
 use bidir::driver::{self, Progress, Resources};
 use bidir::film::FilmError;
@@ -13,29 +13,29 @@ use serde_json::Value;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A render that goes pass by pass.
+/// A render, pass by pass.
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Session {
-    /// Threads of Python take turns.
+    /// The state, shared by Python threads.
     state: Mutex<State>,
     threads: usize,
 }
 
 struct State {
     session: driver::Session<'static>,
-    /// That of an empty film.
+    /// The header of an empty film.
     header: FilmHeader,
-    /// That of the films that were gone on from.
+    /// The joined header of added films.
     earlier: Option<FilmHeader>,
-    /// The files that were read for the scene and for films that were gone on from.
+    /// The files read for the scene and for added films.
     inputs: Inputs,
-    /// What rendering took since the film was taken.
+    /// The render time since the film was last taken.
     time: Duration,
-    /// Whether the rays of training are in a film that was taken.
-    is_training_told: bool,
+    /// True if a film that was taken counts the rays of training.
+    is_training_counted: bool,
 }
 
-/// Stops a pass where the interpreter asks for it, and is its clock.
+/// Supplies the clock of a pass, and stops it on request.
 struct Watcher<'a> {
     stop: &'a Stop,
     begin: Instant,
@@ -54,10 +54,10 @@ impl Progress for Watcher<'_> {
 }
 
 impl State {
-    /// The header of what is there; time and counts are those of all runs.
+    /// Makes the header of the current film, with time and counts of all runs.
     fn header(&self) -> FilmHeader {
         let mut now = of_run(&self.header, &self.session, self.time);
-        if self.is_training_told
+        if self.is_training_counted
             && let Some(training) = now.counts.pointer_mut("/rays/training")
         {
             *training = Value::from(0);
@@ -71,28 +71,28 @@ impl State {
 }
 
 impl Session {
-    /// The state, when no other thread of Python has it; others run while this one waits.
+    /// Calls `f` with the state; other Python threads run while this one waits for it.
     fn with<T: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut State) -> T + Send) -> T {
         py.detach(|| f(&mut self.lock()))
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        // A pass that failed left no trace.
+        // A pass that panicked left the state unchanged.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// A film that the system has no memory for.
+/// Makes the error for a film without memory.
 fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
     raise(py, "RenderError", &format!("another film: {error}"))
 }
 
 #[pymethods]
 impl Session {
-    /// A session that has rendered nothing; `wanted` is as `bidir.Session` makes it.
+    /// Starts a session without passes; `bidir.Session` makes `requested`.
     #[new]
-    fn new(py: Python<'_>, scene: &Scene, wanted: Wanted, threads: usize) -> PyResult<Self> {
-        let settings = resolve(py, &wanted, &scene.settings)?;
+    fn new(py: Python<'_>, scene: &Scene, requested: Requested, threads: usize) -> PyResult<Self> {
+        let settings = resolve(py, &requested, &scene.settings)?;
         let resources = Resources {
             threads: threads_of(py, threads)?.count(),
             ..Resources::default()
@@ -124,12 +124,12 @@ impl Session {
                 earlier: None,
                 inputs: scene.inputs.clone(),
                 time: begin.elapsed(),
-                is_training_told: false,
+                is_training_counted: false,
             }),
         })
     }
 
-    /// Renders the next pass. A signal gives it up, and it is forgotten.
+    /// Renders the next pass. A signal aborts and discards it.
     fn step(&self, py: Python<'_>) -> PyResult<()> {
         wait_silently(py, |stop| {
             let mut state = self.lock();
@@ -140,12 +140,12 @@ impl Session {
         })
     }
 
-    /// Leaves the passes before `first` to others.
+    /// Skips the passes before `first`.
     fn start_at(&self, py: Python<'_>, first: u64) {
         self.with(py, |state| state.session.start_at(first));
     }
 
-    /// Goes on from a film of the same render.
+    /// Adds a film of the same render; its passes are not rendered again.
     fn add_film(&self, py: Python<'_>, film: &Film) -> PyResult<()> {
         let added = self.with(py, |state| {
             let inputs = film.inputs();
@@ -163,7 +163,7 @@ impl Session {
         added.map_err(|message| raise(py, "FilmError", &message))
     }
 
-    /// A copy of the film, with how its number of passes was decided.
+    /// Copies the film, with the given stopping rule.
     fn film(&self, py: Python<'_>, stopping: &str) -> PyResult<Film> {
         let stopping = stopping_of(py, stopping)?;
         let film = self.with(py, |state| {
@@ -177,25 +177,25 @@ impl Session {
         film.map_err(|error| no_memory(py, &error))
     }
 
-    /// The film; the session goes on with an empty one.
+    /// Takes the film; the session continues with an empty one.
     fn take_film(&self, py: Python<'_>) -> PyResult<Film> {
         let film = self.with(py, |state| {
             let header = state.header();
             let (film, _) = state.session.take_film()?;
             (state.earlier, state.time) = (None, Duration::ZERO);
-            state.is_training_told = true;
+            state.is_training_counted = true;
             Ok(Film::new(header, film, state.inputs.clone()))
         });
         film.map_err(|error| no_memory(py, &error))
     }
 
-    /// The pass that `step` renders.
+    /// Returns the pass that `step` renders next.
     #[getter]
     fn next_pass(&self, py: Python<'_>) -> u64 {
         self.with(py, |state| state.session.next_pass())
     }
 
-    /// The passes that are rendered, each range with its exclusive end.
+    /// Returns the finished passes, each range with its exclusive end.
     #[getter]
     fn passes(&self, py: Python<'_>) -> Vec<(u64, u64)> {
         self.with(py, |state| {
@@ -203,31 +203,31 @@ impl Session {
         })
     }
 
-    /// The relative error of the picture.
+    /// Returns the estimated relative error of the image.
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
         self.with(py, |state| state.session.noise())
     }
 
-    /// Whether a render that ends by its noise looks at it before the next pass.
+    /// Returns true if a render with a noise target checks the noise before the next pass.
     #[getter]
     fn looks_at_noise(&self, py: Python<'_>) -> bool {
         driver::Session::looks_at_noise(self.next_pass(py))
     }
 
-    /// The number of threads.
+    /// Returns the number of threads.
     #[getter]
     fn threads(&self) -> usize {
         self.threads
     }
 
-    /// Every setting of the estimator, by name, with what was left open decided.
+    /// Returns every setting of the estimator by name, including automatic choices.
     #[getter]
     fn settings(&self, py: Python<'_>) -> crate::settings::Texts {
         self.with(py, |state| lab::experiment::texts(state.session.settings()))
     }
 
-    /// The hash of everything that the bits depend on but the passes.
+    /// Returns the hash of everything that the bits depend on, except the passes.
     #[getter]
     fn identity(&self, py: Python<'_>) -> String {
         self.with(py, |state| state.header.identity.clone())

@@ -1,4 +1,4 @@
-//! Settings by their names: those of the flags of `bidir render`.
+//! Settings by the names of the flags of `bidir render`.
 
 use crate::error::raise;
 use bidir::driver::{Settings, Threads};
@@ -12,10 +12,10 @@ use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::ffi::CString;
 
-/// Settings that differ from the scene's, as texts.
+/// Settings as texts by name.
 pub(crate) type Texts = BTreeMap<String, String>;
 
-/// What the file of a scene says, over the defaults.
+/// Returns the settings of a scene file, over the defaults.
 pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
     let mut settings = Settings {
         sampler: scene.sampler,
@@ -27,51 +27,56 @@ pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
     settings
 }
 
-/// What a caller wants of a render.
+/// The settings of a render that a caller requests.
 #[derive(FromPyObject)]
-pub(crate) struct Wanted {
-    /// Of the estimator, by name.
+pub(crate) struct Requested {
+    /// Settings of the estimator by name.
     #[pyo3(item)]
     settings: Texts,
     /// The seed. None: the scene's.
     #[pyo3(item)]
     seed: Option<u64>,
-    /// Names of images beside the picture.
+    /// Names of layers.
     #[pyo3(item)]
     layers: Vec<String>,
-    /// The light groups that have images.
+    /// The light groups with layers.
     #[pyo3(item)]
     light_groups: Vec<String>,
-    /// The most vertices of paths whose strategies have images.
+    /// The largest number of vertices of paths whose strategies have layers.
     #[pyo3(item)]
     strategy_layers: usize,
 }
 
-/// The settings of a render of a scene whose own are `scene`.
+/// Resolves the settings of a render over those of its scene.
 ///
-/// Errors: a name or value that is not known, as `SettingsError`.
-pub(crate) fn resolve(py: Python<'_>, wanted: &Wanted, scene: &Settings) -> PyResult<Settings> {
-    let mut settings = changes(py, &wanted.settings)?.apply(scene);
-    settings.seed = wanted.seed.unwrap_or(settings.seed);
+/// Errors: an unknown name or value, as `SettingsError`.
+pub(crate) fn resolve(
+    py: Python<'_>,
+    requested: &Requested,
+    scene: &Settings,
+) -> PyResult<Settings> {
+    let mut settings = request_of(py, &requested.settings)?.apply(scene);
+    settings.seed = requested.seed.unwrap_or(settings.seed);
     let mut aovs = scene.layers.aovs().to_vec();
-    for name in &wanted.layers {
+    for name in &requested.layers {
         let aov: Result<Aov, UnknownName> = name.parse();
         aovs.push(aov.map_err(|error| raise(py, "SettingsError", &format!("layers: {error}")))?);
     }
-    settings.layers = Layers::new(&aovs, &wanted.light_groups, wanted.strategy_layers);
+    let groups = &requested.light_groups;
+    settings.layers = Layers::new(&aovs, groups, requested.strategy_layers);
     Ok(settings)
 }
 
-/// As many threads as are asked for, with a warning where there are fewer.
+/// Resolves the number of threads; warns if it was reduced.
 ///
-/// Errors: more than may be asked for, as `SettingsError`.
-pub(crate) fn threads_of(py: Python<'_>, asked: usize) -> PyResult<Threads> {
+/// Errors: the number exceeds the limit, as `SettingsError`.
+pub(crate) fn threads_of(py: Python<'_>, requested: usize) -> PyResult<Threads> {
     let most = Threads::MOST;
-    if asked > most {
-        let message = format!("threads: expected a whole number up to {most}, not {asked}");
+    if requested > most {
+        let message = format!("threads: expected a whole number up to {most}, not {requested}");
         return Err(raise(py, "SettingsError", &message));
     }
-    let threads = Threads::new(asked);
+    let threads = Threads::new(requested);
     threads.warning().map_or(Ok(()), |text| warn(py, &text))?;
     Ok(threads)
 }
@@ -82,21 +87,21 @@ pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)
 }
 
-/// The request of texts.
-fn changes(py: Python<'_>, texts: &Texts) -> PyResult<Request> {
-    let mut changes = Request::default();
+/// Parses settings.
+fn request_of(py: Python<'_>, texts: &Texts) -> PyResult<Request> {
+    let mut request = Request::default();
     for (name, value) in texts {
-        changes.set(name, value).map_err(|error| {
+        request.set(name, value).map_err(|error| {
             let message = format!("{}: {error}", name.replace('-', "_"));
             raise(py, "SettingsError", &message)
         })?;
     }
-    Ok(changes)
+    Ok(request)
 }
 
-/// The names of the settings that images by an integrator depend on, as flags are spelt.
+/// Returns the names of the settings that images of an integrator depend on, spelt as flags.
 ///
-/// Errors: there is no such integrator, as `SettingsError`.
+/// Errors: the integrator is unknown, as `SettingsError`.
 #[pyfunction]
 pub(crate) fn settings_of(py: Python<'_>, integrator: &str) -> PyResult<Vec<String>> {
     let kind: Result<IntegratorKind, UnknownName> = integrator.parse();
@@ -105,9 +110,10 @@ pub(crate) fn settings_of(py: Python<'_>, integrator: &str) -> PyResult<Vec<Stri
     Ok(texts.into_keys().collect())
 }
 
-/// Fails where a setting has a value that is not known; returns all of them as they are understood.
+/// Checks settings; returns them in normal form.
+///
+/// Errors: an unknown name or value, as `SettingsError`.
 #[pyfunction]
 pub(crate) fn check_settings(py: Python<'_>, settings: Texts) -> PyResult<Texts> {
-    let changes = changes(py, &settings)?;
-    Ok(changes.texts())
+    Ok(request_of(py, &settings)?.texts())
 }

@@ -1,4 +1,4 @@
-//! Work that takes long, beside an interpreter that goes on.
+//! Long operations that leave the interpreter responsive.
 
 use bidir::driver::{Threads, stand_alone, start_pool};
 use pyo3::prelude::*;
@@ -8,10 +8,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How often the interpreter is asked whether a signal came.
+/// The interval between checks for signals.
 const POLL: Duration = Duration::from_millis(50);
 
-/// Whether work shall stop.
+/// A flag that asks an operation to stop.
 #[derive(Debug, Default)]
 pub(crate) struct Stop(AtomicBool);
 
@@ -25,12 +25,12 @@ impl Stop {
     }
 }
 
-/// Does `work` in a thread of its own, while other threads of Python run.
+/// Runs `work` in a thread of its own, while other Python threads run.
 ///
-/// This thread asks for signals meanwhile: only that of the interpreter is told of Ctrl-C. What
-/// `work` sends is given to `hear` here. Where a signal raises an exception, or `hear` does, `work` is
-/// asked to stop, and the exception is returned when it has. Where the system starts no thread, `work`
-/// runs on this one, and signals and messages wait until it is done.
+/// This thread checks for signals meanwhile, since only the interpreter's main thread receives Ctrl-C, and
+/// passes the messages of `work` to `hear`. If a signal or `hear` raises an exception, `work` is asked to
+/// stop, and the exception is returned after it has stopped. If the system cannot start a thread, `work` runs
+/// on this one, and signals and messages wait until it ends.
 pub(crate) fn wait<T: Send, M: Send>(
     py: Python<'_>,
     hear: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
@@ -67,7 +67,7 @@ pub(crate) fn wait<T: Send, M: Send>(
     }
 }
 
-/// Hears what is sent, until nothing more can be; asks for signals meanwhile. Returns the first exception.
+/// Passes messages to `hear` until the channel closes, and checks for signals. Returns the first exception.
 fn listen<M: Send>(
     receiver: &Receiver<M>,
     mut hear: impl FnMut(Python<'_>, M) -> PyResult<()> + Send,
@@ -78,7 +78,7 @@ fn listen<M: Send>(
         let heard = match receiver.recv_timeout(POLL) {
             Ok(message) => Python::attach(|py| hear(py, message)),
             Err(RecvTimeoutError::Timeout) => Python::attach(check_signals),
-            // The worker is done, and its end of the channel is gone.
+            // The worker has ended and dropped its end of the channel.
             Err(RecvTimeoutError::Disconnected) => return raised,
         };
         if let Err(error) = heard {
@@ -88,8 +88,8 @@ fn listen<M: Send>(
     }
 }
 
-/// Does `work`, with its parallel iterators on the threads of the process, or on this one where the
-/// system started none.
+/// Runs `work`, with its parallel iterators on the process's thread pool, or on this thread if the system
+/// started no other.
 fn compute<T>(work: impl FnOnce() -> T) -> T {
     static IS_ALONE: OnceLock<bool> = OnceLock::new();
     let start = || start_pool(Threads::new(0)).is_some_and(|shortage| shortage.is_total());
@@ -99,17 +99,17 @@ fn compute<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Does `work` here, while other threads of Python run.
+/// Runs `work` on this thread, while other Python threads run.
 pub(crate) fn beside<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
     py.detach(|| compute(work))
 }
 
-/// Raises what a signal asks for; on other threads than the interpreter's it does nothing.
+/// Raises the exception of a pending signal; does nothing outside the interpreter's main thread.
 fn check_signals(py: Python<'_>) -> PyResult<()> {
     py.check_signals()
 }
 
-/// The same for work that tells nothing meanwhile.
+/// Runs `work` like [`wait`], without messages.
 pub(crate) fn wait_silently<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send,

@@ -1,4 +1,4 @@
-"""``python3 -m bidir.ray experiment``: what ``bidir experiment --ray`` calls."""
+"""``python3 -m bidir.ray experiment``, which ``bidir experiment --ray`` calls."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ def _say(text: str) -> None:
 
 
 def main() -> int:
-    """Run the command; return its exit code, as ``bidir`` has them."""
+    """Run the command; return an exit code of ``bidir``."""
     arguments = _arguments()
     logging.basicConfig(format="warning: %(message)s", level=logging.WARNING)
     warnings.showwarning = lambda message, *_rest, **_more: _say(f"warning: {message}")
 
-    def tell(what: str, done: int, of: int) -> None:
+    def show(part: str, done: int, of: int) -> None:
         if not arguments.quiet:
-            _say(f"{done}/{of} {what}")
+            _say(f"{done}/{of} {part}")
 
     try:
         results = bidir.ray.experiment(
@@ -47,7 +47,7 @@ def main() -> int:
             address=arguments.address,
             quick=arguments.quick,
             restart=arguments.restart,
-            progress=tell,
+            progress=show,
         )
     except KeyboardInterrupt:
         _say("stopped: run the same command to continue")

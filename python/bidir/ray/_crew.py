@@ -1,9 +1,9 @@
-"""One actor on every node, which does units of work with all threads of the node.
+"""One actor on every node, which processes units of work with all threads of the node.
 
-What goes wrong is of two kinds. An error that a unit raises is the *work's*: the unit is tried again,
-and after a few times it is reported with its name. The death of a process or of a node, or an object that
-is lost, is the *cluster's*: the unit goes to another worker, a node gets a fresh actor, and only what
-happens again and again is report, with its cause.
+There are two kinds of failures. An error that a unit raises belongs to the *work*: the unit is retried, and
+reported by name after several failures. The death of a process or node, or the loss of an object, belongs to
+the *cluster*: another worker gets the unit, the node gets a new actor, and only repeated losses are reported,
+with their cause.
 """
 
 from __future__ import annotations
@@ -69,16 +69,16 @@ class Worker:
     host: str
     cpus: int
     actor: Any
-    #: What `prepare` returns; None while it runs.
+    #: The reference of the result of `prepare` while that runs; None afterwards.
     preparing: Any
-    #: What runs or waits, by the reference of its answer.
+    #: Running and waiting units, by the references of their reports.
     units: dict[Any, Any] = field(default_factory=dict)
-    #: What the work remembers of this worker.
+    #: Notes of the work about this worker.
     notes: dict[str, Any] = field(default_factory=dict)
 
     @property
     def is_ready(self) -> bool:
-        """Whether it can be given units."""
+        """True if it can take units."""
         return self.preparing is None
 
 
@@ -87,7 +87,7 @@ class Work(Protocol):
 
     #: The class of the actors.
     actor: type
-    #: How many units an actor may be given before it has ended one.
+    #: The number of units that an actor processes at a time.
     concurrency: int
 
     def prepare(self, actor: Any, cpus: int) -> Any:
@@ -95,42 +95,42 @@ class Work(Protocol):
         ...
 
     def check(self, report: dict[str, Any]) -> str | None:
-        """Return why an actor with this description cannot take part. None: it can."""
+        """Return the reason to exclude an actor with this description. None: it can take part."""
         ...
 
     def next(self, worker: Worker, workers: int) -> Hashable | None:
-        """Return the next task of a worker. None: nothing, for the moment."""
+        """Return the next unit for a worker. None: there is none at the moment."""
         ...
 
     def submit(self, worker: Worker, unit: Any) -> tuple[Any, Any]:
-        """Begin a unit; return the references of its progress and of its result."""
+        """Start a unit; return the references of its report and of its result."""
         ...
 
     def done(self, worker: Worker, unit: Any, report: dict[str, Any], result: Any) -> None:
-        """Take what a unit gave."""
+        """Accept the result of a unit."""
         ...
 
     def again(self, unit: Any) -> None:
-        """Take back a unit that was not done."""
+        """Take back an unfinished unit."""
         ...
 
     def name(self, unit: Any) -> str:
-        """Say what a unit is, for people."""
+        """Return a readable name of a unit."""
         ...
 
     def pending(self) -> list[Any]:
-        """Return references of other tasks of the work that run."""
+        """Return the references of other running tasks of the work."""
         ...
 
     def turn(self) -> bool:
-        """Do what there is to do between units. False: everything is done."""
+        """Process results between units. False: the work is finished."""
         ...
 
 
 class Crew:
-    """Gives the units of a :class:`Work` to workers until all is done."""
+    """Gives the units of a :class:`Work` to workers until the work is finished."""
 
-    #: How often nodes are looked for. Unit: seconds.
+    #: The interval between searches for nodes. Unit: seconds.
     LOOK_EVERY = 2.0
 
     def __init__(self, work: Work, limits: Limits) -> None:
@@ -146,7 +146,7 @@ class Crew:
         self._cause = ""
 
     def run(self) -> None:
-        """Do all of the work.
+        """Process all units.
 
         Errors: :class:`TaskFailedError`, :class:`NodeRefusedError`, :class:`ClusterError`.
         """
@@ -155,14 +155,14 @@ class Crew:
             while self._work.turn():
                 self._look()
                 self._wait()
-                # Before the turn, which fetches what units gave: workers do not wait for that.
+                # Before the turn fetches results, so that workers need not wait for that.
                 self._assign()
         finally:
             for worker in self._workers.values():
                 ray.kill(worker.actor)
 
     def _look(self) -> None:
-        """Give every node that is there and has none an actor."""
+        """Start an actor on every live node without one."""
         now = time.monotonic()
         if now - self._looked < self.LOOK_EVERY:
             return
@@ -176,7 +176,7 @@ class Crew:
         self._check_hope(now)
 
     def _check_hope(self, now: float) -> None:
-        """Give up where no node can work."""
+        """Fail if no node can work."""
         if self._workers:
             self._worked = now
         elif self._refused:
@@ -202,7 +202,7 @@ class Crew:
 
     def _assign(self) -> None:
         ready = [worker for worker in self._workers.values() if worker.is_ready]
-        # The first of all come first, so that no worker gets two where another has none.
+        # Every worker gets its first unit before any gets a second one.
         for round_ in range(self._limits.in_flight):
             for worker in ready:
                 if len(worker.units) > round_:
@@ -225,7 +225,7 @@ class Crew:
             return
         ready, _ = ray.wait(references, num_returns=1, timeout=1.0)
         for reference in ready:
-            # Losing a worker takes its other units away.
+            # The worker may have been lost with an earlier reference.
             owner = owners.get(reference)
             if owner is not None and self._workers.get(owner.node) is owner:
                 self._hear(owner, reference)
@@ -234,7 +234,7 @@ class Crew:
         try:
             report: Any = ray.get(reference)
         except RayError as error:
-            # What an actor needs may be lost on its way to it, which is no fault of the work.
+            # The loss of an actor's input is a failure of the cluster, not of the work.
             if isinstance(error, RayTaskError) and not isinstance(error.cause, RayError):
                 self._fail(worker, reference, error)
             else:
@@ -254,7 +254,7 @@ class Crew:
             self._refuse(worker, reason)
 
     def _fail(self, worker: Worker, reference: Any, error: RayTaskError) -> None:
-        """Handle an error that the work raised."""
+        """Handle an error raised by the work."""
         cause = error.cause if isinstance(error.cause, Exception) else error
         text = f"{type(cause).__name__.removeprefix('RayTaskError')}: {first_line(cause)}"
         if reference == worker.preparing:
@@ -271,13 +271,13 @@ class Crew:
         self._work.again(unit)
 
     def _refuse(self, worker: Worker, reason: str) -> None:
-        """Leave a node out."""
+        """Exclude a node."""
         logger.warning("the node %s is left out: %s", worker.host, reason)
         self._refused[worker.node] = f"{worker.host}: {reason}"
         self._dismiss(worker)
 
     def _dismiss(self, worker: Worker) -> list[Any]:
-        """Forget a worker; return what it had to do."""
+        """Remove a worker; return its units."""
         del self._workers[worker.node]
         ray.kill(worker.actor)
         for reference in worker.units:
@@ -285,7 +285,7 @@ class Crew:
         return list(worker.units.values())
 
     def _lose(self, worker: Worker, cause: str) -> None:
-        """Handle the death of a worker: what it had to do goes to others."""
+        """Handle the loss of a worker: its units go to others."""
         logger.warning("the worker on %s is lost: %s", worker.host, cause)
         self._cause = f"{worker.host}: {cause}"
         units = self._dismiss(worker)
@@ -298,12 +298,12 @@ class Crew:
         deaths = self._deaths[worker.node] = self._deaths.get(worker.node, 0) + 1
         if deaths >= self._limits.deaths:
             self._refused[worker.node] = f"{self._cause} ({deaths} times)"
-        # A fresh actor comes with the next look, at once.
+        # The next search starts a new actor immediately.
         self._looked = 0.0
 
 
 def alive_nodes() -> list[tuple[str, str, int]]:
-    """Return name, host and number of processors of all nodes that have such and are alive."""
+    """Return name, host and number of processors of all live nodes with processors."""
     nodes: list[dict[str, Any]] = ray.nodes()  # type: ignore[no-untyped-call]
     alive = [node for node in nodes if node["Alive"]]
     found = [(n["NodeID"], n["NodeManagerHostname"], int(n["Resources"].get("CPU", 0))) for n in alive]
@@ -316,7 +316,7 @@ def first_line(error: BaseException) -> str:
 
 
 def connected(address: str | None) -> Callable[[], None]:
-    """Connect with a cluster unless this process is; return what ends a connection made here."""
+    """Connect to a cluster unless this process is connected; return a function that disconnects."""
     if ray.is_initialized():
         return lambda: None
     if address == "local":

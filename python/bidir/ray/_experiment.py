@@ -27,7 +27,7 @@ MemoryFile = tuple[list[str], bytes]
 
 
 def machine(cpus: int) -> str:
-    """Return what the times of a node depend on; runs on the node."""
+    """Describe the hardware that the times of a node depend on; runs on the node."""
     return json.dumps({**json.loads(_bidir.machine()), "threads": cpus}, sort_keys=True)
 
 
@@ -35,21 +35,21 @@ class Bench:
     """The actor of a node: it renders blocks of an experiment."""
 
     def prepare(self, description: dict[str, Any], cpus: int) -> dict[str, Any]:
-        """Read the description; tell what this node is."""
+        """Read the description; return versions and hardware of the node."""
         self.experiment = _bidir.Experiment(**description)
         return {**versions(), "machine": machine(cpus)}
 
     def render(
         self, block: str, files: list[MemoryFile], reference: tuple[list[int], bytes]
     ) -> tuple[dict[str, Any], Any]:
-        """Render a block; return its records with the images that are kept."""
+        """Render a block; return its records with the kept images."""
         return {}, _bidir.render_block(self.experiment, block, files, reference)
 
 
 class ExperimentWork:
     """The work of a :class:`bidir.ray._crew.Crew`: units are blocks, as JSON."""
 
-    #: Times are compared: nothing runs beside a block.
+    #: One block at a time, since times are compared.
     concurrency = 1
 
     def __init__(
@@ -57,12 +57,12 @@ class ExperimentWork:
         prepared: _bidir.Prepared,
         description: dict[str, Any],
         machine: str,
-        tell: Callable[[str, str], None],
+        report: Callable[[str, str], None],
         actor: type = Bench,
     ) -> None:
         self.actor = actor
         self._prepared, self._description, self._machine = prepared, description, machine
-        self._tell = tell
+        self._report = report
         self._todo = list(reversed(prepared.blocks))
         self._running = 0
         self._losses = 0
@@ -103,10 +103,10 @@ class ExperimentWork:
             return
         self._running -= 1
         self._prepared.add(records)
-        self._tell(unit, self.name(unit))
+        self._report(unit, self.name(unit))
 
     def _lose(self, unit: str, error: RayError) -> None:
-        """Render a block again whose records were lost on their way."""
+        """Render a block again after the loss of its records."""
         logger.warning("%s: the records were lost: %s", self.name(unit), error)
         self._losses += 1
         if self._losses > Limits.losses:
@@ -130,7 +130,7 @@ class ExperimentWork:
 
 def _packed(path: str, files: list[Any]) -> list[MemoryFile]:
     """Return the files of a scene by their names."""
-    # `load` reports warnings that the experiment has reported already.
+    # The experiment has already reported the warnings of `load`.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         _, source = load(path).packed()
@@ -143,18 +143,18 @@ def _packed(path: str, files: list[Any]) -> list[MemoryFile]:
 
 
 def _fleet() -> tuple[str, int]:
-    """Return the machine that most nodes are, and its number of processors.
+    """Return the most frequent machine of the nodes, and its number of processors.
 
-    Errors: :class:`bidir.ray.ClusterError` where no node has processors.
+    Errors: :class:`bidir.ray.ClusterError` if no node has processors.
     """
-    asked = []
+    machines = []
     for node, _, cpus in alive_nodes():
         affinity = NodeAffinitySchedulingStrategy(node, soft=False)
         task: Any = ray.remote(machine).options(num_cpus=0, scheduling_strategy=affinity)
-        asked.append(task.remote(cpus))
-    if not asked:
+        machines.append(task.remote(cpus))
+    if not machines:
         raise ClusterError("no node of the cluster has a processor")
-    most, _ = Counter(ray.get(asked)).most_common(1)[0]
+    most, _ = Counter(ray.get(machines)).most_common(1)[0]
     return most, json.loads(most)["threads"]
 
 
@@ -202,7 +202,7 @@ def experiment(
         methods = {block: len(json.loads(block)["methods"]) for block in prepared.blocks}
         done = of - sum(methods.values())
 
-        def tell(block: str, name: str) -> None:
+        def report(block: str, name: str) -> None:
             nonlocal done
             done += methods[block]
             if progress is not None:
@@ -214,9 +214,9 @@ def experiment(
             "quick": described.quick,
             "threads": cpus,
         }
-        work = ExperimentWork(prepared, description, kind, tell, _actor)
+        work = ExperimentWork(prepared, description, kind, report, _actor)
         Crew(work, limits or Limits(in_flight=1)).run()
-        # Everything has its record by now: this writes the results.
+        # All records exist now; this writes the results.
         found, tables = described._native.run(os.fspath(folder), False, kind, None)
     finally:
         disconnect()
@@ -228,7 +228,7 @@ def experiment(
 def _hearing(
     progress: Callable[[str, int, int], object] | None,
 ) -> Callable[[str, str, int, int], object]:
-    """Return the listener to events before records are made."""
+    """Return a listener for the events before the first run."""
 
     def hear(kind: str, text: str, done: int, of: int) -> None:
         if kind == "warning":

@@ -21,14 +21,14 @@ from bidir.image import Image
 from bidir.ray._crew import ClusterError, Crew, Limits, Worker, connected, first_line, logger
 from bidir.ray._tree import Part, Tree
 from bidir.scene import Scene, StrPath, load
-from bidir.session import Progress, Reporter, Session, Wanted, wanted
+from bidir.session import Progress, RenderRequest, Reporter, Session, render_request
 from bidir.settings import Integrator
 
 __all__ = ["Renderer", "render"]
 
 
 def versions() -> dict[str, Any]:
-    """Return what nodes must have in common."""
+    """Return the versions that all nodes must share."""
     return {
         "version": _bidir.VERSION,
         "estimator version": _bidir.ESTIMATOR_VERSION,
@@ -44,18 +44,18 @@ class Renderer:
         self._turn = threading.Lock()
 
     def prepare(
-        self, scene: Scene | tuple[str, dict[str, Any]], wanted: Wanted, threads: int
+        self, scene: Scene | tuple[str, dict[str, Any]], request: RenderRequest, threads: int
     ) -> dict[str, Any]:
-        """Read the scene and begin a session; tell what this node is."""
+        """Read the scene and start a session; return a description of the node."""
         if not isinstance(scene, Scene):
             scene = Scene(*scene)
         self.session = Session(
             scene,
-            wanted.integrator,
-            seed=wanted.seed,
-            layers=wanted.layers,
-            light_groups=wanted.light_groups,
-            strategy_layers=wanted.strategy_layers,
+            request.integrator,
+            seed=request.seed,
+            layers=request.layers,
+            light_groups=request.light_groups,
+            strategy_layers=request.strategy_layers,
             threads=threads,
         )
         return {
@@ -67,9 +67,9 @@ class Renderer:
         }
 
     def render(self, begin: int, end: int) -> tuple[dict[str, Any], bytes]:
-        """Render the passes from ``begin`` to ``end``, which is exclusive; return their film.
+        """Render the passes from ``begin`` up to, but excluding, ``end``; return their film.
 
-        One range renders at a time, with all threads; while its film is packed, the next one does.
+        One range renders at a time, with all threads; the next one starts while its film is packed.
         """
         with self._turn:
             started = time.monotonic()
@@ -77,14 +77,14 @@ class Renderer:
             try:
                 self.session.step(end - begin)
             finally:
-                # A range that failed leaves nothing to the next one.
+                # A failed range must not leave passes to the next one.
                 film = self.session.take_film()
             seconds = time.monotonic() - started
         return {"seconds": seconds, "passes": film.spp}, film.to_bytes()
 
 
 class _Ranges:
-    """The passes that are still to be rendered."""
+    """The remaining passes."""
 
     def __init__(self, ranges: Iterable[range]) -> None:
         self._ranges = sorted(ranges, key=lambda part: part.start)
@@ -94,7 +94,7 @@ class _Ranges:
         return sum(map(len, self._ranges + self._again))
 
     def take(self, passes: int) -> range | None:
-        """Take the first passes, at most so many; what failed comes first, and as it was."""
+        """Take a failed range unchanged, or else at most ``passes`` of the first passes."""
         if self._again:
             return self._again.pop()
         if not self._ranges:
@@ -106,7 +106,7 @@ class _Ranges:
         return taken
 
     def try_again(self, unit: range) -> None:
-        """Give back what failed: it stays one range, so that its failures can be counted."""
+        """Give back a failed range; it stays one unit, so that its failures can be counted."""
         self._again.append(unit)
 
     def give_back(self, ranges: Iterable[range]) -> None:
@@ -116,13 +116,13 @@ class _Ranges:
 class RenderWork:
     """The work of a :class:`bidir.ray._crew.Crew`: units are ranges of passes."""
 
-    #: One renders, one is packed.
+    #: One range renders while the film of another is packed.
     concurrency = 2
 
     def __init__(
         self,
         scene: Scene,
-        wanted: Wanted,
+        request: RenderRequest,
         shipped: Any,
         passes: range,
         task_seconds: float,
@@ -132,7 +132,7 @@ class RenderWork:
         actor: type = Renderer,
     ) -> None:
         self.actor = actor
-        self._scene, self._wanted, self._shipped = scene, wanted, shipped
+        self._scene, self._request, self._shipped = scene, request, shipped
         self._seconds = task_seconds
         self._tree, self._keeper, self._reporter = tree, keeper, reporter
         self._todo = _Ranges(keeper.missing(passes))
@@ -141,7 +141,7 @@ class RenderWork:
         self.identity = keeper.identity
 
     def prepare(self, actor: Any, cpus: int) -> Any:
-        return actor.prepare.remote(self._shipped, self._wanted, cpus)
+        return actor.prepare.remote(self._shipped, self._request, cpus)
 
     def check(self, report: dict[str, Any]) -> str | None:
         for name, here in versions().items():
@@ -159,7 +159,7 @@ class RenderWork:
         self._tree.set_workers(workers)
         pace = worker.notes.get("pace")
         if pace is None:
-            # The first pass tells how long they take; while its film is packed, the second one renders.
+            # The first two units have one pass each, to measure its time.
             passes = 1
         else:
             share = -(-len(self._todo) // workers)
@@ -208,7 +208,7 @@ class RenderWork:
         self._keeper.add(Film(_bidir.Film.from_bytes(data, self._scene._native)))
 
     def _lose(self, ranges: Iterable[range]) -> None:
-        """Render passes again whose films were lost with the nodes that had them."""
+        """Render passes again after the loss of their films."""
         lost = list(ranges)
         if not lost:
             return
@@ -221,7 +221,7 @@ class RenderWork:
 
 
 class Keeper:
-    """The film of the driver, and its file."""
+    """The film of the driver, and its checkpoint."""
 
     def __init__(self, path: Path | None, every: float, spp: int, digest: str) -> None:
         self._path, self._every = path, every
@@ -245,7 +245,7 @@ class Keeper:
         return self.film.missing(passes) if self.film else [passes]
 
     def add(self, film: Film) -> None:
-        """Add passes; that none is there twice is checked by :meth:`bidir.Film.merge`."""
+        """Add passes; :meth:`bidir.Film.merge` fails for duplicates."""
         self.film = film if self.film is None else Film.merge(self.film, film)
         self._is_saved = False
         if time.monotonic() - self._saved >= self._every:
@@ -303,8 +303,8 @@ def render(
     :class:`bidir.RenderInterruptedError` on Ctrl-C.
     """
     scene = scene if isinstance(scene, Scene) else load(scene)
-    wish = wanted(integrator, seed, layers, light_groups, strategy_layers)
-    wish.native(scene)
+    request = render_request(integrator, seed, layers, light_groups, strategy_layers)
+    request.native(scene)
     passes = scene.spp if spp is None else spp
     if passes < 1 or task_seconds <= 0 or fan_in < 2:
         raise SettingsError("spp must be at least 1, task_seconds above 0, and fan_in at least 2")
@@ -316,7 +316,7 @@ def render(
         with Reporter(progress, passes, done) as reporter:
             work = RenderWork(
                 scene,
-                wish,
+                request,
                 _shipped(scene, ship),
                 range(passes),
                 task_seconds,
@@ -338,7 +338,7 @@ def render(
 
 
 def _shipped(scene: Scene, ship: str) -> Any:
-    """Return what actors are given: a reference that each node fetches once, or a name to read."""
+    """Return the scene for actors: a reference that each node fetches once, or a path to read."""
     if ship == "object":
         return ray.put(scene)
     if ship == "path":

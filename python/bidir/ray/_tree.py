@@ -1,7 +1,7 @@
-"""Films of parts, merged on the cluster before they come to the driver.
+"""Partial films, merged on the cluster before the driver fetches them.
 
-Every ``fan_in`` films of a level become one of the next by a task on some node, so that the driver
-fetches one film where many were rendered, and holds two at a time: the sum, and what it adds.
+A task on some node merges every ``fan_in`` films of a level into one of the next, so that the driver fetches
+few films, and holds only two at a time: the sum and the film to add.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ logger = logging.getLogger("bidir.ray")
 
 @dataclass(frozen=True)
 class Part:
-    """A film on the cluster: its reference, and the ranges of passes that it has."""
+    """A film on the cluster: its reference, and its ranges of passes."""
 
     film: Any
     ranges: tuple[range, ...]
@@ -36,24 +36,24 @@ def merged(*films: bytes) -> tuple[dict[str, int], bytes]:
 
 
 class Tree:
-    """Parts by level, and the tasks that merge them."""
+    """Parts by level, and the running merges."""
 
     def __init__(self, fan_in: int) -> None:
         """Begin without parts."""
         self.fan_in = fan_in
-        #: Films are fetched from this level on.
+        #: The driver fetches films from this level on.
         self.top = 0
         self._levels: dict[int, list[Part]] = {}
         self._merging: dict[Any, tuple[int, list[Part], Any]] = {}
 
     def set_workers(self, workers: int) -> None:
-        """Make the tree as high as so many workers need it."""
+        """Set the height of the tree for a number of workers."""
         self.top, reach = 0, 1
         while reach < workers:
             self.top, reach = self.top + 1, reach * self.fan_in
 
     def add(self, part: Part, level: int = 0) -> None:
-        """Add a film, and begin to merge where there are enough of its level."""
+        """Add a film, and merge the films of its level if there are enough."""
         parts = self._levels.setdefault(level, [])
         parts.append(part)
         if level < self.top and len(parts) >= self.fan_in:
@@ -66,14 +66,14 @@ class Tree:
             self._merging[report] = (level + 1, parts, film)
 
     def pending(self) -> list[Any]:
-        """Return the references of merges that run."""
+        """Return the references of running merges."""
         return list(self._merging)
 
-    #: Why films were lost, the last time.
+    #: The cause of the last loss of films.
     cause = ""
 
     def settle(self) -> list[range]:
-        """Take films that were merged; return the passes of those that were lost on the way."""
+        """Collect merged films; return the passes of lost ones."""
         lost: list[range] = []
         if not self._merging:
             return lost
@@ -92,12 +92,12 @@ class Tree:
         return lost
 
     def fetchable(self, everything: bool) -> Part | None:
-        """Take a film for the driver: one from the top, or of any level if ``everything`` is."""
+        """Take a film for the driver: from the top, or from any level if ``everything`` is true."""
         for level in sorted(self._levels, reverse=True):
             if (level >= self.top or everything) and self._levels[level]:
                 return self._levels[level].pop(0)
         return None
 
     def is_empty(self) -> bool:
-        """Tell whether no film is left."""
+        """Return True if no film is left."""
         return not self._merging and not any(self._levels.values())

@@ -107,7 +107,7 @@ fn part(done: usize, of: usize) -> f64 {
 }
 
 impl Observer for Watch<'_> {
-    fn tell(&mut self, event: Event<'_>) {
+    fn notify(&mut self, event: Event<'_>) {
         match event {
             Event::Warning(text) => match &self.channel {
                 Channel::Bar(bar) => bar.suspend(|| self.console.warning(text)),

@@ -1,13 +1,12 @@
-//! Tests with Open Image Denoise, where the system or `BIDIR_OIDN` has it.
+//! Tests that need Open Image Denoise; without it they are skipped.
 
-#![allow(clippy::print_stderr, reason = "a test tells why it is skipped")]
+#![allow(clippy::print_stderr, reason = "a test reports why it is skipped")]
 
 use bidir_denoise::{DenoiseError, Denoiser, Input};
 
 const SIZE: [usize; 2] = [160, 96];
 
-/// The library; None, with the reason on stderr, where there is none. One that is there but cannot
-/// be used fails the test.
+/// Loads the library. None, with the reason on stderr: there is none. An unusable library fails the test.
 fn denoiser(threads: usize) -> Option<Denoiser> {
     match Denoiser::load(threads) {
         Ok(denoiser) => Some(denoiser),
@@ -19,7 +18,7 @@ fn denoiser(threads: usize) -> Option<Denoiser> {
     }
 }
 
-/// A number in [0, 1) that looks random.
+/// Returns a pseudorandom number in [0, 1).
 fn random(index: usize) -> f32 {
     let mut bits = (index as u32).wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
     bits = (bits ^ (bits >> 16)).wrapping_mul(0x85eb_ca6b);
@@ -27,7 +26,7 @@ fn random(index: usize) -> f32 {
     ((bits ^ (bits >> 16)) >> 8) as f32 / (1 << 24) as f32
 }
 
-/// What each pixel would be without noise: two surfaces that meet in slanted edges.
+/// Makes a noise-free image of two surfaces that meet in slanted edges.
 fn bands(one: [f32; 3], other: [f32; 3]) -> Vec<[f32; 3]> {
     let [width, height] = SIZE;
     let pixels = (0..width * height).map(|pixel| {
@@ -41,8 +40,8 @@ fn bands(one: [f32; 3], other: [f32; 3]) -> Vec<[f32; 3]> {
     pixels.collect()
 }
 
-/// Each channel times (1 - amount) plus a share of `amount` of an exponential distribution, whose
-/// mean is 1: noise with bright outliers, as renders have.
+/// Multiplies each channel by 1 - `amount` + `amount` · X, where X is exponential with mean 1: noise with
+/// bright outliers, as in renders.
 fn noisy(image: &[[f32; 3]], amount: f32, seed: usize) -> Vec<[f32; 3]> {
     let numbers = image.iter().flatten().enumerate().map(|(index, number)| {
         let exponential = -libm::logf(1.0 - random(index + seed));
@@ -52,14 +51,14 @@ fn noisy(image: &[[f32; 3]], amount: f32, seed: usize) -> Vec<[f32; 3]> {
     numbers.as_chunks::<3>().0.to_vec()
 }
 
-/// The root mean square difference.
+/// Computes the root mean square difference.
 fn error(image: &[[f32; 3]], truth: &[[f32; 3]]) -> f32 {
     let pairs = image.as_flattened().iter().zip(truth.as_flattened());
     let sum: f32 = pairs.map(|(a, b)| (a - b) * (a - b)).sum();
     (sum / truth.as_flattened().len() as f32).sqrt()
 }
 
-/// The picture, albedo and normals without noise.
+/// Returns image, albedo and normals without noise.
 fn truth() -> [Vec<[f32; 3]>; 3] {
     [
         bands([0.9, 0.6, 0.3], [0.5, 0.4, 0.4]),
@@ -69,7 +68,7 @@ fn truth() -> [Vec<[f32; 3]>; 3] {
 }
 
 #[test]
-fn a_picture_gets_nearer_to_the_truth_and_nearer_still_with_guides() {
+fn denoising_reduces_the_error_and_guides_reduce_it_further() {
     let Some(denoiser) = denoiser(0) else { return };
     assert!(denoiser.version().starts_with("2."));
     let [truth, albedo, normal] = truth();
@@ -105,7 +104,7 @@ fn a_picture_gets_nearer_to_the_truth_and_nearer_still_with_guides() {
 }
 
 #[test]
-fn the_same_input_has_the_same_output_whatever_the_number_of_threads() {
+fn the_output_does_not_depend_on_the_number_of_threads() {
     let [truth, albedo, normal] = truth();
     let color = noisy(&truth, 1.0, 7);
     let input = Input {
@@ -124,7 +123,7 @@ fn the_same_input_has_the_same_output_whatever_the_number_of_threads() {
 }
 
 #[test]
-fn what_is_no_number_does_not_spread() {
+fn pixels_that_are_not_finite_do_not_spread() {
     let Some(denoiser) = denoiser(0) else { return };
     let [truth, albedo, normal] = truth();
     let [mut color, mut albedo, mut normal] = [truth.clone(), albedo, normal];
@@ -150,7 +149,7 @@ fn what_is_no_number_does_not_spread() {
 }
 
 #[test]
-fn pictures_of_any_size_are_denoised() {
+fn images_of_any_size_are_denoised() {
     let Some(denoiser) = denoiser(0) else { return };
     for size in [[0, 0], [1, 1], [1, 7], [513, 3]] {
         let color = vec![[0.25; 3]; size[0] * size[1]];

@@ -1,4 +1,4 @@
-//! The crate from outside: with Open Image Denoise, and where it is missing.
+//! Tests of the public interface, with and without Open Image Denoise.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test fails the test")]
 

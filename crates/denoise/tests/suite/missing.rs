@@ -1,4 +1,4 @@
-//! Tests of what is told where Open Image Denoise is not there, or is something else.
+//! Tests of the errors for a missing or unusable Open Image Denoise.
 
 use bidir_denoise::{DenoiseError, Denoiser, Input, names};
 use std::fs;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// The error of loading `named`.
+/// Returns the error of loading `named`.
 #[track_caller]
 fn refused(named: &Path) -> DenoiseError {
     Denoiser::load_named(Some(named), 1).unwrap_err()
@@ -27,32 +27,32 @@ fn check_unusable(named: &Path, part: &str) {
 }
 
 #[test]
-fn what_is_no_library_is_refused() {
+fn files_and_folders_without_a_library_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     check_unusable(&folder.path().join("nothing.so"), "");
     check_unusable(folder.path(), &format!("has no {}", names()[0]));
     let text = folder.path().join(names()[0]);
     fs::write(&text, "a text").unwrap();
-    // The system says what is wrong with a file, and names it.
+    // The message is the system's, which names the file.
     check_unusable(&text, names()[0]);
     check_unusable(folder.path(), names()[0]);
 }
 
-/// The system's own library of C, which every program has in its memory.
+/// Loads the C library, which every program has in its memory.
 #[cfg(target_os = "linux")]
 #[test]
 fn another_library_is_refused() {
     let maps = fs::read_to_string("/proc/self/maps").unwrap();
     let library = maps.split_whitespace().find(|word| word.contains("/libc"));
     let Some(library) = library else {
-        eprintln!("skipped: the library of C is part of this program");
+        eprintln!("skipped: the C library is linked statically");
         return;
     };
     check_unusable(Path::new(library), "it has no function oidnNewDevice");
 }
 
 #[test]
-fn the_hint_tells_how_to_get_the_library() {
+fn the_hint_names_ways_to_get_the_library() {
     let error = DenoiseError::NotFound {
         names: names().to_vec(),
         reason: "no such file".to_owned(),
@@ -62,8 +62,8 @@ fn the_hint_tells_how_to_get_the_library() {
     assert!(hint.contains("pip install") && hint.contains("BIDIR_OIDN"));
 }
 
-/// A library with all functions of version 2, which does nothing but what the arguments say: it
-/// tells `MAJOR.7.0`, makes devices where `DEVICE` is not 0, and fails with `ERROR`.
+/// The source of a library with all functions of version 2. Its version is `MAJOR.7.0`, it returns the device
+/// `DEVICE`, and it fails with `ERROR` unless that is empty.
 const FAKE: &str = r#"
 #![allow(non_snake_case)]
 use std::ffi::{CStr, c_char, c_int};
@@ -92,7 +92,7 @@ use std::ffi::{CStr, c_char, c_int};
 #[unsafe(no_mangle)] extern "C" fn oidnExecuteFilter(_: usize) {}
 "#;
 
-/// Compiles a fake library, in a folder of an archive's kind.
+/// Compiles the fake library into a folder with the layout of an archive.
 fn fake(words: &[(&str, &str)]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let source = folder.path().join("fake.rs");
@@ -115,8 +115,8 @@ fn fake(words: &[(&str, &str)]) -> (TempDir, PathBuf) {
         .args([&library, &source])
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&compiled.stderr);
-    assert!(compiled.status.success(), "{told}");
+    let stderr = String::from_utf8_lossy(&compiled.stderr);
+    assert!(compiled.status.success(), "{stderr}");
     let library = library.canonicalize().unwrap();
     (folder, library)
 }
@@ -137,7 +137,7 @@ fn other_versions_are_refused() {
 }
 
 #[test]
-fn what_the_library_says_is_told() {
+fn errors_have_the_message_of_the_library() {
     let (_folder, library) = fake(&[("DEVICE", "0"), ("ERROR", "c\"no such processor\"")]);
     let error = refused(&library);
     assert_eq!(error.to_string(), "Open Image Denoise: no such processor");

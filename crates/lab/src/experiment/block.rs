@@ -1,15 +1,16 @@
 //! Parts of an experiment, for several machines.
 //!
-//! Who has machines calls [`prepare`], which makes references and images of strategies where they are
-//! not there yet; has every [`Block`] rendered by [`render_block`] somewhere; gives what comes back, in
-//! any order, to [`Prepared::add`]; and calls [`run`](super::run()) at the end, which then finds all
-//! records there. All machines have to be alike, as times are compared.
+//! The host calls [`prepare`], which renders missing references and images of strategies; has every
+//! [`Block`] rendered by [`render_block`] on some machine; passes the results, in any order, to
+//! [`Prepared::add`]; and at the end calls [`run`](super::run()), which then finds all records. All machines
+//! have to be alike, since times are compared.
 
-use super::cell::{Cell, write_image};
 use super::error::ExperimentError;
-use super::journal::{Journal, Owner};
-use super::run::{End, Observer, Ready, Setup, Work, begin};
-use super::stage::{Reference, Stage};
+use super::journal::{Journal, RecordsKey};
+use super::loaded_scene::{LoadedScene, Reference};
+use super::observer::Observer;
+use super::run::{Run, write_image};
+use super::run_set::{Begun, End, Ready, RunSet, Setup, begin};
 use super::{Experiment, pyramid, reference};
 use crate::image::Pixels;
 use crate::results::Record;
@@ -19,8 +20,8 @@ use std::path::PathBuf;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Some methods under one seed in one scene and with one budget. What is compared is rendered on one
-/// machine.
+/// Runs of several methods in one scene with the same budget and seed: one machine renders all runs that
+/// are compared with each other.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
     /// The name of the scene.
@@ -29,91 +30,91 @@ pub struct Block {
     pub budget: String,
     /// The seed.
     pub seed: u64,
-    /// The names of the methods that have no record yet.
+    /// The names of the methods without a record.
     pub methods: Vec<String>,
 }
 
-/// A scene of an experiment that is ready.
+/// A scene of an experiment with its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedScene {
     /// Its name.
     pub name: String,
     /// Its file.
     pub path: PathBuf,
-    /// All files that were read for it.
+    /// All files read for it.
     pub files: Vec<PathBuf>,
-    /// What its images are compared with.
+    /// The reference of its images.
     pub reference: Pixels,
 }
 
-/// An experiment that has its references.
+/// An experiment with complete references.
 #[derive(Debug)]
 pub struct Prepared {
     /// The scenes.
     pub scenes: Vec<PreparedScene>,
-    /// What has no record yet.
+    /// The runs without a record.
     pub blocks: Vec<Block>,
-    owner: Owner,
+    key: RecordsKey,
     folder: PathBuf,
 }
 
-/// A render with its image, if one is kept.
+/// A finished run with its image, if that is kept.
 #[derive(Clone, Debug)]
 pub struct Done {
     /// The record.
     pub record: Record,
-    /// The image of the first seed.
+    /// The image, kept for the first seed only.
     pub image: Option<Pixels>,
 }
 
-/// Makes everything but records. None: the observer stopped it.
+/// Renders everything except the runs. None: the observer stopped it.
 pub fn prepare(
     experiment: &Experiment,
     setup: &Setup,
     observer: &mut dyn Observer,
 ) -> Result<Option<Prepared>> {
-    let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner, observer)?;
-    let Some(scenes) = reference::obtain_all(experiment, stages, given, setup, observer)? else {
+    let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
+    let mut journal = Journal::start(setup, &key, observer)?;
+    let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
         return Ok(None);
     };
     let Ready {
-        stages, references, ..
-    } = scenes;
-    if pyramid::complete(experiment, &stages, setup, &mut journal, observer)? == End::Stopped {
+        scenes, references, ..
+    } = ready;
+    if pyramid::complete(experiment, &scenes, setup, &mut journal, observer)? == End::Stopped {
         return Ok(None);
     }
-    let work = Work {
+    let run_set = RunSet {
         experiment,
         setup,
-        stages: &stages,
+        scenes: &scenes,
         references: &references,
     };
-    let blocks = blocks(&work, &journal);
-    let scenes = stages.iter().zip(references);
-    let scenes = scenes.map(|(stage, reference)| PreparedScene {
-        name: stage.spec.name.clone(),
-        path: stage.spec.path.clone(),
-        files: stage.shared_files(),
+    let blocks = blocks(&run_set, &journal);
+    let scenes = scenes.iter().zip(references);
+    let scenes = scenes.map(|(loaded, reference)| PreparedScene {
+        name: loaded.spec.name.clone(),
+        path: loaded.spec.path.clone(),
+        files: loaded.shared_files(),
         reference: reference.pixels,
     });
     Ok(Some(Prepared {
         scenes: scenes.collect(),
         blocks,
-        owner,
+        key,
         folder: setup.folder.clone(),
     }))
 }
 
-/// What has no record, in order.
-fn blocks(work: &Work<'_>, journal: &Journal) -> Vec<Block> {
+/// Groups the runs without a record, in order.
+fn blocks(run_set: &RunSet<'_>, journal: &Journal) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
-    for (cell, _) in work.cells().filter(|(cell, _)| !journal.has(cell)) {
+    for (run, _) in run_set.runs().filter(|(run, _)| !journal.has(run)) {
         let block = Block {
-            scene: cell.stage.spec.name.clone(),
-            budget: cell.budget.name.clone(),
-            seed: cell.seed,
-            methods: vec![cell.method.name.clone()],
+            scene: run.scene.spec.name.clone(),
+            budget: run.budget.name.clone(),
+            seed: run.seed,
+            methods: vec![run.method.name.clone()],
         };
         match blocks.last_mut() {
             Some(last) if last.is_beside(&block) => last.methods.extend(block.methods),
@@ -124,7 +125,7 @@ fn blocks(work: &Work<'_>, journal: &Journal) -> Vec<Block> {
 }
 
 impl Block {
-    /// Whether both differ in their methods alone.
+    /// Returns true if both differ only in their methods.
     fn is_beside(&self, other: &Self) -> bool {
         let of = |block: &Self| (block.scene.clone(), block.budget.clone(), block.seed);
         of(self) == of(other)
@@ -132,11 +133,11 @@ impl Block {
 }
 
 impl Prepared {
-    /// Adds what was rendered; a record that is there already stays.
+    /// Adds finished runs; existing records stay.
     ///
-    /// Errors: the folder has records of another experiment by now, or cannot be written.
+    /// Errors: the folder meanwhile has records of another experiment, or cannot be written.
     pub fn add(&self, done: Vec<Done>) -> Result<()> {
-        let mut journal = Journal::open(&self.folder, &self.owner)?;
+        let mut journal = Journal::open(&self.folder, &self.key)?;
         for Done { record, image } in done {
             if let (Some(name), Some(pixels)) = (&record.image, &image) {
                 write_image(&self.folder.join(name), pixels)?;
@@ -149,13 +150,14 @@ impl Prepared {
     }
 }
 
-/// Renders a block, whose scene has its files in `files`. None: the observer stopped it.
+/// Renders a block, whose scene files come from `files`. None: the observer stopped it.
 ///
-/// Errors: the experiment has no such scene, budget or method; those of its renders.
+/// Errors: the experiment has no such scene, budget or method; a render fails.
 pub fn render_block(
     experiment: &Experiment,
     block: &Block,
-    (files, reference): (&Files, &Pixels),
+    files: &Files,
+    reference: &Pixels,
     observer: &mut dyn Observer,
 ) -> Result<Option<Vec<Done>>> {
     let missing = || ExperimentError::Mismatch(PathBuf::from(&block.scene));
@@ -167,7 +169,7 @@ pub fn render_block(
     let budget = budgets
         .find(|budget| budget.name == block.budget)
         .ok_or_else(missing)?;
-    let stage = Stage::load(experiment, spec, files)?;
+    let loaded = LoadedScene::load(experiment, spec, files)?;
     let reference = Reference {
         pixels: reference.clone(),
         words: String::new(),
@@ -178,20 +180,20 @@ pub fn render_block(
     let mut all = Vec::new();
     for name in &block.methods {
         let mut methods = experiment.methods.iter();
-        let cell = Cell {
-            stage: &stage,
+        let run = Run {
+            scene: &loaded,
             method: methods
                 .find(|method| method.name == *name)
                 .ok_or_else(missing)?,
             budget,
             seed: block.seed,
         };
-        let Some(rendered) = cell.render(experiment.threads, observer)? else {
+        let Some(rendered) = run.render(experiment.threads, observer)? else {
             return Ok(None);
         };
-        let mut record = cell.record(&rendered, &reference, &experiment.metrics);
+        let mut record = run.record(&rendered, &reference, &experiment.metrics);
         let is_first = block.seed == experiment.seeds.first;
-        record.image = is_first.then(|| cell.image());
+        record.image = is_first.then(|| run.image());
         let image = is_first.then(|| rendered.pixels());
         all.push(Done { record, image });
     }

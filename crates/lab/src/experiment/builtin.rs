@@ -1,18 +1,18 @@
-//! Descriptions that the program contains, with the scenes that they name.
+//! Built-in descriptions, with their scenes.
 
 use super::{Experiment, ExperimentError};
 use crate::scenes;
 use std::path::Path;
 
-/// A description that needs no file.
+/// A built-in description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Builtin {
-    /// Its name, which stands for a file.
+    /// Its name, which replaces a file name on the command line.
     pub name: &'static str,
     text: &'static str,
 }
 
-/// All of them: the experiment of 1995, and all integrators with each idea behind them.
+/// The built-in descriptions: the experiment of 1995, and a comparison of all integrators and their parts.
 pub const BUILTIN: [Builtin; 2] = [
     Builtin {
         name: "paper",
@@ -25,16 +25,16 @@ pub const BUILTIN: [Builtin; 2] = [
 ];
 
 impl Builtin {
-    /// The description of this name. None: there is none.
+    /// Returns the description of this name. None: there is none.
     pub fn named(name: &Path) -> Option<Self> {
         BUILTIN
             .into_iter()
             .find(|builtin| name == Path::new(builtin.name))
     }
 
-    /// The experiment, with the project's scenes in memory.
+    /// Reads the experiment, with the project's scenes in memory.
     ///
-    /// Errors: as of [`Experiment::read`].
+    /// Errors: those of [`Experiment::read`].
     pub fn experiment(self) -> Result<Experiment, ExperimentError> {
         let file = Path::new("experiments").join(self.name);
         Experiment::read_with(self.text, &file.with_extension("toml"), &scenes::files())

@@ -1,12 +1,12 @@
-//! How large the contributions C_ij are that a shadow ray may bring.
+//! The distribution of the contributions C_ij of connections before visibility.
 //!
-//! C_ij is the term of connection (i, j) in the sum of the estimate if nothing is in the way, with its
-//! weight; unweighted contributions are f / p. Both are luminances of the terms that are not zero; the
-//! others need no ray. Every pass of a bidirectional method gives each of the [`FIGURES`] once, so that
-//! claims treat passes as they treat seeds.
+//! C_ij is the weighted term of connection (i, j) in the estimate if its shadow ray is unoccluded;
+//! unweighted contributions are f / p. Both are luminances. Terms that are zero need no shadow ray and do
+//! not count. Every pass of a bidirectional method gives one value of each of the [`FIGURES`], so that
+//! claims treat passes like seeds.
 
 use super::error::ExperimentError;
-use super::stage::Stage;
+use super::loaded_scene::LoadedScene;
 use super::{Experiment, MethodSpec};
 use crate::results::Contributions;
 use bidir::driver::Settings;
@@ -18,14 +18,14 @@ use bidir::select::ShadowRays;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Of which methods contributions are measured, where.
+/// The methods and scenes whose contributions are measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ContributionsSpec {
-    /// The names of the methods, which are bidirectional.
+    /// The names of the methods; their integrator is `bdpt`.
     pub methods: Vec<String>,
     /// The names of the scenes; empty: all.
     pub scenes: Vec<String>,
-    /// Samples per pixel, each a pass that is independent of the others.
+    /// Samples per pixel, each an independent pass.
     pub spp: u64,
 }
 
@@ -35,7 +35,7 @@ macro_rules! figures {
     };
 }
 
-/// The numbers of a pass; the second half is without weights.
+/// The names of the numbers of a pass; those of the second half are without weights.
 pub const FIGURES: [&str; 18] = figures![
     " per sample"
     ": orders of magnitude"
@@ -48,12 +48,12 @@ pub const FIGURES: [&str; 18] = figures![
     ": part that makes 90 % of the sum"
 ];
 
-/// Bins per order of magnitude of histograms.
+/// Bins of histograms per order of magnitude.
 const BINS: u32 = 2;
 
 impl Contributions {
-    /// The distribution that a figure is of: for each bin of log10 its left edge and the part of all
-    /// contributions in it.
+    /// Returns the histogram that a figure describes: the left edge of each bin of log10, and the fraction
+    /// of all contributions in it.
     pub fn histogram(&self, figure: &str) -> &[[f64; 2]] {
         if figure.starts_with("unweighted") {
             &self.unweighted
@@ -63,48 +63,48 @@ impl Contributions {
     }
 }
 
-/// All contributions that a description asks for.
+/// Measures the contributions of the description's methods and scenes.
 pub(super) fn measure(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
 ) -> Result<Vec<Contributions>, ExperimentError> {
     let Some(spec) = &experiment.contributions else {
         return Ok(Vec::new());
     };
     let is_shown = |name: &String| spec.scenes.is_empty() || spec.scenes.contains(name);
-    let stages = stages.iter().filter(|stage| is_shown(&stage.spec.name));
+    let scenes = scenes.iter().filter(|loaded| is_shown(&loaded.spec.name));
     let methods = || {
         let methods = experiment.methods.iter();
         methods.filter(|method| spec.methods.contains(&method.name))
     };
-    let pairs = stages.flat_map(|stage| methods().map(move |method| (stage, method)));
+    let pairs = scenes.flat_map(|loaded| methods().map(move |method| (loaded, method)));
     pairs
-        .map(|(stage, method)| of_method(stage, method, spec.spp))
+        .map(|(loaded, method)| of_method(loaded, method, spec.spp))
         .collect()
 }
 
 fn of_method(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     method: &MethodSpec,
     spp: u64,
 ) -> Result<Contributions, ExperimentError> {
-    let settings = method.changes.apply(&stage.settings);
+    let settings = method.request.apply(&loaded.settings);
     if settings.integrator != IntegratorKind::Bdpt {
         return Err(ExperimentError::Contributions {
-            scene: stage.spec.name.clone(),
+            scene: loaded.spec.name.clone(),
             method: method.name.clone(),
         });
     }
     let passes = (0..spp).into_par_iter();
     let passes: Vec<_> = passes
-        .map(|pass| terms(&stage.scene, &settings, pass))
+        .map(|pass| terms(&loaded.scene, &settings, pass))
         .collect();
     let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {
         let pass = |terms: &Vec<[f64; 2]>| sorted(terms.iter().map(which).collect());
         passes.iter().map(pass).collect()
     };
     let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
-    let samples = stage.scene.film().crop.area() as f64;
+    let samples = loaded.scene.film().crop.area() as f64;
     let both = weighted.iter().zip(&unweighted);
     let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
         let numbers = [weighted, unweighted].map(|values| figures(values, samples));
@@ -115,7 +115,7 @@ fn of_method(
             .collect::<BTreeMap<_, _>>()
     };
     Ok(Contributions {
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         method: method.name.clone(),
         passes: both.map(pass).collect(),
         weighted: histogram(&sorted_all(&weighted)),
@@ -132,7 +132,7 @@ fn sorted_all(passes: &[Vec<f64>]) -> Vec<f64> {
     sorted(passes.concat())
 }
 
-/// The [`FIGURES`] of ascending values of so many samples.
+/// Computes the [`FIGURES`] of the ascending values of `samples` samples.
 fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
     let log = |part| quantile(values, part).map_or(f64::NAN, libm::log10);
     [
@@ -148,7 +148,7 @@ fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
     ]
 }
 
-/// The terms of a sample of every pixel, without and with weight.
+/// Takes one sample of every pixel; returns the terms of its connections, without and with weight.
 fn terms(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
     let film = scene.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
@@ -184,20 +184,20 @@ fn terms(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
     terms
 }
 
-/// The value below which the part `part` of ascending `values` lies. None: there is none.
+/// Returns the quantile `part` of ascending `values`. None: there are no values.
 fn quantile(values: &[f64], part: f64) -> Option<f64> {
     let index = (part * values.len() as f64) as usize;
     values.get(index.min(values.len().checked_sub(1)?)).copied()
 }
 
-/// The share of the sum that the largest part `part` of ascending `values` has.
+/// Computes the share of the sum that belongs to the largest fraction `part` of ascending `values`.
 fn share_of_largest(values: &[f64], part: f64) -> f64 {
     let small = ((1.0 - part) * values.len() as f64) as usize;
     let total: f64 = values.iter().sum();
     values[small.min(values.len())..].iter().sum::<f64>() / total
 }
 
-/// The part of ascending `values`, the largest first, that makes `share` of their sum.
+/// Computes the fraction of ascending `values`, the largest first, that makes up `share` of their sum.
 fn part_with(values: &[f64], share: f64) -> f64 {
     let enough = share * values.iter().sum::<f64>();
     let mut sum = 0.0;
@@ -209,7 +209,8 @@ fn part_with(values: &[f64], share: f64) -> f64 {
     count.count() as f64 / values.len() as f64
 }
 
-/// Parts of ascending `values` by log10: for each bin its left edge and the part of all values in it.
+/// Makes the histogram of ascending `values` by log10: the left edge of each bin, and the fraction of all
+/// values in it.
 fn histogram(values: &[f64]) -> Vec<[f64; 2]> {
     let bin = |value: &f64| (libm::log10(*value) * f64::from(BINS)).floor() as i64;
     let (Some(first), Some(last)) = (values.first().map(bin), values.last().map(bin)) else {
@@ -236,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_as_by_hand() {
+    fn figures_are_as_computed_by_hand() {
         let values = [0.001, 0.01, 0.1, 1.0, 8.889];
         let figures = figures(&values, 10.0);
         check(figures[0], 0.5);

@@ -1,4 +1,4 @@
-//! From TOML to an [`Experiment`].
+//! The reader of descriptions: from TOML to an [`Experiment`].
 
 mod claims;
 mod scene;
@@ -24,7 +24,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// The most bytes that repetition makes: a small file must not fill the memory.
 const MOST_REPEATED: usize = 64 << 20;
-/// Where no number of seeds is given.
+/// The default number of seeds.
 const SEEDS: u64 = 10;
 /// The keys of the whole description.
 const TOP: [&str; 18] = [
@@ -47,7 +47,7 @@ const TOP: [&str; 18] = [
     "claim",
     "table",
 ];
-/// How to mend a setting without effect on an integrator that another table sets.
+/// The hint for a setting without effect on an integrator that another table sets.
 const INHERITED: &str =
     "[settings] sets this integrator: give the method its own, or leave the setting out";
 /// The keys of `[[budget]]`.
@@ -56,22 +56,22 @@ const BUDGET: [&str; 6] = ["name", "samples", "rays", "seconds", "methods", "sce
 const CONTRIBUTIONS: [&str; 3] = ["methods", "scenes", "spp"];
 /// The keys of `[quick]`.
 const QUICK: [&str; 6] = ["seeds", "size", "samples", "rays", "seconds", "references"];
-/// Settings that are accepted for old descriptions.
+/// Older names of settings.
 const OLD_SETTINGS: [&str; 1] = ["emission"];
-/// Samples per pixel of images of strategies, where no number is given.
+/// The default samples per pixel of images of strategies.
 const PYRAMID_SPP: u64 = 64;
-/// Samples per pixel whose contributions are measured, where no number is given.
+/// The default samples per pixel of measured contributions.
 const CONTRIBUTIONS_SPP: u64 = 16;
 
 impl Experiment {
-    /// Reads a description; `file` is what messages call it, and its scenes are relative to its folder.
+    /// Reads a description; `file` is its name in messages, and its scenes are relative to that folder.
     ///
     /// Errors: [`ExperimentError::Description`], with line and column.
     pub fn read(text: &str, file: &Path) -> Result<Self> {
         Self::read_with(text, file, &Files::default())
     }
 
-    /// The same, with scenes that may be in memory.
+    /// Reads a description whose scenes may be in memory.
     pub(super) fn read_with(text: &str, file: &Path, memory: &Files) -> Result<Self> {
         let room = Cell::new(MOST_REPEATED);
         let mut top = Source {
@@ -87,12 +87,12 @@ impl Experiment {
                 return Err(section.fault("there is a second [settings]"));
             }
             section.only(&borrowed(&names()), &OLD_SETTINGS)?;
-            defaults = changes(&mut section, None)?;
+            defaults = settings(&mut section, None)?;
         }
         let folder = formats::file::folder_of(file);
         let (scenes, absent) = scene::all(&mut top, folder, &defaults, memory)?;
         let method = |section: &mut Section<'_>| method(section, &defaults);
-        let shown = [top.take("pyramid"), top.take("pyramid-spp")];
+        let (shown, shown_spp) = (top.take("pyramid"), top.take("pyramid-spp"));
         let mut experiment = Self {
             title: or(text_of(&mut top, "title")?, "Experiment"),
             description: or(text_of(&mut top, "description")?, ""),
@@ -110,7 +110,7 @@ impl Experiment {
             tables: Vec::new(),
             quick: quick(&mut top)?,
         };
-        experiment.pyramid = pyramid(shown, &experiment.methods)?;
+        experiment.pyramid = pyramid(shown, shown_spp, &experiment.methods)?;
         if let (Some(pyramid), scenes) =
             (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?)
         {
@@ -123,7 +123,7 @@ impl Experiment {
     }
 }
 
-/// A list of names; empty where there is none.
+/// Reads a list of names; empty if the key is missing.
 fn list(section: &mut Section<'_>, key: &str) -> Result<Vec<String>> {
     let Some(entry) = section.take(key) else {
         return Ok(Vec::new());
@@ -173,9 +173,10 @@ fn quick(top: &mut Section<'_>) -> Result<Quick> {
     Ok(quick)
 }
 
-/// The method whose strategies are shown, and with how many samples.
+/// Reads the method whose strategies are rendered, and the samples per pixel.
 fn pyramid(
-    [method, spp]: [Option<Entry<'_>>; 2],
+    method: Option<Entry<'_>>,
+    spp: Option<Entry<'_>>,
     methods: &[MethodSpec],
 ) -> Result<Option<PyramidSpec>> {
     let Some(entry) = method else {
@@ -191,7 +192,7 @@ fn pyramid(
         };
         return Err(entry.fault_with(format!("there is no method `{name}`"), hint));
     };
-    let integrator = method.changes.integrator;
+    let integrator = method.request.integrator;
     if integrator.is_some_and(|integrator| integrator != IntegratorKind::Bdpt) {
         let message = format!("the method `{name}` is not bidirectional");
         let hint = "strategies (s, t) are those of a method whose integrator is \"bdpt\"";
@@ -219,7 +220,7 @@ fn whole(section: &mut Section<'_>, key: &'static str, least: u64) -> Result<Opt
     entry.map(|entry| entry.whole(least)).transpose()
 }
 
-/// The threads of each render. 0: nothing is said of them.
+/// Reads the threads of each render. 0: the key is missing.
 fn threads(top: &mut Section<'_>) -> Result<usize> {
     let Some(entry) = top.take("threads") else {
         return Ok(0);
@@ -231,7 +232,7 @@ fn threads(top: &mut Section<'_>) -> Result<usize> {
         .ok_or_else(|| entry.fault(format!("expected a whole number from 1 to {most}")))
 }
 
-/// Width and height, written `64x48`.
+/// Reads width and height, written `64x48`.
 fn size(section: &mut Section<'_>) -> Result<Option<[u32; 2]>> {
     let read = |text: &str| {
         let sides = text.split_once(['x', 'X']);
@@ -250,7 +251,7 @@ fn seeds(top: &mut Section<'_>) -> Result<Seeds> {
     })
 }
 
-/// The metrics beside `rmse`, which there always is.
+/// Reads the metrics in addition to `rmse`.
 fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
     let Some(entry) = top.take("metrics") else {
         return Ok(vec![Metric::Relmse, Metric::RelmseTrimmed]);
@@ -265,7 +266,7 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
     Ok(metrics)
 }
 
-/// What all tables `[[key]]` say, of which there is one at least; names differ also in files.
+/// Reads all tables `[[key]]`, at least one; their names differ also as parts of file names.
 fn all<'a, T: Named>(
     top: &mut Section<'a>,
     key: &'static str,
@@ -290,7 +291,7 @@ fn all<'a, T: Named>(
     Ok(all)
 }
 
-/// What has a name.
+/// A part of a description with a unique name.
 trait Named {
     fn name(&self) -> &str;
 }
@@ -313,11 +314,11 @@ impl Named for BudgetSpec {
     }
 }
 
-/// The settings of a table, under the names of flags; `inherited` is the integrator of `[settings]`.
+/// Reads the settings of a table, by the names of flags; `inherited` is the integrator of `[settings]`.
 ///
 /// Errors: a setting without effect on the integrator.
-fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
-    let mut changes = Request::default();
+fn settings(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Result<Request> {
+    let mut request = Request::default();
     let mut entries = Vec::new();
     for name in names() {
         let entry = match &*name {
@@ -325,18 +326,18 @@ fn changes(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Resu
             _ => section.take(&name),
         };
         if let Some(entry) = entry {
-            entry.read(|value| changes.set(&name, value))?;
+            entry.read(|value| request.set(&name, value))?;
             entries.push((name, entry));
         }
     }
-    let Some(integrator) = changes.integrator.or(inherited) else {
-        return Ok(changes);
+    let Some(integrator) = request.integrator.or(inherited) else {
+        return Ok(request);
     };
-    let ignored = changes.ignored(&Settings::new(integrator));
+    let ignored = request.ignored(&Settings::new(integrator));
     match entries.iter().find(|(name, _)| ignored.contains(name)) {
-        None => Ok(changes),
+        None => Ok(request),
         Some((name, entry)) => {
-            let hint = changes.integrator.is_none().then_some(INHERITED);
+            let hint = request.integrator.is_none().then_some(INHERITED);
             Err(entry.fault_hinted(no_effect(name, integrator), hint))
         }
     }
@@ -348,7 +349,7 @@ fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
-        changes: changes(section, defaults.integrator)?.over(defaults),
+        request: settings(section, defaults.integrator)?.over(defaults),
         scenes: list(section, "scenes")?,
     })
 }

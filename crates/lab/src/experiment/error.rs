@@ -1,4 +1,4 @@
-//! What keeps an experiment from its results.
+//! Errors of experiments.
 
 use crate::reference;
 use bidir::driver::SessionError;
@@ -6,34 +6,34 @@ use std::fmt;
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// What keeps an experiment from its results, by whose fault it is.
+/// An error that prevents the results of an experiment, by its cause.
 #[derive(Debug, Error)]
 pub enum ExperimentError {
-    /// The description is wrong.
+    /// The description is invalid.
     #[error("{0}")]
     Description(Fault),
-    /// A file that the description names cannot be read.
+    /// A file named in the description cannot be read.
     #[error("{0}")]
     Absent(Fault),
-    /// A scene cannot be read, or a file not be read or written.
+    /// A scene cannot be read, or a file cannot be read or written.
     #[error(transparent)]
     File(#[from] formats::Error),
     /// The folder of the results cannot be made or read.
     #[error("{}", formats::cannot("make", path, error))]
     Folder {
-        /// What cannot be made or read.
+        /// The folder, or a file in it.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// A line of the records is not as it was written.
+    /// A line of the records is damaged.
     #[error("{}:{line}: damaged: {reason}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The kind of damage.
         reason: &'static str,
     },
     /// The folder has the records of another experiment.
@@ -46,7 +46,7 @@ pub enum ExperimentError {
     Elsewhere {
         /// The folder.
         folder: PathBuf,
-        /// Where, and where this is.
+        /// The differing parts, as recorded and here.
         difference: String,
     },
     /// An image has another size than its reference.
@@ -62,7 +62,7 @@ pub enum ExperimentError {
         /// Width and height of the images.
         expected: [usize; 2],
     },
-    /// A reference has pixels with which nothing can be compared.
+    /// A reference has pixels that are not finite.
     #[error("{}: the reference of `{scene}` has {count} pixels that are not finite, the first at \
          {},{}",
         path.display(), first[0], first[1])]
@@ -71,9 +71,9 @@ pub enum ExperimentError {
         path: PathBuf,
         /// The scene.
         scene: String,
-        /// How many such pixels there are.
+        /// The number of such pixels.
         count: usize,
-        /// The first in reading order, from the left and from the top.
+        /// Column and row of the first one in reading order.
         first: [usize; 2],
     },
     /// A reference cannot be made or used.
@@ -81,10 +81,10 @@ pub enum ExperimentError {
     Reference {
         /// The scene.
         scene: String,
-        /// Why.
+        /// The cause.
         error: reference::Error,
     },
-    /// Strategies are to be shown of a method that has none in a scene.
+    /// The method of the pyramid is not bidirectional in a scene.
     #[error(
         "scene `{scene}`: the strategies of method `{method}` cannot be shown, as it is not \
          bidirectional there"
@@ -95,14 +95,14 @@ pub enum ExperimentError {
         /// The method.
         method: String,
     },
-    /// The strategies of a method make no path in a scene.
+    /// The strategies of a method sample no path in a scene.
     #[error("scene `{scene}`: method `{method}`: {text}")]
     Strategies {
         /// The scene.
         scene: String,
         /// The method.
         method: String,
-        /// The list, and what it lacks.
+        /// The list of strategies, and its fault.
         text: String,
     },
     /// A setting of a method has no effect on the integrator of a scene.
@@ -115,7 +115,7 @@ pub enum ExperimentError {
         /// The setting and the integrator.
         text: String,
     },
-    /// Contributions are to be measured of a method that has no connections in a scene.
+    /// A method whose contributions are requested is not bidirectional in a scene.
     #[error(
         "scene `{scene}`: the contributions of method `{method}` cannot be measured, as it is not \
          bidirectional there"
@@ -126,10 +126,10 @@ pub enum ExperimentError {
         /// The method.
         method: String,
     },
-    /// A scene shares the reference of a scene that has none, or whose images have another size.
+    /// A scene shares the reference of an unknown scene, of a later one, or of one with another size.
     #[error("scene `{0}`: `reference-of` names no scene before it that has images of its size")]
     NoReference(String),
-    /// None of the scenes that an experiment has is there.
+    /// All scenes of an experiment are missing.
     #[error("there is no scene to render: {0}")]
     NoScenes(String),
     /// A render cannot begin.
@@ -137,13 +137,13 @@ pub enum ExperimentError {
     Render {
         /// The scene.
         scene: String,
-        /// Why.
+        /// The cause.
         error: SessionError,
     },
 }
 
 impl ExperimentError {
-    /// What to do about it. None: where the message says all there is to say.
+    /// Returns a remedy. None: the message implies it.
     pub fn hint(&self) -> Option<&str> {
         match self {
             Self::Description(fault) | Self::Absent(fault) => fault.hint.as_deref(),
@@ -191,7 +191,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// An error with a file that is named here; one that has a place in that file keeps it.
+    /// Gives an error about a file the place that names the file; an error within the file keeps its own.
     pub(super) fn of_named(place: Option<&Self>, error: formats::Error) -> ExperimentError {
         use formats::ErrorKind::{Io, MissingFile};
         let is_absent = matches!(error.kind(), MissingFile | Io) && error.line().is_none();
@@ -206,14 +206,14 @@ impl Place {
     }
 }
 
-/// Something wrong in a description. Its text is `file:line:column: message`.
+/// A fault in a description. Its text is `file:line:column: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Where.
+    /// The place.
     pub place: Place,
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub hint: Option<String>,
 }
 

@@ -1,9 +1,9 @@
-//! `for` and `each`: one table of a description stands for several.
+//! `for` and `each`: repetitions of a table of a description.
 //!
 //! `for = { light = ["direct", "indirect"], n = [1, 2] }` repeats its table for every combination, the
-//! first key outermost, and replaces `{light}` and `{n}` in all texts. An element that is a table itself
+//! first key outermost, and replaces `{light}` and `{n}` in all texts. An element that is itself a table
 //! replaces each of its keys: `for.weights = [{ weights = "uniform", error = "rmse_trim" }, …]`.
-//! Text in braces that no key names stays as it is.
+//! Other text in braces stays unchanged.
 
 use super::error::ExperimentError;
 use super::reader::{Entry, Section};
@@ -16,19 +16,17 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 /// The most combinations of one key: texts of a few bytes must not fill the memory.
 const MOST: usize = 10_000;
 
-/// Texts by the names that stand for them.
+/// Replacement texts by the names of their placeholders.
 pub(super) type Binding = Vec<(String, String)>;
 
 impl Section<'_> {
-    /// The tables that this one stands for: itself, where it has no `for`.
+    /// Expands `for`; without it, returns the table itself.
     pub(super) fn expanded(mut self) -> Result<Vec<Self>> {
         let bindings = self.bindings("for")?;
         bindings.iter().map(|binding| self.bound(binding)).collect()
     }
 
-    /// Every combination that the key `key` lists; a single empty one where there is no such key.
-    ///
-    /// Errors: there are more than [`MOST`].
+    /// Reads all combinations listed in the key `key`; without it, returns a single empty one.
     pub(super) fn bindings(&mut self, key: &str) -> Result<Vec<Binding>> {
         let Some(entry) = self.take(key) else {
             return Ok(vec![Binding::new()]);
@@ -51,7 +49,7 @@ impl Section<'_> {
         Ok(all)
     }
 
-    /// A copy with the texts of a binding in place of their names.
+    /// Copies the table and replaces the placeholders of a binding.
     ///
     /// Errors: the copies of a description have more bytes than it may have.
     pub(super) fn bound(&self, binding: &Binding) -> Result<Self> {
@@ -64,7 +62,7 @@ impl Section<'_> {
     }
 }
 
-/// The texts that an element of a list stands for.
+/// Reads the replacement texts of an element of a list.
 fn binding(name: &str, element: Entry<'_>) -> Result<Binding> {
     if !matches!(element.value, DeValue::Table(_)) {
         return Ok(vec![(name.to_owned(), element.written()?.to_owned())]);

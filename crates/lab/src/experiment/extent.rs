@@ -1,23 +1,23 @@
-//! How much of an experiment is rendered: less in a quick run, and as flags say.
+//! The extent of an experiment: reductions by `--quick` and by flags.
 
 use super::{BudgetSpec, Experiment, ReferenceSpec, SceneSpec};
 use crate::results::BudgetKind;
 use bidir::names::UnknownName;
 
-/// The extent of a quick run, to see whether an experiment works.
+/// The extent of a quick run, which checks that an experiment works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quick {
-    /// The most seeds.
+    /// The largest number of seeds.
     pub seeds: u64,
-    /// The factor of the sides of images. None: images have at most 64 pixels a side.
+    /// Factor of the sides of images. None: images have at most 64 pixels a side.
     pub size: Option<f64>,
-    /// The factor of samples of budgets and of images of strategies.
+    /// Factor of the samples of budgets and of images of strategies.
     pub samples: f64,
-    /// The factor of rays of budgets.
+    /// Factor of the rays of budgets.
     pub rays: f64,
-    /// The factor of seconds of budgets.
+    /// Factor of the seconds of budgets.
     pub seconds: f64,
-    /// The factor of samples of references.
+    /// Factor of the samples of references.
     pub references: f64,
 }
 
@@ -36,7 +36,7 @@ impl Default for Quick {
 }
 
 impl Quick {
-    /// A size of the same shape.
+    /// Reduces a size, keeping its aspect ratio.
     fn size(&self, size: [u32; 2]) -> [u32; 2] {
         let factor = self.size.unwrap_or_else(|| {
             let longest = size[0].max(size[1]);
@@ -48,7 +48,7 @@ impl Quick {
     fn budget(&self, budget: &BudgetSpec) -> BudgetSpec {
         let (factor, pixels) = match budget.kind {
             BudgetKind::Samples => (self.samples, 1.0),
-            // Training costs as much, and there are fewer pixels to bear it.
+            // Training costs as much as in a full run, but fewer pixels share it.
             BudgetKind::Rays => (self.rays, self.size.map_or(1.0, |side| side * side)),
             BudgetKind::Seconds => (self.seconds, 1.0),
         };
@@ -64,7 +64,7 @@ impl Quick {
     }
 }
 
-/// Parts of an extent that stand for those of a description.
+/// Overrides of a description's extent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Extent {
     /// The names of the scenes; empty: all.
@@ -73,16 +73,16 @@ pub struct Extent {
     pub size: Option<[u32; 2]>,
     /// Number of seeds.
     pub seeds: Option<u64>,
-    /// The amount of budgets in seconds.
+    /// Amount of budgets in seconds.
     pub seconds: Option<f64>,
-    /// The amount of budgets in rays per pixel.
+    /// Amount of budgets in rays per pixel.
     pub rays: Option<f64>,
-    /// Samples per pixel of references that are rendered.
+    /// Samples per pixel of rendered references.
     pub reference_spp: Option<u64>,
 }
 
 impl Experiment {
-    /// The same in little time, as the description's [`Quick`] says.
+    /// Reduces the experiment to the extent of its [`Quick`].
     #[must_use]
     pub fn quick(mut self) -> Self {
         let quick = self.quick;
@@ -90,8 +90,8 @@ impl Experiment {
         for scene in &mut self.scenes {
             let size = scene.size.or(self.size);
             match &mut scene.reference {
-                // An image that is there has the size that it has.
-                ReferenceSpec::There(_) => scene.size = size,
+                // The size of an existing image is fixed.
+                ReferenceSpec::Existing(_) => scene.size = size,
                 ReferenceSpec::Of(_) => scene.size = Some(quick.size(size.unwrap_or([64, 48]))),
                 ReferenceSpec::Make { spp, .. } => {
                     scene.size = Some(quick.size(size.unwrap_or([64, 48])));
@@ -119,9 +119,9 @@ impl Experiment {
         self
     }
 
-    /// With these parts in place of its own.
+    /// Applies overrides.
     ///
-    /// Errors: there is no scene of a name.
+    /// Errors: a scene name is unknown.
     pub fn within(mut self, extent: &Extent) -> Result<Self, UnknownName> {
         let names = self.scene_names();
         for name in &extent.scenes {
@@ -147,7 +147,7 @@ impl Experiment {
         Ok(self)
     }
 
-    /// The names of all scenes, also of those that are not there.
+    /// Returns the names of all scenes, including missing ones.
     pub(super) fn scene_names(&self) -> Vec<String> {
         let there = self.scenes.iter().map(|scene| scene.name.clone());
         there
@@ -159,16 +159,16 @@ impl Experiment {
 impl SceneSpec {
     fn extend(&mut self, extent: &Extent) {
         self.size = extent.size.or(self.size);
-        if let (ReferenceSpec::Make { spp, .. }, Some(wanted)) =
+        if let (ReferenceSpec::Make { spp, .. }, Some(samples)) =
             (&mut self.reference, extent.reference_spp)
         {
-            *spp = wanted;
+            *spp = samples;
         }
     }
 }
 
 impl BudgetSpec {
-    /// With the amount that is given for its kind, which is then its full one.
+    /// Replaces the amount, and the full amount, by the override for its kind.
     fn extended(&self, extent: &Extent) -> Self {
         let amount = match self.kind {
             BudgetKind::Samples => None,

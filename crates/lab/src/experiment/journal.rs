@@ -1,10 +1,11 @@
-//! The records so far, on the disk.
+//! The file of the records so far.
 //!
-//! The first line says whose they are, and of which machine; every other line is a record, or
-//! `{"pyramid": ...}`: what was found of strategies. The file is replaced as a whole. Each line has its checksum.
+//! The first line names experiment, program and machine; every other line is a record, or
+//! `{"pyramid": ...}` with the figures of strategies. Each line has a checksum. Each write replaces the file.
 
 use super::error::ExperimentError;
-use super::run::{Event, Observer, Setup, Start};
+use super::observer::{Event, Observer};
+use super::run_set::{Setup, Start};
 use crate::results::{Machine, Pyramid, Record};
 use crate::seal::{self, Seal};
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
 const FORMAT: u32 = 3;
-/// The version before, whose lines have no checksums.
+/// The previous version, whose lines have no checksums.
 const UNSEALED: u32 = 2;
 
 /// The first line.
@@ -22,36 +23,35 @@ const UNSEALED: u32 = 2;
 struct Head {
     format: u32,
     #[serde(flatten)]
-    owner: Owner,
+    key: RecordsKey,
 }
 
-/// Whose records they are.
+/// The origin of records; records with different keys are not comparable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Owner {
-    /// The hash of everything that records depend on, but for their times.
+pub(super) struct RecordsKey {
+    /// The hash of everything that records depend on, except their times.
     pub(super) experiment: String,
     /// The program with its version.
     pub(super) program: String,
-    /// What it ran on.
+    /// The machine.
     pub(super) machine: Machine,
 }
 
-impl Owner {
-    /// In what else than the experiment this one differs from another, on which times depend. None: in
-    /// nothing.
+impl RecordsKey {
+    /// Describes the differences of program and machine, which times depend on. None: there are none.
     fn difference(&self, here: &Self) -> Option<String> {
-        let parts = |owner: &Self| {
+        let parts = |key: &Self| {
             let Machine {
                 processor,
                 threads,
                 isa,
                 system,
-            } = owner.machine.clone();
+            } = key.machine.clone();
             let threads = format!("{threads} threads");
-            [owner.program.clone(), processor, threads, isa, system]
+            [key.program.clone(), processor, threads, isa, system]
         };
         let pairs = parts(self).into_iter().zip(parts(here));
-        // A processor whose name could not be read may be any.
+        // An unknown processor may be the same one.
         let is_known = |name: &str| name != Machine::UNKNOWN;
         let different =
             pairs.filter(|(there, here)| there != here && is_known(there) && is_known(here));
@@ -62,7 +62,7 @@ impl Owner {
     }
 }
 
-/// A line of what was found of strategies.
+/// A line with the figures of strategies.
 #[derive(Serialize, Deserialize)]
 struct PyramidLine {
     pyramid: Pyramid,
@@ -73,26 +73,26 @@ struct PyramidLine {
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
-    /// False where it was read from a file without checksums.
+    /// False if it was read from a file without checksums.
     is_sealed: bool,
     records: Vec<Record>,
     pyramids: Vec<Pyramid>,
 }
 
 impl Journal {
-    /// A journal without records, in place of what is there.
+    /// Replaces the file by a journal without records.
     ///
-    /// Errors: it cannot be written.
-    pub(super) fn begin(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
-        let journal = Self::new(folder, owner);
+    /// Errors: the file cannot be written.
+    pub(super) fn begin(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
+        let journal = Self::new(folder, key);
         journal.write()?;
         Ok(journal)
     }
 
-    fn new(folder: &Path, owner: &Owner) -> Self {
+    fn new(folder: &Path, key: &RecordsKey) -> Self {
         let head = Head {
             format: FORMAT,
-            owner: owner.clone(),
+            key: key.clone(),
         };
         Self {
             path: folder.join(FILE),
@@ -103,12 +103,12 @@ impl Journal {
         }
     }
 
-    /// The journal that is there, or an empty one.
+    /// Reads the existing journal, or creates an empty one.
     ///
-    /// Errors: it cannot be read, is damaged, of another experiment, or of another machine or program:
-    /// times that are compared are of one.
-    pub(super) fn open(folder: &Path, owner: &Owner) -> Result<Self, ExperimentError> {
-        let mut journal = Self::new(folder, owner);
+    /// Errors: the file cannot be read, is damaged, or belongs to another experiment, or to another machine
+    /// or program, whose times would not be comparable.
+    pub(super) fn open(folder: &Path, key: &RecordsKey) -> Result<Self, ExperimentError> {
+        let mut journal = Self::new(folder, key);
         let bytes = match std::fs::read(&journal.path) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(journal),
@@ -117,12 +117,17 @@ impl Journal {
                 return Err(ExperimentError::Folder { path, error });
             }
         };
-        journal.read(&bytes, folder, owner)?;
+        journal.read(&bytes, folder, key)?;
         Ok(journal)
     }
 
-    /// Takes what is in the file.
-    fn read(&mut self, bytes: &[u8], folder: &Path, owner: &Owner) -> Result<(), ExperimentError> {
+    /// Reads the content of the file.
+    fn read(
+        &mut self,
+        bytes: &[u8],
+        folder: &Path,
+        key: &RecordsKey,
+    ) -> Result<(), ExperimentError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = bytes.iter().take(error.valid_up_to());
             let line = 1 + before.filter(|byte| **byte == b'\n').count();
@@ -130,16 +135,16 @@ impl Journal {
         })?;
         let mut lines = (1..).zip(text.split_terminator('\n'));
         let (_, head) = lines.next().unwrap_or((1, ""));
-        self.read_head(folder, head, owner)?;
+        self.read_head(folder, head, key)?;
         lines.try_for_each(|(number, line)| self.read_line(line, number))
     }
 
-    /// Takes the first line.
+    /// Reads the first line.
     fn read_head(
         &mut self,
         folder: &Path,
         line: &str,
-        owner: &Owner,
+        key: &RecordsKey,
     ) -> Result<(), ExperimentError> {
         let others = || ExperimentError::Mismatch(folder.to_owned());
         if seal::check(line) == Seal::Broken {
@@ -150,18 +155,18 @@ impl Journal {
         let head = head.filter(is_known).ok_or_else(others)?;
         self.is_sealed = head.format != UNSEALED;
         self.check(line, 1)?;
-        let there = head.owner;
-        if there.experiment != owner.experiment {
+        let there = head.key;
+        if there.experiment != key.experiment {
             return Err(others());
         }
-        let difference = there.difference(owner);
+        let difference = there.difference(key);
         difference.map_or(Ok(()), |difference| {
             let folder = folder.to_owned();
             Err(ExperimentError::Elsewhere { folder, difference })
         })
     }
 
-    /// Takes a line of a record or of what was found of strategies.
+    /// Reads a line with a record or with figures of strategies.
     fn read_line(&mut self, line: &str, number: usize) -> Result<(), ExperimentError> {
         self.check(line, number)?;
         if let Ok(PyramidLine { pyramid }) = serde_json::from_str(line) {
@@ -193,20 +198,20 @@ impl Journal {
         ExperimentError::Damaged { path, line, reason }
     }
 
-    /// The journal of a run that begins.
+    /// Opens or replaces the journal, as the setup asks, when an experiment starts.
     pub(super) fn start(
         setup: &Setup,
-        owner: &Owner,
+        key: &RecordsKey,
         observer: &mut dyn Observer,
     ) -> Result<Self, ExperimentError> {
         if setup.start == Start::Anew {
-            return Self::begin(&setup.folder, owner);
+            return Self::begin(&setup.folder, key);
         }
-        let journal = Self::open(&setup.folder, owner)?;
+        let journal = Self::open(&setup.folder, key)?;
         if !journal.is_sealed {
             let path = journal.path.display();
             let text = format!("{path}: of a version without checksums: damage in it is not seen");
-            observer.tell(Event::Warning(&text));
+            observer.notify(Event::Warning(&text));
         }
         Ok(journal)
     }
@@ -218,7 +223,7 @@ impl Journal {
         self.write()
     }
 
-    /// Adds what was found of strategies.
+    /// Adds figures of strategies.
     pub(super) fn add_pyramid(&mut self, pyramid: Pyramid) -> Result<(), ExperimentError> {
         let found = PyramidLine { pyramid };
         self.text += &line(&found);
@@ -239,7 +244,7 @@ impl Journal {
         &self.pyramids
     }
 
-    /// Whether there is a record of the same render.
+    /// Returns true if there is a record of the same run.
     pub(super) fn has_like(&self, record: &Record) -> bool {
         self.records.iter().any(|other| {
             let key = |record: &Record| {
@@ -250,8 +255,8 @@ impl Journal {
         })
     }
 
-    pub(super) fn has(&self, cell: &super::cell::Cell<'_>) -> bool {
-        self.records.iter().any(|record| cell.is_of(record))
+    pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {
+        self.records.iter().any(|record| run.is_of(record))
     }
 }
 
@@ -267,8 +272,8 @@ mod tests {
 
     const PLACE: &str = "out";
 
-    fn owner() -> Owner {
-        Owner {
+    fn key() -> RecordsKey {
+        RecordsKey {
             experiment: "a hash".to_owned(),
             program: "bidir 0".to_owned(),
             machine: Machine::default(),
@@ -285,20 +290,20 @@ mod tests {
         serde_json::from_value(record).unwrap()
     }
 
-    /// A journal of two records, as it is written.
+    /// Writes a journal of two records.
     fn written() -> String {
-        let journal = Journal::new(Path::new(PLACE), &owner());
+        let journal = Journal::new(Path::new(PLACE), &key());
         journal.text + &line(&record(1)) + &line(&record(2))
     }
 
     fn read(bytes: &[u8]) -> Result<Journal, ExperimentError> {
-        let mut journal = Journal::new(Path::new(PLACE), &owner());
-        journal.read(bytes, Path::new(PLACE), &owner())?;
+        let mut journal = Journal::new(Path::new(PLACE), &key());
+        journal.read(bytes, Path::new(PLACE), &key())?;
         Ok(journal)
     }
 
     #[test]
-    fn every_flip_of_a_bit_is_an_error_with_its_line() {
+    fn every_flipped_bit_is_an_error_with_its_line() {
         let text = written();
         let journal = read(text.as_bytes()).unwrap();
         assert!(journal.records == [record(1), record(2)] && journal.text == text);
@@ -309,7 +314,7 @@ mod tests {
             let expected = 1 + before.matches('\n').count();
             match read(&bytes) {
                 Err(ExperimentError::Damaged { line, .. }) => assert_eq!(line, expected),
-                // Half a checksum of the first line leaves no sign whose it is.
+                // Without a readable checksum, the first line names no experiment.
                 Err(ExperimentError::Mismatch(_)) => assert_eq!(expected, 1),
                 other => panic!("bit {bit}: {other:?}"),
             }
@@ -322,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn records_of_before_are_read_and_get_checksums() {
+    fn records_of_the_previous_version_are_read_and_get_checksums() {
         let unsealed: Vec<_> = written()
             .lines()
             .map(|line| {

@@ -1,4 +1,4 @@
-//! Every key of a description, as docs/reference/experiments.md lists them. Tests compare the list with the
+//! All keys of descriptions, as docs/reference/experiments.md lists them. Tests compare the list with the
 //! reader and with the page.
 
 use super::claims::figure_names;
@@ -11,7 +11,7 @@ use std::{env, fs};
 /// A key of a description.
 #[derive(Clone, Copy, Debug)]
 struct Key {
-    /// The table that it belongs to; empty: the top of the file.
+    /// Its table; empty for the top of the file.
     table: &'static str,
     /// Its name.
     name: &'static str,
@@ -39,7 +39,7 @@ const fn key(
     }
 }
 
-/// All keys but settings, in the order of the page.
+/// All keys except settings, in the order of the page.
 #[rustfmt::skip]
 const KEYS: &[Key] = &[
     key("", "title", "text", "`Experiment`", "Title of the report."),
@@ -130,7 +130,7 @@ const BEGIN: &str = "<!-- generated: experiment keys -->\n";
 const MEASURES: &str = "<!-- generated: measures -->\n";
 const END: &str = "<!-- end -->\n";
 
-/// A description with a line more in one of its tables.
+/// Reads a description with an additional line in one of its tables.
 fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
     let with = |head: &str, own: &str| {
         let line = if head == table { line } else { "" };
@@ -148,7 +148,7 @@ fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
         with("quick", "[quick]"),
     ];
     let text = text.iter().filter(|part| {
-        // Claims and tables are whole or not there.
+        // Claims and tables need more keys than this description has.
         let is_partial = part.starts_with("[[claim]]") || part.starts_with("[[table]]");
         !is_partial || part.contains(line) && !line.is_empty()
     });
@@ -156,7 +156,7 @@ fn read(table: &str, line: &str) -> Result<Experiment, ExperimentError> {
     Experiment::read(&text.concat(), Path::new("a.toml"))
 }
 
-/// The names of the keys of a table, in alphabetical order.
+/// Returns the names of a table's keys in alphabetical order.
 fn names(table: &str) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for key in KEYS.iter().filter(|key| key.table == table) {
@@ -176,9 +176,9 @@ fn names(table: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_reader_knows_these_keys() {
+fn the_list_has_the_keys_of_the_reader() {
     for table in [""].into_iter().chain(TABLES) {
-        // Nothing is near this name, so the hint lists every key.
+        // No key resembles this name, so the hint lists all of them.
         let error = read(table, "zzzzzzzzzzzzzzzz = 1").unwrap_err();
         let hint = error.hint().unwrap();
         let known = hint
@@ -191,7 +191,7 @@ fn the_reader_knows_these_keys() {
 }
 
 #[test]
-fn defaults_are_those_of_the_reader() {
+fn the_list_has_the_defaults_of_the_reader() {
     let default = |name| KEYS.iter().find(|key| key.name == name).unwrap().default;
     let experiment = read("", "pyramid = \"a\"").unwrap();
     assert_eq!(default("title"), format!("`{}`", experiment.title));
@@ -206,7 +206,7 @@ fn defaults_are_those_of_the_reader() {
     assert_eq!(default("metrics"), metrics.collect::<Vec<_>>().join(", "));
 }
 
-/// The list of keys, as the page has it.
+/// Formats the list of keys for the page.
 fn list() -> String {
     let mut text = String::new();
     for table in [""].into_iter().chain(TABLES) {

@@ -1,48 +1,48 @@
 //! An experiment: scenes × methods × budgets × seeds, each rendered and compared with a reference.
 //!
 //! - [`Experiment`]: the description, from TOML by [`Experiment::read`] or made by hand.
-//! - [`run()`]: renders what no record has yet, and gives [`Results`](crate::results::Results).
+//! - [`run()`]: renders every run without a record, and returns [`Results`](crate::results::Results).
 //! - [`claims`]: statements about the records with their verdicts, and tables.
-//! - [`analysis`]: the usual tables and plots of records.
-//! - [`BUILTIN`]: descriptions that the program contains.
+//! - [`analysis`]: the default tables and plots of records.
+//! - [`BUILTIN`]: descriptions built into the program.
 //!
 //! # The folder of the results
 //!
-//! | file | is |
+//! | file | content |
 //! |---|---|
-//! | `records.ndjson` | whose records these are and of which machine, and a record per line; replaced after each render |
+//! | `records.ndjson` | experiment, program and machine in the first line, then a record per line; replaced after each run |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
-//! | `images/` | the pictures of the first seed, and of strategies, EXR |
-//! | `references/` | references that were made here |
+//! | `images/` | the images of the first seed, EXR; contact sheets of strategies, PNG |
+//! | `references/` | references made for this experiment |
 //!
 //! # Budgets
 //!
-//! With c the cost so far, that of training included, and r̄ the mean cost of a pass, without it, a render
-//! goes on
+//! Let c be the cost so far, including training, and r̄ the mean cost of a pass, without training. A run
+//! continues
 //!
-//! - to equal *samples* n: while there are fewer than n passes;
-//! - to equal *rays* R: while c + r̄ is nearer to R than c is. Rays are functions of scene, settings and
-//!   seed, so that the number of passes is;
-//! - for equal *time* T: while c + r̄ ≤ T. Only training and passes are timed.
+//! - with equal *samples* n: while it has fewer than n passes;
+//! - with equal *rays* R: while c + r̄ is nearer to R than c is. The number of passes is a function of scene,
+//!   settings and seed, as the rays are;
+//! - with equal *time* T: while c + r̄ ≤ T. Only training and passes are timed.
 //!
-//! There is always a first pass. As a number of passes that depends on the passes is slightly
-//! correlated with them, rays and time have a bias of the order 1 / passes.
+//! Every run has at least one pass. With rays and time, the number of passes is slightly correlated with
+//! their values, which causes a bias of the order 1 / passes.
 //!
 //! # Strategies
 //!
-//! Where [`Experiment::pyramid`] names a method, its strategies are rendered once in each scene, after
-//! the references and before all records, and are kept with these. No time of a record has any part
-//! of it. Records do not depend on it: it can be asked for later, and is then rendered alone.
+//! If [`Experiment::pyramid`] names a method, its strategies are rendered once in each scene, after the
+//! references and before all runs, and are stored with the records. Records do not depend on it and their
+//! times exclude it: added to a description later, it is rendered alone.
 //!
 //! # Order
 //!
-//! Seeds are outermost, then scenes, budgets, methods: where a shared machine gets slower with the
-//! hours, all methods do. A seed is the same for all methods, whose records are paired by it.
+//! Seeds are the outermost loop, then scenes, budgets, methods: if a shared machine becomes slower over the
+//! hours, this affects all methods alike. All methods use the same seeds, which pair their records.
 
 pub mod analysis;
 mod block;
 mod builtin;
-mod cell;
+
 pub mod claims;
 pub mod contributions;
 mod description;
@@ -53,7 +53,9 @@ mod identity;
 mod journal;
 #[cfg(test)]
 mod keys;
+mod loaded_scene;
 mod names;
+mod observer;
 mod outputs;
 mod page;
 mod pyramid;
@@ -61,17 +63,18 @@ mod reader;
 mod reference;
 mod room;
 mod run;
+mod run_set;
 mod settings;
-mod stage;
 
 pub use block::{Block, Done, Prepared, PreparedScene, prepare, render_block};
 pub use builtin::{BUILTIN, Builtin};
 pub use error::{ExperimentError, Fault, Place};
 pub use extent::{Extent, Quick};
+pub use observer::{Event, Observer};
 pub use outputs::check_description;
 pub use page::{PAGE, write_page};
 pub use room::{Lamp, Room};
-pub use run::{End, Event, Observer, Outcome, Setup, Start, run};
+pub use run_set::{End, Outcome, Setup, Start, run};
 pub use settings::{names, texts};
 
 use crate::metric::Metric;
@@ -83,42 +86,42 @@ use contributions::ContributionsSpec;
 use formats::scene::Files;
 use std::path::PathBuf;
 
-/// What is compared.
+/// The description of an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Experiment {
-    /// What it is about.
+    /// The title.
     pub title: String,
-    /// A few sentences on what is compared and why.
+    /// A few sentences on the comparison and its purpose.
     pub description: String,
     /// Width and height of all images, instead of the scenes'. Unit: pixels.
     pub size: Option<[u32; 2]>,
-    /// Seeds; there is at least one.
+    /// The seeds, at least one.
     pub seeds: Seeds,
-    /// Threads of each render; 0 is one per processor.
+    /// Threads of each render; 0 means one per processor.
     pub threads: usize,
-    /// Metrics of each image beside the root mean square error.
+    /// Metrics of each image in addition to the root mean square error.
     pub metrics: Vec<Metric>,
     /// The scenes.
     pub scenes: Vec<SceneSpec>,
-    /// Optional scenes that are not there.
+    /// Missing optional scenes.
     pub absent: Vec<Absent>,
-    /// The methods, of which ratios are relative to the first; there is at least one.
+    /// The methods, at least one; ratios are relative to the first.
     pub methods: Vec<MethodSpec>,
-    /// The budgets; there is at least one.
+    /// The budgets, at least one.
     pub budgets: Vec<BudgetSpec>,
-    /// The method whose strategies are shown. None: none.
+    /// The method whose strategies are rendered. None: no method.
     pub pyramid: Option<PyramidSpec>,
-    /// The methods whose contributions are measured. None: none.
+    /// The methods whose contributions are measured. None: no method.
     pub contributions: Option<ContributionsSpec>,
     /// Statements about the records; records do not depend on them.
     pub claims: Vec<ClaimSpec>,
-    /// Tables of the records, instead of the usual ones if there are any.
+    /// Tables of the records; if empty, the default tables are shown.
     pub tables: Vec<TableSpec>,
     /// The extent of a quick run.
     pub quick: Quick,
 }
 
-/// An optional scene that is left out.
+/// An omitted optional scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Absent {
     /// Its name.
@@ -127,12 +130,12 @@ pub struct Absent {
     pub reason: String,
 }
 
-/// The method each of whose strategies is shown.
+/// The method whose strategies are rendered one by one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PyramidSpec {
-    /// The name of the method, which is bidirectional.
+    /// The name of the method; its integrator is `bdpt`.
     pub method: String,
-    /// Samples per pixel, under the first seed. Range: from 2 on, so that there is a variance.
+    /// Samples per pixel, under the first seed. Range: at least 2, for the variance.
     pub spp: u64,
     /// The names of the scenes; empty: all.
     pub scenes: Vec<String>,
@@ -141,34 +144,36 @@ pub struct PyramidSpec {
 /// Successive seeds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seeds {
-    /// The first.
+    /// The first seed.
     pub first: u64,
-    /// How many.
+    /// The number of seeds.
     pub count: u64,
 }
 
 /// A scene of an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSpec {
-    /// Its name, unlike all others also as part of a file's name.
+    /// Its name, unique also as part of a file name.
     pub name: String,
-    /// The file, as messages and results call it.
+    /// The file, as messages and results name it.
     pub file: String,
-    /// Where the file is.
+    /// The path of the file.
     pub path: PathBuf,
-    /// Where its files come from.
+    /// The source of its files.
     pub source: SceneSource,
-    /// Width and height of its images, instead of those of the experiment or of the scene.
+    /// Width and height of its images. None: those of the experiment or of the scene file.
     pub size: Option<[u32; 2]>,
-    /// What its images are compared with.
+    /// The reference of its images.
     pub reference: ReferenceSpec,
-    /// Whether it may be left out.
+    /// Required or optional.
     pub presence: Presence,
-    /// Where a description names the file, and the reference that is there. None: it does not.
-    pub places: [Option<Place>; 2],
+    /// The place in the description that names the file. None: no description names it.
+    pub file_place: Option<Place>,
+    /// The place in the description that names an existing reference. None: it names none.
+    pub reference_place: Option<Place>,
 }
 
-/// Where the files of a scene come from.
+/// The source of a scene's files.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneSource {
     /// The disk.
@@ -179,57 +184,57 @@ pub enum SceneSource {
     Room(Room),
 }
 
-/// Whether a scene may be left out.
+/// The treatment of a missing scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Presence {
-    /// Without it there is an error.
+    /// A missing file is an error.
     Required,
-    /// It is left out, with a warning, where its file is not there or its reference is contradicted.
+    /// The scene is left out, with a warning, if its file is missing or its reference is contradicted.
     Optional,
 }
 
-/// What images are compared with.
+/// The reference of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReferenceSpec {
-    /// The folder of a [reference](mod@crate::reference) that is there, or an image; its pixels are finite.
-    /// It is what its pixels are: another folder with the same ones makes no other experiment.
-    There(PathBuf),
-    /// The reference of the scene of this name, which has the same light.
+    /// An existing [reference](mod@crate::reference) folder, or an image with finite pixels. Only its pixels
+    /// identify it: another folder with the same pixels gives the same experiment.
+    Existing(PathBuf),
+    /// The reference of the scene with this name, which has the same light.
     Of(String),
-    /// A reference that is made first, and kept in the folder of the results: by `bdpt` that traces
-    /// every connection, with a witness; where they disagree, nothing is compared with it.
+    /// A reference that is rendered first and kept in the folder of the results: by `bdpt`, which traces
+    /// every connection, and a cross-check by another estimator. If they disagree, it is not used.
     Make {
         /// Samples per pixel.
         spp: u64,
         /// Settings on which the expectation depends, such as the strategies that take part.
-        changes: Box<Request>,
-        /// The estimator of the witness. None: path tracing, which shares least with the other, but for
-        /// references without some strategies.
-        witness: Option<IntegratorKind>,
+        request: Box<Request>,
+        /// The integrator of the cross-check. None: `path`, which has the least in common with `bdpt`, or
+        /// `bdpt` with other weights if some strategies are excluded.
+        cross_check: Option<IntegratorKind>,
     },
 }
 
-/// A method: how scenes are rendered.
+/// A method: the settings of a render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSpec {
-    /// Its name, unlike all others.
+    /// Its unique name.
     pub name: String,
-    /// Its settings, over those of the scene.
-    pub changes: Request,
+    /// Its settings, which replace those of the scene.
+    pub request: Request,
     /// The names of the scenes in which it is rendered; empty: all.
     pub scenes: Vec<String>,
 }
 
-/// The amounts that are equal for all methods.
+/// A budget that is equal for all methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BudgetSpec {
-    /// Its name, unlike all others.
+    /// Its unique name.
     pub name: String,
-    /// What is counted.
+    /// The quantity.
     pub kind: BudgetKind,
-    /// How much of it: samples per pixel, rays per pixel, or seconds. Range: above 0.
+    /// Samples per pixel, rays per pixel, or seconds. Range: above 0.
     pub amount: f64,
-    /// The amount that training is weighed by: that of a run which is not quick.
+    /// The amount without `--quick`, over which claims distribute the cost of training.
     pub full: f64,
     /// The names of the methods that are rendered under it; empty: all.
     pub methods: Vec<String>,
@@ -238,7 +243,7 @@ pub struct BudgetSpec {
 }
 
 impl BudgetSpec {
-    /// A budget of all methods and scenes, whose name is its amount, such as `64 spp`.
+    /// Creates a budget for all methods and scenes, named by its amount, such as `64 spp`.
     pub fn new(kind: BudgetKind, amount: f64) -> Self {
         let unit = match kind {
             BudgetKind::Samples => "spp",
@@ -256,13 +261,13 @@ impl BudgetSpec {
     }
 }
 
-/// True where a list of names has this one, or is empty.
+/// Returns true if the list is empty or contains the name.
 fn is_in(names: &[String], name: &str) -> bool {
     names.is_empty() || names.iter().any(|known| known == name)
 }
 
 impl Experiment {
-    /// What is rendered in a scene: each budget with its methods.
+    /// Iterates over the renders in a scene: each budget with its methods.
     pub fn renders<'a>(
         &'a self,
         scene: &'a str,
@@ -277,7 +282,7 @@ impl Experiment {
         })
     }
 
-    /// The methods that are rendered in a scene.
+    /// Iterates over the methods that are rendered in a scene.
     pub(crate) fn methods_in<'a>(&'a self, scene: &'a str) -> impl Iterator<Item = &'a MethodSpec> {
         let is_used = move |method: &&MethodSpec| {
             let mut renders = self.renders(scene);
@@ -286,8 +291,8 @@ impl Experiment {
         self.methods.iter().filter(is_used)
     }
 
-    /// The number of renders, without those of references.
-    pub fn cells(&self) -> usize {
+    /// Returns the number of runs; references do not count.
+    pub fn run_count(&self) -> usize {
         let scenes = self.scenes.iter();
         let renders: usize = scenes.map(|scene| self.renders(&scene.name).count()).sum();
         self.seeds.count as usize * renders

@@ -1,8 +1,8 @@
-//! Names of values and of files.
+//! Names of values, and names as parts of file names.
 
 use bidir::names::UnknownName;
 
-/// The value of a name.
+/// Looks up the value of a name.
 pub(super) fn value_of<T: Copy>(names: &[(&str, T)], given: &str) -> Result<T, UnknownName> {
     let found = names.iter().find(|(name, _)| *name == given);
     let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
@@ -10,7 +10,7 @@ pub(super) fn value_of<T: Copy>(names: &[(&str, T)], given: &str) -> Result<T, U
     value.ok_or_else(|| UnknownName::new(given, &known))
 }
 
-/// A name as part of a file's name: lower case, with `-` for everything but letters and digits.
+/// Turns a name into a part of a file name: lower case, with `-` for everything but letters and digits.
 pub(super) fn file_name(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric());
     let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
@@ -22,7 +22,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_files_are_plain_words() {
+    fn file_names_have_hyphens_for_blanks_and_signs() {
         assert_eq!(file_name("Room A: 64 spp"), "room-a-64-spp");
     }
 }

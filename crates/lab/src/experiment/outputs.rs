@@ -1,35 +1,41 @@
-//! The files that an experiment writes: none of them is one that it reads.
+//! The files that an experiment writes; they never replace a file that it reads.
 
-use super::cell::Cell;
 use super::error::ExperimentError;
-use super::run::Setup;
-use super::stage::Stage;
+use super::loaded_scene::LoadedScene;
+use super::run::Run;
+use super::run_set::Setup;
 use super::{Experiment, PAGE, ReferenceSpec, journal, pyramid, reference};
 use formats::outputs::Output;
 use std::path::{Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The name of the results in their folder.
+/// The name of the results file.
 pub(super) const RESULTS: &str = "results.json";
 
-/// Fails where the description `file` is one of the files that its results in `folder` are written to.
+/// Fails if the results in `folder` would replace the description `file`.
 pub fn check_description(file: &Path, folder: &Path) -> Result<()> {
     check_all([file], &always(folder))
 }
 
-/// Fails where a file of the results would replace one of a scene or of a reference that is there, or
-/// another one.
-pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>], setup: &Setup) -> Result<()> {
+/// Fails if a file of the results would replace a file of a scene, of an existing reference, or another
+/// file of the results.
+pub(super) fn check(
+    experiment: &Experiment,
+    scenes: &[LoadedScene<'_>],
+    setup: &Setup,
+) -> Result<()> {
     let mut written = always(&setup.folder);
-    let images = stages.iter().flat_map(|stage| images(experiment, stage));
-    let strategies = pyramid::files(experiment, stages);
+    let images = scenes.iter().flat_map(|loaded| images(experiment, loaded));
+    let strategies = pyramid::files(experiment, scenes);
     written.extend(images.chain(strategies).map(|name| setup.folder.join(name)));
-    for stage in stages {
-        written.extend(reference::written(stage, setup));
+    for loaded in scenes {
+        written.extend(reference::written(loaded, setup));
     }
-    let given = stages.iter().flat_map(given);
-    let inputs = stages.iter().flat_map(|stage| stage.inputs.iter().cloned());
+    let given = scenes.iter().flat_map(given);
+    let inputs = scenes
+        .iter()
+        .flat_map(|loaded| loaded.inputs.iter().cloned());
     let read: Vec<_> = inputs.chain(given).collect();
     check_all(read.iter().map(PathBuf::as_path), &written)
 }
@@ -43,20 +49,20 @@ fn check_all<'a>(read: impl IntoIterator<Item = &'a Path>, written: &[PathBuf]) 
     Ok(formats::outputs::check(read, &outputs)?)
 }
 
-/// The files that every experiment has.
+/// Returns the files that every experiment writes.
 fn always(folder: &Path) -> Vec<PathBuf> {
     [journal::FILE, RESULTS, PAGE]
         .map(|name| folder.join(name))
         .into()
 }
 
-/// The names of the images of a scene, which are those of the first seed.
-fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
-    let renders = experiment.renders(&stage.spec.name);
+/// Returns the names of the images of a scene, which only the first seed has.
+fn images(experiment: &Experiment, loaded: &LoadedScene<'_>) -> Vec<String> {
+    let renders = experiment.renders(&loaded.spec.name);
     let images = renders.map(|(budget, method)| {
         let seed = experiment.seeds.first;
-        Cell {
-            stage,
+        Run {
+            scene: loaded,
             method,
             budget,
             seed,
@@ -66,11 +72,11 @@ fn images(experiment: &Experiment, stage: &Stage<'_>) -> Vec<String> {
     images.collect()
 }
 
-/// The files of a reference that is there.
-fn given(stage: &Stage<'_>) -> Vec<PathBuf> {
-    match &stage.spec.reference {
-        ReferenceSpec::There(path) if path.is_dir() => crate::reference::files(path),
-        ReferenceSpec::There(path) => vec![path.clone()],
+/// Returns the files of an existing reference.
+fn given(loaded: &LoadedScene<'_>) -> Vec<PathBuf> {
+    match &loaded.spec.reference {
+        ReferenceSpec::Existing(path) if path.is_dir() => crate::reference::files(path),
+        ReferenceSpec::Existing(path) => vec![path.clone()],
         ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Vec::new(),
     }
 }

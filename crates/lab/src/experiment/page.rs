@@ -1,4 +1,4 @@
-//! The page for people, of what lies in the folder of the results.
+//! The report page of the folder of the results.
 
 use super::analysis::Section;
 use super::error::ExperimentError;
@@ -10,12 +10,12 @@ use std::path::Path;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The name of the page for people.
+/// The name of the report page.
 pub const PAGE: &str = "report.html";
 
-/// Writes [`PAGE`] into the folder of the results; `command` makes the experiment again.
+/// Writes [`PAGE`] into the folder of the results; `command` is the command that repeats the experiment.
 ///
-/// Errors: an image that the results name cannot be read, or the page not be written.
+/// Errors: an image of the results cannot be read; the page cannot be written.
 pub fn write_page(
     folder: &Path,
     results: &Results,
@@ -62,7 +62,7 @@ fn layers(folder: &Path, results: &Results) -> Result<Vec<BTreeMap<String, Pixel
     results.pyramids.iter().map(read).collect()
 }
 
-/// The images of the first seed, and the references that they are compared with.
+/// Reads the images of the first seed, and their references.
 fn images(folder: &Path, results: &Results) -> Result<Vec<ReportImage>> {
     let has_image = |scene: &str| {
         let mut records = results.records.iter();

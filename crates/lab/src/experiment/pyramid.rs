@@ -1,13 +1,14 @@
-//! What each strategy of one method does in every scene: rendered apart from the records, once.
+//! Images of each strategy (s, t) of one method, rendered once in every scene, apart from the runs.
 //!
-//! Images of strategies take kilobytes for each pixel, and a page shows them small: a scene whose images
-//! are larger than a tile is rendered at the size of one.
+//! Images of strategies take kilobytes per pixel, and a contact sheet shows them as small tiles: scenes with
+//! larger images are rendered at the size of a tile.
 
 use super::error::ExperimentError;
 use super::journal::Journal;
+use super::loaded_scene::LoadedScene;
 use super::names::file_name;
-use super::run::{End, Event, Observer, Setup};
-use super::stage::Stage;
+use super::observer::{Event, Observer};
+use super::run_set::{End, Setup};
 use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec};
 use crate::pyramid::{self, Figures};
 use crate::results::{Pyramid, StrategyInfo};
@@ -18,19 +19,19 @@ use formats::scene::Files;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// Renders what the journal has not, scene by scene. Nothing to do where none is wanted.
+/// Renders the pyramids that the journal lacks, scene by scene.
 pub(super) fn complete(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
     setup: &Setup,
     journal: &mut Journal,
     observer: &mut dyn Observer,
 ) -> Result<End> {
-    for work in works(experiment, stages, setup) {
-        if journal.pyramids().iter().any(|found| work.is(found)) {
+    for run in runs(experiment, scenes, setup) {
+        if journal.pyramids().iter().any(|found| run.is_of(found)) {
             continue;
         }
-        let Some(found) = work.at_size_of_a_tile(observer)? else {
+        let Some(found) = run.render_tile(observer)? else {
             return Ok(End::Stopped);
         };
         journal.add_pyramid(found)?;
@@ -38,129 +39,129 @@ pub(super) fn complete(
     Ok(End::Complete)
 }
 
-/// What was found of it so far; a journal may also have what was wanted before.
+/// Returns the description's pyramids so far; the journal may also contain pyramids of earlier versions of
+/// the description.
 pub(super) fn found(
     experiment: &Experiment,
-    stages: &[Stage<'_>],
+    scenes: &[LoadedScene<'_>],
     setup: &Setup,
     journal: &Journal,
 ) -> Vec<Pyramid> {
-    let works = works(experiment, stages, setup);
-    let found = works.filter_map(|work| journal.pyramids().iter().find(|found| work.is(found)));
+    let runs = runs(experiment, scenes, setup);
+    let found = runs.filter_map(|run| journal.pyramids().iter().find(|found| run.is_of(found)));
     found.cloned().collect()
 }
 
-/// The names of the files with their images, relative to the folder of the results.
-pub(super) fn files(experiment: &Experiment, stages: &[Stage<'_>]) -> Vec<String> {
-    let Some((spec, _)) = wanted(experiment) else {
+/// Returns the names of the files with their images, relative to the folder of the results.
+pub(super) fn files(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Vec<String> {
+    let Some((spec, _)) = requested(experiment) else {
         return Vec::new();
     };
-    let shown = stages.iter().filter(|stage| is_shown(spec, stage));
+    let shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
     shown.map(file).collect()
 }
 
-/// The name of the file with the images of a scene.
-fn file(stage: &Stage<'_>) -> String {
+/// Returns the name of the file with the images of a scene.
+fn file(loaded: &LoadedScene<'_>) -> String {
     // No image of a method has this name: those have the budget between two `--`.
-    format!("images/{}--strategies.exr", file_name(&stage.spec.name))
+    format!("images/{}--strategies.exr", file_name(&loaded.spec.name))
 }
 
 /// Refuses a method that is not bidirectional in one of the scenes.
-pub(super) fn check(experiment: &Experiment, stages: &[Stage<'_>]) -> Result<()> {
-    let Some((spec, method)) = wanted(experiment) else {
+pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Result<()> {
+    let Some((spec, method)) = requested(experiment) else {
         return Ok(());
     };
-    let is_other = |stage: &&Stage<'_>| {
-        method.changes.apply(&stage.settings).integrator != IntegratorKind::Bdpt
+    let is_other = |loaded: &&LoadedScene<'_>| {
+        method.request.apply(&loaded.settings).integrator != IntegratorKind::Bdpt
     };
-    let mut shown = stages.iter().filter(|stage| is_shown(spec, stage));
+    let mut shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
     match shown.find(is_other) {
         None => Ok(()),
-        Some(stage) => Err(ExperimentError::Pyramid {
-            scene: stage.spec.name.clone(),
+        Some(loaded) => Err(ExperimentError::Pyramid {
+            scene: loaded.spec.name.clone(),
             method: method.name.clone(),
         }),
     }
 }
 
-/// What is asked for, with its method.
-fn wanted(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
+/// Returns the description's pyramid with its method.
+fn requested(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
     let spec = experiment.pyramid.as_ref()?;
     let mut methods = experiment.methods.iter();
     Some((spec, methods.find(|method| method.name == spec.method)?))
 }
 
-/// True for a scene whose strategies are shown.
-fn is_shown(spec: &PyramidSpec, stage: &Stage<'_>) -> bool {
-    spec.scenes.is_empty() || spec.scenes.contains(&stage.spec.name)
+/// Returns true if the pyramid includes the scene.
+fn is_shown(spec: &PyramidSpec, loaded: &LoadedScene<'_>) -> bool {
+    spec.scenes.is_empty() || spec.scenes.contains(&loaded.spec.name)
 }
 
-fn works<'a>(
+fn runs<'a>(
     experiment: &'a Experiment,
-    stages: &'a [Stage<'a>],
+    scenes: &'a [LoadedScene<'a>],
     setup: &'a Setup,
-) -> impl Iterator<Item = Work<'a>> {
-    let wanted = wanted(experiment);
-    let works = wanted.map(move |(spec, method)| {
-        let stages = stages.iter().filter(move |stage| is_shown(spec, stage));
-        stages.map(move |stage| Work {
+) -> impl Iterator<Item = PyramidRun<'a>> {
+    let runs = requested(experiment).map(move |(spec, method)| {
+        let scenes = scenes.iter().filter(move |loaded| is_shown(spec, loaded));
+        scenes.map(move |loaded| PyramidRun {
             experiment,
             setup,
-            stage,
+            scene: loaded,
             spec,
             method,
         })
     });
-    works.into_iter().flatten()
+    runs.into_iter().flatten()
 }
 
-/// The strategies of a method in a scene.
+/// A render of the strategies of a method in a scene.
 #[derive(Clone, Copy)]
-struct Work<'a> {
+struct PyramidRun<'a> {
     experiment: &'a Experiment,
     setup: &'a Setup,
-    stage: &'a Stage<'a>,
+    scene: &'a LoadedScene<'a>,
     spec: &'a PyramidSpec,
     method: &'a MethodSpec,
 }
 
-impl Work<'_> {
-    /// True where this is what was found.
-    fn is(&self, found: &Pyramid) -> bool {
-        found.scene == self.stage.spec.name
+impl PyramidRun<'_> {
+    /// Returns true if `found` is the result of this render.
+    fn is_of(&self, found: &Pyramid) -> bool {
+        found.scene == self.scene.spec.name
             && found.method == self.method.name
             && found.seed == self.experiment.seeds.first
             && found.spp == self.spec.spp
     }
 
-    /// Renders the scene, smaller where it is large. None: the observer stopped it.
-    fn at_size_of_a_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
-        let longest = self.stage.size()[0].max(self.stage.size()[1]);
+    /// Renders the scene at most at the size of a tile. None: the observer stopped it.
+    fn render_tile(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
+        let longest = self.scene.size()[0].max(self.scene.size()[1]);
         if longest <= pyramid::TILE {
             return self.render(observer);
         }
-        let resolution = self.stage.scene.film().resolution;
+        let resolution = self.scene.scene.film().resolution;
         let small = |side: u32| (u64::from(side) * pyramid::TILE as u64 / longest as u64).max(1);
         let spec = SceneSpec {
             size: Some(resolution.map(|side| small(side) as u32)),
-            ..self.stage.spec.clone()
+            ..self.scene.spec.clone()
         };
-        let stage = Stage::load(self.experiment, &spec, &Files::default())?;
-        Work {
-            stage: &stage,
+        let loaded = LoadedScene::load(self.experiment, &spec, &Files::default())?;
+        PyramidRun {
+            scene: &loaded,
             ..*self
         }
         .render(observer)
     }
 
     fn render(&self, observer: &mut dyn Observer) -> Result<Option<Pyramid>> {
-        let mut settings = self.method.changes.apply(&self.stage.settings);
+        let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.experiment.seeds.first;
         settings.layers = Layers::new(&[], &[], pyramid::VERTICES.into()).with_raw();
-        let mut session = self.stage.session(settings, self.experiment.threads)?;
+        let mut session = self.scene.session(settings, self.experiment.threads)?;
         for passes in 0..self.spec.spp {
-            observer.tell(Event::Pyramid {
-                scene: &self.stage.spec.name,
+            observer.notify(Event::Pyramid {
+                scene: &self.scene.spec.name,
                 passes,
                 of: self.spec.spp,
             });
@@ -169,21 +170,21 @@ impl Work<'_> {
             }
             session.step(&());
         }
-        let images = file(self.stage);
+        let images = file(self.scene);
         let film = session.film();
         let developed = pyramid::developed(film);
         developed.write_exr(&self.setup.folder.join(&images), film.settings(), &[])?;
-        Ok(Some(self.told(&session, images)))
+        Ok(Some(self.summary(&session, images)))
     }
 
-    fn told(&self, session: &Session<'_>, images: String) -> Pyramid {
+    fn summary(&self, session: &Session<'_>, images: String) -> Pyramid {
         let all = Figures::all(session);
         Pyramid {
-            scene: self.stage.spec.name.clone(),
+            scene: self.scene.spec.name.clone(),
             method: self.method.name.clone(),
             seed: self.experiment.seeds.first,
             spp: self.spec.spp,
-            size: self.stage.size(),
+            size: self.scene.size(),
             vertices: pyramid::VERTICES,
             mean: pyramid::mean(session.film()),
             longer: pyramid::mean_of_longer(session.film()),
@@ -193,7 +194,7 @@ impl Work<'_> {
     }
 }
 
-/// A strategy that has images.
+/// Converts the figures of a strategy. None: it has no images.
 fn strategy(figures: &Figures) -> Option<StrategyInfo> {
     let images = figures.images?;
     Some(StrategyInfo {

@@ -1,7 +1,7 @@
-//! Tables of TOML, and where in the file everything stands.
+//! Tables of TOML with the positions of their entries.
 //!
-//! A [`Section`] is first checked for keys that it does not have: a misspelt key is reported before the
-//! one that is missing for it.
+//! Readers first check a [`Section`] for unknown keys: a misspelt key is reported before the required key
+//! that is then missing.
 
 use super::error::{ExperimentError, Fault, Place};
 use bidir::names::nearest;
@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// A text that is read.
+/// The text of a description.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
     pub(super) file: &'a Path,
@@ -24,7 +24,7 @@ pub(super) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The whole text as a table.
+    /// Parses the whole text as a table.
     pub(super) fn parse(self) -> Result<Section<'a>> {
         let table = DeTable::parse(self.text).map_err(|error| {
             let place = error.span().unwrap_or(0..0);
@@ -47,7 +47,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// An error at a place.
+    /// Makes an error at a place.
     fn fault(self, place: Range<usize>, message: String, hint: Option<String>) -> ExperimentError {
         let place = self.at(&place);
         ExperimentError::Description(Fault {
@@ -62,9 +62,9 @@ impl<'a> Source<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Section<'a> {
     pub(super) source: Source<'a>,
-    /// Its head.
+    /// The place of its head.
     place: Range<usize>,
-    /// The entries that nobody has taken.
+    /// The entries not yet taken.
     pub(super) table: DeTable<'a>,
 }
 
@@ -77,8 +77,8 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// Refuses keys that are not in `known`, with the nearest of them. Those in `old` are accepted, but
-    /// not suggested.
+    /// Refuses unknown keys, and suggests the nearest one in `known`. Keys in `old` are accepted but never
+    /// suggested.
     pub(super) fn only(&self, known: &[&str], old: &[&str]) -> Result<()> {
         let is_known = |name: &str| known.iter().chain(old).any(|known| *known == name);
         let unknown = self.table.keys().filter(|key| !is_known(key.get_ref()));
@@ -93,14 +93,14 @@ impl<'a> Section<'a> {
         Err(self.source.fault(key.span(), message, Some(hint)))
     }
 
-    /// The value of a key.
+    /// Takes the value of a key.
     pub(super) fn take(&mut self, key: &str) -> Option<Entry<'a>> {
         self.table
             .remove(key)
             .map(|value| Entry::new(self.source, value))
     }
 
-    /// Takes over the values of keys that are not here.
+    /// Copies the values of missing keys from another table.
     pub(super) fn fill(&mut self, other: &Self, keys: &[&str]) {
         for (key, value) in &other.table {
             let name = key.get_ref();
@@ -110,9 +110,9 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The value of a key, which may go by its older name.
+    /// Takes the value of a key, also by its older name.
     ///
-    /// Errors: both names.
+    /// Errors: both names are present.
     pub(super) fn take_renamed(&mut self, key: &str, older: &str) -> Result<Option<Entry<'a>>> {
         match [self.take(key), self.take(older)] {
             [Some(_), Some(old)] => {
@@ -123,13 +123,13 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The value of a key that has to be there.
+    /// Takes the value of a required key.
     pub(super) fn need(&mut self, key: &'static str) -> Result<Entry<'a>> {
         self.take(key)
             .ok_or_else(|| self.fault(format!("`{key}` is missing")))
     }
 
-    /// All tables `[[key]]`, or the one `[key]`, each repeated for what its `for` lists.
+    /// Takes all tables `[[key]]`, or the one `[key]`, each repeated for the combinations in its `for`.
     pub(super) fn sections(&mut self, key: &'static str) -> Result<Vec<Self>> {
         let Some(entry) = self.take(key) else {
             return Ok(Vec::new());
@@ -143,7 +143,7 @@ impl<'a> Section<'a> {
         Ok(expanded.collect::<Result<Vec<_>>>()?.concat())
     }
 
-    /// The keys with their values, in the order of the file.
+    /// Returns the keys with their values, in the order of the file.
     pub(super) fn ordered(self) -> Vec<(String, Entry<'a>)> {
         let mut pairs: Vec<_> = self.table.into_iter().collect();
         pairs.sort_by_key(|(key, _)| key.span().start);
@@ -153,7 +153,7 @@ impl<'a> Section<'a> {
         pairs.collect()
     }
 
-    /// An error of the whole table.
+    /// Makes an error about the whole table.
     pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
         self.source.fault(self.place.clone(), message.into(), None)
     }
@@ -168,28 +168,28 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// Where it stands.
+    /// Returns its place.
     pub(super) fn at(&self) -> Place {
         self.source.at(&self.place)
     }
 
-    /// An error of this value.
+    /// Makes an error about this value.
     pub(super) fn fault(&self, message: impl Into<String>) -> ExperimentError {
         self.source.fault(self.place.clone(), message.into(), None)
     }
 
-    /// An error of this value, and what to do about it.
+    /// Makes an error about this value, with a remedy.
     pub(super) fn fault_with(&self, message: String, hint: String) -> ExperimentError {
         self.source.fault(self.place.clone(), message, Some(hint))
     }
 
-    /// An error of this value, and what to do about it, if that is known.
+    /// Makes an error about this value, with a remedy if there is one.
     pub(super) fn fault_hinted(&self, message: String, hint: Option<&str>) -> ExperimentError {
         let hint = hint.map(str::to_owned);
         self.source.fault(self.place.clone(), message, hint)
     }
 
-    /// A table.
+    /// Reads a table.
     pub(super) fn section(self) -> Result<Section<'a>> {
         match self.value {
             DeValue::Table(table) => Ok(Section {
@@ -201,7 +201,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// A text that is not empty.
+    /// Reads a text that is not empty.
     pub(super) fn text(&self) -> Result<&str> {
         match &self.value {
             DeValue::String(text) if !text.trim().is_empty() => Ok(text),
@@ -209,7 +209,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// A text, or a number as it is written: what a flag takes.
+    /// Reads a text, or a number as written: the value of a flag.
     pub(super) fn written(&self) -> Result<&str> {
         match &self.value {
             DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str()),
@@ -219,7 +219,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// The elements of a list; `kind` is its name in the error.
+    /// Reads the elements of a list; `kind` names it in the error.
     pub(super) fn list(self, kind: &str) -> Result<Vec<Self>> {
         let fault = self.fault(format!("expected {kind}"));
         let DeValue::Array(array) = self.value else {
@@ -229,14 +229,14 @@ impl<'a> Entry<'a> {
         Ok(entries.collect())
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub(super) fn number(&self) -> Result<f64> {
         let number = self.written()?.parse().ok();
         let number = number.filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| self.fault("expected a number"))
     }
 
-    /// True or false.
+    /// Reads `true` or `false`.
     pub(super) fn truth(&self) -> Result<bool> {
         match self.value {
             DeValue::Boolean(truth) => Ok(truth),
@@ -244,18 +244,18 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// A whole number from `least` on.
+    /// Reads a whole number of at least `least`.
     pub(super) fn whole(&self, least: u64) -> Result<u64> {
         let number = match &self.value {
             DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
             _ => None,
         };
-        // Numbers of JSON are exact up to here.
+        // JSON numbers are exact up to this limit.
         let number = number.filter(|number| (least..1 << 53).contains(number));
         number.ok_or_else(|| self.fault(format!("expected a whole number of at least {least}")))
     }
 
-    /// A finite number above zero.
+    /// Reads a finite number above zero.
     pub(super) fn positive(&self) -> Result<f64> {
         let number = match &self.value {
             DeValue::Integer(_) => Some(self.whole(1)? as f64),
@@ -266,7 +266,7 @@ impl<'a> Entry<'a> {
         number.ok_or_else(|| self.fault("expected a number above 0"))
     }
 
-    /// What a text says, or an error at its place.
+    /// Parses a text; an error gets its place.
     pub(super) fn read<T, E: Display>(
         &self,
         read: impl FnOnce(&str) -> std::result::Result<T, E>,

@@ -1,11 +1,12 @@
-//! What images are compared with: a picture that is there, or one that is made once and kept.
+//! References of an experiment: existing images, or references rendered once and kept.
 
-use super::cell::write_image;
 use super::error::{ExperimentError, Place};
+use super::loaded_scene::{LoadedScene, Reference};
 use super::names::file_name;
-use super::run::{Event, Observer, Ready, Setup};
+use super::observer::{Event, Observer};
+use super::run::write_image;
+use super::run_set::{Ready, Setup};
 use super::settings::texts;
-use super::stage::{Reference, Stage};
 use super::{Absent, Experiment, Presence, ReferenceSpec};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Made, Plan, Subject};
@@ -21,15 +22,15 @@ use std::sync::{Mutex, PoisonError};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The reference of a scene, where it is there already.
+/// Reads the existing reference of a scene. None: the description names none.
 ///
-/// Errors: it cannot be read, is damaged or stale, its estimators disagree, it is of another scene or
-/// size, or it has pixels that are not finite.
-pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
-    match &stage.spec.reference {
-        ReferenceSpec::There(path) if path.is_dir() => load(stage, path, None).map(Some),
-        ReferenceSpec::There(path) => Ok(Some(Reference {
-            pixels: read(path, stage)?,
+/// Errors: it cannot be read, is damaged or stale, its estimators disagree, it belongs to another scene or
+/// has another size, or its pixels are not finite.
+pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
+    match &loaded.spec.reference {
+        ReferenceSpec::Existing(path) if path.is_dir() => load(loaded, path, None).map(Some),
+        ReferenceSpec::Existing(path) => Ok(Some(Reference {
+            pixels: read(path, loaded)?,
             words: format!("the image {}", path.display()),
             image: None,
             mse: stored_mse(path),
@@ -39,29 +40,29 @@ pub(super) fn given(stage: &Stage<'_>) -> Result<Option<Reference>> {
     }
 }
 
-/// The scenes with their references; `given` are those that lie elsewhere. An optional scene whose
-/// reference is contradicted is left out, with a warning. None: the observer stopped it.
+/// Obtains the references of all scenes; `given` holds the existing ones. Leaves out optional scenes whose
+/// reference is contradicted, with a warning. None: the observer stopped it.
 ///
-/// Errors: as [`obtain`]; no scene is left.
+/// Errors: those of [`obtain`]; no scene is left.
 pub(super) fn obtain_all<'a>(
     experiment: &Experiment,
-    stages: Vec<Stage<'a>>,
+    scenes: Vec<LoadedScene<'a>>,
     given: Vec<Option<Reference>>,
     setup: &Setup,
     observer: &mut dyn Observer,
 ) -> Result<Option<Ready<'a>>> {
     let mut ready = Ready {
-        stages: Vec::new(),
+        scenes: Vec::new(),
         references: Vec::new(),
         absent: experiment.absent.clone(),
     };
-    for (stage, given) in stages.into_iter().zip(given) {
-        let given = given.or_else(|| shared(&ready, &stage));
+    for (loaded, given) in scenes.into_iter().zip(given) {
+        let given = given.or_else(|| shared(&ready, &loaded));
         let threads = experiment.threads;
-        match obtain(&stage, given, setup, threads, observer) {
-            Err(error) if stage.spec.presence == Presence::Optional && is_contradicted(&error) => {
+        match obtain(&loaded, given, setup, threads, observer) {
+            Err(error) if loaded.spec.presence == Presence::Optional && is_contradicted(&error) => {
                 let scene = Absent {
-                    name: stage.spec.name.clone(),
+                    name: loaded.spec.name.clone(),
                     reason: error.to_string(),
                 };
                 scene.warn(observer);
@@ -71,28 +72,28 @@ pub(super) fn obtain_all<'a>(
                 let Some(reference) = found? else {
                     return Ok(None);
                 };
-                ready.stages.push(stage);
+                ready.scenes.push(loaded);
                 ready.references.push(reference);
             }
         }
     }
-    match (&ready.stages[..], ready.absent.last()) {
+    match (&ready.scenes[..], ready.absent.last()) {
         ([], Some(absent)) => Err(ExperimentError::NoScenes(absent.reason.clone())),
         _ => Ok(Some(ready)),
     }
 }
 
-/// The reference of the scene that this one names, as its light is the same.
-fn shared(ready: &Ready<'_>, stage: &Stage<'_>) -> Option<Reference> {
-    let ReferenceSpec::Of(name) = &stage.spec.reference else {
+/// Returns the reference of the scene that this one names as having the same light.
+fn shared(ready: &Ready<'_>, loaded: &LoadedScene<'_>) -> Option<Reference> {
+    let ReferenceSpec::Of(name) = &loaded.spec.reference else {
         return None;
     };
-    let mut stages = ready.stages.iter().zip(&ready.references);
-    let found = stages.find(|(other, _)| other.spec.name == *name && other.size() == stage.size());
+    let mut scenes = ready.scenes.iter().zip(&ready.references);
+    let found = scenes.find(|(other, _)| other.spec.name == *name && other.size() == loaded.size());
     found.map(|(_, reference)| reference.clone())
 }
 
-/// True where the two estimators of a reference disagree: nothing is compared with it.
+/// Returns true if the two estimators of a reference disagree, so that it is not used.
 fn is_contradicted(error: &ExperimentError) -> bool {
     let ExperimentError::Reference { error, .. } = error else {
         return false;
@@ -100,42 +101,41 @@ fn is_contradicted(error: &ExperimentError) -> bool {
     matches!(error, references::Error::Disagree { .. })
 }
 
-/// The reference of a scene: the [`given`] one, whose picture is copied into the folder of the results,
-/// or else it is made. None: the observer stopped that.
+/// Obtains the reference of a scene: copies the image of the [`given`] one into the folder of the results,
+/// or renders a new one. None: the observer stopped it.
 ///
-/// Errors: it cannot be made, or its estimators disagree; it is kept then, and nothing is compared with
-/// it.
+/// Errors: it cannot be rendered, or its estimators disagree; the folder of such a reference stays.
 fn obtain(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     given: Option<Reference>,
     setup: &Setup,
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    match (&stage.spec.reference, given) {
+    match (&loaded.spec.reference, given) {
         (
             ReferenceSpec::Make {
                 spp,
-                changes,
-                witness,
+                request,
+                cross_check,
             },
             _,
         ) => {
-            let plan = plan(stage, *spp, changes, *witness);
-            make(stage, &plan, setup, threads, observer)
+            let plan = plan(loaded, *spp, request, *cross_check);
+            make(loaded, &plan, setup, threads, observer)
         }
-        (ReferenceSpec::There(_), Some(reference)) => copied(stage, reference, setup).map(Some),
+        (ReferenceSpec::Existing(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
-        (ReferenceSpec::There(_) | ReferenceSpec::Of(_), None) => {
-            Err(ExperimentError::NoReference(stage.spec.name.clone()))
+        (ReferenceSpec::Existing(_) | ReferenceSpec::Of(_), None) => {
+            Err(ExperimentError::NoReference(loaded.spec.name.clone()))
         }
     }
 }
 
-/// A reference that lies elsewhere, with its picture in the folder of the results: this has all that a
+/// Copies the image of an existing reference into the folder of the results, which holds everything that a
 /// report shows.
-fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
-    let name = copy(stage);
+fn copied(loaded: &LoadedScene<'_>, reference: Reference, setup: &Setup) -> Result<Reference> {
+    let name = copy(loaded);
     write_image(&setup.folder.join(&name), &reference.pixels)?;
     Ok(Reference {
         image: Some(name),
@@ -143,38 +143,38 @@ fn copied(stage: &Stage<'_>, reference: Reference, setup: &Setup) -> Result<Refe
     })
 }
 
-/// The name of the picture of a reference that lies elsewhere, in the folder of the results.
-fn copy(stage: &Stage<'_>) -> String {
-    format!("references/{}.exr", file_name(&stage.spec.name))
+/// Returns the name of the copied image of an existing reference, in the folder of the results.
+fn copy(loaded: &LoadedScene<'_>) -> String {
+    format!("references/{}.exr", file_name(&loaded.spec.name))
 }
 
-/// The files that are written for the reference of a scene.
-pub(super) fn written(stage: &Stage<'_>, setup: &Setup) -> Vec<PathBuf> {
-    match &stage.spec.reference {
-        ReferenceSpec::There(_) => vec![setup.folder.join(copy(stage))],
+/// Returns the files written for the reference of a scene.
+pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
+    match &loaded.spec.reference {
+        ReferenceSpec::Existing(_) => vec![setup.folder.join(copy(loaded))],
         ReferenceSpec::Of(_) => Vec::new(),
         ReferenceSpec::Make {
             spp,
-            changes,
-            witness,
+            request,
+            cross_check,
         } => {
-            let plan = plan(stage, *spp, changes, *witness);
-            references::files(&setup.folder.join(folder(stage, &plan)))
+            let plan = plan(loaded, *spp, request, *cross_check);
+            references::files(&setup.folder.join(folder(loaded, &plan)))
         }
     }
 }
 
-/// A reference that is there; `name` is its folder in that of the results, if it lies there.
-fn load(stage: &Stage<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
-    let of_scene = |error| failed(stage, error);
-    let loaded = references::Reference::load(folder).map_err(of_scene)?;
-    let checked = loaded.check(&stage.digest, stage.scene.film());
+/// Reads an existing reference; `name` is its folder within that of the results. None: it lies elsewhere.
+fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
+    let of_scene = |error| failed(loaded, error);
+    let reference = references::Reference::load(folder).map_err(of_scene)?;
+    let checked = reference.check(&loaded.digest, loaded.scene.film());
     checked.map_err(of_scene)?;
-    new(stage, loaded, name)
+    new(loaded, reference, name)
 }
 
 fn new(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     reference: references::Reference,
     name: Option<&str>,
 ) -> Result<Reference> {
@@ -183,35 +183,35 @@ fn new(
         warning: reference.warning(),
         words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
-        pixels: finite(reference.picture, &reference.folder, stage)?,
+        pixels: finite(reference.picture, &reference.folder, loaded)?,
     })
 }
 
-fn failed(stage: &Stage<'_>, error: references::Error) -> ExperimentError {
+fn failed(loaded: &LoadedScene<'_>, error: references::Error) -> ExperimentError {
     ExperimentError::Reference {
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         error,
     }
 }
 
-/// Reads an image, which has the size of the scene's.
-fn read(path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+/// Reads an image of the scene's size.
+fn read(path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let image = formats::image::read(path, None);
-    let place = stage.spec.places[1].as_ref();
+    let place = loaded.spec.reference_place.as_ref();
     let pixels = Pixels::from(&image.map_err(|error| Place::of_named(place, error))?);
-    if pixels.size != stage.size() {
+    if pixels.size != loaded.size() {
         return Err(ExperimentError::Size {
             path: path.to_owned(),
-            scene: stage.spec.name.clone(),
+            scene: loaded.spec.name.clone(),
             found: pixels.size,
-            expected: stage.size(),
+            expected: loaded.size(),
         });
     }
-    finite(pixels, path, stage)
+    finite(pixels, path, loaded)
 }
 
-/// Refuses pixels that are not finite: no error is a number there.
-fn finite(pixels: Pixels, path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
+/// Refuses pixels that are not finite, where errors would not be finite either.
+fn finite(pixels: Pixels, path: &Path, loaded: &LoadedScene<'_>) -> Result<Pixels> {
     let is_bad = |pixel: &[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
     let Some(first) = pixels.data.iter().position(is_bad) else {
         return Ok(pixels);
@@ -219,13 +219,13 @@ fn finite(pixels: Pixels, path: &Path, stage: &Stage<'_>) -> Result<Pixels> {
     let width = pixels.size[0];
     Err(ExperimentError::NotFinite {
         path: path.to_owned(),
-        scene: stage.spec.name.clone(),
+        scene: loaded.spec.name.clone(),
         count: pixels.data.iter().filter(|pixel| is_bad(pixel)).count(),
         first: [first % width, first / width],
     })
 }
 
-/// The mean square error of an image that has the variances of its pixels beside it.
+/// Computes the mean square error of an image from its variance layer. None: it has none.
 fn stored_mse(path: &Path) -> Option<f64> {
     let layers = formats::image::read_layers(path).ok()?;
     let variance = Pixels {
@@ -235,20 +235,25 @@ fn stored_mse(path: &Path) -> Option<f64> {
     variance.mean().filter(|mse| mse.is_finite())
 }
 
-/// How a reference is made: as usual, or with another witness, where all strategies take part. Else paths
-/// may be missing, which path tracing has: unless another is named, the witness then has the same
-/// strategies under other weights. Those of the power heuristic have light tails; uniform ones would be
-/// more different, but have infinite variance near edges, and a witness whose mean is skewed is refused
-/// more often than the level says.
-fn plan(stage: &Stage<'_>, spp: u64, changes: &Request, named: Option<IntegratorKind>) -> Plan {
-    let mut plan = Plan::usual(&stage.settings, spp);
-    let of_picture = changes.apply(&plan.estimators[0]).path.strategies;
+/// Plans the two estimators of a reference. With all strategies, path tracing is the default cross-check.
+/// Without some, `bdpt` may miss paths that path tracing samples, so the default cross-check is `bdpt` with
+/// the same strategies and other weights: those of the power heuristic. Uniform weights would differ more,
+/// but their variance is infinite near edges, and the skewed mean would fail the test more often than its
+/// level.
+fn plan(
+    loaded: &LoadedScene<'_>,
+    spp: u64,
+    request: &Request,
+    named: Option<IntegratorKind>,
+) -> Plan {
+    let mut plan = Plan::with_defaults(&loaded.settings, spp);
+    let of_picture = request.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();
-    let witness = named.or((!has_all).then_some(IntegratorKind::Bdpt));
-    if let Some(witness) = witness {
-        plan.estimators[1].set_integrator(witness);
+    let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));
+    if let Some(cross_check) = cross_check {
+        plan.estimators[1].set_integrator(cross_check);
     }
-    plan.estimators = plan.estimators.map(|settings| changes.apply(&settings));
+    plan.estimators = plan.estimators.map(|settings| request.apply(&settings));
     if named.is_none() && !has_all {
         plan.estimators[0].path.mis = MisHeuristic::Balance;
         plan.estimators[1].path.mis = MisHeuristic::Power;
@@ -256,57 +261,61 @@ fn plan(stage: &Stage<'_>, spp: u64, changes: &Request, named: Option<Integrator
     plan
 }
 
-/// The folder of a reference in that of the results: another reference has another name.
-fn folder(stage: &Stage<'_>, plan: &Plan) -> String {
+/// Returns the folder of a reference within that of the results; its name contains a hash of the plan.
+fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
     let settings = plan.estimators.each_ref().map(|settings| {
-        // References made under the older name are found again.
+        // The older name keeps existing folders valid.
         let mut texts = texts(settings);
         let start = texts.remove("light-start");
         texts.extend(start.map(|start| ("emission".to_owned(), start)));
         texts
     });
-    let [width, height] = stage.size();
+    let [width, height] = loaded.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
-        stage.digest, plan.spp
+        loaded.digest, plan.spp
     );
     let hash = sha256(identity.as_bytes());
-    format!("references/{}-{}", file_name(&stage.spec.name), &hash[..12])
+    format!(
+        "references/{}-{}",
+        file_name(&loaded.spec.name),
+        &hash[..12]
+    )
 }
 
 fn make(
-    stage: &Stage<'_>,
+    loaded: &LoadedScene<'_>,
     plan: &Plan,
     setup: &Setup,
     threads: usize,
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
-    let name = folder(stage, plan);
+    let name = folder(loaded, plan);
     let path = setup.folder.join(&name);
-    if let Ok(reference) = load(stage, &path, Some(&name)) {
+    if let Ok(reference) = load(loaded, &path, Some(&name)) {
         reference.warn(observer);
         return Ok(Some(reference));
     }
     let subject = Subject {
-        name: &stage.spec.file,
-        digest: &stage.digest,
-        scene: &stage.scene,
+        name: &loaded.spec.file,
+        digest: &loaded.digest,
+        scene: &loaded.scene,
     };
     let resources = Resources {
         threads,
         ..Resources::default()
     };
-    let watch = Watch::new(stage, plan, observer);
+    let watch = Watch::new(loaded, plan, observer);
     let made = references::make(&path, &subject, plan, &resources, &watch);
-    let Made::Whole(reference) = made.map_err(|error| failed(stage, error))? else {
+    let Made::Whole(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
     let usable = reference.provenance.check_usable(&path);
-    usable.map_err(|error| failed(stage, error))?;
-    new(stage, *reference, Some(&name)).map(Some)
+    usable.map_err(|error| failed(loaded, error))?;
+    new(loaded, *reference, Some(&name)).map(Some)
 }
 
-/// Tells an observer of a reference that is made.
+/// Passes the progress of a reference on to an observer.
 struct Watch<'a> {
     scene: &'a str,
     samples_per_pass: u64,
@@ -316,10 +325,10 @@ struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    fn new(stage: &'a Stage<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
+    fn new(loaded: &'a LoadedScene<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
         Self {
-            scene: &stage.spec.name,
-            samples_per_pass: stage.scene.film().crop.area().max(1),
+            scene: &loaded.spec.name,
+            samples_per_pass: loaded.scene.film().crop.area().max(1),
             passes: 2 * plan.rounded_spp(),
             samples: AtomicU64::new(0),
             observer: Mutex::new(observer),
@@ -346,7 +355,7 @@ impl Host for Watch<'_> {
     fn should_end(&self) -> bool {
         let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
         self.with(|observer| {
-            observer.tell(Event::Reference {
+            observer.notify(Event::Reference {
                 scene: self.scene,
                 passes,
                 of: self.passes,

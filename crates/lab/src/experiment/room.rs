@@ -1,23 +1,23 @@
-//! Rooms that are made, not read: the same light with any number of triangles, and of any albedo.
+//! Generated rooms: the same light transport with any number of triangles, and any albedo.
 //!
-//! All faces of a furnished room are flat, and each is divided into k × k squares of two triangles.
-//! So the light is the same for every k, as are the paths, the contributions and the errors; what
-//! grows is the tree that rays go through, and with it the cost of a ray. Anything that is added
-//! (objects in a corner, bumps) would change the light too, and with it what is compared. The price:
-//! flat faces are the kindest way to have many triangles, since a ray meets few of their boxes. Where
-//! optimisations begin to pay is therefore an upper bound, in triangles.
+//! All faces of a furnished room are flat, and each is divided into k × k squares of two triangles. The
+//! light is the same for every k, and so are the paths, contributions and errors; only the tree of the
+//! intersector grows, and with it the cost of a ray. More objects or bumps would also change the light, so
+//! that errors could no longer be compared. The limitation: flat faces are the best case for many
+//! triangles, since a ray meets few of their boxes. The number of triangles from which optimisations pay
+//! is therefore an upper bound.
 
 use formats::scene::Files;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where the light is.
+/// The light source of a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lamp {
     /// A panel below the ceiling.
     Panel,
-    /// Deep in an opaque bowl, which lets its light reach the ceiling alone.
+    /// A panel deep in an opaque bowl, which illuminates only the ceiling.
     Bowl,
 }
 
@@ -26,7 +26,7 @@ impl Lamp {
     pub const NAMES: [(&'static str, Self); 2] =
         [("direct", Self::Panel), ("indirect", Self::Bowl)];
 
-    /// The name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Panel => "direct",
@@ -34,7 +34,7 @@ impl Lamp {
         }
     }
 
-    /// Radiance, height, half width, and the order of corners that makes it face down or up.
+    /// Returns radiance, position, half width, and the order of corners, which makes it face down or up.
     fn emitter(self) -> (f32, [f32; 3], f32, &'static str) {
         match self {
             Self::Panel => (25.0, [2.2, 2.95, 2.6], 0.5, "0 1 2 0 2 3"),
@@ -43,14 +43,14 @@ impl Lamp {
     }
 }
 
-/// A room.
+/// A generated room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
-    /// Where its light is.
+    /// The light source.
     pub light: Lamp,
-    /// What every surface reflects. Range: (0, 1).
+    /// The albedo of every surface. Range: (0, 1).
     pub albedo: f32,
-    /// About how many triangles there are.
+    /// The approximate number of triangles.
     pub triangles: usize,
 }
 
@@ -58,24 +58,24 @@ pub struct Room {
 type Face = [[f32; 3]; 3];
 
 impl Room {
-    /// Squares along an edge of a face.
+    /// Returns the number of squares along an edge of a face.
     fn division(self) -> usize {
         let whole = 2 * faces().len();
         ((self.triangles as f64 / whole as f64).sqrt().round() as usize).max(1)
     }
 
-    /// How many triangles there are, but those of the light.
+    /// Returns the exact number of triangles, without those of the light.
     fn count(self) -> usize {
         2 * faces().len() * self.division() * self.division()
     }
 
-    /// The name of its scene file.
+    /// Returns the name of its scene file.
     pub(super) fn name(self) -> PathBuf {
         let (light, triangles) = (self.light.name(), self.count());
         format!("room-{light}-{triangles}-{}.pbrt", self.albedo).into()
     }
 
-    /// The scene file and its mesh.
+    /// Makes the scene file and its mesh.
     pub(super) fn files(self) -> Files {
         let mesh = format!("room-{}.ply", self.count());
         let scene = Arc::from(self.text(&mesh).as_bytes());
@@ -107,7 +107,7 @@ impl Room {
     }
 }
 
-/// Walls, furniture, and the bowl.
+/// Returns the faces of walls, furniture, and the bowl.
 fn faces() -> Vec<Face> {
     let mut faces = Vec::new();
     let boxes = [
@@ -145,7 +145,7 @@ fn faces() -> Vec<Face> {
     faces
 }
 
-/// The face of a box at `corner`, across `axis`.
+/// Returns the face of a box at `corner`, perpendicular to `axis`.
 fn face(corner: [f32; 3], low: [f32; 3], high: [f32; 3], axis: usize) -> Face {
     let edge = |k: usize| {
         let along = (axis + k) % 3;
@@ -156,7 +156,7 @@ fn face(corner: [f32; 3], low: [f32; 3], high: [f32; 3], axis: usize) -> Face {
     [corner, edge(1), edge(2)]
 }
 
-/// The faces, each divided into k × k squares, as binary PLY.
+/// Writes the faces, each divided into k × k squares, as binary PLY.
 fn ply(faces: &[Face], k: usize) -> Vec<u8> {
     let row = k + 1;
     let mut head = String::from("ply\nformat binary_little_endian 1.0\n");
@@ -212,7 +212,7 @@ mod tests {
         (loaded.summary.primitives, film.develop().pixels)
     }
 
-    /// The same random numbers make the same paths, to rounding, which now and then turns one elsewhere.
+    /// The same random numbers give the same paths, except for rare differences by rounding.
     #[test]
     fn dividing_faces_changes_no_light() {
         for (_, light) in Lamp::NAMES {

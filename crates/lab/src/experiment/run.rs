@@ -1,446 +1,258 @@
-//! From a description to results.
+//! One run of an experiment: a render, and its record.
 
-use super::analysis::{ReferenceNoise, overruns, reference_noise};
-use super::cell::Cell;
 use super::error::ExperimentError;
-use super::identity::identity;
-use super::journal::{Journal, Owner};
-use super::outputs;
-use super::pyramid;
-use super::reference;
-use super::settings::{no_effect, texts};
-use super::stage::{Reference, Stage};
-use super::{Absent, Experiment, MethodSpec, contributions};
-use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
-use bidir::integrator::{LostLight, lost_light};
-use bidir::scene::Isa;
-use formats::scene::Files;
+use super::loaded_scene::{LoadedScene, Reference};
+use super::names::file_name;
+use super::observer::Observer;
+use super::{BudgetSpec, MethodSpec};
+use crate::image::{Pair, Pixels};
+use crate::metric::Metric;
+use crate::results::{BudgetKind, Rays, Record};
+use bidir::driver::Session;
+use bidir::film::Picture;
+use formats::image::{ExrImage, ExrLayer};
 use std::collections::BTreeMap;
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-type Result<T> = std::result::Result<T, ExperimentError>;
-
-/// Where an experiment runs, and as what.
-#[derive(Clone, Debug)]
-pub struct Setup {
-    /// The folder of the results.
-    pub folder: PathBuf,
-    /// What becomes of records that are there.
-    pub start: Start,
-    /// The program with its version.
-    pub program: String,
-    /// What it runs on; the number of threads is filled in.
-    pub machine: Machine,
+/// A render of one method in one scene under one budget and seed.
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub(super) scene: &'a LoadedScene<'a>,
+    pub(super) method: &'a MethodSpec,
+    pub(super) budget: &'a BudgetSpec,
+    pub(super) seed: u64,
 }
 
-/// What becomes of records that are there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
-    /// They stay, and what is missing is rendered. Those of another experiment, machine or program are
-    /// refused.
-    Resume,
-    /// They go; references of the same scene and settings stay.
-    Anew,
+/// A finished render.
+pub(super) struct Rendered {
+    picture: Picture,
+    spp: u64,
+    time: Moment,
+    /// The part of `time` before the first pass.
+    training: Moment,
+    rays: Rays,
+    connections_blocked: u64,
 }
 
-/// Who runs an experiment: is told how far it is, has the clock, and can stop it.
-///
-/// References ask it from one of their threads at a time.
-pub trait Observer: Send {
-    /// Tells what happens.
-    fn tell(&mut self, event: Event<'_>);
-
-    /// The host's clock. Unit: seconds since any moment.
-    fn seconds(&self) -> f64;
-
-    /// What all threads of the process have taken of the processors so far, as user and as system. Unit:
-    /// seconds. None: the host cannot tell.
-    fn processor_seconds(&self) -> Option<f64> {
-        None
-    }
-
-    /// True to stop: asked before each pass. The running render is then forgotten.
-    fn should_stop(&mut self) -> bool {
-        false
-    }
-}
-
-/// What happens.
-#[derive(Clone, Copy, Debug)]
-pub enum Event<'a> {
-    /// Something is odd with a scene or its reference, such as much noise.
-    Warning(&'a str),
-    /// A pass of a reference begins, of one of its two estimators.
-    Reference {
-        /// The scene.
-        scene: &'a str,
-        /// Passes that are done.
-        passes: u64,
-        /// Passes in all.
-        of: u64,
-    },
-    /// A pass begins of the images of strategies.
-    Pyramid {
-        /// The scene.
-        scene: &'a str,
-        /// Passes that are done.
-        passes: u64,
-        /// Passes in all.
-        of: u64,
-    },
-    /// References and images of strategies are there, and so are `done` of all renders.
-    Begin {
-        /// Renders that are done.
-        done: usize,
-        /// Renders in all.
-        of: usize,
-    },
-    /// A render is done.
-    Record(&'a Record),
-}
-
-/// How an experiment ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// Every render has a record.
-    Complete,
-    /// The observer stopped it; the same again goes on.
-    Stopped,
-}
-
-/// What an experiment found, all or so far.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// How it ended.
-    pub end: End,
-    /// What was found. None: it was stopped before the references were there.
-    pub results: Option<Results>,
-}
-
-/// Runs what no record has yet, and writes `results.json`.
-pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
-    let (stages, given, owner) = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &owner, observer)?;
-    let Some(scenes) = reference::obtain_all(experiment, stages, given, setup, observer)? else {
-        return Ok(Outcome {
-            end: End::Stopped,
-            results: None,
-        });
-    };
-    let Ready {
-        stages,
-        references,
-        absent,
-    } = scenes;
-    let work = Work {
-        experiment,
-        setup,
-        stages: &stages,
-        references: &references,
-    };
-    let shown = pyramid::complete(experiment, &stages, setup, &mut journal, observer)?;
-    let end = match shown {
-        End::Complete => work.render(&mut journal, observer)?,
-        End::Stopped => shown,
-    };
-    let mut results = work.results(journal.records());
-    results.pyramids = pyramid::found(experiment, &stages, setup, &journal);
-    results.contributions = contributions::measure(experiment, &stages)?;
-    for Absent { name, reason } in absent {
-        let _ = write!(
-            results.description,
-            "\n\nThe scene {name} is left out: {reason}."
-        );
-    }
-    results.claims = experiment.judge(&results);
-    for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
-        observer.tell(Event::Warning(&noise.words()));
-    }
-    for warning in overruns(&results) {
-        observer.tell(Event::Warning(&warning));
-    }
-    write_results(&setup.folder, &results)?;
-    Ok(Outcome {
-        end,
-        results: Some(results),
-    })
-}
-
-/// What there is of an experiment before anything is rendered: its scenes, the references that are
-/// there, and whose records are made.
-pub(super) type Begun<'a> = (Vec<Stage<'a>>, Vec<Option<Reference>>, Owner);
-
-/// The scenes that have their references, and those that are left out.
-pub(super) struct Ready<'a> {
-    pub(super) stages: Vec<Stage<'a>>,
-    /// One for each stage.
-    pub(super) references: Vec<Reference>,
-    pub(super) absent: Vec<Absent>,
-}
-
-/// Makes the folders, reads the scenes and the references that are there.
-pub(super) fn begin<'a>(
-    experiment: &'a Experiment,
-    setup: &Setup,
-    observer: &mut dyn Observer,
-) -> Result<Begun<'a>> {
-    for folder in ["", "images", "references"] {
-        let path = setup.folder.join(folder);
-        std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
-    }
-    for scene in &experiment.absent {
-        scene.warn(observer);
-    }
-    if let ([], Some(absent)) = (&experiment.scenes[..], experiment.absent.last()) {
-        return Err(ExperimentError::NoScenes(absent.reason.clone()));
-    }
-    let stages = experiment
-        .scenes
-        .iter()
-        .map(|spec| Stage::load(experiment, spec, &Files::default()));
-    let stages = stages.collect::<Result<Vec<_>>>()?;
-    for warning in stages.iter().flat_map(|stage| &stage.warnings) {
-        observer.tell(Event::Warning(warning));
-    }
-    check_strategies(experiment, &stages, observer)?;
-    pyramid::check(experiment, &stages)?;
-    let given = stages.iter().map(reference::given);
-    let given = given.collect::<Result<Vec<_>>>()?;
-    outputs::check(experiment, &stages, setup)?;
-    let found = given.iter().flatten();
-    found.for_each(|reference| reference.warn(observer));
-    let owner = Owner {
-        experiment: identity(experiment, &stages, &given),
-        program: setup.program.clone(),
-        machine: machine(experiment, setup),
-    };
-    Ok((stages, given, owner))
-}
-
-/// Refuses methods whose strategies make no path in a scene, and warns of light that others lose, once
-/// for each method.
-fn check_strategies(
-    experiment: &Experiment,
-    stages: &[Stage<'_>],
-    observer: &mut dyn Observer,
-) -> Result<()> {
-    for method in &experiment.methods {
-        let mut warned = Vec::new();
-        for stage in stages.iter().filter(|stage| stage.has(experiment, method)) {
-            let settings = method.changes.apply(&stage.settings);
-            check_effect(method, stage)?;
-            let path = &settings.path;
-            let Some(lost) = lost_light(&stage.scene, settings.integrator, path) else {
-                continue;
-            };
-            let text = format!("strategies {} {lost}", path.strategies);
-            if matches!(lost, LostLight::All { .. }) {
-                return Err(ExperimentError::Strategies {
-                    scene: stage.spec.name.clone(),
-                    method: method.name.clone(),
-                    text,
-                });
+impl Run<'_> {
+    /// Renders until the budget is used up. None: the observer stopped it.
+    pub(super) fn render(
+        &self,
+        threads: usize,
+        observer: &mut dyn Observer,
+    ) -> Result<Option<Rendered>, ExperimentError> {
+        let mut settings = self.method.request.apply(&self.scene.settings);
+        settings.seed = self.seed;
+        let begin = Moment::now(observer);
+        let mut session = self.scene.session(settings, threads)?;
+        let mut time = Moment::now(observer).minus(begin);
+        let training = time;
+        while self.allows_another_pass(&session, time.seconds, training.seconds) {
+            if observer.should_stop() {
+                return Ok(None);
             }
-            if !warned.contains(&text) {
-                let warning = format!("method `{}`: {text}", method.name);
-                observer.tell(Event::Warning(&warning));
-                warned.push(text);
+            let begin = Moment::now(observer);
+            session.step(&());
+            time = time.plus(Moment::now(observer).minus(begin));
+        }
+        Ok(Some(Rendered {
+            picture: session.film().develop(),
+            spp: session.next_pass(),
+            time,
+            training,
+            rays: rays(&session),
+            connections_blocked: session.stats().connections_blocked,
+        }))
+    }
+
+    /// Returns true if the budget allows another pass.
+    fn allows_another_pass(&self, session: &Session<'_>, seconds: f64, training: f64) -> bool {
+        let passes = session.next_pass();
+        match self.budget.kind {
+            BudgetKind::Samples => (passes as f64) < self.budget.amount,
+            BudgetKind::Seconds => {
+                another(passes, seconds, training, |next| next <= self.budget.amount)
+            }
+            BudgetKind::Rays => {
+                let rays = rays(session);
+                let target = self.budget.amount * self.scene.scene.film().crop.area() as f64;
+                let now = rays.total() as f64;
+                let is_nearer = |next: f64| (next - target).abs() < (now - target).abs();
+                another(passes, now, rays.training as f64, is_nearer)
             }
         }
     }
-    Ok(())
-}
 
-/// Refuses a setting without effect on the integrator that the scene brings.
-fn check_effect(method: &MethodSpec, stage: &Stage<'_>) -> Result<()> {
-    let changes = &method.changes;
-    let integrator = stage.settings.integrator;
-    match changes.ignored(&stage.settings).first() {
-        Some(name) if changes.integrator.is_none() => Err(ExperimentError::NoEffect {
-            scene: stage.spec.name.clone(),
-            method: method.name.clone(),
-            text: no_effect(name, integrator),
-        }),
-        _ => Ok(()),
+    /// Makes the record of a finished render.
+    pub(super) fn record(
+        &self,
+        rendered: &Rendered,
+        reference: &Reference,
+        metrics: &[Metric],
+    ) -> Record {
+        let metrics = distances(&rendered.picture, reference, metrics);
+        let mse = metrics.get("rmse").map_or(f64::NAN, |rmse| rmse * rmse);
+        Record {
+            scene: self.scene.spec.name.clone(),
+            method: self.method.name.clone(),
+            budget: self.budget.name.clone(),
+            seed: self.seed,
+            spp: rendered.spp,
+            seconds: rendered.time.seconds,
+            processor_seconds: rendered.time.processor_seconds,
+            training_seconds: Some(rendered.training.seconds),
+            training_processor_seconds: rendered.training.processor_seconds,
+            rays: rendered.rays,
+            connections_blocked: rendered.connections_blocked,
+            metrics,
+            efficiency_rays: efficiency(mse, rendered.rays.total() as f64),
+            efficiency_seconds: efficiency(mse, rendered.time.seconds),
+            image: None,
+        }
+    }
+
+    /// Returns true if `record` is of this run.
+    pub(super) fn is_of(&self, record: &Record) -> bool {
+        record.seed == self.seed
+            && record.scene == self.scene.spec.name
+            && record.method == self.method.name
+            && record.budget == self.budget.name
+    }
+
+    /// Returns the name of its image, relative to the folder of the results.
+    pub(super) fn image(&self) -> String {
+        let names = [&self.scene.spec.name, &self.budget.name, &self.method.name];
+        let [scene, budget, method] = names.map(|name| file_name(name));
+        // No part contains two hyphens in a row, so different names give different files.
+        format!("images/{scene}--{budget}--{method}.exr")
     }
 }
 
-impl Absent {
-    /// Says that it is left out.
-    pub(super) fn warn(&self, observer: &mut dyn Observer) {
-        let Self { name, reason } = self;
-        observer.tell(Event::Warning(&format!(
-            "scene `{name}` is left out: {reason}"
-        )));
+impl Rendered {
+    pub(super) fn pixels(&self) -> Pixels {
+        pixels(&self.picture)
+    }
+
+    pub(super) fn write(&self, path: &Path) -> Result<(), ExperimentError> {
+        write_image(path, &pixels(&self.picture))
     }
 }
 
-impl Machine {
-    /// The name of a processor that the system does not name.
-    pub const UNKNOWN: &'static str = "unknown";
+/// Time on both clocks of the host, since an arbitrary moment. Unit: seconds.
+#[derive(Clone, Copy)]
+struct Moment {
+    seconds: f64,
+    /// Of all threads. None: the host does not measure it.
+    processor_seconds: Option<f64>,
+}
 
-    /// This one; the number of threads is filled in by [`run`].
-    pub fn here() -> Self {
-        let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-        let model = processor.lines().find_map(|line| {
-            let (name, value) = line.split_once(':')?;
-            (name.trim() == "model name").then(|| value.trim().to_owned())
-        });
+impl Moment {
+    fn now(observer: &dyn Observer) -> Self {
         Self {
-            processor: model.unwrap_or_else(|| Self::UNKNOWN.to_owned()),
-            isa: Isa::detect().name().to_owned(),
-            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-            threads: 0,
+            seconds: observer.seconds(),
+            processor_seconds: observer.processor_seconds(),
+        }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        self.with(other, |a, b| a - b)
+    }
+
+    fn plus(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b)
+    }
+
+    fn with(self, other: Self, operation: fn(f64, f64) -> f64) -> Self {
+        let processors = self.processor_seconds.zip(other.processor_seconds);
+        Self {
+            seconds: operation(self.seconds, other.seconds),
+            processor_seconds: processors.map(|(a, b)| operation(a, b)),
         }
     }
 }
 
-/// What an experiment runs on.
-fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
-    Machine {
-        threads: experiment.threads,
-        ..setup.machine.clone()
+/// Returns true if another pass follows `passes`: always the first one, and later ones if `accepts`
+/// accepts the expected cost after them. `now` is the cost so far, `training` the part before the first
+/// pass.
+fn another(passes: u64, now: f64, training: f64, accepts: impl Fn(f64) -> bool) -> bool {
+    passes == 0 || accepts(now + (now - training) / passes as f64)
+}
+
+/// Computes 1 / (MSE · cost): zero if the error is unknown, the largest number if it is zero.
+fn efficiency(mse: f64, cost: f64) -> f64 {
+    let efficiency = 1.0 / (mse * cost);
+    if efficiency.is_nan() {
+        return 0.0;
+    }
+    efficiency.min(f64::MAX)
+}
+
+fn rays(session: &Session<'_>) -> Rays {
+    let rays = session.stats().rays;
+    let training = session.training();
+    Rays {
+        camera: rays.camera,
+        light: rays.light,
+        connection: rays.connection,
+        light_image: rays.light_image,
+        training: training.map_or(0, |training| training.rays.total()),
     }
 }
 
-/// Writes `results.json` into the folder of the results.
-fn write_results(folder: &Path, results: &Results) -> Result<()> {
-    formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
-    Ok(())
+/// Computes the metrics; values that are not finite are left out, as JSON cannot hold them.
+fn distances(
+    picture: &Picture,
+    reference: &Reference,
+    metrics: &[Metric],
+) -> BTreeMap<String, f64> {
+    let image = pixels(picture);
+    let Some(pair) = Pair::new(&image, &reference.pixels) else {
+        return BTreeMap::new();
+    };
+    let is_included = |metric| metric == Metric::Rmse || metrics.contains(&metric);
+    let names = Metric::NAMES.into_iter();
+    let names = names.filter(|(_, metric)| is_included(*metric));
+    let values = names.map(|(name, metric)| (name.to_owned(), metric.value(&pair)));
+    values.filter(|(_, value)| value.is_finite()).collect()
 }
 
-fn json(results: &Results) -> String {
-    let text = serde_json::to_string_pretty(results);
-    text.expect("texts and numbers have a JSON") + "\n"
+fn pixels(picture: &Picture) -> Pixels {
+    Pixels {
+        size: [picture.width, picture.height],
+        data: picture.pixels.clone(),
+    }
 }
 
-/// What is rendered and compared.
-pub(super) struct Work<'a> {
-    pub(super) experiment: &'a Experiment,
-    pub(super) setup: &'a Setup,
-    pub(super) stages: &'a [Stage<'a>],
-    /// One for each stage.
-    pub(super) references: &'a [Reference],
+/// Writes an image as EXR.
+pub(super) fn write_image(path: &Path, image: &Pixels) -> Result<(), ExperimentError> {
+    let layer = ExrLayer {
+        name: "",
+        channels: &["R", "G", "B"],
+        data: image.data.as_flattened(),
+    };
+    let exr = ExrImage {
+        resolution: image.size,
+        crop: [0, 0, image.size[0], image.size[1]],
+        layers: &[layer],
+        metadata: &[],
+    };
+    Ok(formats::image::write_exr(path, &exr)?)
 }
 
-impl Work<'_> {
-    /// All renders in their order, each with its reference.
-    pub(super) fn cells(&self) -> impl Iterator<Item = (Cell<'_>, &Reference)> {
-        let Self {
-            experiment,
-            stages,
-            references,
-            ..
-        } = *self;
-        let seeds = experiment.seeds;
-        let seeds = seeds.first..seeds.first + seeds.count;
-        let scenes = move |seed| {
-            stages
-                .iter()
-                .zip(references)
-                .map(move |scene| (seed, scene))
-        };
-        seeds
-            .flat_map(scenes)
-            .flat_map(move |(seed, (stage, reference))| {
-                let renders = experiment.renders(&stage.spec.name);
-                renders.map(move |(budget, method)| {
-                    let cell = Cell {
-                        stage,
-                        method,
-                        budget,
-                        seed,
-                    };
-                    (cell, reference)
-                })
-            })
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_pass_is_expected_to_cost_the_mean_of_passes() {
+        assert!(another(0, 9.0, 9.0, |_| false));
+        // Two passes of 3 after training of 4.
+        assert!(another(2, 10.0, 4.0, |next| (next - 13.0).abs() < 1e-9));
     }
 
-    /// Renders what has no record yet.
-    fn render(&self, journal: &mut Journal, observer: &mut dyn Observer) -> Result<End> {
-        observer.tell(Event::Begin {
-            done: journal.records().len(),
-            of: self.cells().count(),
-        });
-        for (cell, reference) in self.cells() {
-            if journal.has(&cell) {
-                continue;
-            }
-            let Some(rendered) = cell.render(self.experiment.threads, observer)? else {
-                return Ok(End::Stopped);
-            };
-            let mut record = cell.record(&rendered, reference, &self.experiment.metrics);
-            if cell.seed == self.experiment.seeds.first {
-                let image = cell.image();
-                rendered.write(&self.setup.folder.join(&image))?;
-                record.image = Some(image);
-            }
-            observer.tell(Event::Record(&record));
-            journal.add(record)?;
-        }
-        Ok(End::Complete)
-    }
-
-    fn results(&self, records: &[Record]) -> Results {
-        let Self {
-            experiment,
-            setup,
-            stages,
-            references,
-        } = *self;
-        let scenes = stages.iter().zip(references);
-        let budgets = experiment.budgets.iter().map(|budget| BudgetInfo {
-            name: budget.name.clone(),
-            kind: budget.kind,
-            amount: budget.amount,
-        });
-        Results {
-            format: FORMAT,
-            title: experiment.title.clone(),
-            description: experiment.description.clone(),
-            program: setup.program.clone(),
-            machine: machine(experiment, setup),
-            scenes: scenes
-                .map(|(stage, reference)| stage.info(reference))
-                .collect(),
-            methods: self.methods(),
-            budgets: budgets.collect(),
-            records: self.ordered(records),
-            pyramids: Vec::new(),
-            contributions: Vec::new(),
-            claims: Vec::new(),
-        }
-    }
-
-    /// The records in the order of the renders, in which other machines may not have made them.
-    fn ordered(&self, records: &[Record]) -> Vec<Record> {
-        let record = |(cell, _): (Cell<'_>, _)| {
-            let mut records = records.iter();
-            records.find(|record| cell.is_of(record)).cloned()
-        };
-        self.cells().filter_map(record).collect()
-    }
-
-    /// The methods with their settings; where those are the scenes', which differ, they say so.
-    fn methods(&self) -> Vec<MethodInfo> {
-        let methods = self.experiment.methods.iter().map(|method| {
-            let mut settings: BTreeMap<String, String> = BTreeMap::new();
-            let stages = self.stages.iter();
-            let stages = stages.filter(|stage| stage.has(self.experiment, method));
-            for (number, stage) in stages.enumerate() {
-                for (name, value) in texts(&method.changes.apply(&stage.settings)) {
-                    let known = settings.entry(name).or_insert_with(|| value.clone());
-                    if number > 0 && *known != value {
-                        "the scene's".clone_into(known);
-                    }
-                }
-            }
-            MethodInfo {
-                name: method.name.clone(),
-                settings,
-            }
-        });
-        methods.collect()
+    #[test]
+    fn efficiency_is_always_a_number() {
+        assert!((efficiency(0.5, 4.0) - 0.5).abs() < 1e-12);
+        assert!(efficiency(0.0, 4.0).is_finite() && efficiency(f64::NAN, 1.0).is_finite());
     }
 }

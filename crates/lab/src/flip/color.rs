@@ -1,15 +1,15 @@
 //! The colour spaces of FLIP, and distances in them \[Andersson20, §4.1\].
 //!
-//! With X, Y, Z relative to those of white (Rec. 709's, D65):
+//! With X, Y, Z relative to the white of Rec. 709 (D65):
 //!
 //! - opponent colours YCxCz: Y' = 116 Y - 16, Cx = 500 (X - Y), Cz = 200 (Y - Z); linear, so that
 //!   filtering them is filtering light;
-//! - L\*a\*b\*: the same with f(X), f(Y), f(Z) instead, where f is a cube root with a linear toe.
+//! - L\*a\*b\*: the same formulas of f(X), f(Y), f(Z), where f is a cube root with a linear toe.
 
 use super::Plane;
 use rayon::prelude::*;
 
-/// X, Y and Z of Rec. 709's red, green and blue with their white D65; rows of the matrix.
+/// X, Y and Z (rows) of Rec. 709's red, green and blue with white D65.
 const XYZ_OF_RGB: [[f32; 3]; 3] = [
     [0.4123908, 0.3575843, 0.1804808],
     [0.2126390, 0.7151687, 0.0721923],
@@ -30,13 +30,13 @@ fn product(matrix: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// X, Y and Z of linear light, relative to those of white.
+/// Converts linear light to X, Y and Z relative to white.
 fn relative_xyz(rgb: [f32; 3]) -> [f32; 3] {
     let xyz = product(&XYZ_OF_RGB, rgb);
     [0, 1, 2].map(|i| xyz[i] / WHITE[i])
 }
 
-/// The luminance of linear light. Range: that of white is 1.
+/// Computes the luminance of linear light; that of white is 1.
 pub(super) fn luminance(rgb: [f32; 3]) -> f32 {
     relative_xyz(rgb)[1]
 }
@@ -52,7 +52,7 @@ pub(super) struct Opponent {
 }
 
 impl Opponent {
-    /// An image of linear light.
+    /// Converts an image of linear light.
     pub(super) fn of(size: [usize; 2], pixels: &[[f32; 3]]) -> Self {
         let plane = |value: fn([f32; 3]) -> f32| {
             let values = pixels.par_iter().map(|&rgb| value(relative_xyz(rgb)));
@@ -66,14 +66,14 @@ impl Opponent {
     }
 }
 
-/// Linear light of luminance, Cx and Cz; it may be outside `[0, 1]`.
+/// Converts luminance, Cx and Cz to linear light, which may lie outside `[0, 1]`.
 pub(super) fn rgb_of_opponent([y, cx, cz]: [f32; 3]) -> [f32; 3] {
     let relative = [y + cx / 500.0, y, y - cz / 200.0];
     product(&RGB_OF_XYZ, [0, 1, 2].map(|i| relative[i] * WHITE[i]))
 }
 
-/// L\*a\*b\* of linear light, with the Hunt effect: a\* and b\* times 0.01 L\*, as colour is seen
-/// less where it is dark \[Andersson20, §4.1\].
+/// Converts linear light to L\*a\*b\* with the Hunt effect: a\* and b\* are scaled by 0.01 L\*, as colours are
+/// less visible in the dark \[Andersson20, §4.1\].
 pub(super) fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
     const DELTA: f32 = 6.0 / 29.0;
     let f = |t: f32| {
@@ -88,7 +88,7 @@ pub(super) fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
     [l, 0.01 * l * 500.0 * (x - y), 0.01 * l * 200.0 * (y - z)]
 }
 
-/// HyAB: the distance for large differences of colour, |ΔL| + ‖Δ(a, b)‖ \[Andersson20, §4.1\].
+/// Computes HyAB, the distance for large differences of colour: |ΔL| + ‖Δ(a, b)‖ \[Andersson20, §4.1\].
 pub(super) fn hyab(p: [f32; 3], q: [f32; 3]) -> f32 {
     let [l, a, b] = [0, 1, 2].map(|i| p[i] - q[i]);
     l.abs() + (a * a + b * b).sqrt()
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_matrices_are_inverse_and_white_is_white() {
+    fn the_matrices_are_inverse_and_white_maps_to_one() {
         for rgb in [
             [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0],

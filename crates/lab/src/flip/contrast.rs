@@ -1,4 +1,4 @@
-//! Differences of colour that survive the blur of the eye \[Andersson20, §4.1\].
+//! Differences of colour after the eye's spatial filter \[Andersson20, §4.1\].
 //!
 //! The contrast sensitivity of each opponent channel is a sum of Gaussians of frequency; in space, at
 //! the distance d in degrees (Table 1 of the paper),
@@ -11,7 +11,7 @@
 //! | Cx | 1 | 0.0053 | | |
 //! | Cz | 34.1 | 0.04 | 13.5 | 0.025 |
 //!
-//! g over the square of pixels is normalised to sum 1; each of its Gaussians is separable.
+//! The weights g of the pixels are normalised to sum 1; each Gaussian is separable.
 
 use super::color::{Opponent, hunt_lab, hyab, rgb_of_opponent};
 use super::{Plane, plane::Kernel};
@@ -32,7 +32,7 @@ const CZ: [Gaussian; 2] = [
     Gaussian { a: 13.5, b: 0.025 },
 ];
 
-/// ΔE_c of every pixel. Range: `[0, 1]`.
+/// Computes ΔE_c of every pixel. Range: `[0, 1]`.
 pub(super) fn color_differences(a: &Opponent, b: &Opponent, pixels_per_degree: f64) -> Vec<f32> {
     let seen = |image: &Opponent| -> Vec<[f32; 3]> {
         let y = blurred(&image.y, &Y, pixels_per_degree).data;
@@ -52,7 +52,7 @@ pub(super) fn color_differences(a: &Opponent, b: &Opponent, pixels_per_degree: f
         .collect()
 }
 
-/// A channel as the eye blurs it.
+/// Filters a channel by the contrast sensitivity of the eye.
 fn blurred(plane: &Plane, terms: &[Gaussian], pixels_per_degree: f64) -> Plane {
     // Three standard deviations of the widest term of all, σ = √(b / 2π²) [Andersson20, §4.1].
     let radius = libm::ceil(3.0 * (0.04 / (2.0 * PI * PI)).sqrt() * pixels_per_degree) as usize;
@@ -60,7 +60,7 @@ fn blurred(plane: &Plane, terms: &[Gaussian], pixels_per_degree: f64) -> Plane {
         let d = x / pixels_per_degree;
         libm::exp(-PI * PI * d * d / b)
     };
-    // In two dimensions a term sums to its factor times the square of what one dimension sums to.
+    // In two dimensions, a term sums to its factor times the square of its sum in one dimension.
     let share = |term: &Gaussian| {
         let line: f64 = (-(radius as i64)..=radius as i64)
             .map(|x| gaussian(term.b, x as f64))
@@ -77,18 +77,18 @@ fn blurred(plane: &Plane, terms: &[Gaussian], pixels_per_degree: f64) -> Plane {
     sum.expect("a sensitivity has a term")
 }
 
-/// The exponent that makes small differences count more \[Andersson20, §4.1\].
+/// Compresses a distance, which gives small differences more weight \[Andersson20, §4.1\].
 fn compressed(distance: f32) -> f32 {
     libm::powf(distance, 0.7)
 }
 
-/// The compressed distance of green and blue, which have the largest of all colours on a screen.
+/// Computes the compressed distance of green and blue, the largest of all colours on a screen.
 fn largest_difference() -> f32 {
     compressed(hyab(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0])))
 }
 
-/// Maps [0, p_c c_max] to [0, p_t], and the rest to [p_t, 1], linearly: differences beyond p_c of
-/// the largest are all about as bad \[Andersson20, §4.1\].
+/// Maps [0, p_c c_max] to [0, p_t], and the rest to [p_t, 1], linearly: all differences beyond the fraction
+/// p_c of the largest are about equally visible \[Andersson20, §4.1\].
 fn redistributed(difference: f32, largest: f32) -> f32 {
     const P_C: f32 = 0.4;
     const P_T: f32 = 0.95;
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_constant_stays_and_a_point_keeps_its_sum() {
+    fn filters_keep_constants_and_the_sum_of_a_point() {
         for terms in [&Y[..], &CX, &CZ] {
             let flat = blurred(&Plane::new([30, 30], vec![0.5; 900]), terms, 67.0);
             assert!(flat.data.iter().all(|value| (value - 0.5).abs() < 1e-5));

@@ -1,13 +1,13 @@
-//! Edges and points that only one of two images has \[Andersson20, §4.2\].
+//! Differences of edges and points between two images \[Andersson20, §4.2\].
 //!
-//! Detectors are the first and second derivatives of a Gaussian with σ = w / 2, where an edge is as
-//! wide as w = 0.082 degrees; along x, before normalisation,
+//! The detectors are the first and second derivatives of a Gaussian with σ = w / 2, where w = 0.082 degrees
+//! is the width of an edge; along x, before normalisation,
 //!
 //!   edge: -x G(x, y),   point: (x² / σ² - 1) G(x, y),
 //!
-//! and along y likewise. Positive weights are normalised to sum 1, negative ones to -1; as the signs
-//! depend on one coordinate only, that can be done for each dimension. A feature's strength is
-//! the length of the two responses, and
+//! and along y likewise. Positive weights are normalised to sum 1, negative ones to -1; since the signs
+//! depend on one coordinate only, each dimension is normalised separately. The strength of a feature is the
+//! length of the vector of both responses, and
 //!
 //!   ΔE_f = (max(|edge_a - edge_b|, |point_a - point_b|) / √2)^½.
 
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// The width of an edge. Unit: degrees.
 const WIDTH: f64 = 0.082;
 
-/// The filters of one number of pixels per degree.
+/// The filters for a number of pixels per degree.
 struct Detectors {
     smooth: Kernel,
     edge: Kernel,
@@ -38,7 +38,7 @@ impl Detectors {
         }
     }
 
-    /// The strengths of edges and of points at every pixel.
+    /// Computes the strengths of edges and of points at every pixel.
     fn features(&self, luminance: &Plane) -> [Vec<f32>; 2] {
         let smooth_rows = luminance.along_rows(&self.smooth);
         let smooth_columns = luminance.along_columns(&self.smooth);
@@ -51,7 +51,7 @@ impl Detectors {
     }
 }
 
-/// ΔE_f of every pixel of two images' luminance. Range: `[0, 1]`.
+/// Computes ΔE_f of every pixel from the luminance of two images. Range: `[0, 1]`.
 pub(super) fn differences(a: &Plane, b: &Plane, pixels_per_degree: f64) -> Vec<f32> {
     let detectors = Detectors::new(pixels_per_degree);
     let [a_edges, a_points] = detectors.features(a);
@@ -69,7 +69,7 @@ pub(super) fn differences(a: &Plane, b: &Plane, pixels_per_degree: f64) -> Vec<f
 mod tests {
     use super::*;
 
-    /// The error between a flat image and one with `value` where `inside` says.
+    /// Returns the largest error between a black image and one that is 1 inside a region.
     fn largest(inside: impl Fn(usize, usize) -> bool) -> f32 {
         let value = |i: usize| f32::from(u8::from(inside(i % 64, i / 64)));
         let image = Plane::new([64, 64], (0..64 * 64).map(value).collect());
@@ -78,9 +78,9 @@ mod tests {
         errors.into_iter().fold(0.0, f32::max)
     }
 
-    /// An edge from 0 to 1 has the response 1 at either side of which there is half a pixel.
+    /// An edge from 0 to 1 has the response 1, slightly less half a pixel beside it.
     #[test]
-    fn edges_of_both_directions_are_found_alike() {
+    fn edges_in_both_directions_have_the_same_error() {
         let (x, y) = (largest(|x, _| x < 32), largest(|_, y| y < 32));
         assert!((x - y).abs() < 1e-6, "{x} {y}");
         let expected = std::f32::consts::FRAC_1_SQRT_2.sqrt();
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn points_and_nothing() {
+    fn points_have_an_error_and_equal_images_none() {
         assert!(largest(|x, y| x == 32 && y == 32) > 0.1);
         assert!(largest(|_, _| false).abs() < 1e-6);
     }

@@ -2,22 +2,21 @@
 //!
 //! For images on a screen \[Andersson20\], with linear channels in [0, 1]:
 //!
-//! 1. *Colour* (`color`, `contrast`): both images, in opponent colours, are blurred as the eye
-//!    blurs them at a given number of pixels per degree; ΔE_c in [0, 1] is a distance in L\*a\*b\*,
-//!    compressed (§4.1).
+//! 1. *Colour* (`color`, `contrast`): both images, in opponent colours, are filtered by the contrast
+//!    sensitivity of the eye at a given number of pixels per degree; ΔE_c in [0, 1] is a compressed distance
+//!    in L\*a\*b\* (§4.1).
 //! 2. *Features* (`feature`): edges and points of the luminance give ΔE_f in [0, 1] (§4.2).
-//! 3. ΔE = ΔE_c^(1 - ΔE_f) (§4.3): a feature that only one image has makes a difference of colour
-//!    more visible.
+//! 3. ΔE = ΔE_c^(1 - ΔE_f) (§4.3): a feature in only one of the images makes a difference of colour more
+//!    visible.
 //!
-//! For light of any strength \[Andersson21\] both images are brought to the screen at several exposures
-//! (`exposure`), and a pixel's error is the largest that it has at any of them.
+//! For HDR images \[Andersson21\], both images are tone-mapped at several exposures (`exposure`), and the error
+//! of a pixel is the largest over the exposures.
 //!
-//! Channels outside [0, 1], or below 0 for light of any strength, are clamped first. Pixels beyond
-//! the border are those of the border. NaN spreads as far as a filter reaches. Errors are in [0, 1];
-//! black and white without features in common come close to 1, equal images have exactly 0.
+//! Channels are first clamped to [0, 1], or to positive values for HDR. Filters repeat the border pixels. NaN
+//! spreads within the radius of a filter. Errors are in [0, 1]: near 1 for black against white, exactly 0 for
+//! equal images.
 //!
-//! Written from the formulas of the papers, and checked against the authors' program, whose results
-//! stand in the tests.
+//! The code follows the formulas of the papers; tests compare it with results of the authors' program.
 
 mod color;
 mod contrast;
@@ -35,12 +34,13 @@ use color::Opponent;
 use plane::Plane;
 use rayon::prelude::*;
 
-/// The observer whom the authors' program assumes: 0.7 m from a screen 0.7 m wide with 3840 pixels.
+/// The pixels per degree in the authors' program: 0.7 m from a screen 0.7 m wide with 3840 pixels.
 ///
 /// Distance · pixels / width · π/180, which is 67.02.
 pub const PIXELS_PER_DEGREE: f64 = 0.7 * 3840.0 / 0.7 * std::f64::consts::PI / 180.0;
 
-/// The error of every pixel on a screen that shows `[0, 1]`. Range of `pixels_per_degree`: positive.
+/// Computes the FLIP error of every pixel on a screen that shows `[0, 1]`. Range of `pixels_per_degree`:
+/// positive.
 pub fn ldr(pair: &Pair<'_>, pixels_per_degree: f64) -> ErrorMap {
     let shown = |pixels: &Pixels| screen(pixels, |channel| channel);
     let [a, b] = [pair.image(), pair.reference()].map(shown);
@@ -48,7 +48,7 @@ pub fn ldr(pair: &Pair<'_>, pixels_per_degree: f64) -> ErrorMap {
     error_map(pair.size(), &errors)
 }
 
-/// The largest error that every pixel has at any of the exposures.
+/// Computes the HDR-FLIP error of every pixel: the largest over the exposures.
 pub fn hdr(pair: &Pair<'_>, pixels_per_degree: f64, exposures: Exposures) -> ErrorMap {
     let mut largest = vec![0.0f32; pair.reference().data.len()];
     for stops in exposures.stops() {
@@ -66,7 +66,7 @@ pub fn hdr(pair: &Pair<'_>, pixels_per_degree: f64, exposures: Exposures) -> Err
     error_map(pair.size(), &largest)
 }
 
-/// What a screen shows of an image. Range: `[0, 1]`, linear.
+/// Maps an image to a screen. Range: `[0, 1]`, linear.
 fn screen(pixels: &Pixels, tone_map: impl Fn(f32) -> f32 + Sync) -> Vec<[f32; 3]> {
     // Unlike `max`, `clamp` keeps a NaN.
     let positive = |channel: f32| channel.clamp(0.0, f32::INFINITY);
@@ -74,7 +74,7 @@ fn screen(pixels: &Pixels, tone_map: impl Fn(f32) -> f32 + Sync) -> Vec<[f32; 3]
     pixels.data.par_iter().map(shown).collect()
 }
 
-/// ΔE of every pixel of two images on a screen.
+/// Computes ΔE of every pixel of two images on a screen.
 fn differences(
     size: [usize; 2],
     a: &[[f32; 3]],

@@ -1,8 +1,8 @@
-//! One channel of an image, and separable filters of it.
+//! A channel of an image, and separable filters.
 
 use rayon::prelude::*;
 
-/// Numbers, row by row from the top left.
+/// A channel: numbers row by row from the top left.
 #[derive(Clone, Debug)]
 pub(super) struct Plane {
     size: [usize; 2],
@@ -10,14 +10,14 @@ pub(super) struct Plane {
     pub(super) data: Vec<f32>,
 }
 
-/// A filter of one dimension: weights of the places -radius to radius.
+/// A one-dimensional filter: weights at the offsets -radius to radius.
 #[derive(Clone, Debug)]
 pub(super) struct Kernel {
     weights: Vec<f32>,
 }
 
 impl Kernel {
-    /// The weights `value(-radius)` to `value(radius)`, which for whole numbers are those of pixels.
+    /// Makes the filter with the weights `value(-radius)` to `value(radius)`. Unit of offsets: pixels.
     pub(super) fn new(radius: usize, value: impl Fn(f64) -> f64) -> Self {
         let radius = radius as i64;
         let weights = (-radius..=radius).map(|x| value(x as f64) as f32);
@@ -26,7 +26,7 @@ impl Kernel {
         }
     }
 
-    /// The kernel with its positive weights divided by their sum, and its negative ones likewise.
+    /// Normalises the positive weights to sum 1, and the negative ones to sum -1.
     pub(super) fn normalised(self) -> Self {
         let sum_of = |sign: f32| -> f64 {
             let part = self.weights.iter().filter(|weight| **weight * sign > 0.0);
@@ -64,7 +64,7 @@ impl Plane {
         self
     }
 
-    /// Σ_k w_k · p(x + k, y). Beyond the border p is that of the border.
+    /// Computes Σ_k w_k · p(x + k, y), repeating the border pixels.
     pub(super) fn along_rows(&self, kernel: &Kernel) -> Self {
         let [width, _] = self.size;
         let radius = kernel.radius();
@@ -83,7 +83,7 @@ impl Plane {
         Self { data, ..*self }
     }
 
-    /// Σ_k w_k · p(x, y + k). Beyond the border p is that of the border.
+    /// Computes Σ_k w_k · p(x, y + k), repeating the border pixels.
     pub(super) fn along_columns(&self, kernel: &Kernel) -> Self {
         let [width, height] = self.size;
         let radius = kernel.radius();
@@ -101,7 +101,7 @@ impl Plane {
     }
 }
 
-/// out += weight · row.
+/// Adds `weight` · `row` to `out`.
 fn add(out: &mut [f32], weight: f32, row: &[f32]) {
     for (out, value) in out.iter_mut().zip(row) {
         *out += weight * value;
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn filters_reach_over_the_border() {
+    fn filters_repeat_the_border_pixels() {
         let plane = Plane::new([3, 2], vec![1.0, 2.0, 4.0, 8.0, 16.0, 32.0]);
         let kernel = Kernel {
             weights: vec![1.0, 10.0, 100.0],
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn both_signs_are_normalised() {
+    fn weights_of_each_sign_are_normalised() {
         let kernel = Kernel::new(2, |x| x * x * x).normalised();
         assert_eq!(
             kernel.weights,

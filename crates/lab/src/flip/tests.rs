@@ -1,9 +1,9 @@
-//! Against the authors' program: `tools/flip_check.py` prints the numbers.
+//! Comparisons with the authors' program; `tools/flip_check.py` prints its numbers.
 
 use super::*;
 use crate::metric::Metric;
 
-/// What `flip-evaluator` 1.7 says: the mean, and pixels by place.
+/// Results of `flip-evaluator` 1.7: the mean, and the errors of some pixels.
 struct Expected {
     mean: f64,
     pixels: [f64; 5],
@@ -12,7 +12,7 @@ struct Expected {
 const SIZE: [usize; 2] = [40, 24];
 const PLACES: [[usize; 2]; 5] = [[0, 0], [39, 0], [5, 17], [20, 12], [33, 23]];
 
-/// An image from the formula of a channel; every value is exact.
+/// Makes an image from the formula of a channel; every value is exact.
 fn image(value: impl Fn(i32, i32, i32) -> f64) -> Pixels {
     let [width, height] = SIZE.map(|side| side as i32);
     let pixel = |i: i32| [0, 1, 2].map(|c| value(i % width, i / width, c) as f32);
@@ -22,14 +22,14 @@ fn image(value: impl Fn(i32, i32, i32) -> f64) -> Pixels {
     }
 }
 
-/// Stripes of other slopes in every channel, a quarter as bright in every other block.
+/// Evaluates stripes whose slope depends on the channel, a quarter as bright in every other block.
 fn stripes(x: i32, y: i32, c: i32) -> f64 {
     let value = f64::from((x * (c + 2) + y * (5 - c)) % 32) / 32.0;
     let dark = (x / 8 + y / 6) % 2 == 0;
     if dark { value / 4.0 } else { value }
 }
 
-/// Range: -8 to 7.
+/// Evaluates a noise-like pattern. Range: -8 to 7.
 fn noise(x: i32, y: i32, c: i32) -> f64 {
     f64::from((x * x + 3 * y * y + 7 * c + x * y) % 16 - 8)
 }
@@ -67,7 +67,7 @@ fn check(errors: &ErrorMap, expected: &Expected) {
 }
 
 #[test]
-fn images_on_a_screen_differ_as_the_authors_say() {
+fn ldr_errors_equal_those_of_the_authors_program() {
     let [a, b] = on_screen();
     let pair = Pair::new(&a, &b).unwrap();
     let expected = Expected {
@@ -95,7 +95,7 @@ fn images_on_a_screen_differ_as_the_authors_say() {
 }
 
 #[test]
-fn light_differs_as_the_authors_say() {
+fn hdr_errors_equal_those_of_the_authors_program() {
     let [a, b] = light();
     let pair = Pair::new(&a, &b).unwrap();
     let exposures = Exposures::of(&b);
@@ -143,7 +143,7 @@ fn light_differs_as_the_authors_say() {
 }
 
 #[test]
-fn black_and_white_are_far_apart_and_a_shift_of_nothing_is_nothing() {
+fn black_and_white_differ_most_and_equal_images_not_at_all() {
     let (black, white) = (image(|_, _, _| 0.0), image(|_, _, _| 1.0));
     let pair = Pair::new(&white, &black).unwrap();
     assert!(Metric::Flip.value(&pair) > 0.95);
@@ -151,9 +151,8 @@ fn black_and_white_are_far_apart_and_a_shift_of_nothing_is_nothing() {
     assert!(Metric::Flip.value(&Pair::new(&a, &a).unwrap()) <= 0.0);
 }
 
-/// A NaN, an infinity and a negative pixel: no panic, and a NaN tells of itself.
 #[test]
-fn what_is_not_finite_is_told() {
+fn a_nan_pixel_gives_nan_and_infinite_or_negative_pixels_a_finite_error() {
     let [mut a, b] = light();
     a.data[100] = [f32::NAN; 3];
     assert!(Metric::FlipHdr.value(&Pair::new(&a, &b).unwrap()).is_nan());

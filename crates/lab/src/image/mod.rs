@@ -1,7 +1,7 @@
-//! Linear pictures in memory.
+//! Linear images in memory.
 //!
-//! [`Pixels`] is what everything here works on: linear Rec. 709, of any range. A [`Pair`] is an image
-//! and a reference of the same size, so that no metric has to ask.
+//! [`Pixels`] holds linear Rec. 709 of any range. A [`Pair`] is an image and a reference of the same size, so
+//! that no metric has to compare sizes.
 
 mod resample;
 
@@ -20,13 +20,13 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// All channels of all pixels.
+    /// Iterates over all channels of all pixels.
     pub fn channels(&self) -> impl Iterator<Item = f64> + '_ {
         let channels = self.data.iter().flatten();
         channels.map(|&channel| f64::from(channel))
     }
 
-    /// The mean channel. None: there are no pixels.
+    /// Computes the mean over pixels and channels. None: there are no pixels.
     pub fn mean(&self) -> Option<f64> {
         let count = 3 * self.data.len();
         (count > 0).then(|| self.channels().sum::<f64>() / count as f64)
@@ -42,7 +42,7 @@ impl From<&ImageData> for Pixels {
     }
 }
 
-/// An image and what it should be, of the same size.
+/// An image and its reference, of the same size.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
     image: &'a Pixels,
@@ -50,29 +50,29 @@ pub struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    /// Puts an image beside its reference. None: their sizes differ.
+    /// Pairs an image with its reference. None: their sizes differ.
     pub fn new(image: &'a Pixels, reference: &'a Pixels) -> Option<Self> {
         let same = image.size == reference.size && image.data.len() == reference.data.len();
         same.then_some(Self { image, reference })
     }
 
-    /// The image.
+    /// Returns the image.
     pub fn image(&self) -> &'a Pixels {
         self.image
     }
 
-    /// What the image is compared with.
+    /// Returns the reference.
     pub fn reference(&self) -> &'a Pixels {
         self.reference
     }
 
-    /// Width and height of both.
+    /// Returns width and height of both.
     pub fn size(&self) -> [usize; 2] {
         self.reference.size
     }
 }
 
-/// The SHA-256 of the sizes and numbers of images, in hexadecimal.
+/// Computes the SHA-256 of the sizes and numbers of images, in hexadecimal.
 pub fn digest(images: &[&Pixels]) -> String {
     let mut hash = Sha256::new();
     for pixels in images {
@@ -88,7 +88,7 @@ pub fn digest(images: &[&Pixels]) -> String {
     digits.collect()
 }
 
-/// True where both have the same size, and the same bits in every channel.
+/// Returns true if both have the same size, and the same bits in every channel.
 pub fn identical(a: &Pixels, b: &Pixels) -> bool {
     let bits = |pixel: &[f32; 3]| pixel.map(f32::to_bits);
     a.size == b.size && a.data.iter().map(bits).eq(b.data.iter().map(bits))
@@ -98,7 +98,7 @@ pub fn identical(a: &Pixels, b: &Pixels) -> bool {
 pub(crate) mod tests {
     use super::*;
 
-    /// An image of one row.
+    /// Makes an image of one row.
     pub(crate) fn image(data: &[[f32; 3]]) -> Pixels {
         Pixels {
             size: [data.len(), 1],
@@ -107,7 +107,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn identity_is_of_bits() {
+    fn identical_images_have_the_same_size_and_bits() {
         let nan = image(&[[f32::NAN, 0.0, 1.0]]);
         assert!(identical(&nan, &nan));
         assert!(!identical(&image(&[[0.0; 3]]), &image(&[[-0.0, 0.0, 0.0]])));
@@ -117,7 +117,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn digests_are_of_sizes_and_bits() {
+    fn digests_depend_on_sizes_and_bits() {
         let (one, two) = (image(&[[1.0; 3]]), image(&[[1.0; 3]; 2]));
         assert_eq!(digest(&[&one]), digest(&[&one.clone()]));
         let others = [
@@ -130,7 +130,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn pairs_have_one_size() {
+    fn images_of_different_sizes_make_no_pair() {
         let (one, two) = (image(&[[1.0; 3]]), image(&[[1.0; 3]; 2]));
         assert!(Pair::new(&one, &two).is_none());
         assert_eq!(Pair::new(&two, &two).unwrap().size(), [2, 1]);

@@ -1,8 +1,8 @@
-//! Images brought to another size by a box filter.
+//! Resampling with a box filter.
 
 use super::Pixels;
 
-/// The image at another size: each pixel is the mean of the area that it covers in `image`.
+/// Resamples an image: each pixel is the mean of the area that it covers in `image`.
 pub fn resample(image: &Pixels, size: [usize; 2]) -> Pixels {
     let [width, height] = image.size;
     let columns = overlaps(width, size[0]);
@@ -25,11 +25,11 @@ pub fn resample(image: &Pixels, size: [usize; 2]) -> Pixels {
     Pixels { size, data }
 }
 
-/// For each of `to` equal parts of a line: which of its `from` equal parts it meets, and the share
-/// of itself that each makes.
+/// Divides a line into `to` and into `from` equal parts. Returns the parts of the second division that
+/// overlap each part of the first, with the fraction of the latter that they cover.
 fn overlaps(from: usize, to: usize) -> Vec<Vec<(usize, f64)>> {
     let part = |i: usize| {
-        // In units of 1 / (from · to) all ends are whole numbers.
+        // In units of 1 / (from · to), all ends are whole numbers.
         let (begin, end) = (i * from, (i + 1) * from);
         let meets = begin / to..end.div_ceil(to);
         let share = |k: usize| (end.min((k + 1) * to) - begin.max(k * to)) as f64 / from as f64;

@@ -1,4 +1,4 @@
-//! The errors of all pixels, and pictures of them.
+//! Maps of the errors of all pixels, and false-colour images of them.
 
 use super::Kept;
 use crate::blocks::{Blocks, Tally};
@@ -15,7 +15,7 @@ pub struct ErrorMap {
 }
 
 impl ErrorMap {
-    /// The mean over the channels of each pixel of `error(image, reference)`.
+    /// Computes the mean of `error(image, reference)` over the channels of each pixel.
     pub(super) fn of_channels(pair: &Pair<'_>, error: impl Fn(f64, f64) -> f64) -> Self {
         let pixel = |(a, b): (&[f32; 3], &[f32; 3])| {
             let channels = a.iter().zip(b);
@@ -29,8 +29,8 @@ impl ErrorMap {
         }
     }
 
-    /// The mean over channels of `error(image, reference)` of the means over blocks of `block` × `block`
-    /// pixels: every pixel has that of its block.
+    /// Computes the mean over channels of `error(image, reference)`, of means over blocks of `block` × `block`
+    /// pixels; every pixel gets the error of its block.
     pub(super) fn of_blocks(
         pair: &Pair<'_>,
         block: usize,
@@ -62,7 +62,7 @@ impl ErrorMap {
         }
     }
 
-    /// The mean of `value(error)` over the pixels that are kept; NaN where there are none.
+    /// Computes the mean of `value(error)` over the included pixels; NaN if there are none.
     pub(super) fn mean_of(&self, kept: Kept, value: impl Fn(f64) -> f64) -> f64 {
         let mean = |errors: &[f64]| {
             let sum: f64 = errors.iter().map(|&error| value(error)).sum();
@@ -74,22 +74,21 @@ impl ErrorMap {
         }
     }
 
-    /// All but the ⌈0.001 n⌉ largest, in no order; NaN is larger than any number.
+    /// Returns all but the ⌈0.001 n⌉ largest errors, unordered; NaN counts as the largest.
     fn without_worst(&self) -> Vec<f64> {
         let mut errors = self.data.clone();
         let kept = errors.len() - errors.len().div_ceil(1000);
         if kept > 0 {
-            // The sign of a NaN means nothing.
+            // The sign of a NaN is arbitrary.
             errors.select_nth_unstable_by(kept, |a, b| a.abs().total_cmp(&b.abs()));
         }
         errors.truncate(kept);
         errors
     }
 
-    /// A picture for the screen: black is no error, pale yellow `full` and above, green what is no
-    /// number.
+    /// Makes a false-colour image in linear light: black is 0, pale yellow `full` and above, green NaN.
     ///
-    /// The colours go from dark to bright evenly, as they do in the papers on FLIP. Linear light.
+    /// The colours become brighter monotonically, as in the papers on FLIP.
     pub fn false_color(&self, full: f64) -> Pixels {
         let color = |&error: &f64| {
             if error.is_nan() {
@@ -104,10 +103,10 @@ impl ErrorMap {
     }
 }
 
-/// The colour map magma \[SmithWalt15\], as stored in sRGB. Range: `t` in `[0, 1]`.
+/// Evaluates the colour map magma \[SmithWalt15\] in sRGB. Range: `t` in `[0, 1]`.
 ///
-/// Polynomials of degree 6 fitted to its table of 256 colours by least squares; no channel is
-/// off by more than 0.024.
+/// Polynomials of degree 6 are fitted to its table of 256 colours by least squares; the largest deviation of
+/// a channel is 0.024.
 fn magma(t: f64) -> [f64; 3] {
     const FIT: [[f64; 7]; 3] = [
         [-0.0021, 0.2505, 8.3459, -27.667, 52.1707, -50.7586, 18.6643],
@@ -135,7 +134,7 @@ mod tests {
                 assert!((value - expected).abs() < 0.024, "{t}: {value} {expected}");
             }
         }
-        // Luminance grows.
+        // Luminance increases.
         let luminance = |t| {
             let [r, g, b] = magma(t).map(|stored| Encoding::Srgb.decode(stored));
             0.2126 * r + 0.7152 * g + 0.0722 * b
@@ -147,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_is_full_and_what_is_no_number_green() {
+    fn errors_above_the_maximum_have_its_color_and_nan_is_green() {
         let map = ErrorMap {
             size: [4, 1],
             data: vec![0.5, 0.7, f64::INFINITY, f64::NAN],

@@ -1,6 +1,6 @@
-//! How far an image is from a reference: for every pixel, and as one number.
+//! Error metrics of an image against a reference: for every pixel, and as one number.
 //!
-//! A pixel q has channels a of the image and b of the reference; ε = 0.01 throughout.
+//! A pixel q has the channels a in the image and b in the reference; ε = 0.01 throughout.
 //!
 //! | metric | error e_q of a pixel | number |
 //! |---|---|---|
@@ -10,18 +10,16 @@
 //! | `mape` | mean_c \|a - b\| / (\|b\| + ε) | mean_q e_q |
 //! | `flip`, `flip_hdr` | see [`crate::flip`] | mean_q e_q |
 //!
-//! `rmse_trim` and `relmse_trim` are the same numbers *without the worst pixels*: of n pixels, the
-//! ⌈0.001 n⌉ of the largest error of that metric are left out. A single very bright pixel decides a
-//! mean square; these tell what all the others are like. They are biased downwards, and stand beside
-//! the full numbers, never instead of them.
+//! `rmse_trim` and `relmse_trim` exclude the *worst pixels*: of n pixels, the ⌈0.001 n⌉ with the largest
+//! error of that metric. A single very bright pixel can dominate a mean square; trimmed metrics describe all
+//! other pixels. They are biased downwards and complement the full metrics, never replace them.
 //!
-//! `relmse_block` is the same number of the means over *blocks* of 16 × 16 pixels, counted from the top
-//! left; those at the right and lower border are smaller, and a block counts as often as it has pixels.
-//! Noise that differs from pixel to pixel averages out in it, and what neighbours have in common, as
-//! where they share light subpaths, stays.
+//! `relmse_block` compares means over *blocks* of 16 × 16 pixels, counted from the top left; blocks at the
+//! right and lower border are smaller, and the weight of a block is its number of pixels. Uncorrelated noise
+//! of pixels averages out in it; noise that neighbours share, such as from common light subpaths, remains.
 //!
-//! What is not finite makes every number that it enters not finite; it is the worst of errors, so
-//! that trimming leaves it out. A number over no pixels is NaN.
+//! A pixel that is not finite makes every metric over it not finite. It counts as the worst error, so that
+//! trimming excludes it. A metric over no pixels is NaN.
 
 mod map;
 
@@ -35,28 +33,28 @@ const EPSILON: f64 = 0.01;
 /// The side of a block. Unit: pixels.
 const BLOCK: usize = 16;
 
-/// A way to tell how far an image is from its reference; 0 where they are equal.
+/// An error metric; 0 for equal images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// The root of the mean square error.
     Rmse,
-    /// The same without the worst pixels.
+    /// The root of the mean square error without the worst pixels.
     RmseTrimmed,
     /// The mean relative square error.
     Relmse,
-    /// The same without the worst pixels.
+    /// The mean relative square error without the worst pixels.
     RelmseTrimmed,
     /// The mean relative square error of means over blocks of pixels.
     RelmseBlock,
     /// The mean absolute relative error.
     Mape,
-    /// What is seen on a screen that shows [0, 1].
+    /// FLIP on a screen that shows [0, 1].
     Flip,
-    /// What is seen at the best of all exposures.
+    /// The largest FLIP over several exposures.
     FlipHdr,
 }
 
-/// Which pixels make the number.
+/// The pixels included in a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kept {
     All,
@@ -76,15 +74,15 @@ impl Metric {
         ("flip_hdr", Self::FlipHdr),
     ];
 
-    /// The name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         let mut names = Self::NAMES.iter();
         let found = names.find(|(_, metric)| *metric == self);
         found.map_or("", |(name, _)| name)
     }
 
-    /// The power of the number of samples that the number of an unbiased estimate falls with. None: of
-    /// FLIP, which has no such law.
+    /// Returns the exponent k with which the metric of an unbiased estimate falls, as samples^-k. None: FLIP,
+    /// which has no such law.
     pub fn order(self) -> Option<f64> {
         match self {
             Self::Rmse | Self::RmseTrimmed | Self::Mape => Some(0.5),
@@ -93,12 +91,12 @@ impl Metric {
         }
     }
 
-    /// True where it is a matter of moments: all but FLIP, which filters images.
+    /// Returns true for all metrics except FLIP, which filters images and takes longer.
     pub fn is_fast(self) -> bool {
         !matches!(self, Self::Flip | Self::FlipHdr)
     }
 
-    /// The error of every pixel; for trimmed metrics, also of those that they leave out.
+    /// Computes the error of every pixel; for trimmed metrics, also of the excluded ones.
     pub fn errors(self, pair: &Pair<'_>) -> ErrorMap {
         let of = |error: fn(f64, f64) -> f64| ErrorMap::of_channels(pair, error);
         match self {
@@ -114,7 +112,7 @@ impl Metric {
         }
     }
 
-    /// The one number of the errors that [`Self::errors`] gave.
+    /// Pools the errors from [`Self::errors`] into one number.
     pub fn pool(self, errors: &ErrorMap) -> f64 {
         let kept = match self {
             Self::RmseTrimmed | Self::RelmseTrimmed => Kept::WithoutWorst,
@@ -126,20 +124,20 @@ impl Metric {
         }
     }
 
-    /// The number of an image and its reference.
+    /// Computes the metric of an image and its reference.
     pub fn value(self, pair: &Pair<'_>) -> f64 {
         self.pool(&self.errors(pair))
     }
 }
 
-/// (a - b)² / (b² + ε).
+/// Computes (a - b)² / (b² + ε).
 fn relative_square(a: f64, b: f64) -> f64 {
     (a - b) * (a - b) / (b * b + EPSILON)
 }
 
-/// The mean of the image divided by the mean of the reference; 1 where both are black.
+/// Computes the mean of the image divided by the mean of the reference; 1 if both are black.
 ///
-/// The expectation of the first is that of the second where an estimator is unbiased.
+/// Both means have the same expectation if the estimator is unbiased.
 pub fn mean_ratio(pair: &Pair<'_>) -> f64 {
     let mean = |pixels: &crate::image::Pixels| pixels.mean().unwrap_or(f64::NAN);
     let (a, b) = (mean(pair.image()), mean(pair.reference()));
@@ -174,9 +172,9 @@ mod tests {
         check(mean_ratio(&Pair::new(&black, &black).unwrap()), 1.0);
     }
 
-    /// Blocks of 16 × 2 and of 1 × 2 pixels: what differs within a block averages out.
+    /// Blocks of 16 × 2 and of 1 × 2 pixels: differences within a block average out.
     #[test]
-    fn blocks_see_what_pixels_have_in_common() {
+    fn block_errors_keep_only_the_common_error_of_their_pixels() {
         let picture = |value: fn(usize) -> f32| Pixels {
             size: [17, 2],
             data: (0..34).map(|i| [value(i); 3]).collect(),
@@ -208,7 +206,7 @@ mod tests {
 
     /// 1001 pixels of error 1, of which two are worse.
     #[test]
-    fn the_worst_thousandth_rounded_up_is_left_out() {
+    fn trimmed_metrics_exclude_the_worst_thousandth_rounded_up() {
         let b = image(&[[1.0; 3]; 1001]);
         let mut a = image(&[[2.0; 3]; 1001]);
         a.data[17] = [101.0; 3];
@@ -225,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_number() {
+    fn metrics_over_no_pixels_are_nan() {
         let one = image(&[[1.0; 3]]);
         let none = image(&[]);
         assert!(

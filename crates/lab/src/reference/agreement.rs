@@ -1,26 +1,25 @@
-//! Do the two estimators of a reference have the same expectation?
+//! The test that the two estimators of a reference have the same expectation.
 
 use super::LEVEL;
 use crate::image::Pixels;
 use crate::statistics::{Difference, WHOLE, smallest_bias, welch_test};
 use serde::{Deserialize, Serialize};
 
-/// The film is cut into about so many blocks along its longer side.
+/// The approximate number of blocks along the longer side of the film.
 const BLOCKS: usize = 8;
-/// Blocks have at least so many pixels along a side: means of few pixels have heavy tails.
+/// The smallest side of a block: means of few pixels have heavy tails. Unit: pixels.
 const SMALLEST_BLOCK: usize = 8;
 
-/// What the test of agreement found.
+/// The result of the agreement test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
-    /// True where p ≥ level.
+    /// True if p ≥ level.
     pub agree: bool,
-    /// The probability of a difference at least as large where there is none: the smaller one of
-    /// both parts, corrected for there being two.
+    /// The p-value: the smaller one of both parts, corrected for their number.
     pub p: f64,
     /// The level of the test.
     pub level: f64,
-    /// Which test it is, in words.
+    /// A description of the test.
     pub test: String,
     /// Replicates of each estimator.
     pub replicates: usize,
@@ -28,19 +27,19 @@ pub struct Agreement {
     pub comparisons: usize,
     /// The side of a block. Unit: pixels.
     pub block: usize,
-    /// Where the film's mean differs most.
+    /// The channel whose film means differ most.
     pub film: Comparison,
-    /// Where the blocks' means differ most.
+    /// The block and channel whose means differ most.
     pub blocks: Comparison,
-    /// The relative bias of the film's mean, in any channel, that would have been detected more often
-    /// than not. None: the film is black, or nothing is known of its variance.
+    /// The relative bias of the film's mean, in any channel, that the test detects with probability 1/2.
+    /// None: the film is black, or its variance is unknown.
     pub smallest_bias: Option<f64>,
 }
 
-/// The most significant one of several comparisons.
+/// The most significant of several comparisons.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
-    /// Corrected for the number of comparisons.
+    /// The p-value, corrected for the number of comparisons.
     pub p: f64,
     /// Left, top, right and bottom (exclusive) of the block. Unit: pixels from the crop's corner.
     pub block: [usize; 4],
@@ -74,7 +73,7 @@ pub(super) fn agreement(a: &[Pixels], b: &[Pixels]) -> Option<Agreement> {
     // 1 - (1 - p)² [Sidak67], exact for small p too.
     let p = film.p.min(blocks.p);
     let p = p * (2.0 - p);
-    // That of the film's part alone.
+    // The level of the film's part alone.
     let level = LEVEL / (1.0 + (1.0 - LEVEL).sqrt());
     Some(Agreement {
         agree: p >= LEVEL,

@@ -1,4 +1,4 @@
-//! Making references, and making them longer.
+//! Making and extending references.
 
 use super::agreement::agreement;
 use super::provenance::{EstimatorRecord, FORMAT, Provenance};
@@ -20,33 +20,33 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The first of all seeds: far from those that people choose.
+/// The first seed: far from those that people choose.
 const SEEDS: u64 = 1 << 40;
-/// The beginnings of the names of the films of both estimators.
+/// The prefixes of the film names of both estimators.
 const NAMES: [&str; 2] = ["picture", "against"];
 
-/// Who asks for a reference: is told of progress, may have a clock, and may want to stop.
+/// The host of [`make`]: receives progress, may supply a clock, and can stop it.
 pub trait Host: Progress {
-    /// True to stop after the running pass, so that a later [`make`] can go on.
+    /// Returns true to stop after the running pass; a later [`make`] continues.
     fn should_end(&self) -> bool {
         false
     }
 
-    /// Told of samples that are there already.
+    /// Receives the number of samples in existing films.
     fn found(&self, _samples: u64) {}
 }
 
-/// Nobody listens, and there is no clock.
+/// A host without progress and clock, which never stops.
 impl Host for () {}
 
-/// What a reference is of.
+/// The scene of a reference.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     /// The scene file, as it was named.
     pub name: &'a str,
-    /// The hash of everything that was read for it, as text.
+    /// The hash of everything read for it, as text.
     pub digest: &'a str,
-    /// The scene, whose film is that of the reference.
+    /// The scene; the reference has its film.
     pub scene: &'a Scene,
 }
 
@@ -60,22 +60,19 @@ impl Subject<'_> {
     }
 }
 
-/// How a reference is made.
+/// The settings of a reference.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The estimator of the picture, and the one that it has to agree with. What they say of layers
-    /// has no influence.
+    /// The estimator of the image, and that of the cross-check. Their layers are ignored.
     pub estimators: [Settings; 2],
-    /// Samples per pixel of each, those included that are there already. Rounded up to a multiple
-    /// of [`REPLICATES`].
+    /// Samples per pixel of each, including existing ones. Rounded up to a multiple of [`REPLICATES`].
     pub spp: u64,
 }
 
 impl Plan {
-    /// The usual one: bidirectional path tracing with all strategies makes the picture, path tracing
-    /// is the witness, both with independent random numbers, and the longest paths and the seed of
-    /// `scene`.
-    pub fn usual(scene: &Settings, spp: u64) -> Self {
+    /// Makes the default plan: bidirectional path tracing with all strategies renders the image, path tracing
+    /// cross-checks it, both with the independent sampler and with the maximum depth and seed of `scene`.
+    pub fn with_defaults(scene: &Settings, spp: u64) -> Self {
         let of = |integrator| {
             let mut settings = Settings {
                 sampler: SamplerKind::Independent,
@@ -91,7 +88,7 @@ impl Plan {
         }
     }
 
-    /// The plan of a reference that gets so many samples more. None: it has settings that this
+    /// Makes the plan that adds `more` samples per pixel to a reference. None: it has settings that this
     /// program does not know.
     pub fn extended(provenance: &Provenance, more: u64) -> Option<Self> {
         let [first, second] = provenance.estimators.each_ref().map(|record| {
@@ -105,33 +102,33 @@ impl Plan {
         })
     }
 
-    /// Passes of each replicate.
+    /// Returns the number of passes of each replicate.
     fn passes(&self) -> u64 {
         self.spp.div_ceil(REPLICATES).max(1)
     }
 
-    /// Samples per pixel of each estimator, rounded up.
+    /// Returns the samples per pixel of each estimator, rounded up.
     pub fn rounded_spp(&self) -> u64 {
         self.passes().saturating_mul(REPLICATES)
     }
 }
 
-/// What became of a reference.
+/// The outcome of [`make`].
 #[derive(Clone, Debug)]
 pub enum Made {
-    /// It is done, and whether its estimators agree is in its provenance.
+    /// A complete reference; its provenance contains the agreement of its estimators.
     Whole(Box<Reference>),
-    /// The host asked to stop: the films are written, and the same call goes on.
+    /// The host asked to stop: the films are written, and the same call continues.
     Stopped,
 }
 
-/// Makes a reference in `folder`, which is made where it is not there. Films that are there are gone
-/// on from, so that the result has the bits of a reference that is made at once.
+/// Makes a reference in `folder`, which is created if needed. Continues from existing films, with the same
+/// bits as a reference made in a single run.
 ///
-/// A reference whose estimators disagree is a result, too, and written as one.
+/// A reference whose estimators disagree is also written and returned.
 ///
-/// Errors: a file cannot be read or written or is damaged; a film in the folder is of another render
-/// or has more passes than are asked for; no render can begin.
+/// Errors: a file cannot be read or written or is damaged; a film in the folder belongs to another render or
+/// has more passes than requested; a render cannot start.
 pub fn make(
     folder: &Path,
     subject: &Subject<'_>,
@@ -162,13 +159,13 @@ pub fn make(
     Ok(Made::Whole(Box::new(reference)))
 }
 
-/// All files of a reference in `folder`, whether or not they are there.
+/// Returns the paths of all files of a reference in `folder`, existing or not.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let named = [PICTURE, AGAINST, PROVENANCE].map(|name| folder.join(name));
     named.into_iter().chain(films(folder)).collect()
 }
 
-/// The films of both estimators.
+/// Returns the paths of the films of both estimators.
 fn films(folder: &Path) -> impl Iterator<Item = PathBuf> {
     let films = NAMES
         .iter()
@@ -176,7 +173,7 @@ fn films(folder: &Path) -> impl Iterator<Item = PathBuf> {
     films.map(|(name, replicate)| film(folder, name, replicate))
 }
 
-/// Removes what says that `folder` has a reference, and its films: the next one begins anew.
+/// Removes the provenance and the films of the reference in `folder`, so that the next one starts over.
 pub fn clear(folder: &Path) -> Result<(), Error> {
     for path in std::iter::once(folder.join(PROVENANCE)).chain(films(folder)) {
         match std::fs::remove_file(&path) {
@@ -189,7 +186,7 @@ pub fn clear(folder: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Compares what both estimators made, and writes it all.
+/// Compares the replicates of both estimators, and writes images and provenance.
 fn finish(
     folder: &Path,
     subject: &Subject<'_>,
@@ -229,7 +226,7 @@ fn finish(
     })
 }
 
-/// The settings of the first replicate of estimator number `index`.
+/// Returns the settings of the first replicate of estimator number `index`.
 fn seeded(settings: &Settings, index: u64) -> Settings {
     let seeds = settings.seed.wrapping_mul(2).wrapping_add(index);
     Settings {

@@ -1,41 +1,39 @@
-//! References: pictures that others are measured against, and why they can be trusted.
+//! References: images that errors are measured against, with evidence that they are right.
 //!
-//! A reference is rendered by two estimators that could disagree. Each makes [`REPLICATES`]
-//! replicates: renders of n passes with seeds of their own. Welch's t-test compares the replicates
-//! of both, on the mean of the film and on blocks of pixels, at [`LEVEL`]; a reference whose
-//! estimators disagree is written, and refused by [`Reference::load`].
+//! Two different estimators render a reference. Each makes [`REPLICATES`] replicates: renders of n passes
+//! with seeds of their own. Welch's t-test compares the replicates of both, on the mean of the film and on
+//! blocks of pixels, at [`LEVEL`]. A reference whose estimators disagree is written, but
+//! [`Reference::load`] refuses it.
 //!
-//! The picture is that of the *first* estimator alone: the mean Σ_p X_p / N over all its N =
-//! REPLICATES · n passes. Weights that favour the estimator of less variance would be better where
-//! they were known, but they would be estimated from the same samples, and such a mean is biased: a
-//! pixel that missed a bright path would trust itself most. So the choice is made before, and the
-//! second estimator is a witness. The variance of a pixel is Σ_p (X_p - X̄)² / (N (N - 1)), right for
-//! the independent sampler, and rather too large for stratified ones. Its passes count as N - 1
-//! degrees of freedom.
+//! The image is the mean Σ_p X_p / N over all N = REPLICATES · n passes of the *first* estimator; the second
+//! is only a cross-check. A mean of both, weighted by inverse variance, would have less variance, but its
+//! weights would be estimated from the same samples, which causes a bias: a pixel that missed a bright path
+//! would get the largest weight. The variance of a pixel is Σ_p (X_p - X̄)² / (N (N - 1)): exact for the
+//! independent sampler, somewhat too large for stratified ones. It has N - 1 degrees of freedom.
 //!
-//! Seeds are far from those that people choose, so that a picture which is measured has no sample
-//! in common with its reference.
+//! Seeds are far from those that people choose, so that a measured image shares no sample with its
+//! reference.
 //!
 //! A reference is a folder:
 //!
-//! | file | what |
+//! | file | content |
 //! |---|---|
-//! | `picture.exr` | the picture, with the layers `Variance`, `RelativeVariance` and `Samples` |
-//! | `against.exr` | the same of the second estimator |
-//! | `provenance.json` | [`Provenance`]: how it was made, and whether the estimators agree, with checksums of itself and both images |
-//! | `films/*.film` | the film of each replicate, by which [`make()`] goes on |
+//! | `picture.exr` | the image, with the layers `Variance`, `RelativeVariance` and `Samples` |
+//! | `against.exr` | the image of the second estimator, with the same layers |
+//! | `provenance.json` | [`Provenance`]: settings, agreement of the estimators, checksums of itself and both images |
+//! | `films/*.film` | the film of each replicate, from which [`make()`] continues |
 //!
-//! The films are needed to add samples only. As each holds whole passes, a reference that was
-//! extended, or stopped and gone on with, has the bits of one that was made at once.
+//! The films are needed only to add samples. They hold whole passes, so an extended or resumed reference has
+//! the same bits as one made in a single run.
 
 mod agreement;
+mod cross_check;
 mod make;
 mod picture;
 mod provenance;
 mod replicate;
 #[cfg(test)]
 mod tests;
-mod witness;
 
 pub use agreement::{Agreement, Comparison};
 pub use make::{Host, Made, Plan, Subject, clear, files, make};
@@ -50,50 +48,50 @@ use thiserror::Error;
 
 /// Replicates of each estimator.
 pub const REPLICATES: u64 = 16;
-/// The level of the agreement test: how often estimators that agree are said to disagree.
+/// The level of the agreement test: the rate of false alarms.
 pub const LEVEL: f64 = 1e-3;
 
 /// The names of the files in the folder of a reference.
 const PICTURE: &str = "picture.exr";
 const AGAINST: &str = "against.exr";
 const PROVENANCE: &str = "provenance.json";
-/// The folder of the films in it.
+/// The name of the folder of films in that of a reference.
 pub const FILMS: &str = "films";
 
-/// Why a reference cannot be made or used.
+/// An error of making or using a reference.
 #[derive(Debug, Error)]
 pub enum Error {
     /// A film or an image cannot be read or written.
     #[error(transparent)]
     File(#[from] formats::Error),
-    /// The system refused to read or write.
+    /// The system cannot read or write a file.
     #[error("{}", formats::cannot("use", path, error))]
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// The folder is not there, or has no `provenance.json`.
+    /// The folder does not exist, or has no `provenance.json`.
     #[error("{} is not a reference: it has no {PROVENANCE}", .0.display())]
     Missing(PathBuf),
-    /// No render can begin.
+    /// A render cannot start.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// A file of the reference is not as it was written.
+    /// A file of the reference is damaged.
     #[error("{}: damaged: {reason}", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The kind of damage.
         reason: String,
     },
-    /// It is whole, but not the reference that is wanted.
+    /// The reference is intact, but another one is needed.
     #[error("{}: refused: {reason}", folder.display())]
     Refused {
         /// The folder of the reference.
         folder: PathBuf,
-        /// What is wrong.
+        /// The cause.
         reason: String,
     },
     /// Its estimators disagree.
@@ -101,21 +99,21 @@ pub enum Error {
     Disagree {
         /// The folder of the reference.
         folder: PathBuf,
-        /// The probability of a difference at least as large where there is none.
+        /// The p-value of the difference.
         p: f64,
     },
-    /// A film has more passes than are asked for.
+    /// A film has more passes than requested.
     #[error(
-        "{} has {found} samples per pixel already, more than the {asked} requested",
+        "{} has {found} samples per pixel already, more than the {requested} requested",
         folder.display()
     )]
     TooLong {
         /// The folder of the reference.
         folder: PathBuf,
-        /// Samples per pixel of its longest replicate, times their number.
+        /// Samples per pixel of its longest replicate, times the number of replicates.
         found: u64,
-        /// Samples per pixel that were asked for.
-        asked: u64,
+        /// Requested samples per pixel.
+        requested: u64,
     },
     /// The folder has films of another render.
     #[error("{} is the film of another render: {difference}", path.display())]
@@ -128,7 +126,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// An error of the system with `path`.
+    /// Makes an error of the system about `path`.
     fn io(path: &Path, error: std::io::Error) -> Self {
         let path = path.to_owned();
         Self::Io { path, error }
@@ -146,24 +144,24 @@ impl Error {
     }
 }
 
-/// A picture that others are measured against.
+/// A reference image with its provenance.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// Where it is.
+    /// Its folder.
     pub folder: PathBuf,
-    /// The picture.
+    /// The image.
     pub picture: Pixels,
-    /// The variance of every pixel of it: of the mean, not of single samples.
+    /// The variance of each pixel's mean.
     pub variance: Pixels,
-    /// How it was made.
+    /// Its provenance.
     pub provenance: Provenance,
 }
 
 impl Reference {
     /// Reads the reference in `folder`.
     ///
-    /// Errors: a file is missing or damaged; it was made by another version of the estimators; its
-    /// estimators disagree. Of which scene it has to be, [`Self::check`] asks.
+    /// Errors: a file is missing or damaged; another version of the estimators made it; its estimators
+    /// disagree. [`Self::check`] compares it with a scene.
     pub fn load(folder: &Path) -> Result<Self, Error> {
         let provenance = Provenance::read(folder)?;
         provenance.check_usable(folder)?;
@@ -182,7 +180,7 @@ impl Reference {
         })
     }
 
-    /// A warning about its files: damage to older ones may go unseen. None: they are fine.
+    /// Returns a warning if its files have no checksums, so that damage may go unseen.
     pub fn warning(&self) -> Option<String> {
         let folder = self.folder.display();
         (self.provenance.format == provenance::UNSEALED).then(|| {
@@ -196,19 +194,19 @@ impl Reference {
         })
     }
 
-    /// Refuses it for another scene than the one with this digest, and for another film.
+    /// Refuses it unless it belongs to the scene with this digest and to this film.
     pub fn check(&self, digest: &str, film: &FilmSettings) -> Result<(), Error> {
         self.provenance.check(&self.folder, digest, film)
     }
 
-    /// The mean square error that its noise makes: the mean variance of pixels and channels.
+    /// Computes its own mean square error: the mean variance of pixels and channels.
     ///
-    /// None: it is not a number, or there are no pixels.
+    /// None: it is not finite, or there are no pixels.
     pub fn mse(&self) -> Option<f64> {
         self.variance.mean().filter(|mse| mse.is_finite())
     }
 
-    /// The picture with its variances, to be tested against.
+    /// Returns the image with its variances, for a z-test against it.
     pub fn estimated(&self) -> Estimated<'_> {
         let passes = self.provenance.estimators[0].spp as f64;
         Estimated {
@@ -219,7 +217,7 @@ impl Reference {
     }
 }
 
-/// True where `folder` has a reference, whole or not.
+/// Returns true if `folder` has a reference, intact or not.
 pub fn is_reference(folder: &Path) -> bool {
     folder.join(PROVENANCE).is_file()
 }

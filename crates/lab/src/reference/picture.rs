@@ -1,4 +1,4 @@
-//! The pictures of a reference, as files.
+//! The image files of a reference.
 
 use super::Error;
 use crate::image::Pixels;
@@ -7,13 +7,13 @@ use formats::film::FilmHeader;
 use formats::image::{ExrImage, ExrLayer, read_layers, write_exr};
 use std::path::Path;
 
-/// The picture and its variances of a developed film.
+/// Returns the image and the variances of a developed film.
 pub(super) fn of(picture: Picture) -> [Pixels; 2] {
     let size = [picture.width, picture.height];
     [picture.pixels, picture.variance].map(|data| Pixels { size, data })
 }
 
-/// Writes a film with the layers that it keeps.
+/// Writes a film as EXR with its layers.
 pub(super) fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Error> {
     let (picture, others) = (film.develop(), film.develop_layers());
     let layers = others.iter().map(|layer| ExrLayer {
@@ -37,7 +37,7 @@ pub(super) fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<(),
     Ok(write_exr(path, &image)?)
 }
 
-/// Reads a picture and its variances.
+/// Reads an image and its variances.
 pub(super) fn read(path: &Path) -> Result<[Pixels; 2], Error> {
     let layers = read_layers(path)?;
     let size = layers.size();

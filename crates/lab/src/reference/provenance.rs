@@ -1,4 +1,4 @@
-//! How a reference was made, as `provenance.json` has it.
+//! The provenance of a reference, `provenance.json`.
 
 use super::agreement::Agreement;
 use super::{Error, LEVEL, PROVENANCE};
@@ -15,10 +15,10 @@ use std::path::Path;
 
 /// The version of the format of `provenance.json`.
 pub const FORMAT: u32 = 2;
-/// The version before, without checksums.
+/// The previous version, without checksums.
 pub(super) const UNSEALED: u32 = 1;
 
-/// How a reference was made.
+/// The provenance of a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// [`FORMAT`].
@@ -29,53 +29,53 @@ pub struct Provenance {
     pub estimator_version: u32,
     /// The scene file, as it was named.
     pub scene: String,
-    /// The hash of everything that was read for the scene.
+    /// The hash of everything read for the scene.
     pub scene_digest: String,
     /// Width and height of the whole film. Unit: pixels.
     pub resolution: [u32; 2],
-    /// Left, top, right, bottom of what was rendered, the last two exclusive. Unit: pixels.
+    /// Left, top, right, bottom of the rendered rectangle, the last two exclusive. Unit: pixels.
     pub crop: [u32; 4],
-    /// The estimator of the picture, and the one that it has to agree with.
+    /// The estimator of the image, and that of the cross-check.
     pub estimators: [EstimatorRecord; 2],
-    /// Whether they agree.
+    /// The test of their agreement.
     pub agreement: Agreement,
-    /// The SHA-256 of the picture and its variances.
+    /// The SHA-256 of the image and its variances.
     pub picture: String,
-    /// The SHA-256 of the files beside it, by their names.
+    /// The SHA-256 of the image files, by name.
     #[serde(default)]
     pub files: BTreeMap<String, String>,
 }
 
-/// What one of the two estimators did.
+/// The record of one of the two estimators.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EstimatorRecord {
-    /// All settings, as flags write them, but the seed.
+    /// All settings except the seed, in the notation of flags.
     pub settings: BTreeMap<String, String>,
     /// Samples per pixel, of all replicates together.
     pub spp: u64,
-    /// Renders with seeds of their own.
+    /// Number of replicates, each with a seed of its own.
     pub replicates: u64,
-    /// The seed that was asked for; the replicates' seeds are functions of it.
+    /// The seed of the scene, which determines the seeds of the replicates.
     pub seed: u64,
     /// The seed of the first replicate; the others follow.
     pub first_seed: u64,
-    /// Time of rendering and training. Unit: seconds; 0 where the host has no clock.
+    /// Time of rendering and training. Unit: seconds; 0 if the host has no clock.
     pub seconds: f64,
     /// Rays by kind.
     pub rays: Rays,
-    /// Contributions that were not finite or too large, and dropped.
+    /// Dropped contributions: not finite, or too large.
     pub dropped: u64,
 }
 
 impl EstimatorRecord {
-    /// In a line, such as `bdpt, 4096 samples per pixel`: the settings that are not the usual ones
-    /// of the integrator are named.
+    /// Summarizes it in a line, such as `bdpt, 4096 samples per pixel`, with the settings that differ from
+    /// the defaults of the integrator.
     pub fn summary(&self) -> String {
-        let usual = self.usual();
+        let defaults = self.defaults();
         let ignored = ["integrator", "max-depth", "sampler", "seed", "aov"];
         let setting = |name: &str| self.settings.get(name).map_or("", String::as_str);
         let named = self.settings.iter().filter(|(name, value)| {
-            !ignored.contains(&name.as_str()) && usual.get(*name) != Some(value)
+            !ignored.contains(&name.as_str()) && defaults.get(*name) != Some(value)
         });
         let named = named.map(|(name, value)| format!(" --{name} {value}"));
         let named = named.collect::<String>();
@@ -83,8 +83,8 @@ impl EstimatorRecord {
         format!("{integrator}{named}, {} samples per pixel", self.spp)
     }
 
-    /// What its integrator does where nothing else is said.
-    fn usual(&self) -> BTreeMap<String, String> {
+    /// Returns the default settings of its integrator.
+    fn defaults(&self) -> BTreeMap<String, String> {
         let integrator = self.settings.get("integrator");
         let integrator = integrator.and_then(|name| name.parse().ok());
         let settings = Settings::new(integrator.unwrap_or_default());
@@ -93,9 +93,9 @@ impl EstimatorRecord {
 }
 
 impl Provenance {
-    /// Reads `provenance.json` of the reference in `folder`, whatever it says.
+    /// Reads `provenance.json` of the reference in `folder`, also if its estimators disagree.
     ///
-    /// Errors: it is not there, is damaged, is no such JSON, or has another format.
+    /// Errors: it is missing, damaged, not the expected JSON, or has another format.
     pub fn read(folder: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct Format {
@@ -136,7 +136,7 @@ impl Provenance {
         Ok(formats::file::replace(&path, json.as_bytes())?)
     }
 
-    /// Refuses the reference in `folder` where one of its files is not as it was written.
+    /// Refuses the reference in `folder` if one of its files is damaged.
     pub(super) fn check_files(&self, folder: &Path) -> Result<(), Error> {
         for (name, sum) in &self.files {
             let path = folder.join(name);
@@ -152,7 +152,7 @@ impl Provenance {
         Ok(())
     }
 
-    /// How it was made, in words.
+    /// Summarizes the estimators and their agreement in a line.
     pub fn summary(&self) -> String {
         let [first, second] = self.estimators.each_ref().map(EstimatorRecord::summary);
         let Agreement { p, level, .. } = &self.agreement;
@@ -164,8 +164,8 @@ impl Provenance {
         format!("{first}; {agree} with {second} (p = {p:.3}, level {level})")
     }
 
-    /// Refuses the reference in `folder` where nothing should be measured against it, whatever the
-    /// scene: its estimators disagree, or another version of them made it.
+    /// Refuses the reference in `folder` if it is unusable for any scene: its estimators disagree, or another
+    /// version of them made it.
     pub fn check_usable(&self, folder: &Path) -> Result<(), Error> {
         let folder = folder.to_owned();
         let version = self.estimator_version;
@@ -177,15 +177,14 @@ impl Provenance {
             return Err(Error::Refused { folder, reason });
         }
         let Agreement { agree, p, .. } = &self.agreement;
-        // A reference of a laxer level is no reference here.
+        // Its own level may be less strict.
         if *agree && *p >= LEVEL {
             return Ok(());
         }
         Err(Error::Disagree { folder, p: *p })
     }
 
-    /// Refuses the reference in `folder` for another scene than the one with this digest, and for
-    /// another film.
+    /// Refuses the reference in `folder` unless it belongs to the scene with this digest and to this film.
     pub fn check(&self, folder: &Path, digest: &str, film: &FilmSettings) -> Result<(), Error> {
         let difference = self.difference(digest, film);
         difference.map_or(Ok(()), |reason| {
@@ -194,12 +193,12 @@ impl Provenance {
         })
     }
 
-    /// Why it is not of the scene with this digest and film. None: it is.
+    /// Describes the difference from the scene with this digest and film. None: there is none.
     fn difference(&self, digest: &str, film: &FilmSettings) -> Option<String> {
         if self.scene_digest != digest {
-            let (found, wanted) = (short(&self.scene_digest), short(digest));
+            let (found, expected) = (short(&self.scene_digest), short(digest));
             return Some(format!(
-                "another scene, or one that has changed since: its digest is {found}, not {wanted}"
+                "another scene, or one that has changed since: its digest is {found}, not {expected}"
             ));
         }
         let ([width, height], [w, h]) = (self.resolution, film.resolution);
@@ -209,14 +208,14 @@ impl Provenance {
             ));
         }
         let ([left, top], [right, bottom]) = (film.crop.min, film.crop.max);
-        let wanted = [left, top, right, bottom];
+        let expected = [left, top, right, bottom];
         let text = |crop: [u32; 4]| crop.map(|edge| edge.to_string()).join(",");
-        let (crop, asked) = (text(self.crop), text(wanted));
-        (self.crop != wanted).then(|| format!("another crop: {crop}, not {asked}"))
+        let (found, wanted) = (text(self.crop), text(expected));
+        (self.crop != expected).then(|| format!("another crop: {found}, not {wanted}"))
     }
 }
 
-/// The beginning of a hash.
+/// Returns the first digits of a hash.
 fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }

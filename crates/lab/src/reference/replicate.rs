@@ -1,4 +1,4 @@
-//! The replicates of an estimator: films that are gone on from, rendered and written.
+//! The replicates of an estimator: rendering, writing and continuing their films.
 
 use super::make::{Host, Subject};
 use super::{Error, FILMS, REPLICATES};
@@ -9,39 +9,39 @@ use formats::film::{FilmFile, FilmHeader, Stopping};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The time between writings of a film that is being rendered.
+/// The time between two writes of a growing film.
 const WRITE_EVERY: Duration = Duration::from_secs(300);
 
-/// An estimator that makes replicates.
+/// An estimator that renders replicates.
 pub(super) struct Estimator<'a> {
     pub(super) folder: &'a Path,
     pub(super) subject: &'a Subject<'a>,
-    /// The seed is that of the first replicate.
+    /// The settings of the first replicate; the seeds of the others follow its seed.
     pub(super) settings: Settings,
-    /// The beginning of the names of its films.
+    /// The prefix of the names of its films.
     pub(super) name: &'static str,
-    /// Of each replicate.
+    /// Passes of each replicate.
     pub(super) passes: u64,
     pub(super) resources: &'a Resources,
 }
 
-/// What an estimator made.
+/// The replicates of an estimator, complete.
 pub(super) struct Replicates {
-    /// All replicates in one film: pass p of replicate r is pass r · n + p of it.
+    /// All replicates in one film: pass p of replicate r is its pass r · n + p.
     pub(super) film: Film,
-    /// With the time and the counts of all; its identity is that of the first.
+    /// The header, with total time and counts, and with the identity of the first replicate.
     pub(super) header: FilmHeader,
-    /// The picture of each.
+    /// The image of each replicate.
     pub(super) pictures: Vec<Pixels>,
 }
 
 impl Estimator<'_> {
-    /// The film of a replicate, which may not be there yet.
+    /// Returns the path of a replicate's film, which may not exist yet.
     fn film(&self, replicate: u64) -> PathBuf {
         film(self.folder, self.name, replicate)
     }
 
-    /// Renders what is missing. None: the host asked to stop.
+    /// Renders the missing passes of all replicates. None: the host asked to stop.
     pub(super) fn replicates(&self, host: &dyn Host) -> Result<Option<Replicates>, Error> {
         let mut all: Option<Replicates> = None;
         for replicate in 0..REPLICATES {
@@ -77,7 +77,7 @@ impl Estimator<'_> {
         }))
     }
 
-    /// A replicate with all its passes. None: the host asked to stop; its film is written.
+    /// Completes a replicate. None: the host asked to stop; its film is written.
     fn replicate(
         &self,
         path: &Path,
@@ -95,9 +95,9 @@ impl Estimator<'_> {
         }
     }
 
-    /// The film that is gone on from, if there is one.
+    /// Reads the existing film of a replicate, if any.
     ///
-    /// Errors: it is damaged, of another render, or has passes that are not asked for.
+    /// Errors: it is damaged, belongs to another render, or has more passes than requested.
     fn earlier(&self, path: &Path, header: &FilmHeader) -> Result<Option<FilmFile>, Error> {
         if !path.exists() {
             return Ok(None);
@@ -112,7 +112,7 @@ impl Estimator<'_> {
         Err(Error::TooLong {
             folder: self.folder.to_owned(),
             found: most.saturating_mul(REPLICATES),
-            asked: self.passes.saturating_mul(REPLICATES),
+            requested: self.passes.saturating_mul(REPLICATES),
         })
     }
 
@@ -159,13 +159,13 @@ impl Estimator<'_> {
     }
 }
 
-/// The film of a replicate in `folder`; `name` is that of the estimator.
+/// Returns the path of a replicate's film in `folder`; `name` is the estimator's prefix.
 pub(super) fn film(folder: &Path, name: &str, replicate: u64) -> PathBuf {
     let name = format!("{name}-{replicate:02}.film");
     folder.join(FILMS).join(name)
 }
 
-/// Fails where `found` is the header of another render than `expected`.
+/// Fails if `found` is the header of another render than `expected`.
 fn check(path: &Path, expected: &FilmHeader, found: &FilmHeader) -> Result<(), Error> {
     let difference = expected.difference(found);
     difference.map_or(Ok(()), |difference| {
@@ -174,7 +174,7 @@ fn check(path: &Path, expected: &FilmHeader, found: &FilmHeader) -> Result<(), E
     })
 }
 
-/// The film as if its passes were these.
+/// Renumbers the passes of a film.
 fn moved(film: &Film, passes: std::ops::Range<u64>) -> Result<Film, bidir::film::MergeError> {
     Film::restore(
         film.settings().clone(),

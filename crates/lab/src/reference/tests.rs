@@ -32,7 +32,7 @@ fn scene(text: &str) -> Loaded {
     build(&description, &LoadOptions::default()).unwrap()
 }
 
-/// A folder of its own, gone at the end, and a scene.
+/// A temporary folder and a scene.
 struct Workplace {
     folder: TempDir,
     loaded: Loaded,
@@ -70,11 +70,11 @@ impl Workplace {
     fn make(&self, name: &str, plan: &Plan) -> Reference {
         match self.made(name, plan, &()).unwrap() {
             Made::Whole(reference) => *reference,
-            Made::Stopped => panic!("nobody asked to stop"),
+            Made::Stopped => panic!("the host never stops"),
         }
     }
 
-    /// What the reference is refused for.
+    /// Returns the error of loading the reference.
     #[track_caller]
     fn refusal(&self, name: &str) -> String {
         Reference::load(&self.path(name)).unwrap_err().to_string()
@@ -84,7 +84,7 @@ impl Workplace {
 fn plan(spp: u64) -> Plan {
     let mut scene = Settings::default();
     scene.path.max_depth = Some(3);
-    Plan::usual(&scene, spp)
+    Plan::with_defaults(&scene, spp)
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn restricted_estimators_agree_where_they_make_the_same_paths() {
 }
 
 #[test]
-fn an_estimator_that_misses_paths_is_found_out() {
+fn an_estimator_that_misses_paths_is_detected() {
     let place = Workplace::new();
     let mut plan = plan(128);
     plan.estimators[1].path.max_depth = Some(1);
@@ -149,7 +149,7 @@ fn an_estimator_that_misses_paths_is_found_out() {
     assert!(!agreement.agree && agreement.p < LEVEL);
     let refusal = place.refusal("a");
     assert!(refusal.contains("its estimators disagree"), "{refusal}");
-    // A flag that was set by hand does not help.
+    // Setting the flag by hand does not help.
     let path = place.path("a/provenance.json");
     let json = fs::read_to_string(&path).unwrap();
     let by_hand = json.replace("\"agree\": false", "\"agree\": true");
@@ -157,7 +157,7 @@ fn an_estimator_that_misses_paths_is_found_out() {
     assert!(place.refusal("a").contains("its estimators disagree"));
 }
 
-/// Stops after so many passes, with a clock that counts readings.
+/// A host that stops after some passes; its clock counts readings.
 struct Stopper {
     left: AtomicU64,
     time: AtomicU64,
@@ -180,7 +180,7 @@ impl Host for Stopper {
 }
 
 #[test]
-fn what_was_stopped_and_extended_has_the_same_bits() {
+fn stopped_and_extended_references_have_the_same_bits() {
     let place = Workplace::new();
     place.make("a", &plan(64));
     let at_once = Reference::load(&place.path("a")).unwrap();
@@ -194,7 +194,7 @@ fn what_was_stopped_and_extended_has_the_same_bits() {
         };
         if let Made::Stopped = place.made("b", &plan(60), &host).unwrap() {
             stops += 1;
-            // The reference of 32 samples is whole all the while.
+            // The reference of 32 samples stays intact meanwhile.
             let spp = Reference::load(&place.path("b")).unwrap().provenance;
             assert_eq!(spp.estimators[0].spp, 32);
         }
@@ -216,7 +216,7 @@ fn what_was_stopped_and_extended_has_the_same_bits() {
 }
 
 #[test]
-fn replicates_have_seeds_of_their_own_and_the_variance_is_honest() {
+fn references_of_other_seeds_differ_within_their_variance() {
     let place = Workplace::new();
     let a = place.make("a", &plan(128));
     let mut other = plan(128);
@@ -258,7 +258,7 @@ fn another_scene_and_another_film_are_refused() {
 }
 
 #[test]
-fn films_of_another_render_are_not_gone_on_from() {
+fn films_of_another_render_are_refused() {
     let mut place = Workplace::new();
     place.make("a", &plan(1));
     let mut other = plan(32);
@@ -273,7 +273,7 @@ fn films_of_another_render_are_not_gone_on_from() {
     assert!(error.contains("scene-digest is"), "{error}");
 }
 
-/// The JSON with a checksum of its own.
+/// Replaces the checksum of a JSON text.
 fn resealed(json: &str) -> String {
     seal::sealed(&unsealed(json).to_string())
 }
@@ -285,7 +285,7 @@ fn unsealed(json: &str) -> serde_json::Value {
 }
 
 #[test]
-fn every_flip_in_a_file_of_a_reference_is_noticed() {
+fn every_flipped_bit_in_a_file_of_a_reference_is_an_error() {
     let place = Workplace::new();
     place.make("a", &plan(1));
     for name in [PICTURE, AGAINST, PROVENANCE] {
@@ -308,7 +308,7 @@ fn every_flip_in_a_file_of_a_reference_is_noticed() {
 }
 
 #[test]
-fn references_of_before_are_read_with_a_warning() {
+fn references_of_the_previous_version_are_read_with_a_warning() {
     let place = Workplace::new();
     place.make("a", &plan(1));
     let path = place.path("a/provenance.json");

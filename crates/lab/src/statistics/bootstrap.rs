@@ -1,35 +1,35 @@
-//! The mean of values whose distribution nobody knows.
+//! Confidence bounds of the mean of values with an unknown distribution.
 //!
-//! The *expanded percentile* bootstrap \[Hesterberg15\]: the n values are drawn anew with replacement
-//! many times; the bounds are the quantiles α' and 1 - α' of the means, where
+//! The *expanded percentile* bootstrap \[Hesterberg15\] resamples the n values with replacement many times;
+//! the bounds are the quantiles α' and 1 - α' of the resampled means, where
 //!
 //!   α' = Φ(-√(n / (n-1)) t),   t the quantile of Student's t with n - 1 degrees of freedom,
 //!
-//! instead of α/2: the plain percentiles make intervals that are too short by √((n-1) / n), and
-//! shorter still for not knowing that the variance is an estimate. For normal values the result is
-//! close to Student's interval. Of ten values as skewed as χ² with one degree of freedom, intervals of
-//! 95 % hold the expectation in 86 of 100 cases.
+//! replaces α/2. Plain percentiles give intervals that are too short by √((n-1) / n), and shorter still as
+//! they ignore that the variance is an estimate. For normal values, the result is close to Student's
+//! interval. With ten values as skewed as χ² with one degree of freedom, 86 of 100 intervals of 95 % contain
+//! the expectation.
 //!
-//! There are as many resamples as leave [`OUTSIDE`] of them beyond each bound, so that a bound does
-//! not hang on the most extreme ones: α' itself is then known to about 14 %.
+//! The number of resamples leaves at least [`OUTSIDE`] means beyond each bound, so that a bound does not
+//! depend on a few extreme ones: the relative standard error of α' is then about 14 %.
 
 use super::t_quantile;
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
 use rayon::prelude::*;
 
-/// How many means lie beyond each bound, at least.
+/// The least number of means beyond each bound.
 const OUTSIDE: f64 = 50.0;
 /// The least number of resamples.
 const LEAST: u64 = 10_000;
-/// The largest number of resamples: a second of one core for twenty values.
+/// The largest number of resamples: one second of one core for twenty values.
 const MOST: u64 = 1_000_000;
-/// The seed of these draws, the same for all data.
+/// The seed of the resampling, the same for all data.
 const SEED: u64 = 0;
 
-/// The bounds of the mean.
+/// Computes the bounds of the mean.
 ///
-/// None: there are fewer than two values, `confidence` is not in (0, 1), or it is so near to 1 that
-/// too few of the largest number of resamples would lie beyond the bounds.
+/// None: there are fewer than two values, `confidence` is not in (0, 1), or it is so near to 1 that the
+/// bounds would need more than [`MOST`] resamples.
 pub(super) fn bounds(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     let t = t_quantile(values.len(), confidence)?;
     let n = values.len() as f64;
@@ -41,19 +41,19 @@ pub(super) fn bounds(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     Some([means[rank - 1], means[means.len() - rank]])
 }
 
-/// How many resamples it takes to know the quantile `tail`. None: too many.
+/// Returns the number of resamples for the quantile `tail`. None: more than [`MOST`].
 fn resamples(tail: f64) -> Option<u64> {
-    // A tail of 0 asks for more than any number.
+    // A tail of 0 needs infinitely many.
     let needed = (OUTSIDE / tail).ceil();
     (needed <= MOST as f64).then(|| LEAST.max(needed as u64))
 }
 
-/// Φ: the probability that a normal number of variance 1 is below `z`.
+/// Computes Φ(z), the probability that a standard normal number is below `z`.
 fn normal_cdf(z: f64) -> f64 {
     0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The means of all resamples, in ascending order.
+/// Computes the means of all resamples, in ascending order.
 fn resampled_means(values: &[f64], count: u64) -> Vec<f64> {
     let sampler = Sampler::new(SamplerKind::Independent, SEED);
     let dimension = Dimension::at(0, Purpose::Scatter);
@@ -92,9 +92,9 @@ mod tests {
         assert!(high - mean > 1.1 * (mean - low), "{low} {mean} {high}");
     }
 
-    /// How many of 800 intervals from ten skewed values hold their expectation: none is perfect.
+    /// Of 800 intervals from ten skewed values, 86 % contain the expectation.
     #[test]
-    fn skewed_values_are_held_less_often() {
+    fn intervals_of_skewed_values_cover_less_often() {
         let holds = |trial: u64| {
             let values: Vec<f64> = normal(trial).take(10).map(|z| z * z).collect();
             let [low, high] = bounds(&values, 0.95).unwrap();

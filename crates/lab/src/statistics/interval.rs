@@ -1,11 +1,11 @@
-//! The mean of independent values, and how sure it is.
+//! The mean of independent values, with its confidence interval.
 
 use super::t_quantile;
 
 /// A value between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// What was measured.
+    /// The estimate.
     pub value: f64,
     /// The lower bound.
     pub low: f64,
@@ -13,11 +13,11 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// The mean x̄ ± t s / √n of n independent values with standard deviation s, where t is the quantile
+/// Computes the mean x̄ ± t s / √n of n independent values with standard deviation s, where t is the quantile
 /// of Student's t distribution with n - 1 degrees of freedom \[Press07, §14.2\].
 ///
-/// Exact for normal values; for means over whole images close to it, also where pixels have heavy
-/// tails. None: there are fewer than two values, or `confidence` is not in (0, 1).
+/// The interval is exact for normal values, and nearly so for means over whole images, even if pixels have
+/// heavy tails. None: there are fewer than two values, or `confidence` is not in (0, 1).
 pub fn mean_interval(values: &[f64], confidence: f64) -> Option<Interval> {
     let t = t_quantile(values.len(), confidence)?;
     let (mean, variance) = mean_and_variance(values.iter().copied());
@@ -29,7 +29,7 @@ pub fn mean_interval(values: &[f64], confidence: f64) -> Option<Interval> {
     })
 }
 
-/// The mean of values, and the unbiased estimate of their variance.
+/// Computes the mean of values, and the unbiased estimate of their variance.
 pub(super) fn mean_and_variance(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let n = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / n;
@@ -53,16 +53,16 @@ mod tests {
     }
 
     #[test]
-    fn too_few_values_have_none() {
+    fn too_few_values_have_no_interval() {
         assert_eq!(mean_interval(&[], 0.95), None);
         assert_eq!(mean_interval(&[1.0], 0.95), None);
         assert_eq!(mean_interval(&[1.0, 2.0], 1.0), None);
         assert!(mean_interval(&[1.0, f64::NAN], 0.95).unwrap().low.is_nan());
     }
 
-    /// Of 4000 intervals from five normal values each, 95 % ± 1 % (three standard errors) hold 0.
+    /// Of 4000 intervals from five normal values each, 95 % ± 1 % (three standard errors) contain 0.
     #[test]
-    fn the_confidence_is_what_is_asked_for() {
+    fn intervals_have_the_stated_confidence() {
         let holds = |trial: u64| {
             let values: Vec<f64> = normal(trial).take(5).collect();
             let interval = mean_interval(&values, 0.95).unwrap();

@@ -1,34 +1,34 @@
 //! The ratio of two methods' errors, paired by seed.
 //!
-//! With a_i and b_i the errors of two methods under seed i, the value is the geometric mean of the
-//! ratios, exp(mean ln(a_i / b_i)): a factor of 2 and a factor of ½ cancel, the scale of the scene
-//! does, and what both methods share with a seed does.
+//! With the errors a_i and b_i of two methods under seed i, the value is the geometric mean of the ratios,
+//! exp(mean ln(a_i / b_i)): the factors 2 and ½ cancel, and so do the scale of the scene and variations
+//! that both methods share under a seed.
 //!
 //! The interval is that of the mean log-ratio:
 //!
-//! - with fewer than [`FEWEST`] pairs, and where more confidence is asked for than the bootstrap can
-//!   tell of so few, Student's t interval: exact for normal log-ratios however few there are;
-//! - else the [expanded percentile bootstrap](super::bootstrap), which follows skewed ones.
+//! - with fewer than [`FEWEST`] pairs, or at a confidence beyond the bootstrap's resamples, Student's t
+//!   interval, which is exact for any number of normal log-ratios;
+//! - otherwise the [expanded percentile bootstrap](super::bootstrap), which adapts to skewed log-ratios.
 //!
-//! A few values say little of how skewed they are: resamples of three have no mean outside of them,
-//! and plain or expanded percentiles of 95 % hold the expectation in 3 of 4 cases \[Hesterberg15\].
-//! What is skewed costs Student's interval less than that: of log-normal log-ratios with σ = ½,
-//! it holds the expectation in 91 of 100 cases, and so does the bootstrap of ten.
+//! A few values carry little information about their skewness: the means of resamples of three values lie
+//! between these values, and plain or expanded percentiles of 95 % contain the expectation in only 3 of 4
+//! cases \[Hesterberg15\]. Student's interval suffers less: with log-normal log-ratios of σ = ½, it contains
+//! the expectation in 91 of 100 cases, as does the bootstrap of ten.
 
 use super::bootstrap;
 use super::{Interval, mean_interval};
 
-/// The fewest pairs whose interval is a bootstrap.
+/// The smallest number of pairs for a bootstrap interval.
 const FEWEST: usize = 10;
 
-/// How ratios are found, in words.
+/// The description of the method for reports.
 pub const RATIOS: &str = "Ratios are geometric means over seeds, paired by seed. Their intervals are \
     Student's, of the logarithms, where there are fewer than ten seeds or a quantile is asked for that \
     resamples do not reach, and expanded percentile bootstraps of the logarithms elsewhere.";
 
-/// The geometric mean of `a[i] / b[i]` with its interval.
+/// Computes the geometric mean of `a[i] / b[i]` with its interval.
 ///
-/// None: the lengths differ, there are fewer than two pairs, something is not positive and finite, or
+/// None: the lengths differ, there are fewer than two pairs, a value is not positive and finite, or
 /// `confidence` is not in (0, 1).
 pub fn ratio_interval(a: &[f64], b: &[f64], confidence: f64) -> Option<Interval> {
     let usable = |value: &f64| *value > 0.0 && value.is_finite();
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_ratio_has_no_interval() {
+    fn values_without_ratios_have_no_interval() {
         for (a, b) in [
             (&[1.0, 2.0][..], &[1.0][..]),
             (&[1.0], &[1.0]),
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn methods_change_places_by_the_inverse() {
+    fn exchanging_the_methods_inverts_the_interval() {
         let a = [1.0, 1.3, 0.8, 1.1, 2.0, 0.9, 1.2, 1.0, 1.4, 0.6];
         let b = [0.7, 0.9, 0.9, 0.8, 1.0, 0.7, 1.1, 0.8, 1.3, 0.9];
         for count in [6, a.len()] {
@@ -106,7 +106,7 @@ mod tests {
         );
     }
 
-    /// Where resamples do not reach the quantile, no bound is the most extreme of them.
+    /// Beyond the quantiles that resamples reach, Student's interval replaces the most extreme mean.
     #[test]
     fn more_confidence_is_a_wider_interval() {
         let ratios: Vec<f64> = normal(7).take(12).map(|z| libm::exp(0.1 * z)).collect();
@@ -119,7 +119,8 @@ mod tests {
         }
     }
 
-    /// How many of `trials` intervals from `count` log-ratios hold their expectation, `center`.
+    /// Returns the fraction of `trials` intervals from `count` log-ratios that contain the expectation,
+    /// `center`.
     fn coverage(count: usize, trials: u64, center: f64, of_normal: impl Fn(f64) -> f64) -> f64 {
         let holds = |trial: u64| {
             let logs = normal(trial).take(count).map(&of_normal);
@@ -131,12 +132,12 @@ mod tests {
         (0..trials).filter(|&trial| holds(trial)).count() as f64 / trials as f64
     }
 
-    /// Trials by the number of seeds: bootstraps take longer.
+    /// Numbers of seeds with their trials; bootstraps take longer.
     const COUNTS: [(usize, u64); 5] = [(3, 4000), (4, 4000), (6, 4000), (10, 1500), (20, 800)];
 
-    /// The level is 0.0027 for each number of seeds: three standard errors.
+    /// The tolerance is three standard errors: a level of 0.0027 for each number of seeds.
     #[test]
-    fn the_confidence_is_what_is_asked_for() {
+    fn intervals_have_the_stated_confidence() {
         for (count, trials) in COUNTS {
             let held = coverage(count, trials, 0.3, |z| 0.3 + 0.2 * z);
             let allowed = 3.0 * (0.95 * 0.05 / trials as f64).sqrt();
@@ -144,9 +145,9 @@ mod tests {
         }
     }
 
-    /// Log-normal log-ratios of σ = ½, of which no interval from few values is perfect.
+    /// Log-ratios are log-normal with σ = ½; no interval from few of them has its exact confidence.
     #[test]
-    fn skewed_ratios_have_nearly_the_confidence_that_is_asked_for() {
+    fn intervals_of_skewed_ratios_nearly_have_the_stated_confidence() {
         for (count, trials) in COUNTS {
             let held = coverage(count, trials, libm::exp(0.125), |z| libm::exp(0.5 * z));
             assert!(held > 0.89 && held < 0.95, "{count} seeds: {held}");

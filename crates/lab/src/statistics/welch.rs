@@ -1,14 +1,14 @@
-//! Do two renders have the same expectation? Welch's t-test of means over blocks of pixels.
+//! Welch's t-test that two renders have the same expectation, on means over blocks of pixels.
 //!
 //! With the means m, their variances v and the degrees of freedom ν of those variances
 //! \[Press07, §14.2.1\]:
 //!
 //!   t = (m_a - m_b) / √(v_a + v_b),   ν = (v_a + v_b)² / (v_a² / ν_a + v_b² / ν_b).
 //!
-//! The smallest p-value of n tests is corrected to 1 - (1 - p)ⁿ \[Sidak67\], which is right for
-//! independent tests, and careful for the channels of one block, which are not. Larger blocks see
-//! smaller differences, and are closer to normal where pixels have heavy tails; small ones see what
-//! is local. Who asks at several sizes has to share the level among them.
+//! The smallest p-value of n tests is corrected to 1 - (1 - p)ⁿ \[Sidak67\], which is exact for independent
+//! tests, and conservative for the correlated channels of one block. Larger blocks detect smaller
+//! differences, and their means are closer to normal if pixels have heavy tails; small blocks detect local
+//! differences. Callers that test several sizes have to share the level among them.
 //!
 //! Variances come from replicates ([`welch_test`]), or with the images themselves ([`z_test`]). The
 //! latter adds the variances of a block's pixels, so pixels have to be uncorrelated, as those of the
@@ -22,41 +22,41 @@ use crate::image::Pixels;
 use rayon::prelude::*;
 use statrs::distribution::ContinuousCDF;
 
-/// A block as large as any image.
+/// The size of a block that covers any image.
 pub const WHOLE: usize = usize::MAX;
 
-/// Above so many degrees of freedom Student's t is taken to be normal.
+/// Above this number of degrees of freedom, Student's t is approximated by a normal distribution.
 const NORMAL_FREEDOM: f64 = 1e5;
 
-/// An image that knows how sure it is.
+/// An image with the variances of its pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimated<'a> {
     /// The estimates.
     pub mean: &'a Pixels,
-    /// The variance of every one of them: of the mean, not of single samples.
+    /// The variance of each estimate: of the mean, not of single samples.
     pub variance: &'a Pixels,
-    /// The degrees of freedom of each variance: passes - 1, or infinite where it is known exactly.
+    /// The degrees of freedom of each variance: passes - 1, or infinite if it is known exactly.
     pub freedom: f64,
 }
 
-/// What a test found where two images differ most.
+/// The most significant difference of two images.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Corrected for the number of tests.
+    /// The p-value, corrected for the number of tests.
     pub p: f64,
-    /// How many tests there were: three channels of every block.
+    /// The number of tests: three channels of every block.
     pub tests: usize,
     /// Left, top, right and bottom (exclusive) of the block. Unit: pixels.
     pub block: [usize; 4],
     /// Red, green or blue: 0, 1 or 2.
     pub channel: usize,
-    /// The means of both images over it.
+    /// The means of both images over the block.
     pub means: [f64; 2],
     /// Their difference. Unit: standard errors.
     pub deviations: f64,
 }
 
-/// Compares images that know their variances, in blocks of `block` × `block` pixels.
+/// Compares images with variances, in blocks of `block` × `block` pixels.
 ///
 /// None: the four sizes are not the same, there are no pixels, or a variance has no freedom.
 pub fn z_test(a: &Estimated<'_>, b: &Estimated<'_>, block: usize) -> Option<Difference> {
@@ -70,7 +70,7 @@ pub fn z_test(a: &Estimated<'_>, b: &Estimated<'_>, block: usize) -> Option<Diff
     worst(blocks, &a.moments(blocks), &b.moments(blocks))
 }
 
-/// Compares the replicates of two estimators: independent renders, each with the same effort.
+/// Compares the replicates of two estimators: independent renders with the same number of samples.
 ///
 /// None: there are fewer than two of either, their sizes are not the same, or there are no pixels.
 pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference> {
@@ -84,16 +84,16 @@ pub fn welch_test(a: &[Pixels], b: &[Pixels], block: usize) -> Option<Difference
     worst(blocks, &moments(a), &moments(b))
 }
 
-/// The relative bias of one of two estimators, in the mean of any channel over the whole film, that
-/// [`welch_test`] of [`WHOLE`] finds more often than not at `level`.
+/// Computes the relative bias of one of two estimators, in the mean of any channel over the whole film,
+/// that [`welch_test`] with [`WHOLE`] detects with a probability of at least 1/2 at `level`.
 ///
-/// With ν of the test, and α the level of one of its three comparisons:
+/// With ν of the test, and the level α of one of its three comparisons, it is
 /// max_c t_{1 - α/2}(ν) √(v_a + v_b) / ½ (m_a + m_b).
 ///
-/// None: where the test has none, all channels are black, or a number is not finite.
+/// None: the test is impossible, all channels are black, or a number is not finite.
 pub fn smallest_bias(a: &[Pixels], b: &[Pixels], level: f64) -> Option<f64> {
     let tests = welch_test(a, b, WHOLE)?.tests as f64;
-    // That of each comparison, 1 - (1 - level)^(1/n) [Sidak67].
+    // The level of each comparison, 1 - (1 - level)^(1/n) [Sidak67].
     let alpha = -libm::expm1(libm::log1p(-level) / tests);
     let blocks = Blocks::new(a.first()?.size, WHOLE);
     let moments = [a, b].map(|replicates| moments_of_replicates(blocks, replicates));
@@ -111,11 +111,11 @@ pub fn smallest_bias(a: &[Pixels], b: &[Pixels], level: f64) -> Option<f64> {
     largest.is_finite().then_some(largest)
 }
 
-/// The variance of a difference, and its degrees of freedom; NaN where it has no variance.
+/// Computes the variance of a difference, and its degrees of freedom; NaN if the variance is zero.
 fn sum_of_variances(a: Moments, b: Moments) -> (f64, f64) {
     let variance = a.variance + b.variance;
     let share = |moments: Moments| moments.variance * moments.variance / moments.freedom;
-    // An estimate without variance has no degrees of freedom to give.
+    // An estimate without variance contributes no degrees of freedom.
     let shares: f64 = [a, b]
         .into_iter()
         .filter(|m| m.variance > 0.0)
@@ -128,9 +128,9 @@ fn sum_of_variances(a: Moments, b: Moments) -> (f64, f64) {
 #[derive(Clone, Copy, Debug)]
 struct Moments {
     mean: f64,
-    /// Of the mean.
+    /// The variance of the mean.
     variance: f64,
-    /// Of the variance.
+    /// The degrees of freedom of the variance.
     freedom: f64,
 }
 
@@ -164,7 +164,7 @@ fn moments_of_replicates(blocks: Blocks, replicates: &[Pixels]) -> Vec<Moments> 
     (0..sums[0].len()).map(of).collect()
 }
 
-/// Where two images differ most.
+/// Finds the most significant difference of two images.
 fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
     let tests = a.par_iter().zip(b).map(|(a, b)| welch(*a, *b));
     let tests: Vec<(f64, f64)> = tests.collect();
@@ -180,9 +180,9 @@ fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
     })
 }
 
-/// The two-sided p-value of Welch's test, and the difference in standard errors.
+/// Computes the two-sided p-value of Welch's test, and the difference in standard errors.
 ///
-/// What is not finite differs from everything.
+/// Numbers that are not finite have p = 0.
 fn welch(a: Moments, b: Moments) -> (f64, f64) {
     let (variance, freedom) = sum_of_variances(a, b);
     let difference = a.mean - b.mean;
@@ -197,7 +197,7 @@ fn welch(a: Moments, b: Moments) -> (f64, f64) {
     if p.is_finite() { (p, t) } else { (0.0, t) }
 }
 
-/// The probability that Student's t is beyond ±`t`; NaN where there is none.
+/// Computes the probability that Student's t lies beyond ±`t`; NaN if an argument is NaN.
 fn tail(t: f64, freedom: f64) -> f64 {
     if t.is_nan() || freedom.is_nan() {
         return f64::NAN;
@@ -208,7 +208,7 @@ fn tail(t: f64, freedom: f64) -> f64 {
     students_t(freedom).map_or(f64::NAN, |distribution| 2.0 * distribution.cdf(-t))
 }
 
-/// 1 - (1 - p)ⁿ, exact for small p too \[Sidak67\].
+/// Computes 1 - (1 - p)ⁿ, accurately also for small p \[Sidak67\].
 fn corrected(p: f64, n: usize) -> f64 {
     -libm::expm1(n as f64 * libm::log1p(-p))
 }

@@ -1,8 +1,9 @@
-//! The crate from outside: experiments as a host runs them, and descriptions that are nearly right.
+//! Tests of the public interface: experiments run by a host, mutated descriptions, and the report in a
+//! browser.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-// The modules of `fuzz` call it so.
+// The modules of `fuzz` use this name.
 extern crate bidir_lab as lab;
 
 mod experiment;

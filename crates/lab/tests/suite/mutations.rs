@@ -1,8 +1,7 @@
-//! Descriptions and results that are nearly right never make `lab` panic; see the test of the same
-//! name in `formats`.
+//! Mutated descriptions and results never make `lab` panic; see the test of the same name in `formats`.
 #![expect(
     unreachable_pub,
-    reason = "the modules belong to a crate where they are reached"
+    reason = "the modules are public in the crate that they belong to"
 )]
 
 #[path = "../../../../fuzz/src/check.rs"]

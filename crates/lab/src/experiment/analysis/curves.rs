@@ -1,17 +1,17 @@
-//! How errors fall with budgets.
+//! Curves of errors over budgets.
 
 use super::{CONFIDENCE, metrics, records_of};
 use crate::results::{Axis, BudgetKind, Plot, PlotKind, Record, Results, Scale, SceneInfo, Series};
 use crate::statistics::mean_interval;
 
-/// Every kind of budget, with what its axis shows.
+/// Every kind of budget, with the label of its axis.
 const KINDS: [(BudgetKind, &str); 3] = [
     (BudgetKind::Samples, "samples per pixel"),
     (BudgetKind::Rays, "rays per pixel"),
     (BudgetKind::Seconds, "seconds"),
 ];
 
-/// A plot of each metric over each kind of which there are several budgets.
+/// Plots each metric over each kind of budget that has several amounts.
 pub(super) fn plots(results: &Results, scene: &SceneInfo) -> Vec<Plot> {
     let mut plots = Vec::new();
     for (kind, label) in KINDS {
@@ -39,16 +39,16 @@ fn logarithmic(label: &str) -> Axis {
     }
 }
 
-/// The curves of all methods.
+/// Makes the curves of all methods.
 fn series(results: &Results, scene: &SceneInfo, kind: BudgetKind, metric: &str) -> Vec<Series> {
     let curve = |method: &str| {
         let mut points: Vec<([f64; 2], Option<[f64; 2]>)> = Vec::new();
         for budget in results.budgets.iter().filter(|budget| budget.kind == kind) {
-            let records = records_of(results, [&scene.name, &budget.name, method]);
+            let records = records_of(results, &scene.name, &budget.name, method);
             points.extend(point(&records, cost(kind, scene), metric));
         }
         points.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
-        // All or none: a list of intervals has as many as there are points.
+        // All or none: the list of intervals is empty or as long as that of points.
         let intervals: Option<Vec<_>> = points.iter().map(|(_, interval)| *interval).collect();
         Series {
             name: method.to_owned(),
@@ -61,7 +61,7 @@ fn series(results: &Results, scene: &SceneInfo, kind: BudgetKind, metric: &str) 
     curves.filter(|curve| !curve.points.is_empty()).collect()
 }
 
-/// What a render cost, in the unit of the kind of budget.
+/// Returns a function that gives the cost of a render in the unit of the budget.
 fn cost(kind: BudgetKind, scene: &SceneInfo) -> impl Fn(&Record) -> f64 {
     let pixels = (scene.size[0] * scene.size[1]) as f64;
     move |record| match kind {
@@ -71,9 +71,10 @@ fn cost(kind: BudgetKind, scene: &SceneInfo) -> impl Fn(&Record) -> f64 {
     }
 }
 
-/// Mean cost and mean error, with the interval of the latter. None: there is no error.
+/// Computes mean cost and mean error, with the interval of the latter. None: no record has the metric.
 ///
-/// On a logarithmic axis an interval has to end above zero: at the smallest error of all seeds.
+/// A lower end at or below zero, which a logarithmic axis cannot show, is replaced by the smallest error of
+/// all seeds.
 fn point(
     records: &[&Record],
     cost: impl Fn(&Record) -> f64,

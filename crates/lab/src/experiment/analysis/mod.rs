@@ -1,18 +1,17 @@
-//! What records say, as tables and plots: a pure function of [`Results`].
+//! The default tables and plots of records, as a pure function of [`Results`].
 //!
-//! For each scene and budget there are two tables. The first has the means over seeds, with
-//! [`mean_interval`]. The second has ratios to the first method, paired by seed, with
-//! [`ratio_interval`]: of errors, and of the efficiencies
+//! Each scene and budget has two tables. The first shows means over seeds, with [`mean_interval`]. The
+//! second shows ratios to the first method, paired by seed, with [`ratio_interval`]: of errors, and of the
+//! efficiencies
 //!
 //!   1 / (MSE · rays)  and  1 / (MSE · seconds),
 //!
-//! whose costs have training in them, as the columns of rays and of seconds have.
+//! whose costs include training, as the columns of rays and seconds do. Several budgets of one kind give a
+//! plot of each metric over them. All intervals have 95 % confidence; a single seed gives a number without
+//! an interval.
 //!
-//! Renders that take far more rays than their budget are found by [`overruns`].
-//!
-//! How much of the errors is the reference's is told by [`reference_noise`].
-//! Where several budgets are of one kind there is a plot of each metric over them. All intervals are
-//! of 95 %; a single seed has a number and no interval.
+//! [`overruns`] finds renders that take far more rays than their budget, [`reference_noise`] the share of
+//! the errors that is noise of the reference.
 
 mod curves;
 mod noise;
@@ -27,21 +26,21 @@ use crate::results::{Cell, Plot, Record, Results, SceneInfo, Table};
 use crate::statistics::{Interval, mean_interval, ratio_interval};
 use std::collections::BTreeSet;
 
-/// How sure intervals are.
+/// The confidence of intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// What is said of a scene.
+/// The tables and plots of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section {
-    /// The scene, or what else it is about.
+    /// The scene, or another title.
     pub title: String,
-    /// The numbers.
+    /// The tables.
     pub tables: Vec<Table>,
-    /// The curves.
+    /// The plots.
     pub plots: Vec<Plot>,
 }
 
-/// A section for each scene that has records.
+/// Makes a section for each scene with records.
 pub fn sections(results: &Results) -> Vec<Section> {
     let has_records = |scene: &&SceneInfo| results.records.iter().any(|r| r.scene == scene.name);
     let scenes = results.scenes.iter().filter(has_records);
@@ -53,8 +52,13 @@ pub fn sections(results: &Results) -> Vec<Section> {
     scenes.map(section).collect()
 }
 
-/// The records of a scene, a budget and a method, by seed.
-pub fn records_of<'a>(results: &'a Results, [scene, budget, method]: [&str; 3]) -> Vec<&'a Record> {
+/// Returns the records of a scene, budget and method, sorted by seed.
+pub fn records_of<'a>(
+    results: &'a Results,
+    scene: &str,
+    budget: &str,
+    method: &str,
+) -> Vec<&'a Record> {
     let is_one = |record: &&Record| {
         record.scene == scene && record.budget == budget && record.method == method
     };
@@ -63,9 +67,9 @@ pub fn records_of<'a>(results: &'a Results, [scene, budget, method]: [&str; 3]) 
     records
 }
 
-/// The geometric mean of the ratio of a value in `a` and in `b`, over the seeds that both have.
+/// Computes the geometric mean of the ratio of a value in `a` to that in `b`, over their common seeds.
 ///
-/// None: there are fewer than two such seeds, or a value is not positive.
+/// None: there are fewer than two common seeds, or a value is not positive.
 pub fn ratio(
     a: &[&Record],
     b: &[&Record],
@@ -75,7 +79,7 @@ pub fn ratio(
     ratio_interval(&a, &b, CONFIDENCE)
 }
 
-/// Values under the seeds that both have.
+/// Returns the values in `a` and `b` for their common seeds.
 fn pairs(
     a: &[&Record],
     b: &[&Record],
@@ -88,7 +92,7 @@ fn pairs(
     a.iter().filter_map(pair).unzip()
 }
 
-/// The names of all metrics of a scene's records.
+/// Returns the names of all metrics in a scene's records.
 fn metrics<'a>(results: &'a Results, scene: &SceneInfo) -> BTreeSet<&'a str> {
     let records = results.records.iter();
     let records = records.filter(|record| record.scene == scene.name);
@@ -96,7 +100,7 @@ fn metrics<'a>(results: &'a Results, scene: &SceneInfo) -> BTreeSet<&'a str> {
     names.map(String::as_str).collect()
 }
 
-/// A head, and what stands under it in the row of a method.
+/// The head of a column, and a function from the records of a method to its cell.
 type Column<'a> = (String, Box<dyn Fn(&[&Record]) -> Cell + 'a>);
 
 fn tables(results: &Results, scene: &SceneInfo) -> Vec<Table> {
@@ -104,7 +108,7 @@ fn tables(results: &Results, scene: &SceneInfo) -> Vec<Table> {
     for budget in &results.budgets {
         let rows: Vec<(&str, Vec<&Record>)> = (results.methods.iter())
             .map(|method| {
-                let records = records_of(results, [&scene.name, &budget.name, &method.name]);
+                let records = records_of(results, &scene.name, &budget.name, &method.name);
                 (&*method.name, records)
             })
             .filter(|(_, records)| !records.is_empty())
@@ -143,7 +147,7 @@ fn table(caption: String, columns: &[Column<'_>], rows: &[(&str, Vec<&Record>)])
     }
 }
 
-/// The columns of the table of means.
+/// Makes the columns of the table of means.
 fn means<'a>(results: &'a Results, scene: &SceneInfo) -> Vec<Column<'a>> {
     let pixels = (scene.size[0] * scene.size[1]) as f64;
     let plain = |value: &dyn Fn(&Record) -> f64, records: &[&Record]| {
@@ -187,7 +191,7 @@ fn means<'a>(results: &'a Results, scene: &SceneInfo) -> Vec<Column<'a>> {
     columns
 }
 
-/// The columns of the table of ratios.
+/// Makes the columns of the table of ratios.
 fn ratios<'a>(
     results: &'a Results,
     scene: &SceneInfo,
@@ -212,8 +216,8 @@ fn ratios<'a>(
     columns
 }
 
-/// Where there is nothing to say.
-fn nothing() -> Cell {
+/// Returns the cell for a missing number.
+fn missing() -> Cell {
     Cell::Text("–".to_owned())
 }
 
@@ -221,7 +225,7 @@ fn mean_cell(values: &[f64]) -> Cell {
     match (mean_interval(values, CONFIDENCE), values) {
         (Some(interval), _) => interval_cell(interval),
         (None, [value]) => Cell::Number(*value),
-        (None, _) => nothing(),
+        (None, _) => missing(),
     }
 }
 
@@ -235,7 +239,7 @@ fn ratio_cell(
     }
     match pairs(records, baseline, value) {
         (a, b) if a.len() == 1 && b[0] > 0.0 => Cell::Number(a[0] / b[0]),
-        _ => nothing(),
+        _ => missing(),
     }
 }
 

@@ -1,37 +1,37 @@
-//! How much of what is compared is noise of the reference.
+//! The share of errors that is noise of the reference.
 //!
-//! An image and its reference are independent, so that the mean square error is the sum of the image's
-//! own and of the reference's: the mean variance of its pixels. Errors are left as they are, and what
-//! part of them it is, is told.
+//! An image and its reference are independent, so the measured mean square error is the sum of the image's
+//! own and the reference's, which is the mean variance of its pixels. Errors are not corrected for it; a
+//! large share gives a warning.
 
 use super::records_of;
 use crate::results::{Record, Results, SceneInfo};
 use serde::Serialize;
 
-/// From this part on, the noise is told of as a warning.
-const MUCH: f64 = 0.1;
+/// A share above this gives a warning.
+const LARGE: f64 = 0.1;
 
-/// The noise of a reference, in the smallest error that was measured against it.
+/// The noise of a reference relative to the smallest error measured against it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReferenceNoise<'a> {
     /// The scene.
     pub scene: &'a str,
-    /// The method that has the smallest mean square error, as the mean over seeds.
+    /// The method with the smallest mean square error, averaged over seeds.
     pub method: &'a str,
-    /// The budget under which it has it.
+    /// The budget of that error.
     pub budget: &'a str,
-    /// The part of that error that is the reference's. Range: [0, 1].
+    /// The share of the reference in that error. Range: [0, 1].
     pub share: f64,
 }
 
 impl ReferenceNoise<'_> {
-    /// True where it should be told of: it is more than a tenth.
+    /// Returns true if the share is more than a tenth.
     pub fn is_large(&self) -> bool {
-        self.share > MUCH
+        self.share > LARGE
     }
 
-    /// What there is to say about it.
-    pub fn words(&self) -> String {
+    /// Returns the text of the warning.
+    pub fn warning(&self) -> String {
         let Self {
             scene,
             method,
@@ -46,7 +46,7 @@ impl ReferenceNoise<'_> {
     }
 }
 
-/// The noise of each scene's reference, where it is known and something was compared with it.
+/// Computes the noise share of each scene whose reference has a known error and whose records have errors.
 pub fn reference_noise(results: &Results) -> impl Iterator<Item = ReferenceNoise<'_>> {
     let scenes = results.scenes.iter();
     scenes.filter_map(|scene| noise_of(results, scene))
@@ -59,7 +59,7 @@ fn noise_of<'a>(results: &'a Results, scene: &'a SceneInfo) -> Option<ReferenceN
         methods.map(move |method| (&*budget.name, &*method.name))
     });
     let errors = cells.filter_map(|(budget, method)| {
-        let mse = mse(&records_of(results, [&scene.name, budget, method]))?;
+        let mse = mse(&records_of(results, &scene.name, budget, method))?;
         Some((mse, budget, method))
     });
     let (least, budget, method) = errors.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -75,7 +75,7 @@ fn noise_of<'a>(results: &'a Results, scene: &'a SceneInfo) -> Option<ReferenceN
     })
 }
 
-/// The mean square error over seeds. None: there is none.
+/// Computes the mean square error over seeds. None: no record has one.
 fn mse(records: &[&Record]) -> Option<f64> {
     let errors = records
         .iter()

@@ -1,12 +1,12 @@
-//! Renders that take far more rays than their budget, as there is always a first pass.
+//! Renders whose training and first pass take far more rays than their budget.
 
 use super::records_of;
 use crate::results::{BudgetInfo, BudgetKind, Results, SceneInfo};
 
-/// From this multiple of the budget on, a render is said to overrun it.
-const MUCH: f64 = 1.25;
+/// A multiple of the budget above this gives a warning.
+const LARGE: f64 = 1.25;
 
-/// Warnings about methods whose first pass takes far more rays than their budget.
+/// Returns warnings about methods whose first pass takes far more rays than their budget.
 pub fn overruns(results: &Results) -> Vec<String> {
     let budgets = results.budgets.iter();
     let budgets = budgets.filter(|budget| budget.kind == BudgetKind::Rays);
@@ -20,14 +20,14 @@ pub fn overruns(results: &Results) -> Vec<String> {
     warnings
 }
 
-/// The warning about one method. None: it has no records, or keeps to the budget.
+/// Returns the warning about one method. None: it has no records, or keeps to the budget.
 fn overrun(
     results: &Results,
     scene: &SceneInfo,
     budget: &BudgetInfo,
     method: &str,
 ) -> Option<String> {
-    let records = records_of(results, [&scene.name, &budget.name, method]);
+    let records = records_of(results, &scene.name, &budget.name, method);
     let of_one_pass = records.iter().filter(|record| record.spp == 1);
     let rays = of_one_pass.map(|record| record.rays.total()).max()?;
     let [width, height] = scene.size;
@@ -38,5 +38,5 @@ fn overrun(
          the budget is {}: these results are not at equal rays",
         budget.amount
     );
-    (rays > MUCH * budget.amount).then_some(text)
+    (rays > LARGE * budget.amount).then_some(text)
 }

@@ -2,9 +2,9 @@ use super::*;
 use crate::results::{BudgetInfo, BudgetKind, FORMAT, Machine, MethodInfo, Rays};
 use std::collections::BTreeMap;
 
-/// A method whose error is `factor` times as large, and that takes twice the rays.
+/// Makes a record of a method whose error is scaled by `factor`; all but `first` take twice the rays.
 fn record(method: &str, factor: f64, budget: f64, seed: u64) -> Record {
-    // Large differences between seeds, that all methods share.
+    // Large differences between seeds, which all methods share.
     let error = factor * [1.0, 4.0, 0.5][seed as usize] / budget;
     Record {
         scene: "room".into(),
@@ -115,14 +115,14 @@ fn seeds_that_one_method_lacks_are_left_out() {
     results
         .records
         .retain(|record| record.seed != 1 || record.method == "first");
-    let of = |method| records_of(&results, ["room", "64 spp", method]);
+    let of = |method| records_of(&results, "room", "64 spp", method);
     let rmse = |record: &Record| record.metrics.get("rmse").copied();
     let interval = ratio(&of("second"), &of("first"), rmse).unwrap();
     assert!((interval.value - 0.5).abs() < 1e-12, "{interval:?}");
 }
 
 #[test]
-fn one_seed_has_numbers() {
+fn one_seed_gives_numbers_without_intervals() {
     let sections = sections(&results(1));
     let tables = &sections[0].tables;
     assert!(matches!(tables[0].rows[0][4], Cell::Number(_)));
@@ -167,7 +167,7 @@ fn noise_of_the_reference_is_a_part_of_the_smallest_error() {
         reference_noise(&results)
             .next()
             .unwrap()
-            .words()
+            .warning()
             .contains("100 % noise")
     );
     results.records.clear();
@@ -175,6 +175,6 @@ fn noise_of_the_reference_is_a_part_of_the_smallest_error() {
 }
 
 #[test]
-fn nothing_was_run_and_nothing_is_said() {
+fn results_without_records_have_no_sections() {
     assert_eq!(sections(&results(0)), []);
 }

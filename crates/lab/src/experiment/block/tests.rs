@@ -14,7 +14,7 @@ const SCENE: &str = "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolutio
 struct Silent;
 
 impl Observer for Silent {
-    fn tell(&mut self, _event: Event<'_>) {}
+    fn notify(&mut self, _event: Event<'_>) {}
 
     fn seconds(&self) -> f64 {
         0.0
@@ -52,15 +52,20 @@ fn blocks_in_any_order_give_the_results_of_one_run() {
     assert_eq!(prepared.scenes[0].files, [folder.path().join("s.pbrt")]);
     let render = |block: &Block| {
         let reference = &prepared.scenes[0].reference;
-        let from = (&Files::default(), reference);
-        render_block(&experiment, block, from, &mut Silent)
-            .unwrap()
-            .unwrap()
+        render_block(
+            &experiment,
+            block,
+            &Files::default(),
+            reference,
+            &mut Silent,
+        )
+        .unwrap()
+        .unwrap()
     };
     for block in prepared.blocks.iter().rev().take(3) {
         prepared.add(render(block)).unwrap();
     }
-    // Who begins again has the rest to do; what comes twice counts once.
+    // A second start leaves out finished blocks; a block that is added twice counts once.
     let again = prepare(&experiment, &parts, &mut Silent).unwrap().unwrap();
     assert_eq!(again.blocks, prepared.blocks[..1]);
     for block in &prepared.blocks[..2] {
@@ -73,7 +78,7 @@ fn blocks_in_any_order_give_the_results_of_one_run() {
 }
 
 #[test]
-fn what_the_experiment_has_not_is_refused() {
+fn blocks_of_unknown_scenes_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let experiment = read(folder.path());
     let block = Block {
@@ -86,7 +91,7 @@ fn what_the_experiment_has_not_is_refused() {
         size: [8, 8],
         data: vec![[1.0; 3]; 64],
     };
-    let from = (&Files::default(), &pixels);
-    let error = render_block(&experiment, &block, from, &mut Silent).unwrap_err();
+    let rendered = render_block(&experiment, &block, &Files::default(), &pixels, &mut Silent);
+    let error = rendered.unwrap_err();
     assert!(matches!(error, ExperimentError::Mismatch(_)));
 }

@@ -1,4 +1,4 @@
-//! From records to intervals and verdicts.
+//! Intervals and verdicts of claims, from records.
 
 use super::measure::{Clock, Measured};
 use super::{ClaimKind, ClaimSpec, Cost, Expected, Measure, Over, Quantity};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Numbers by seed, or by the pass of contributions.
 type BySeed = BTreeMap<u64, f64>;
 
-/// The records of an experiment, and what else its numbers depend on.
+/// The records of an experiment, with the description and the clock that evaluate them.
 pub struct Findings<'a> {
     pub(super) experiment: &'a Experiment,
     pub(super) results: &'a Results,
@@ -19,7 +19,7 @@ pub struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
-    /// Numbers of these results.
+    /// Prepares the evaluation of results: by processor time if all records have it, else by wall time.
     pub fn new(experiment: &'a Experiment, results: &'a Results) -> Self {
         let is_known = |record: &Record| {
             record.processor_seconds.is_some() && record.training_processor_seconds.is_some()
@@ -36,7 +36,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// The number of a method in a scene, by seed.
+    /// Returns the number of a method in a scene, by seed.
     fn values(&self, of: &Quantity, scene: &str, method: &str) -> BySeed {
         if let Measure::Contributions(name) = of.measure {
             let all = self.results.contributions.iter();
@@ -64,7 +64,7 @@ impl<'a> Findings<'a> {
         records.iter().filter_map(value).collect()
     }
 
-    /// The records of a method in a scene, of the first budget of this kind that it has there.
+    /// Returns the records of a method in a scene, of its first budget of this kind there.
     fn records(&self, kind: Option<BudgetKind>, scene: &str, method: &str) -> Vec<&'a Record> {
         let of_budget = |name: &str| -> Vec<&'a Record> {
             let is_one = |record: &&Record| {
@@ -81,7 +81,7 @@ impl<'a> Findings<'a> {
         found.unwrap_or_default()
     }
 
-    /// The full budget of that of this name, in rays per pixel or in seconds.
+    /// Returns the full amount of the budget with this name, in rays per pixel or in seconds.
     fn full(&self, name: &str) -> Option<(Cost, f64)> {
         let mut budgets = self.experiment.budgets.iter();
         let budget = budgets.find(|budget| budget.name == name)?;
@@ -92,7 +92,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// The number and its divisor in a scene, over the seeds that have both.
+    /// Returns the number and its divisor in a scene, for the seeds that have both.
     fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
         let own = self.values(of, scene, &of.method);
         let other = match &of.over {
@@ -104,15 +104,15 @@ impl<'a> Findings<'a> {
         own.iter().filter_map(pair).collect()
     }
 
-    /// The geometric mean over seeds of the ratio, with its interval. None: fewer than two seeds have
-    /// it, or a number is not positive.
+    /// Computes the geometric mean over seeds of the ratio, with its interval. None: fewer than two seeds
+    /// have it, or a number is not positive.
     pub(super) fn interval(&self, of: &Quantity, confidence: f64) -> Option<Interval> {
         let own = self.pairs(of, &of.scene);
         let Some(than) = &of.than else {
             let (a, b): (Vec<_>, Vec<_>) = own.into_iter().map(|(_, a, b)| (a, b)).unzip();
             return ratio_interval(&a, &b, confidence);
         };
-        // Renders of other scenes are independent; pairing them by seed costs nothing.
+        // Renders of different scenes are independent, so pairing them by seed is harmless.
         let ratios = self.pairs(of, than).into_iter();
         let other: BySeed = ratios.map(|(seed, a, b)| (seed, a / b)).collect();
         let both = own.into_iter();
@@ -121,14 +121,14 @@ impl<'a> Findings<'a> {
         ratio_interval(&a, &b, confidence)
     }
 
-    /// The mean over seeds. None: there is no record.
+    /// Computes the mean over seeds. None: there is no record.
     pub(super) fn mean(&self, of: &Quantity) -> Option<f64> {
         let values = self.values(of, &of.scene, &of.method);
         let sum: f64 = values.values().sum();
         (!values.is_empty()).then(|| sum / values.len() as f64)
     }
 
-    /// A claim without its tables.
+    /// Judges a claim; its tables are left empty.
     pub(super) fn claim(&self, spec: &ClaimSpec) -> Claim {
         let confidence = shared(spec.parts.len());
         let parts = spec.parts.iter();
@@ -152,7 +152,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// How certain a claim is.
+    /// Describes the intervals and the clock of a claim.
     fn method(&self, spec: &ClaimSpec) -> String {
         let mut text = format!("{RATIOS} The intervals of a statement hold together with 95 %.");
         if spec.parts.iter().any(|(_, of)| of.measure.is_time()) {
@@ -165,12 +165,12 @@ impl<'a> Findings<'a> {
     }
 }
 
-/// The confidence of each of `parts` intervals that a statement needs all of.
+/// Returns the confidence of each of the `parts` intervals of a statement, by Bonferroni's correction.
 fn shared(parts: usize) -> f64 {
     1.0 - (1.0 - CONFIDENCE) / parts.max(1) as f64
 }
 
-/// A number with its interval, in words.
+/// Formats a number with its interval.
 fn part(name: &str, found: Option<Interval>) -> String {
     let Some(Interval { value, low, high }) = found else {
         return format!("{name}: not measured");
@@ -183,7 +183,7 @@ fn part(name: &str, found: Option<Interval>) -> String {
     format!("{name}: {value:.digits$} [{low:.digits$}, {high:.digits$}]")
 }
 
-/// The verdict on a statement that says the same of all these numbers.
+/// Returns the verdict on a statement about the range of all these numbers.
 fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
     let Expected { low, high } = expected;
     let Some(known) = intervals.iter().copied().collect::<Option<Vec<_>>>() else {

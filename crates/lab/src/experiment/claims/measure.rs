@@ -6,23 +6,23 @@ use bidir::names::UnknownName;
 use std::fmt;
 use std::str::FromStr;
 
-/// What errors are compared at.
+/// The cost at which errors are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cost {
     /// All rays.
     Rays,
-    /// Time of the processors where all records have it, else that of the clock.
+    /// Processor time if all records have it, else wall time.
     Time,
 }
 
 /// A number of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measure {
-    /// The distance from the reference.
+    /// The error against the reference.
     Metric(Metric),
-    /// The same at equal cost.
+    /// The error at equal cost.
     AtCost(Metric, Cost),
-    /// Another number, by its place in the list of figures.
+    /// Another number, by its index in the list of figures.
     Figure(usize),
     /// One of the [`FIGURES`](crate::experiment::contributions::FIGURES) of contributions.
     Contributions(&'static str),
@@ -31,13 +31,13 @@ pub enum Measure {
 /// The clock that measures time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Clock {
-    /// That of the processors, over all threads: other work of the machine hardly changes it.
+    /// Processor time of all threads, which hardly depends on other work of the machine.
     Processors,
-    /// That of the wall.
+    /// Wall time.
     Wall,
 }
 
-/// A record with all that its numbers depend on.
+/// A record with the context of its numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Measured<'a> {
     pub(super) record: &'a Record,
@@ -45,13 +45,14 @@ pub(super) struct Measured<'a> {
     pub(super) clock: Clock,
     /// Threads of the render.
     pub(super) threads: usize,
-    /// The budget that training is weighed by, in rays per pixel or in seconds. None: the record's own.
+    /// The full budget, over which the cost of training is distributed, in rays per pixel or in seconds.
+    /// None: the cost of the record itself.
     pub(super) full: Option<(Cost, f64)>,
 }
 
 type Figure = fn(&Measured<'_>) -> Option<f64>;
 
-/// Numbers beside metrics, with their names and units.
+/// Numbers other than metrics, with their names and units.
 const FIGURES: [(&str, Figure); 11] = [
     ("samples per pixel", |of| Some(of.record.spp as f64)),
     ("rays per pixel", |of| {
@@ -77,7 +78,7 @@ const FIGURES: [(&str, Figure); 11] = [
     }),
     ("camera rays per sample", |of| Some(of.camera_rays())),
     ("connections per sample", |of| {
-        // The walks of a sample are independent, and the point on the light is a vertex, too.
+        // The subpaths of a sample are independent; the point on the light is a vertex, too.
         let light = 1.0 + of.record.rays.light as f64 / of.samples();
         Some(light * of.camera_rays())
     }),
@@ -101,7 +102,7 @@ impl Measured<'_> {
         (self.record.rays.connection + self.record.rays.light_image) as f64
     }
 
-    /// The cost of the render, and the part of it that was training. None: nobody measured it.
+    /// Returns the cost of the render, and the part due to training. None: not measured.
     fn cost(&self, cost: Cost) -> Option<[f64; 2]> {
         let record = self.record;
         match (cost, self.clock) {
@@ -119,7 +120,7 @@ impl Measured<'_> {
         Some(all - training)
     }
 
-    /// (c - T) · B / (B - T): the cost without training, which is weighed by the full budget.
+    /// Computes (c - T) · B / (B - T): the cost without training, scaled to the full budget.
     fn weighed(&self, cost: Cost) -> Option<f64> {
         let [all, training] = self.cost(cost)?;
         let full = self.full.filter(|(kind, _)| *kind == cost);
@@ -132,7 +133,7 @@ impl Measured<'_> {
         Some((all - training) * budget / (budget - training))
     }
 
-    /// The number of this record. None: nobody measured it.
+    /// Returns the number of this record. None: not measured.
     pub(super) fn value(&self, measure: Measure) -> Option<f64> {
         match measure {
             Measure::Metric(metric) => self.record.metrics.get(metric.name()).copied(),
@@ -147,14 +148,14 @@ impl Measured<'_> {
 }
 
 impl Measure {
-    /// True where the number depends on a clock.
+    /// Returns true if the number depends on a clock.
     pub(super) fn is_time(self) -> bool {
         matches!(self, Self::AtCost(_, Cost::Time))
             || matches!(self, Self::Figure(index) if FIGURES[index].0.contains("seconds"))
     }
 }
 
-/// `rmse`, `rmse at equal rays`, `rmse in equal time`, or the name of a figure.
+/// Parses `rmse`, `rmse at equal rays`, `rmse in equal time`, or the name of a figure.
 impl FromStr for Measure {
     type Err = UnknownName;
 
@@ -168,7 +169,7 @@ impl FromStr for Measure {
     }
 }
 
-/// The names of all measures that are no metric.
+/// Returns the names of all measures that are no metric.
 #[cfg(test)]
 pub(in super::super) fn figure_names() -> Vec<String> {
     let all = all().into_iter();
@@ -177,7 +178,7 @@ pub(in super::super) fn figure_names() -> Vec<String> {
     figures.map(|(name, _)| name).collect()
 }
 
-/// All measures with their names.
+/// Returns all measures with their names.
 fn all() -> Vec<(String, Measure)> {
     let metrics = Metric::NAMES.into_iter().flat_map(|(name, metric)| {
         let at = |words: &str, cost| (format!("{name} {words}"), Measure::AtCost(metric, cost));

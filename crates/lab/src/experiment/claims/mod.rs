@@ -1,26 +1,26 @@
-//! Claims and tables: statements of a description about its records, and the figures beside them.
+//! Claims and tables: statements of a description about its records, and figures for them.
 //!
-//! A [`ClaimSpec`] says of some numbers where they lie; a [`TableSpec`] shows numbers. Both are made of
-//! [`Quantity`]s, so that one evaluator serves them all ([`Findings`]). Records do not depend on claims:
-//! a description whose claims change is judged again without a new render.
+//! A [`ClaimSpec`] states a range for some numbers; a [`TableSpec`] shows numbers. Both consist of
+//! [`Quantity`]s, which [`Findings`] evaluates. Records do not depend on claims: changed claims are judged
+//! again without a new render.
 //!
 //! # Verdicts
 //!
-//! A statement about numbers is judged by their intervals: it is reproduced where each interval lies
-//! within the stated range, not reproduced where one lies outside, and undecided where they overlap the
-//! border ([`Expected`]). The confidence of 95 % is shared among the parts of a statement (by
-//! Bonferroni), so that it is that of the statement. A goal is met or not met in the same way.
+//! The intervals of its numbers decide a statement: it is reproduced if each interval lies within the stated
+//! range ([`Expected`]), not reproduced if one lies outside, and undecided otherwise. Bonferroni's correction
+//! makes 95 % the confidence of the whole statement, whatever the number of its parts. A goal is met or not
+//! met in the same way.
 //!
 //! # Errors at equal cost
 //!
-//! Renders end after whole passes, so budgets are kept to half a pass. The mean square error of an
-//! unbiased estimator falls as 1 / samples, which makes MSE · cost independent of where a render ended,
-//! but for training, which costs T however many samples follow. With the cost c of a render, its error
-//! under a budget B would be MSE · (c - T) / (B - T); compared is
+//! Renders end after whole passes and meet their budget only within half a pass. The mean square error of
+//! an unbiased estimator is proportional to 1 / samples, so that MSE · cost does not depend on the number of
+//! passes, except through training, which costs T for any number of samples. A render of cost c would have
+//! the error MSE · (c - T) / (B - T) under a budget B; claims compare
 //!
 //!   MSE · (c - T) · B / (B - T),
 //!
-//! MSE · c under the budget itself. B is the full budget, also in a quick run, whose training is as long.
+//! its MSE · cost under the budget B. B is the full budget, also in a quick run, whose training is as long.
 //! Metrics that are roots of squares are multiplied by the root of the cost.
 
 mod judge;
@@ -39,47 +39,47 @@ use super::Experiment;
 use super::analysis::{self, Section};
 use crate::results::{BudgetKind, Claim, Results, Scale};
 
-/// Where a number is stated to be.
+/// The range stated for a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
-    /// The lower end of the range; minus infinity where there is none.
+    /// The lower end; minus infinity if unbounded.
     pub low: f64,
-    /// The upper end.
+    /// The upper end; infinity if unbounded.
     pub high: f64,
 }
 
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimSpec {
-    /// A short name, such as `table-1-b-uniform-lower`, unlike all others.
+    /// A unique short name, such as `table-1-b-uniform-lower`.
     pub id: String,
     /// The origin of the statement, such as `Table 1`.
     pub source: String,
     /// The statement, in a sentence.
     pub claim: String,
-    /// Whether others stated it, or it is aimed at.
+    /// A statement of others, or a goal.
     pub kind: ClaimKind,
-    /// Where each of its numbers is stated to be.
+    /// The range of each of its numbers.
     pub expected: Expected,
-    /// The numbers, each with its name; there is at least one.
+    /// The numbers with their names, at least one.
     pub parts: Vec<(String, Quantity)>,
 }
 
-/// The origin of a statement, which words its verdict.
+/// The kind of a statement, which selects the wording of its verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClaimKind {
-    /// Someone stated it: it is reproduced, or not.
+    /// A statement of others: reproduced, or not.
     Statement,
-    /// It is aimed at: it is met, or not.
+    /// A goal: met, or not.
     Goal,
 }
 
-/// A number that records determine.
+/// A number computed from records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// The number of each record.
+    /// The number taken from each record.
     pub measure: Measure,
-    /// The kind of budget that the records are of. None: the first budget that the method has.
+    /// The kind of the records' budget. None: the method's first budget.
     pub budget: Option<BudgetKind>,
     /// The scene.
     pub scene: String,
@@ -87,14 +87,14 @@ pub struct Quantity {
     pub method: String,
     /// The divisor.
     pub over: Over,
-    /// The scene whose ratio divides this one. None: no scene.
+    /// The scene whose ratio divides this one. None: no further division.
     pub than: Option<String>,
 }
 
 /// The divisor of a number; ratios are paired by seed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Over {
-    /// None: the mean over seeds is shown, without an interval.
+    /// No divisor: the mean over seeds, without an interval.
     Nothing,
     /// A number; 1 gives the geometric mean with its interval.
     Number(f64),
@@ -105,21 +105,21 @@ pub enum Over {
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableSpec {
-    /// Where it is shown.
+    /// Its claim or section.
     pub place: TablePlace,
-    /// What it shows.
+    /// The caption.
     pub caption: String,
     /// The heads of the columns.
     pub columns: Vec<String>,
-    /// Rows of as many cells.
+    /// Rows, each with one cell per column.
     pub rows: Vec<Vec<CellSpec>>,
-    /// Some of its columns as curves.
+    /// A plot of some columns. None: no plot.
     pub plot: Option<PlotSpec>,
     /// The axis of a histogram of the contributions in its rows. None: no histogram.
     pub histogram: Option<String>,
 }
 
-/// Where a table is shown.
+/// The place of a table in the report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TablePlace {
     /// Below the claim with this id.
@@ -131,29 +131,29 @@ pub enum TablePlace {
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CellSpec {
-    /// A text, or a number that is known.
+    /// A text or number from the description.
     Value(String),
-    /// A number of the records.
+    /// A number computed from the records.
     Quantity(Quantity),
 }
 
-/// Columns as curves over another one.
+/// A plot of columns over another column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlotSpec {
     /// The column of the x coordinates.
     pub x: usize,
     /// The columns of the curves.
     pub curves: Vec<usize>,
-    /// What the y axis shows.
+    /// The label of the y axis.
     pub label: String,
-    /// How the x axis is divided.
+    /// The scale of the x axis.
     pub x_scale: Scale,
-    /// How the y axis is divided.
+    /// The scale of the y axis.
     pub y_scale: Scale,
 }
 
 impl Experiment {
-    /// The claims of the description, judged by the records.
+    /// Judges the claims of the description by the records.
     pub fn judge(&self, results: &Results) -> Vec<Claim> {
         let findings = Findings::new(self, results);
         let claims = self.claims.iter().map(|spec| {
@@ -167,7 +167,7 @@ impl Experiment {
         claims.collect()
     }
 
-    /// The tables of the description that belong to no claim, or the usual ones where it has no table.
+    /// Makes the tables of the description that belong to no claim, or the default tables if it has none.
     pub fn sections(&self, results: &Results) -> Vec<Section> {
         if self.tables.is_empty() {
             return analysis::sections(results);

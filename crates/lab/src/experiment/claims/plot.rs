@@ -3,7 +3,7 @@
 use super::{CellSpec, Measure, PlotSpec, TableSpec};
 use crate::results::{Axis, Cell, Contributions, Plot, PlotKind, Scale, Series, Table};
 
-/// Columns of a table as curves.
+/// Plots columns of a table as curves.
 pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
     let axis = |label: &str, scale| Axis {
         label: label.to_owned(),
@@ -19,7 +19,7 @@ pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
     }
 }
 
-/// A column over that of the x coordinates, with intervals where all of its numbers have them.
+/// Makes the curve of column `y` over column `x`, with intervals if all its numbers have them.
 fn curve(table: &Table, x: usize, y: usize) -> Series {
     let point = |row: &Vec<Cell>| Some((number(&row[x])?.0, number(&row[y])?));
     let points: Vec<_> = table.rows.iter().filter_map(point).collect();
@@ -31,7 +31,7 @@ fn curve(table: &Table, x: usize, y: usize) -> Series {
     }
 }
 
-/// The number of a cell, with its interval. None: it is a text.
+/// Returns the number of a cell, with its interval. None: it is a text.
 fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
     match cell {
         Cell::Text(_) => None,
@@ -40,7 +40,7 @@ fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
     }
 }
 
-/// The contributions that the rows of a table have numbers of, as bars named by the first column.
+/// Plots the contributions measured in the rows of a table as bars, named by the first column.
 pub(super) fn histogram(label: &str, spec: &TableSpec, all: &[Contributions]) -> Plot {
     let linear = |label: &str| Axis {
         label: label.to_owned(),
@@ -56,7 +56,7 @@ pub(super) fn histogram(label: &str, spec: &TableSpec, all: &[Contributions]) ->
     }
 }
 
-/// The bars of a row. None: it has no number of contributions.
+/// Makes the bars of a row. None: it has no number of contributions.
 fn bars(row: &[CellSpec], all: &[Contributions]) -> Option<Series> {
     let name = row.iter().find_map(|cell| match cell {
         CellSpec::Value(name) => Some(name.clone()),

@@ -7,7 +7,7 @@ use crate::results::{Cell, Plot, Table};
 use crate::statistics::Interval;
 
 impl Findings<'_> {
-    /// Adds a table, and its plots, but for rows of which nothing was measured.
+    /// Adds a table and its plots; rows without a measured number are left out.
     pub(super) fn show(&self, spec: &TableSpec, tables: &mut Vec<Table>, plots: &mut Vec<Plot>) {
         let rows = spec.rows.iter().filter_map(|row| self.row(row));
         let table = Table {
@@ -21,7 +21,7 @@ impl Findings<'_> {
         tables.push(table);
     }
 
-    /// The cells of a row. None: it has numbers, and none of them was measured.
+    /// Makes the cells of a row. None: it has numbers, but none was measured.
     fn row(&self, specs: &[CellSpec]) -> Option<Vec<Cell>> {
         let cells: Vec<Cell> = specs.iter().map(|spec| self.cell(spec)).collect();
         let numbers = specs.iter().zip(&cells);
@@ -41,7 +41,7 @@ impl Findings<'_> {
         }
     }
 
-    /// A mean, or a ratio with its interval; that of a measured method over itself is 1.
+    /// Computes a mean, or a ratio with its interval; the ratio of a measured method to itself is 1.
     fn number(&self, of: &Quantity) -> Cell {
         let is_itself = |method: &String| *method == of.method && of.than.is_none();
         let found = match &of.over {

@@ -1,4 +1,4 @@
-//! Claims and tables of made-up records.
+//! Claims and tables of artificial records.
 
 use super::*;
 use crate::experiment::{BUILTIN, ExperimentError, SceneSource, SceneSpec};
@@ -28,8 +28,8 @@ fn read(claims: &str) -> Result<Experiment, ExperimentError> {
     Experiment::read(&[HEAD, claims].concat(), Path::new("a.toml"))
 }
 
-/// Ten seeds of a method under both budgets, with its relMSE · cost times 1 ± `spread`; RMS errors are
-/// the roots of it, and errors by blocks its inverse. The clock of the wall is nonsense.
+/// Makes records of ten seeds of a method under both budgets, with relMSE · cost = `product` (1 ± `spread`).
+/// RMS errors are roots of the relMSE; block errors use 1 / `product`. Wall times are arbitrary.
 fn records(scene: &str, method: &str, product: f64, spread: f64) -> Vec<Record> {
     let record = |budget: &str, seed: u64| {
         let phase = (seed * 7 + method.bytes().map(u64::from).sum::<u64>()) % 11;
@@ -104,7 +104,7 @@ fn results(records: Vec<Record>) -> Results {
     }
 }
 
-/// The claim that `one` has less error than `all` in scene A, with `more` keys.
+/// Writes the claim that `one` has less error than `all` in scene A, with `more` keys.
 fn claim(more: &str) -> String {
     format!(
         "[[claim]]\nid = \"it\"\nclaim = \"It is so.\"\nscene = \"A\"\nmethod = \"one\"\n{more}\n"
@@ -138,7 +138,7 @@ fn intervals_inside_outside_and_across_a_border_decide() {
 }
 
 #[test]
-fn one_part_that_fails_decides_and_one_that_is_missing_leaves_all_open() {
+fn a_failed_part_decides_a_claim_and_a_missing_part_leaves_it_open() {
     let parts = "each.rule = [\"one\", \"two\"]\nmeasure = \"rmse\"\nover = \"all\"\nbelow = 1";
     let text = claim(parts).replace("method = \"one\"", "method = \"{rule}\"");
     let experiment = read(&text).unwrap();
@@ -189,14 +189,14 @@ fn errors_are_compared_at_equal_cost() {
         assert!((value("rmse at equal rays") - libm::sqrt(10.0)).abs() < 1e-9);
         assert!((value("relmse_block in equal time") - 0.1).abs() < 1e-9);
     }
-    // Seeds have different costs: pairs are of one seed.
+    // Seeds have different costs, so that only pairs of one seed give this ratio.
     results
         .records
         .retain(|record| record.method == "all" || record.seed != 3);
     results.records.reverse();
     let findings = Findings::new(&experiment, &results);
     assert!((value(&findings, "relmse", BudgetKind::Rays) - 10.0).abs() < 1e-9);
-    // Without the clock of the processors that of the wall has to do.
+    // Without processor times, wall times are used.
     results.records[3].processor_seconds = None;
     let findings = Findings::new(&experiment, &results);
     assert!((value(&findings, "relmse at equal rays", BudgetKind::Rays) - 10.0).abs() < 1e-9);
@@ -205,10 +205,9 @@ fn errors_are_compared_at_equal_cost() {
     assert!(results.records.iter().all(wall));
 }
 
-/// Half of a render of cost c was training. Under the budget B it would be c / 2B, and the error that of
-/// the rest.
+/// Training is half of a render of cost c, but only c / 2B of the full budget B.
 #[test]
-fn training_is_weighed_as_in_the_full_budget() {
+fn training_costs_its_share_of_the_full_budget() {
     let mut experiment = read("").unwrap();
     let mut all = [
         records("A", "all", 100.0, 0.0),
@@ -235,7 +234,7 @@ fn training_is_weighed_as_in_the_full_budget() {
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     let found = value(&findings, "relmse at equal rays", BudgetKind::Rays);
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-    // A budget that was overrun is what was rendered.
+    // The cost of the render replaces a budget that it exceeds.
     experiment.budgets[0].full = 1.0;
     let findings = Findings::new(&experiment, &results);
     let found = value(&findings, "relmse in equal time", BudgetKind::Seconds);
@@ -259,7 +258,7 @@ fn ratios_of_two_scenes_are_compared() {
     assert_eq!(judged(180.0), Verdict::NotReproduced);
 }
 
-/// The only table of a description, of these records.
+/// Makes the only table of a description from these records.
 fn table(text: &str, records: Vec<Record>) -> (Table, Vec<crate::results::Plot>) {
     let mut sections = read(text).unwrap().sections(&results(records));
     assert_eq!(sections[0].title, "Mine");
@@ -356,7 +355,7 @@ fn refused(text: &str, expected: &str) {
 }
 
 #[test]
-fn mistakes_are_named_with_their_place() {
+fn mistakes_are_reported_with_their_place() {
     refused(
         &claim("measure = \"rmsee\"\nbelow = 1"),
         "did you mean `rmse`?",
@@ -389,7 +388,7 @@ fn mistakes_are_named_with_their_place() {
 }
 
 #[test]
-fn built_in_descriptions_are_whole() {
+fn built_in_descriptions_have_all_claims_and_no_method_twice() {
     let [paper, beyond] = BUILTIN.map(|builtin| builtin.experiment().unwrap());
     assert_eq!(
         (paper.methods.len(), paper.scenes.len(), paper.claims.len()),
@@ -401,10 +400,10 @@ fn built_in_descriptions_are_whole() {
     assert_eq!(expected.len(), 41);
     assert_eq!(beyond.claims.len(), 8 + 2 + 9);
     assert_eq!(beyond.scenes.len() + beyond.absent.len(), 9);
-    // Gains are over methods that are rendered, and nothing is rendered twice.
+    // No two methods are the same.
     let mut settings = BTreeSet::new();
     for method in &beyond.methods {
-        let own = method.changes.apply(&bidir::driver::Settings::default());
+        let own = method.request.apply(&bidir::driver::Settings::default());
         let own = format!("{:?}", crate::experiment::texts(&own));
         assert!(settings.insert(own), "{} is rendered twice", method.name);
     }

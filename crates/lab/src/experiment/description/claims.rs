@@ -29,7 +29,7 @@ const QUANTITY: [&str; 7] = [
 const CLAIM: [&str; 8] = [
     "id", "source", "claim", "goal", "each", "part", "below", "above",
 ];
-/// The other keys of `[[table]]`, and those of its columns.
+/// The other keys of `[[table]]`.
 const TABLE: [&str; 7] = [
     "claim",
     "section",
@@ -47,7 +47,7 @@ const KINDS: [(&str, BudgetKind); 3] = [
     ("seconds", BudgetKind::Seconds),
 ];
 
-/// The names that quantities may have.
+/// The names that quantities can refer to.
 pub(super) struct Names {
     scenes: Vec<String>,
     methods: Vec<String>,
@@ -69,7 +69,7 @@ impl Names {
     }
 }
 
-/// A name that is one of these.
+/// Reads a name, which is one of `names`.
 fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
     let name = entry.written()?;
     if names.iter().any(|known| known == name) {
@@ -79,7 +79,7 @@ fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
     Err(entry.fault(UnknownName::new(name, &names).to_string()))
 }
 
-/// A quantity; keys that the section lacks are those of `outer`.
+/// Reads a quantity.
 fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     let measure = section.need("measure")?.read(str::parse::<Measure>)?;
     let budget = section.take("budget");
@@ -111,7 +111,7 @@ fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     })
 }
 
-/// A number, or another method.
+/// Reads a divisor: a number, or another method.
 fn divisor(entry: &Entry<'_>, names: &Names) -> Result<Over> {
     match entry.written()?.parse::<f64>() {
         Ok(number) if number > 0.0 && number.is_finite() => Ok(Over::Number(number)),
@@ -120,7 +120,7 @@ fn divisor(entry: &Entry<'_>, names: &Names) -> Result<Over> {
     }
 }
 
-/// All `[[claim]]`.
+/// Reads all `[[claim]]`.
 pub(super) fn claims(top: &mut Section<'_>, names: &Names) -> Result<Vec<ClaimSpec>> {
     let mut claims: Vec<ClaimSpec> = Vec::new();
     for mut section in top.sections("claim")? {
@@ -156,16 +156,16 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
     })
 }
 
-/// A number of a claim, with its name.
+/// Reads a number of a claim, with its name.
 fn part(section: &Section<'_>, binding: &Binding, names: &Names) -> Result<(String, Quantity)> {
     let mut section = section.bound(binding)?;
     let name = text_of(&mut section, "part")?;
     let quantity = quantity(&mut section, names)?;
-    let usual = || format!("{}, {}", quantity.method, quantity.scene);
-    Ok((name.unwrap_or_else(usual), quantity))
+    let default = || format!("{}, {}", quantity.method, quantity.scene);
+    Ok((name.unwrap_or_else(default), quantity))
 }
 
-/// The range of `below`, `above`, or both.
+/// Reads the range from `below`, `above`, or both.
 fn expected(section: &mut Section<'_>) -> Result<Expected> {
     let [low, high] = ["above", "below"].map(|key| section.take(key));
     if low.is_none() && high.is_none() {
@@ -179,7 +179,7 @@ fn expected(section: &mut Section<'_>) -> Result<Expected> {
     })
 }
 
-/// All `[[table]]`.
+/// Reads all `[[table]]`.
 pub(super) fn tables(
     top: &mut Section<'_>,
     names: &Names,
@@ -216,7 +216,7 @@ fn table(section: &mut Section<'_>, names: &Names, claims: &[ClaimSpec]) -> Resu
     })
 }
 
-/// The claim or the section of a table.
+/// Reads the claim or the section of a table.
 fn place(section: &mut Section<'_>, claims: &[ClaimSpec]) -> Result<TablePlace> {
     match (section.take("claim"), section.take("section")) {
         (Some(claim), None) => {
@@ -235,7 +235,7 @@ fn place(section: &mut Section<'_>, claims: &[ClaimSpec]) -> Result<TablePlace> 
     }
 }
 
-/// The cells of a row with the heads of their columns.
+/// Reads the cells of a row with the heads of their columns.
 fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)>> {
     let columns = section.need("columns")?;
     let mut cells = Vec::new();
@@ -255,7 +255,7 @@ fn row(mut section: Section<'_>, names: &Names) -> Result<Vec<(String, CellSpec)
     Ok(cells)
 }
 
-/// Columns as curves.
+/// Reads a plot of columns.
 fn plot(entry: Entry<'_>, heads: &[String]) -> Result<PlotSpec> {
     let mut section = entry.section()?;
     section.only(&PLOT, &[])?;

@@ -12,7 +12,7 @@ use std::path::{Component, Path, PathBuf};
 
 type Result<T> = std::result::Result<T, ExperimentError>;
 
-/// The keys of `[[scene]]`, and those that are accepted for old descriptions.
+/// The keys of `[[scene]]`.
 const SCENE: [&str; 10] = [
     "file",
     "room",
@@ -25,13 +25,14 @@ const SCENE: [&str; 10] = [
     "reference-strategies",
     "reference-cross-check",
 ];
+/// Older names of keys of `[[scene]]`.
 const OLD_SCENE: [&str; 1] = ["reference-witness"];
 /// The keys of `room`.
 const ROOM: [&str; 3] = ["light", "albedo", "triangles"];
-/// The most triangles of a room.
+/// The largest number of triangles of a room.
 const MOST_TRIANGLES: usize = 10_000_000;
 
-/// The scenes: those that are there, and the optional ones that are not.
+/// Reads the scenes; returns the available ones, and the missing optional ones.
 pub(super) fn all(
     top: &mut Section<'_>,
     folder: &Path,
@@ -58,7 +59,7 @@ pub(super) fn all(
     Ok((there, absent))
 }
 
-/// The reason why an optional scene is left out. None: it is there.
+/// Returns the reason why an optional scene is missing. None: it is available.
 fn absence(scene: &SceneSpec) -> Option<String> {
     if scene.presence == Presence::Required {
         return None;
@@ -70,13 +71,13 @@ fn absence(scene: &SceneSpec) -> Option<String> {
     (!is_there).then(|| format!("there is no file {}", scene.path.display()))
 }
 
-/// The environment variable that a path begins with, as in `$BIDIR_SCENES/room.pbrt`.
+/// Returns the environment variable that a path begins with, as in `$BIDIR_SCENES/room.pbrt`.
 fn variable(path: &Path) -> Option<&str> {
     let first = path.components().next()?;
     first.as_os_str().to_str()?.strip_prefix('$')
 }
 
-/// A path whose environment variable has its value, where it has one.
+/// Replaces the environment variable of a path by its value, if it is set.
 fn with_variable(file: &str) -> PathBuf {
     let path = Path::new(file);
     match variable(path).and_then(std::env::var_os) {
@@ -85,13 +86,13 @@ fn with_variable(file: &str) -> PathBuf {
     }
 }
 
-/// The file of a scene, or the room in its place.
+/// The origin of a scene.
 struct Source {
-    /// The file, as messages and results call it.
+    /// The file, as messages and results name it.
     file: String,
     path: PathBuf,
     source: SceneSource,
-    /// Where the description names the file. None: it is a room.
+    /// The place in the description that names the file. None: it is a room.
     place: Option<Place>,
 }
 
@@ -148,11 +149,12 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result
         reference,
         file: source.file,
         presence,
-        places: [source.place, at],
+        file_place: source.place,
+        reference_place: at,
     })
 }
 
-/// A room that is made.
+/// Reads a generated room.
 fn room_of(entry: Entry<'_>) -> Result<Room> {
     let mut section = entry.section()?;
     section.only(&ROOM, &[])?;
@@ -174,13 +176,13 @@ fn room_of(entry: Entry<'_>) -> Result<Room> {
     })
 }
 
-/// A file relative to `folder`, without detours such as `out/..`.
+/// Joins `folder` and `file`, without detours such as `out/..`.
 fn joined(folder: &Path, file: &Path) -> PathBuf {
     let mut path = PathBuf::new();
     for part in folder.join(file).components() {
         let is_detour = part == Component::ParentDir
             && matches!(path.components().next_back(), Some(Component::Normal(_)))
-            // The folder above the target of a link is another one.
+            // `..` after a link leads to the parent of its target.
             && !path.is_symlink();
         match part {
             _ if is_detour => {
@@ -193,7 +195,7 @@ fn joined(folder: &Path, file: &Path) -> PathBuf {
     path
 }
 
-/// A reference that is there, with the place of its name, or how many samples the one that is made has.
+/// Reads the reference of a scene, and the place that names an existing one.
 fn reference(
     section: &mut Section<'_>,
     folder: &Path,
@@ -217,14 +219,14 @@ fn reference(
                     "leave this out, or have the reference made with `reference-spp`".to_owned(),
                 ));
             }
-            let there = ReferenceSpec::There(folder.join(image.text()?));
-            Ok((there, Some(image.at())))
+            let existing = ReferenceSpec::Existing(folder.join(image.text()?));
+            Ok((existing, Some(image.at())))
         }
         (None, Some(spp)) => {
             let made = ReferenceSpec::Make {
                 spp: spp.whole(1)?,
-                changes: Box::new(reference_changes(strategies, defaults)?),
-                witness: cross_check.as_ref().map(cross_check_of).transpose()?,
+                request: Box::new(reference_request(strategies, defaults)?),
+                cross_check: cross_check.as_ref().map(cross_check_of).transpose()?,
             };
             Ok((made, None))
         }
@@ -235,36 +237,36 @@ fn reference(
     }
 }
 
-/// What decides the expectation of the images is that of all methods.
-fn reference_changes(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
-    let mut changes = Request {
+/// Reads the settings that the expectation of the reference depends on; they are those of all methods.
+fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Result<Request> {
+    let mut request = Request {
         strategies: defaults.strategies.clone(),
         max_depth: defaults.max_depth,
         ..Request::default()
     };
     if let Some(entry) = strategies {
         entry.read(|value| {
-            changes
+            request
                 .set("strategies", value)
                 .map_err(|error| error.to_string())
         })?;
     }
-    Ok(changes)
+    Ok(request)
 }
 
-/// An estimator that can contradict that of the picture.
+/// Reads the integrator of the cross-check, which is not that of the reference.
 fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
-    let mut changes = Request::default();
+    let mut request = Request::default();
     entry.read(|value| {
-        changes
+        request
             .set("integrator", value)
             .map_err(|error| error.to_string())
     })?;
-    match changes.integrator {
+    match request.integrator {
         Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
             "an estimator cannot cross-check itself".to_owned(),
             "references are made by `bdpt`: use path, light or lvc".to_owned(),
         )),
-        Some(witness) => Ok(witness),
+        Some(other) => Ok(other),
     }
 }

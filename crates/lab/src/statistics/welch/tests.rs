@@ -3,7 +3,7 @@ use super::*;
 
 const SIZE: [usize; 2] = [16, 12];
 const PIXELS: usize = SIZE[0] * SIZE[1];
-/// The standard deviation of a sample, over its mean.
+/// The standard deviation of a sample relative to its mean.
 const SPREAD: f64 = 0.5;
 
 fn flat(value: f64) -> Pixels {
@@ -13,7 +13,7 @@ fn flat(value: f64) -> Pixels {
     }
 }
 
-/// `count` renders of one sample of a grey image that becomes brighter to the end.
+/// Makes `count` renders with one sample per pixel of a grey image that becomes brighter towards its end.
 fn renders(stream: u64, count: usize, scale: f64) -> Vec<Pixels> {
     let mut noise = normal(stream);
     let mut render = || {
@@ -31,7 +31,7 @@ fn renders(stream: u64, count: usize, scale: f64) -> Vec<Pixels> {
     (0..count).map(|_| render()).collect()
 }
 
-/// The mean of renders and the variance of that mean, of every pixel.
+/// Computes the mean of renders and the variance of that mean for every pixel.
 fn estimate(renders: &[Pixels]) -> [Pixels; 2] {
     let moments = moments_of_replicates(Blocks::new(SIZE, 1), renders);
     let image = |value: fn(&Moments) -> f64| Pixels {
@@ -44,7 +44,7 @@ fn estimate(renders: &[Pixels]) -> [Pixels; 2] {
     [image(|m| m.mean), image(|m| m.variance)]
 }
 
-/// The part of `trials` comparisons of equal estimators that call them different at `level`.
+/// Returns the rate of false alarms at `level` in `trials` comparisons of equal estimators.
 fn alarms(trials: u64, level: f64, p: impl Fn(u64, u64) -> f64) -> f64 {
     let alarmed = (0..trials).filter(|trial| p(2 * trial, 2 * trial + 1) < level);
     alarmed.count() as f64 / trials as f64
@@ -79,7 +79,7 @@ fn a_test_is_as_computed_by_hand() {
     assert!((tail(1.959964, f64::INFINITY) - 0.05).abs() < 1e-7);
 }
 
-/// The p-value of images of 16 samples that know their variances.
+/// Computes the p-value of images of 16 samples with variances.
 fn p_of_variances(a: &[Pixels; 2], b: &[Pixels; 2], block: usize) -> f64 {
     let [a, b] = [a, b].map(|[mean, variance]| Estimated {
         mean,
@@ -105,10 +105,10 @@ fn false_alarms_are_as_rare_as_the_level_says() {
     }
 }
 
-/// The whole image has a standard error of 0.5 / √(16 · 192) = 0.9 % a channel and estimator, so
-/// that 2 % are 1.6 standard errors for 16 samples, and 6 for 256.
+/// The standard error of a channel's mean over the image is 0.5 / √(16 · 192) = 0.9 % with 16 samples, so
+/// that a difference of 2 % is 1.6 standard errors; with 256 samples it is 6.
 #[test]
-fn a_bias_of_two_per_cent_is_seen() {
+fn a_bias_of_two_per_cent_is_detected() {
     let [a, b, biased] =
         [(1, 1.0), (2, 1.0), (2, 1.02)].map(|(stream, scale)| renders(stream, 256, scale));
     assert!(welch_test(&a, &b, WHOLE).unwrap().p > 1e-3);
@@ -118,10 +118,9 @@ fn a_bias_of_two_per_cent_is_seen() {
     assert!(p_of_variances(&a, &biased, WHOLE) < 1e-3);
 }
 
-/// A bias of that size is found in three of four trials or so, as there are three channels; half of
-/// it rarely.
+/// With three channels, the test detects such a bias in about three of four trials, and half of it rarely.
 #[test]
-fn the_smallest_bias_is_found_more_often_than_not() {
+fn the_smallest_bias_is_detected_in_most_trials() {
     let found = |part: f64| {
         let trials = (0..200).filter(|trial| {
             let [a, b] = [2 * trial, 2 * trial + 1].map(|stream| renders(stream, 16, 1.0));
@@ -174,7 +173,7 @@ fn images_without_variance_must_agree() {
 }
 
 #[test]
-fn what_is_not_finite_differs() {
+fn numbers_that_are_not_finite_differ() {
     let mut a = renders(5, 4, 1.0);
     a[2].data[17][2] = f32::NAN;
     let found = welch_test(&a, &renders(6, 4, 1.0), 1).unwrap();
@@ -183,7 +182,7 @@ fn what_is_not_finite_differs() {
 }
 
 #[test]
-fn what_does_not_fit_is_no_test() {
+fn too_few_replicates_and_other_sizes_give_no_test() {
     let mut odd = flat(1.0);
     odd.size = [SIZE[1], SIZE[0]];
     let (one, two) = (renders(1, 1, 1.0), renders(2, 2, 1.0));

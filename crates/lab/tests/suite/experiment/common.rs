@@ -39,7 +39,7 @@ name = "one"
 shadow-rays = "per-pair"
 "#;
 
-/// A folder with a scene in it, gone at the end.
+/// A temporary folder with a scene.
 pub(crate) struct Workplace(TempDir);
 
 impl Workplace {
@@ -91,15 +91,15 @@ impl Workplace {
         outcome.results.unwrap()
     }
 
-    /// Why a description is refused.
+    /// Returns the error of running a description.
     #[track_caller]
     pub(crate) fn refusal(&self, text: &str, out: &str) -> ExperimentError {
         self.run(text, out, &mut Watch::default()).unwrap_err()
     }
 }
 
-/// Stops after a number of renders, and has a clock that is one tick further at every look, and one of the
-/// processors that is two further.
+/// Counts events, and can stop after some of them. Each reading advances the clock by one second, and the
+/// processor time by two.
 #[derive(Default)]
 pub(crate) struct Watch {
     pub(crate) renders: usize,
@@ -114,7 +114,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Stops before a pass of images of strategies.
+    /// Stops after `passes` passes of images of strategies.
     pub(crate) fn at_strategy_pass(passes: usize) -> Self {
         Self {
             strategy_most: Some(passes),
@@ -122,6 +122,7 @@ impl Watch {
         }
     }
 
+    /// Stops after `renders` renders.
     pub(crate) fn until(renders: usize) -> Self {
         Self {
             most: Some(renders),
@@ -131,7 +132,7 @@ impl Watch {
 }
 
 impl Observer for Watch {
-    fn tell(&mut self, event: Event<'_>) {
+    fn notify(&mut self, event: Event<'_>) {
         match event {
             Event::Record(_) => self.renders += 1,
             Event::Pyramid { .. } => self.strategy_passes += 1,
@@ -154,7 +155,7 @@ impl Observer for Watch {
 
     fn should_stop(&mut self) -> bool {
         let is_beyond = |most: Option<usize>, done: usize| most.is_some_and(|most| done >= most);
-        // A pass is told before it is asked whether to go on with it.
+        // The event of a pass precedes the question whether to stop before it.
         is_beyond(self.most, self.renders)
             || is_beyond(
                 self.strategy_most.map(|most| most + 1),
@@ -163,7 +164,7 @@ impl Observer for Watch {
     }
 }
 
-/// Records whose times are forgotten.
+/// Clears the times of records.
 pub(crate) fn without_times(records: &[Record]) -> Vec<Record> {
     let mut records = records.to_vec();
     for record in &mut records {

@@ -2,7 +2,7 @@ use super::common::{DESCRIPTION, Workplace};
 use bidir_lab::experiment::{BudgetSpec, Experiment, ExperimentError, ReferenceSpec};
 use bidir_lab::results::BudgetKind;
 
-/// A description whose fault is at a place in its own lines.
+/// Checks message, place and hint of the error of a description.
 #[track_caller]
 fn check(text: &str, expected: &str, hint: Option<&str>) {
     let place = Workplace::new();
@@ -15,13 +15,13 @@ fn check(text: &str, expected: &str, hint: Option<&str>) {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn errors_have_their_place() {
     check(
         "seeds = \n",
         ":1:9: string values must be quoted, expected literal string",
         None,
     );
-    // A misspelt key comes before the one that is missing for it.
+    // A misspelt key is reported before the required key that is then missing.
     let near = |name: &str| Some(format!("did you mean `{name}`?"));
     check(
         "sedes = 3\n",
@@ -140,7 +140,7 @@ fn settings_without_effect_on_the_integrator_of_a_method_are_refused() {
     );
     let own = of_all.replace("shadow-rays =", "integrator = \"bdpt\"\nshadow-rays =");
     Workplace::new().read(&own).unwrap();
-    // The scene may bring the integrator.
+    // The scene file may set the integrator.
     let place = Workplace::new();
     let scene = std::fs::read_to_string(place.path("room.pbrt")).unwrap();
     let scene = scene.replace("Integrator \"bdpt\"", "Integrator \"path\"");
@@ -154,7 +154,7 @@ fn settings_without_effect_on_the_integrator_of_a_method_are_refused() {
 }
 
 #[test]
-fn strategies_are_those_of_a_bidirectional_method() {
+fn the_method_of_a_pyramid_is_bidirectional() {
     let with = |lines: &str| format!("{lines}\n{DESCRIPTION}[[budget]]\nsamples = 2\n");
     check(
         &with("pyramid = \"al\""),
@@ -188,14 +188,14 @@ fn strategies_are_those_of_a_bidirectional_method() {
 }
 
 #[test]
-fn methods_have_the_common_settings() {
+fn methods_inherit_the_common_settings() {
     let place = Workplace::new();
     let text = "[settings]\nmis = \"uniform\"\nstrategies = \"all,-t1\"\n".to_owned()
         + &DESCRIPTION.replace("seeds = 2\nthreads = 1\n", "")
         + "mis = \"power\"\n[[budget]]\nrays = 50.5\n";
     let experiment = place.read(&text).unwrap();
     let names = experiment.methods.iter().map(|method| {
-        let mis = method.changes.mis.unwrap();
+        let mis = method.request.mis.unwrap();
         (method.name.clone(), format!("{mis:?}"))
     });
     let expected = [("all", "Uniform"), ("one", "Power")];
@@ -206,14 +206,14 @@ fn methods_have_the_common_settings() {
     );
     let ReferenceSpec::Make {
         spp: 16,
-        changes,
-        witness: None,
+        request,
+        cross_check: None,
     } = &experiment.scenes[0].reference
     else {
         panic!("{:?}", experiment.scenes);
     };
-    assert_eq!(changes.strategies.as_ref().unwrap().to_string(), "all,-t1");
-    assert_eq!(changes.mis, None);
+    assert_eq!(request.strategies.as_ref().unwrap().to_string(), "all,-t1");
+    assert_eq!(request.mis, None);
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn older_names_are_accepted() {
 }
 
 #[test]
-fn a_quick_one_has_the_same_methods() {
+fn a_quick_experiment_has_fewer_seeds_and_smaller_images_but_all_methods() {
     let place = Workplace::new();
     let text = DESCRIPTION.replace("seeds = 2", "seeds = 20\nsize = \"640x480\"")
         + "[[budget]]\nsamples = 1\n[[budget]]\nsamples = 64\n[[budget]]\nsamples = 2\n\
@@ -250,7 +250,7 @@ fn a_quick_one_has_the_same_methods() {
     let quick = place.read(&text).unwrap().quick();
     let sizes: Vec<_> = quick.scenes.iter().map(|scene| scene.size).collect();
     assert_eq!((quick.seeds.count, quick.size), (3, None));
-    // An image that is there is not made smaller.
+    // The size of an existing image stays.
     assert_eq!(sizes, [Some([64, 48]), Some([640, 480])]);
     let names: Vec<_> = quick.budgets.iter().map(|budget| &*budget.name).collect();
     assert_eq!(names, ["1 spp", "8 spp"]);

@@ -1,4 +1,4 @@
-//! Experiments as a host runs them.
+//! Experiments run by a host.
 
 mod common;
 mod descriptions;

@@ -3,13 +3,13 @@ use bidir_lab::experiment::{End, ExperimentError};
 use bidir_lab::results::Results;
 use std::fs;
 
-/// Four samples per pixel of the method `all`.
+/// Returns a description with a pyramid of the method `all`, with four samples per pixel.
 fn description() -> String {
     format!("pyramid = \"all\"\npyramid-spp = 4\n{DESCRIPTION}[[budget]]\nsamples = 2\n")
 }
 
 #[test]
-fn strategies_add_up_to_the_picture() {
+fn strategies_add_up_to_the_image() {
     let place = Workplace::new();
     let results = place.complete(&description(), "out");
     let [pyramid] = &results.pyramids[..] else {
@@ -40,9 +40,9 @@ fn strategies_add_up_to_the_picture() {
     assert_eq!(serde_json::from_str::<Results>(&text).unwrap(), results);
 }
 
-/// Also where records are there before it is asked for.
+/// The pyramid may be added to a description that already has records.
 #[test]
-fn records_know_nothing_of_it_and_it_is_rendered_once() {
+fn a_pyramid_is_rendered_once_and_leaves_records_unchanged() {
     let place = Workplace::new();
     let plain = description().replace("pyramid", "# pyramid");
     let before = place.complete(&plain, "out");
@@ -56,25 +56,25 @@ fn records_know_nothing_of_it_and_it_is_rendered_once() {
     let again = place.run(&description(), "out", &mut watch).unwrap();
     assert_eq!((watch.strategy_passes, watch.renders), (0, 0));
     assert_eq!(again.results.unwrap(), first);
-    // Another number of samples is another pyramid; what was found before is not shown.
+    // Another number of samples gives another pyramid, which replaces the former one in the results.
     let more = description().replace("spp = 4", "spp = 5");
     let more = place.complete(&more, "out");
     assert_eq!((more.pyramids.len(), more.pyramids[0].spp), (1, 5));
     let whole = place.complete(&description(), "whole");
     assert_eq!(whole.pyramids, first.pyramids);
-    // No time of a record has any part of it.
+    // The times of records exclude the pyramid.
     for (record, plain) in whole.records.iter().zip(&before.records) {
         assert!((record.seconds - plain.seconds).abs() < 1e-9);
     }
 }
 
 #[test]
-fn stopping_forgets_what_was_running() {
+fn a_stopped_pyramid_starts_over() {
     let place = Workplace::new();
     let whole = place.complete(&description(), "whole");
     for passes in 0..4 {
         let out = format!("out-{passes}");
-        // References are there before strategies are.
+        // This run makes the reference.
         place.complete(&description().replace("pyramid", "# pyramid"), &out);
         let mut watch = Watch::at_strategy_pass(passes);
         let stopped = place.run(&description(), &out, &mut watch).unwrap();
@@ -89,9 +89,8 @@ fn stopping_forgets_what_was_running() {
     }
 }
 
-/// A tile shows no more.
 #[test]
-fn large_images_are_rendered_small() {
+fn strategies_of_large_images_are_rendered_at_the_size_of_a_tile() {
     let place = Workplace::new();
     let text = description().replace("threads = 1", "threads = 1\nsize = \"240x8\"");
     let results = place.complete(
@@ -103,7 +102,7 @@ fn large_images_are_rendered_small() {
 }
 
 #[test]
-fn a_scene_whose_method_has_no_strategies_is_refused() {
+fn a_pyramid_of_a_method_that_is_not_bidirectional_is_refused() {
     let place = Workplace::new();
     let scene = fs::read_to_string(place.path("room.pbrt")).unwrap();
     let scene = scene.replace("Integrator \"bdpt\"", "Integrator \"path\"");

@@ -8,19 +8,19 @@ fn with_budget(budget: &str) -> String {
 }
 
 #[test]
-fn every_cell_has_a_record() {
+fn every_run_has_a_record() {
     let place = Workplace::new();
     let results = place.complete(&with_budget("samples = 3"), "out");
-    let cells = results.records.iter();
-    let cells = cells.map(|record| (record.seed, &*record.method, record.spp));
+    let runs = results.records.iter();
+    let runs = runs.map(|record| (record.seed, &*record.method, record.spp));
     let expected = [(0, "all", 3), (0, "one", 3), (1, "all", 3), (1, "one", 3)];
-    assert!(cells.eq(expected));
+    assert!(runs.eq(expected));
     for record in &results.records {
         let rmse = record.metrics["rmse"];
         let efficiency = record.efficiency_rays * rmse * rmse * record.rays.total() as f64;
         assert!((efficiency - 1.0).abs() < 1e-9, "{record:?}");
         assert!(record.metrics.contains_key("relmse_trim"));
-        // Begin, end and each of three passes take a tick.
+        // Training and each of three passes take a second.
         assert!((record.seconds - 4.0).abs() < 1e-9, "{record:?}");
         assert_eq!(record.processor_seconds, Some(8.0));
         assert_eq!(record.training_seconds, Some(1.0));
@@ -41,12 +41,12 @@ fn every_cell_has_a_record() {
 }
 
 #[test]
-fn a_budget_may_be_of_some_methods() {
+fn a_budget_may_apply_to_some_methods_only() {
     let place = Workplace::new();
     let text = with_budget("samples = 1") + "[[budget]]\nsamples = 2\n";
     let mut experiment = place.read(&text).unwrap();
     experiment.budgets[1].methods.push("one".to_owned());
-    assert_eq!(experiment.cells(), 6);
+    assert_eq!(experiment.run_count(), 6);
     let setup = Setup {
         folder: place.path("out"),
         start: Start::Resume,
@@ -60,9 +60,9 @@ fn a_budget_may_be_of_some_methods() {
     assert_eq!(records.len(), 6);
 }
 
-/// Wherever it is stopped, also during the reference.
+/// The first stop is during the reference.
 #[test]
-fn what_was_stopped_goes_on_to_the_same_records() {
+fn a_resumed_experiment_has_the_records_of_an_uninterrupted_one() {
     let place = Workplace::new();
     let text = with_budget("samples = 2") + "[[budget]]\nrays = 20\n";
     let whole = place.complete(&text, "whole");
@@ -85,7 +85,7 @@ fn another_experiment_is_refused() {
     let place = Workplace::new();
     let text = with_budget("samples = 1");
     place.complete(&text, "out");
-    // What is told about it is not it.
+    // The title does not identify an experiment.
     place.complete(&format!("title = \"Other\"\n{text}"), "out");
     let other = with_budget("samples = 2");
     let error = place.run(&other, "out", &mut Watch::default()).unwrap_err();
@@ -97,9 +97,9 @@ fn another_experiment_is_refused() {
     assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
 }
 
-/// Of another machine, of another number of threads.
+/// Tests another processor, an unknown one, and another number of threads.
 #[test]
-fn times_are_of_one_machine() {
+fn records_of_another_machine_are_refused() {
     let place = Workplace::new();
     let text = with_budget("samples = 1");
     place.run(&text, "out", &mut Watch::until(2)).unwrap();
@@ -128,7 +128,6 @@ fn times_are_of_one_machine() {
     assert_eq!(place.complete(&text, "out").records.len(), 4);
 }
 
-/// The number of passes whose rays come nearest to the budget.
 #[test]
 fn equal_rays_are_equal_within_half_a_pass() {
     let place = Workplace::new();
@@ -143,9 +142,9 @@ fn equal_rays_are_equal_within_half_a_pass() {
     }
 }
 
-/// Each pass takes a tick, and so does what comes before the first.
+/// Training and each pass take one second.
 #[test]
-fn no_pass_overruns_the_time() {
+fn no_pass_exceeds_the_time() {
     let place = Workplace::new();
     for record in place.complete(&with_budget("seconds = 5.5"), "out").records {
         assert_eq!(record.spp, 4, "{record:?}");
@@ -154,7 +153,7 @@ fn no_pass_overruns_the_time() {
 }
 
 #[test]
-fn training_is_paid_for() {
+fn rays_of_training_count_towards_the_budget() {
     let place = Workplace::new();
     let text = with_budget("rays = 1").replace("per-pair", "ray-roulette");
     let results = place.complete(&text, "out");

@@ -8,7 +8,8 @@ use std::fs;
 const MADE: &str = "reference-spp = 16";
 const BUDGET: &str = "[[budget]]\nsamples = 1\n";
 
-/// A workplace, the results of an experiment there, and its description with another reference.
+/// Runs an experiment; returns its folder, its results, and a function that makes the same description with
+/// an existing reference.
 fn place() -> (Workplace, Results, impl Fn(&str) -> String) {
     let place = Workplace::new();
     let results = place.complete(&format!("{DESCRIPTION}{BUDGET}"), "made");
@@ -19,7 +20,7 @@ fn place() -> (Workplace, Results, impl Fn(&str) -> String) {
     (place, results, given)
 }
 
-/// Writes the reference of an experiment as `name`, with other pixels.
+/// Writes the reference of an experiment as `name`, with changed pixels.
 fn write_changed(
     place: &Workplace,
     results: &Results,
@@ -46,7 +47,7 @@ fn write_changed(
 }
 
 #[test]
-fn what_a_description_names_and_is_not_there_is_told_at_its_place() {
+fn a_missing_file_is_reported_at_the_place_that_names_it() {
     let place = Workplace::new();
     let text = format!("{DESCRIPTION}{BUDGET}");
     let error = place.refusal(&text.replace("\"room", "\"rom"), "out");
@@ -59,7 +60,7 @@ fn what_a_description_names_and_is_not_there_is_told_at_its_place() {
     let error = place.refusal(&text.replace(MADE, "reference = \"none.exr\""), "out");
     let expected = "test.toml:6:13: cannot open `";
     assert!(error.to_string().contains(expected), "{error}");
-    // The place of a file is where the scene names it.
+    // The error of an included file is placed in the scene file.
     fs::write(
         place.path("room.pbrt"),
         format!("{SCENE}Include \"none.pbrt\""),
@@ -70,7 +71,7 @@ fn what_a_description_names_and_is_not_there_is_told_at_its_place() {
 }
 
 #[test]
-fn an_image_is_its_pixels() {
+fn an_existing_reference_is_identified_by_its_pixels() {
     let (place, results, given) = place();
     let text = given("image.exr");
     write_changed(&place, &results, "image.exr", |_| {});
@@ -83,7 +84,7 @@ fn an_image_is_its_pixels() {
     write_changed(&place, &results, "image.exr", |pixels| pixels[7][1] += 0.5);
     let error = place.refusal(&text, "out");
     assert!(matches!(error, ExperimentError::Mismatch(_)), "{error}");
-    // The same pixels are the same experiment wherever they lie: as an image, in a folder.
+    // The same pixels in another image or in a folder give the same experiment.
     write_changed(&place, &results, "moved.exr", |_| {});
     let image = results.scenes[0].reference_image.as_ref().unwrap();
     let folder = format!("made/{}", image.trim_end_matches("/picture.exr"));
@@ -112,9 +113,8 @@ fn pixels_that_are_not_finite_are_refused() {
     );
 }
 
-/// The noise of a reference is known where it has variances.
 #[test]
-fn noise_is_told_where_it_is_known() {
+fn references_with_variances_have_a_known_noise_and_a_warning_if_it_is_large() {
     let (place, results, given) = place();
     let mse = results.scenes[0].reference_mse.unwrap();
     write_changed(&place, &results, "image.exr", |_| {});
@@ -126,7 +126,7 @@ fn noise_is_told_where_it_is_known() {
     );
     let with_layers = place.complete(&given(&picture), "with-layers");
     assert!((with_layers.scenes[0].reference_mse.unwrap() - mse).abs() < 1e-9 * mse);
-    // As many samples as the reference has: half of the mean error is its noise.
+    // A method with as many samples as the reference: half of the mean error is noise of the reference.
     let many = "[[budget]]\nsamples = 128\n[settings]\nmax-depth = 1\n";
     let text = format!("{DESCRIPTION}{many}").replace(MADE, "reference-spp = 128");
     let text = text.replace("seeds = 2", "seeds = 24");
@@ -146,7 +146,7 @@ fn noise_is_told_where_it_is_known() {
     assert!((25.0..75.0).contains(&percent), "{warning}");
 }
 
-/// A mirror throws the light of a point on the floor, which path tracing never finds.
+/// Makes a scene with a caustic of a point light on a mirror, which path tracing cannot sample.
 fn beneath_a_mirror() -> Workplace {
     let place = Workplace::new();
     let begin = SCENE.find("AttributeBegin").unwrap();
@@ -160,7 +160,7 @@ fn beneath_a_mirror() -> Workplace {
 }
 
 #[test]
-fn a_witness_that_finds_all_light_can_be_named() {
+fn a_cross_check_that_samples_all_paths_can_be_named() {
     let text = format!("{DESCRIPTION}{BUDGET}");
     let naming = |integrator: &str| {
         let named = format!("reference-spp = 1024\nreference-cross-check = \"{integrator}\"");
@@ -179,13 +179,13 @@ fn a_witness_that_finds_all_light_can_be_named() {
     let error = place.refusal(&naming("bdpt"), "other");
     assert!(error.to_string().contains(":7:25: "), "{error}");
     assert!(error.hint().unwrap().contains("path, light or lvc"));
-    // Descriptions of before have another name for it.
+    // Older descriptions use another key.
     let old = naming("lvc").replace("reference-cross-check", "reference-witness");
     assert!(place.read(&old).is_ok());
 }
 
 #[test]
-fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
+fn strategies_without_paths_are_refused_and_lost_light_is_a_warning() {
     let place = Workplace::new();
     let text = |list: &str| {
         let method = format!("integrator = \"bdpt\"\nstrategies = \"{list}\"");
@@ -209,10 +209,10 @@ fn strategies_that_make_no_path_are_refused_and_lost_light_is_a_warning() {
 }
 
 #[test]
-fn nothing_is_compared_with_a_reference_whose_estimators_disagree() {
+fn a_reference_whose_estimators_disagree_is_not_used() {
     let place = beneath_a_mirror();
     let text = format!("{DESCRIPTION}{BUDGET}").replace(MADE, "reference-spp = 1024");
-    // The second time it is there already.
+    // The second run finds the existing reference.
     for _ in 0..2 {
         let mut watch = Watch::default();
         let error = place.run(&text, "out", &mut watch).unwrap_err();

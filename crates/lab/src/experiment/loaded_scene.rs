@@ -1,7 +1,7 @@
-//! A scene that is ready to be rendered and compared.
+//! A scene in memory, and its reference.
 
 use super::error::{ExperimentError, Place};
-use super::run::{Event, Observer};
+use super::observer::{Event, Observer};
 use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
@@ -10,45 +10,45 @@ use bidir::scene::Scene;
 use formats::scene::{Files, LoadOptions};
 use std::path::PathBuf;
 
-/// A scene with what its file says.
-pub(super) struct Stage<'a> {
+/// A scene in memory, with the settings of its file.
+pub(super) struct LoadedScene<'a> {
     pub(super) spec: &'a SceneSpec,
     pub(super) scene: Scene,
     /// The settings of the file, over the defaults.
     pub(super) settings: Settings,
     pub(super) digest: String,
-    /// What is odd in the file but no error.
+    /// Warnings about the file.
     pub(super) warnings: Vec<String>,
-    /// All files that were read.
+    /// All files read for it.
     pub(super) files: Vec<PathBuf>,
     /// The files that no output may replace.
     pub(super) inputs: Vec<PathBuf>,
 }
 
-/// What the images of a scene are compared with.
+/// The image that all renders of a scene are compared with.
 #[derive(Clone)]
 pub(super) struct Reference {
     pub(super) pixels: Pixels,
-    /// How it was made.
+    /// A description of how it was made.
     pub(super) words: String,
-    /// The image, relative to the folder of the results, if it lies there.
+    /// The image file, relative to the folder of the results. None: it lies elsewhere.
     pub(super) image: Option<String>,
-    /// The mean square error of its own. None: nobody knows.
+    /// Its own mean square error. None: unknown.
     pub(super) mse: Option<f64>,
-    /// Warnings about its files.
+    /// A warning about its files.
     pub(super) warning: Option<String>,
 }
 
 impl Reference {
-    /// Tells what is odd about its files.
+    /// Passes its warning on to the observer.
     pub(super) fn warn(&self, observer: &mut dyn Observer) {
         if let Some(warning) = &self.warning {
-            observer.tell(Event::Warning(warning));
+            observer.notify(Event::Warning(warning));
         }
     }
 }
 
-impl<'a> Stage<'a> {
+impl<'a> LoadedScene<'a> {
     /// Reads a scene.
     pub(super) fn load(
         experiment: &Experiment,
@@ -67,7 +67,7 @@ impl<'a> Stage<'a> {
             ..LoadOptions::default()
         };
         let loaded = formats::scene::load_from(&spec.path, &options, files);
-        let loaded = loaded.map_err(|error| Place::of_named(spec.places[0].as_ref(), error))?;
+        let loaded = loaded.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
         let mut settings = Settings {
             sampler: loaded.settings.sampler,
             ..Settings::default()
@@ -85,7 +85,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// The files that another machine needs to be given: none of those in memory.
+    /// Returns the files that another machine needs: those on the disk.
     pub(super) fn shared_files(&self) -> Vec<PathBuf> {
         if self.spec.source == SceneSource::Disk {
             self.files.clone()
@@ -94,13 +94,13 @@ impl<'a> Stage<'a> {
         }
     }
 
-    /// True where the method is rendered in this scene.
+    /// Returns true if the experiment renders the method in this scene.
     pub(super) fn has(&self, experiment: &Experiment, method: &MethodSpec) -> bool {
         let mut methods = experiment.methods_in(&self.spec.name);
         methods.any(|other| other.name == method.name)
     }
 
-    /// A session of this scene.
+    /// Starts a session of this scene.
     pub(super) fn session(
         &self,
         settings: Settings,
@@ -117,7 +117,7 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Width and height of the images. Unit: pixels.
+    /// Returns width and height of the images. Unit: pixels.
     pub(super) fn size(&self) -> [usize; 2] {
         let crop = self.scene.film().crop;
         [crop.width() as usize, crop.height() as usize]

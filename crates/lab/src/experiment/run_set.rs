@@ -1,0 +1,397 @@
+//! Running a whole experiment: from the description to the results.
+
+use super::analysis::{ReferenceNoise, overruns, reference_noise};
+use super::error::ExperimentError;
+use super::identity::identity;
+use super::journal::{Journal, RecordsKey};
+use super::loaded_scene::{LoadedScene, Reference};
+use super::observer::{Event, Observer};
+use super::outputs;
+use super::pyramid;
+use super::reference;
+use super::run::Run;
+use super::settings::{no_effect, texts};
+use super::{Absent, Experiment, MethodSpec, contributions};
+use crate::results::{BudgetInfo, FORMAT, Machine, MethodInfo, Record, Results};
+use bidir::integrator::{LostLight, lost_light};
+use bidir::scene::Isa;
+use formats::scene::Files;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// The folder, program and machine of an experiment.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The folder of the results.
+    pub folder: PathBuf,
+    /// The fate of existing records.
+    pub start: Start,
+    /// The program with its version.
+    pub program: String,
+    /// The machine; [`run`] fills in the number of threads.
+    pub machine: Machine,
+}
+
+/// The fate of existing records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Keeps them and renders the missing ones. Refuses records of another experiment, machine or program.
+    Resume,
+    /// Removes them; references of the same scene and settings stay.
+    Anew,
+}
+
+/// The end of an experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Every render has a record.
+    Complete,
+    /// The observer stopped it; running it again continues.
+    Stopped,
+}
+
+/// The results of an experiment, complete or so far.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The end.
+    pub end: End,
+    /// The results. None: it stopped before the references were complete.
+    pub results: Option<Results>,
+}
+
+/// Renders every run without a record, and writes `results.json`.
+pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
+    let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
+    let mut journal = Journal::start(setup, &key, observer)?;
+    let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
+        return Ok(Outcome {
+            end: End::Stopped,
+            results: None,
+        });
+    };
+    let Ready {
+        scenes,
+        references,
+        absent,
+    } = ready;
+    let run_set = RunSet {
+        experiment,
+        setup,
+        scenes: &scenes,
+        references: &references,
+    };
+    let shown = pyramid::complete(experiment, &scenes, setup, &mut journal, observer)?;
+    let end = match shown {
+        End::Complete => run_set.render(&mut journal, observer)?,
+        End::Stopped => shown,
+    };
+    let mut results = run_set.results(journal.records());
+    results.pyramids = pyramid::found(experiment, &scenes, setup, &journal);
+    results.contributions = contributions::measure(experiment, &scenes)?;
+    for Absent { name, reason } in absent {
+        let _ = write!(
+            results.description,
+            "\n\nThe scene {name} is left out: {reason}."
+        );
+    }
+    results.claims = experiment.judge(&results);
+    for noise in reference_noise(&results).filter(ReferenceNoise::is_large) {
+        observer.notify(Event::Warning(&noise.warning()));
+    }
+    for warning in overruns(&results) {
+        observer.notify(Event::Warning(&warning));
+    }
+    write_results(&setup.folder, &results)?;
+    Ok(Outcome {
+        end,
+        results: Some(results),
+    })
+}
+
+/// An experiment before its first render.
+pub(super) struct Begun<'a> {
+    pub(super) scenes: Vec<LoadedScene<'a>>,
+    /// The existing reference of each scene, if any.
+    pub(super) given: Vec<Option<Reference>>,
+    pub(super) key: RecordsKey,
+}
+
+/// The scenes with their references, and the omitted scenes.
+pub(super) struct Ready<'a> {
+    pub(super) scenes: Vec<LoadedScene<'a>>,
+    /// One for each scene.
+    pub(super) references: Vec<Reference>,
+    pub(super) absent: Vec<Absent>,
+}
+
+/// Creates the folders, and reads the scenes and the existing references.
+pub(super) fn begin<'a>(
+    experiment: &'a Experiment,
+    setup: &Setup,
+    observer: &mut dyn Observer,
+) -> Result<Begun<'a>> {
+    for folder in ["", "images", "references"] {
+        let path = setup.folder.join(folder);
+        std::fs::create_dir_all(&path).map_err(|error| ExperimentError::Folder { path, error })?;
+    }
+    for scene in &experiment.absent {
+        scene.warn(observer);
+    }
+    if let ([], Some(absent)) = (&experiment.scenes[..], experiment.absent.last()) {
+        return Err(ExperimentError::NoScenes(absent.reason.clone()));
+    }
+    let scenes = experiment
+        .scenes
+        .iter()
+        .map(|spec| LoadedScene::load(experiment, spec, &Files::default()));
+    let scenes = scenes.collect::<Result<Vec<_>>>()?;
+    for warning in scenes.iter().flat_map(|loaded| &loaded.warnings) {
+        observer.notify(Event::Warning(warning));
+    }
+    check_strategies(experiment, &scenes, observer)?;
+    pyramid::check(experiment, &scenes)?;
+    let given = scenes.iter().map(reference::given);
+    let given = given.collect::<Result<Vec<_>>>()?;
+    outputs::check(experiment, &scenes, setup)?;
+    let found = given.iter().flatten();
+    found.for_each(|reference| reference.warn(observer));
+    let key = RecordsKey {
+        experiment: identity(experiment, &scenes, &given),
+        program: setup.program.clone(),
+        machine: machine(experiment, setup),
+    };
+    Ok(Begun { scenes, given, key })
+}
+
+/// Refuses methods whose strategies sample no path in a scene, and warns once for each method whose
+/// strategies lose light.
+fn check_strategies(
+    experiment: &Experiment,
+    scenes: &[LoadedScene<'_>],
+    observer: &mut dyn Observer,
+) -> Result<()> {
+    for method in &experiment.methods {
+        let mut warned = Vec::new();
+        for loaded in scenes
+            .iter()
+            .filter(|loaded| loaded.has(experiment, method))
+        {
+            let settings = method.request.apply(&loaded.settings);
+            check_effect(method, loaded)?;
+            let path = &settings.path;
+            let Some(lost) = lost_light(&loaded.scene, settings.integrator, path) else {
+                continue;
+            };
+            let text = format!("strategies {} {lost}", path.strategies);
+            if matches!(lost, LostLight::All { .. }) {
+                return Err(ExperimentError::Strategies {
+                    scene: loaded.spec.name.clone(),
+                    method: method.name.clone(),
+                    text,
+                });
+            }
+            if !warned.contains(&text) {
+                let warning = format!("method `{}`: {text}", method.name);
+                observer.notify(Event::Warning(&warning));
+                warned.push(text);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a setting without effect on the integrator that the scene file sets.
+fn check_effect(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<()> {
+    let request = &method.request;
+    let integrator = loaded.settings.integrator;
+    match request.ignored(&loaded.settings).first() {
+        Some(name) if request.integrator.is_none() => Err(ExperimentError::NoEffect {
+            scene: loaded.spec.name.clone(),
+            method: method.name.clone(),
+            text: no_effect(name, integrator),
+        }),
+        _ => Ok(()),
+    }
+}
+
+impl Absent {
+    /// Warns that the scene is left out.
+    pub(super) fn warn(&self, observer: &mut dyn Observer) {
+        let Self { name, reason } = self;
+        observer.notify(Event::Warning(&format!(
+            "scene `{name}` is left out: {reason}"
+        )));
+    }
+}
+
+impl Machine {
+    /// The processor's name where the system gives none.
+    pub const UNKNOWN: &'static str = "unknown";
+
+    /// Describes this machine; [`run`] fills in the number of threads.
+    pub fn here() -> Self {
+        let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = processor.lines().find_map(|line| {
+            let (name, value) = line.split_once(':')?;
+            (name.trim() == "model name").then(|| value.trim().to_owned())
+        });
+        Self {
+            processor: model.unwrap_or_else(|| Self::UNKNOWN.to_owned()),
+            isa: Isa::detect().name().to_owned(),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            threads: 0,
+        }
+    }
+}
+
+/// Returns the machine with the experiment's number of threads.
+fn machine(experiment: &Experiment, setup: &Setup) -> Machine {
+    Machine {
+        threads: experiment.threads,
+        ..setup.machine.clone()
+    }
+}
+
+/// Writes `results.json` into the folder of the results.
+fn write_results(folder: &Path, results: &Results) -> Result<()> {
+    formats::file::replace(&folder.join(outputs::RESULTS), json(results).as_bytes())?;
+    Ok(())
+}
+
+fn json(results: &Results) -> String {
+    let text = serde_json::to_string_pretty(results);
+    text.expect("texts and numbers have a JSON") + "\n"
+}
+
+/// All runs of an experiment.
+pub(super) struct RunSet<'a> {
+    pub(super) experiment: &'a Experiment,
+    pub(super) setup: &'a Setup,
+    pub(super) scenes: &'a [LoadedScene<'a>],
+    /// One for each scene.
+    pub(super) references: &'a [Reference],
+}
+
+impl RunSet<'_> {
+    /// Iterates over all runs in order, each with its reference.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (Run<'_>, &Reference)> {
+        let Self {
+            experiment,
+            scenes,
+            references,
+            ..
+        } = *self;
+        let seeds = experiment.seeds;
+        let seeds = seeds.first..seeds.first + seeds.count;
+        let scenes = move |seed| {
+            scenes
+                .iter()
+                .zip(references)
+                .map(move |scene| (seed, scene))
+        };
+        seeds
+            .flat_map(scenes)
+            .flat_map(move |(seed, (loaded, reference))| {
+                let renders = experiment.renders(&loaded.spec.name);
+                renders.map(move |(budget, method)| {
+                    let run = Run {
+                        scene: loaded,
+                        method,
+                        budget,
+                        seed,
+                    };
+                    (run, reference)
+                })
+            })
+    }
+
+    /// Renders every run without a record.
+    fn render(&self, journal: &mut Journal, observer: &mut dyn Observer) -> Result<End> {
+        observer.notify(Event::Begin {
+            done: journal.records().len(),
+            of: self.runs().count(),
+        });
+        for (run, reference) in self.runs() {
+            if journal.has(&run) {
+                continue;
+            }
+            let Some(rendered) = run.render(self.experiment.threads, observer)? else {
+                return Ok(End::Stopped);
+            };
+            let mut record = run.record(&rendered, reference, &self.experiment.metrics);
+            if run.seed == self.experiment.seeds.first {
+                let image = run.image();
+                rendered.write(&self.setup.folder.join(&image))?;
+                record.image = Some(image);
+            }
+            observer.notify(Event::Record(&record));
+            journal.add(record)?;
+        }
+        Ok(End::Complete)
+    }
+
+    fn results(&self, records: &[Record]) -> Results {
+        let Self {
+            experiment,
+            setup,
+            scenes,
+            references,
+        } = *self;
+        let scenes = scenes.iter().zip(references);
+        let budgets = experiment.budgets.iter().map(|budget| BudgetInfo {
+            name: budget.name.clone(),
+            kind: budget.kind,
+            amount: budget.amount,
+        });
+        Results {
+            format: FORMAT,
+            title: experiment.title.clone(),
+            description: experiment.description.clone(),
+            program: setup.program.clone(),
+            machine: machine(experiment, setup),
+            scenes: scenes
+                .map(|(loaded, reference)| loaded.info(reference))
+                .collect(),
+            methods: self.methods(),
+            budgets: budgets.collect(),
+            records: self.ordered(records),
+            pyramids: Vec::new(),
+            contributions: Vec::new(),
+            claims: Vec::new(),
+        }
+    }
+
+    /// Sorts the records into the order of the runs; other machines may have added them in any order.
+    fn ordered(&self, records: &[Record]) -> Vec<Record> {
+        let record = |(run, _): (Run<'_>, _)| {
+            let mut records = records.iter();
+            records.find(|record| run.is_of(record)).cloned()
+        };
+        self.runs().filter_map(record).collect()
+    }
+
+    /// Returns the methods with their settings; a setting that differs between scenes is "the scene's".
+    fn methods(&self) -> Vec<MethodInfo> {
+        let methods = self.experiment.methods.iter().map(|method| {
+            let mut settings: BTreeMap<String, String> = BTreeMap::new();
+            let scenes = self.scenes.iter();
+            let scenes = scenes.filter(|loaded| loaded.has(self.experiment, method));
+            for (number, loaded) in scenes.enumerate() {
+                for (name, value) in texts(&method.request.apply(&loaded.settings)) {
+                    let known = settings.entry(name).or_insert_with(|| value.clone());
+                    if number > 0 && *known != value {
+                        "the scene's".clone_into(known);
+                    }
+                }
+            }
+            MethodInfo {
+                name: method.name.clone(),
+                settings,
+            }
+        });
+        methods.collect()
+    }
+}
