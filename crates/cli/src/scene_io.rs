@@ -32,7 +32,7 @@ pub(crate) struct LoadedScene {
     pub(crate) output: Option<PathBuf>,
     /// The warnings, each with its place.
     pub(crate) warnings: Vec<String>,
-    /// Those of them that name the substitute of an unsupported feature.
+    /// The warnings that name the substitute of an unsupported feature.
     pub(crate) refused: Vec<String>,
     /// The first lamps that no ray can hit.
     pub(crate) lamps: Vec<Lamp>,

@@ -1,4 +1,4 @@
-// What hands do on the stage: mouse, fingers, wheel and keys. They move the view of it.
+// Gestures on the stage, by mouse, fingers, wheel and keys, that move its view.
 
 import { box } from "./dom.js";
 

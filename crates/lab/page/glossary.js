@@ -1,4 +1,4 @@
-// What the words of the report mean.
+// The meanings of the terms in a report.
 
 /** Metrics; of each of them less is better. A test holds that none is missing. */
 export const METRICS = new Map([

@@ -1,4 +1,4 @@
-// What the report's page is fed with, as types: `results.json` and what stands beside it. Numbers that
+// Types of the data of the report's page: `results.json` with its tables, plots and images. Numbers that
 // are not finite are null.
 
 /** @typedef {{value: number | null, low: number | null, high: number | null}} Interval */

@@ -1,4 +1,4 @@
-// What strategies do: the pyramid of their images, weighted and raw, and their numbers.
+// The strategies: the pyramid of their images, weighted and raw, and their numbers.
 
 import { make } from "./dom.js";
 import { cell } from "./format.js";

@@ -1,4 +1,4 @@
-// Where the film is on the screen: screen = zoom · film + offset. Screen coordinates are CSS pixels
+// The place of the film on the screen: screen = zoom · film + offset. Screen coordinates are CSS pixels
 // from the stage's top left corner.
 
 /** @typedef {[number, number]} Point */

@@ -68,7 +68,7 @@ function channelNames(list) {
  * @param {number} length
  */
 function unzip(packed, length) {
-  // What does not get smaller is kept as it is.
+  // A block that does not get smaller is stored unpacked.
   if (packed.length === length) return packed;
   const bytes = inflateSync(packed);
   for (let i = 1; i < bytes.length; i++) bytes[i] = (bytes[i - 1] + bytes[i] - 128) & 255;

@@ -1,4 +1,4 @@
-// What the tests of the page stand on: the renderer that is tested, a browser, and eyes.
+// The stand of the tests of the page: the renderer that is tested, a browser, and screenshots.
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";

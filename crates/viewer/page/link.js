@@ -61,7 +61,7 @@ export class Link {
 
   /** @param {string | ArrayBuffer} data */
   receive(data) {
-    // What the server says is the sign that it is there, not that something answers at its port.
+    // Only a message shows that the server is there: something else may answer at its port.
     this.tries = 0;
     if (typeof data === "string") {
       this.listener.onBreak(null);

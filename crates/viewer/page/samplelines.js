@@ -1,4 +1,4 @@
-// What is drawn of a sample: lines on the film, from what the server tells.
+// The drawing of a sample: lines on the film, from the data of the server.
 
 import { luminance } from "./format.js";
 

@@ -1,4 +1,4 @@
-// What the server says, as types: `Status` by the socket, the others as answers to requests.
+// Types of the messages of the server: `Status` by the socket, the others as answers to requests.
 
 /** @typedef {import("./pixels.js").LaneName} LaneName */
 

@@ -46,7 +46,7 @@ pub(super) struct StagesReport {
     measured_samples: u64,
     /// Of one thread, clock included; as all times here.
     nanoseconds_per_sample: f64,
-    /// Those that the estimator has, in the order of a sample.
+    /// The parts that the estimator has, in the order of a sample.
     parts: Vec<StageReport>,
 }
 

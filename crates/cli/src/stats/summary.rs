@@ -9,7 +9,7 @@ use std::time::Duration;
 /// Below this number of passes the variance of a pixel is too uncertain for an error.
 const LEAST_PASSES: u64 = 16;
 
-/// How a render went, for people.
+/// The summary of a render, for people.
 #[derive(Clone, Debug)]
 pub(crate) struct Summary {
     /// All passes of the film.

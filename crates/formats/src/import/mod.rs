@@ -70,7 +70,7 @@ pub struct Loaded {
     /// The warnings, each as `place: message`. Places are `file:line:column` in pbrt,
     /// and `file: meshes[0]` in glTF.
     pub warnings: Vec<String>,
-    /// Those of the warnings that name the substitute of an unsupported feature.
+    /// The warnings that name the substitute of an unsupported feature.
     pub refused: Vec<String>,
     /// The parts of the scene.
     pub summary: Summary,

@@ -1,4 +1,4 @@
-//! What a render tells of each strategy in numbers.
+//! The numbers of each strategy of a render.
 
 use bidir::driver::Session;
 use bidir::film::Film;
@@ -6,18 +6,18 @@ use bidir::path::Strategy;
 use bidir::spectrum::luminance;
 use bidir::stats::StrategyCounts;
 
-/// What is known of a strategy.
+/// The numbers of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
     /// The strategy.
     pub strategy: Strategy,
-    /// What became of its contributions.
+    /// Its contributions, by their fate.
     pub counts: StrategyCounts,
-    /// What its images tell. None: the film keeps none of it.
+    /// The numbers of its images. None: the film keeps none of it.
     pub images: Option<ImageFigures>,
 }
 
-/// What the images of a strategy tell.
+/// The numbers of the images of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageFigures {
     /// The mean luminance of the weighted image.

@@ -1,4 +1,4 @@
-//! What each strategy (s, t) does, weighted and raw: images and figures of a film that keeps them.
+//! Images and numbers of each strategy (s, t), weighted and raw, of a film that keeps them.
 //!
 //! Weighted images add up to the picture. A raw image is C/π, without the weight: all of one number
 //! n = s + t of vertices show the same light, as far as their strategies can make its paths, each with
@@ -19,12 +19,12 @@ pub const VERTICES: u16 = 6;
 /// them as tiles: images that are larger are shown no better.
 pub const TILE: usize = 128;
 
-/// What images show.
+/// The kind of the images of strategies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// What strategies add to the picture.
+    /// Each strategy with its weight: they add up to the picture.
     Weighted,
-    /// What strategies show alone.
+    /// Each strategy alone, without its weight.
     Raw,
 }
 

@@ -6,7 +6,7 @@ use crate::results::{
     Scale, SceneInfo, Series, StrategyInfo, Verdict,
 };
 
-/// What a name can be at worst.
+/// The worst that a name can be.
 const HOSTILE: &str = "</script><img src=x onerror=alert(1)>\"'&";
 
 fn table(caption: &str) -> Table {

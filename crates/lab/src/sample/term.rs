@@ -77,7 +77,7 @@ impl CandidateReport {
             term: TermReport::new(color, replayed),
             light_end,
             score: replayed.selection.map(|selection| selection.score),
-            // Where nothing is chosen, everything is traced.
+            // Without a choice everything is traced.
             prob: replayed.selection.map_or(1.0, |selection| selection.prob),
             is_chosen: replayed.is_chosen(),
             is_visible: replayed.is_visible(),

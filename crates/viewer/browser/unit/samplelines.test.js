@@ -1,4 +1,4 @@
-// What is drawn of a sample.
+// The drawing of a sample.
 
 import assert from "node:assert/strict";
 import test from "node:test";

@@ -1,4 +1,4 @@
-// Where the film is on the screen.
+// The place of the film on the screen.
 
 import assert from "node:assert/strict";
 import test from "node:test";

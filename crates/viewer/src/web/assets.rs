@@ -21,7 +21,7 @@ pub(super) async fn index() -> Result<Response, Refusal> {
     answer("index.html")
 }
 
-/// What belongs to it.
+/// The style and scripts of the page.
 pub(super) async fn asset(Path(name): Path<String>) -> Result<Response, Refusal> {
     answer(&name)
 }

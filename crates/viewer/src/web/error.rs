@@ -22,7 +22,7 @@ impl Refusal {
         Self::new(StatusCode::BAD_REQUEST, message)
     }
 
-    /// What is asked for is not there now, but may be later.
+    /// The requested thing is not there now, but may be later.
     pub(super) fn now(message: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, message)
     }

@@ -128,7 +128,7 @@ pub(super) async fn pixel(
     json(&report.ok_or_else(|| not_rendered(x, y))?)
 }
 
-/// What a sample did, and of which render of its lane it is.
+/// A sample, and the render of its lane that it is of.
 #[derive(Debug, Serialize)]
 struct SampleOfLane {
     generation: u32,
@@ -163,7 +163,7 @@ fn not_rendered(x: u32, y: u32) -> Refusal {
     Refusal::query(format!("the pixel {x},{y} is not rendered"))
 }
 
-/// What the strategies of a lane do.
+/// The numbers of the strategies of a lane.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 struct StrategiesReport {
@@ -186,7 +186,7 @@ struct TileReport {
     /// Shadow rays.
     traced: u64,
     blocked_share: Option<f64>,
-    /// What a pass adds to the mean pixel varies by this.
+    /// The variance of the contribution of a pass to the mean pixel.
     variance: Option<f64>,
 }
 

@@ -21,15 +21,16 @@ use tokio::time::{Instant, MissedTickBehavior, interval, sleep, sleep_until, tim
 const CLIENTS: usize = 64;
 /// The largest message of a client. Unit: bytes.
 const LARGEST_MESSAGE: usize = 4 << 10;
-/// What is larger is not even read: the connection may end before the reason arrives. Unit: bytes.
+/// The largest message that is read; after a larger one the connection may end before the reason arrives.
+/// Unit: bytes.
 const MOST_READ: usize = 64 << 10;
-/// How long a client has to close a conversation that was ended.
+/// The time that a client has to close a conversation that was ended.
 const FAREWELL: Duration = Duration::from_secs(2);
 /// The status is sent no more often.
 const STATUS_GAP: Duration = Duration::from_millis(250);
 /// A client is asked now and then whether it is there.
 const PING_GAP: Duration = Duration::from_secs(20);
-/// How often, and how far apart, it is tried to hand a command to a renderer that is busy.
+/// The number of attempts to hand a command to a busy renderer, and the time between them.
 const TRIES: usize = 500;
 const TRY_GAP: Duration = Duration::from_millis(20);
 

@@ -89,7 +89,7 @@ impl Taken {
         self.now
     }
 
-    /// How many places a peer has.
+    /// The number of places of a peer.
     fn count(&self, peer: IpAddr) -> usize {
         let of_peer = self.holders.values().filter(|holder| holder.peer == peer);
         of_peer.count()

@@ -1,4 +1,4 @@
-//! What stands behind the question mark of a request.
+//! The query of a request, behind its question mark.
 
 use super::error::Refusal;
 use crate::status::LaneId;

@@ -40,7 +40,7 @@ pub const DEADLINE: Duration = Duration::from_secs(60);
 /// The film of [`SCENE`].
 pub const SIZE: [u32; 2] = [48, 32];
 
-/// How the scene is rendered.
+/// The settings of the render.
 pub fn settings() -> Settings {
     let mut settings = Settings::default();
     settings.set_integrator(IntegratorKind::Bdpt);
@@ -108,7 +108,7 @@ impl Place {
         }
     }
 
-    /// Ends it. Tells which files were saved.
+    /// Ends it. Returns the files that were saved.
     pub fn close(mut self) -> Vec<String> {
         self.server = None;
         self.render.take().unwrap().close().unwrap()

@@ -84,7 +84,7 @@ fn the_png_shows_the_film() {
 }
 
 #[test]
-fn a_sample_is_told_with_its_places_on_the_film() {
+fn a_sample_comes_with_its_places_on_the_film() {
     let place = done();
     let sample = place.json("/sample?lane=a&x=24&y=20&pass=1");
     assert_eq!(sample["pixel"], serde_json::json!([24, 20]));
@@ -161,7 +161,7 @@ fn images_are_saved_where_the_server_was_started() {
             !refused["message"].as_str().unwrap().contains("wrote"),
             "{refused}"
         );
-        // What is refused now is the next name.
+        // The next name is refused now.
         client.send(r#"{"command":"strategies","lane":"a","vertices":0}"#);
         place.wait("end", |status| {
             status["message"].is_null() && status["state"] == "done"

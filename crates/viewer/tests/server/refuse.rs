@@ -158,11 +158,11 @@ fn what_is_no_command_closes_the_conversation() {
     ] {
         let mut client = place.client();
         let name = format!("{message:.60?}");
-        // What is too large may be refused before all of it is written.
+        // A body that is too large may be refused before all of it is written.
         let _ = client.socket.send(message);
         assert_eq!(client.closed(), code, "{name}");
     }
-    // What is far too large is not read to its end.
+    // A body that is far too large is not read to its end.
     let mut client = place.client();
     let _ = client.socket.send(Message::binary(vec![0; 1 << 24]));
     while client.socket.read().is_ok() {}
@@ -172,7 +172,7 @@ fn what_is_no_command_closes_the_conversation() {
     place.close();
 }
 
-/// Whether the server has closed a connection.
+/// True if the server has closed a connection.
 fn is_closed(mut stream: &TcpStream) -> bool {
     stream.set_nonblocking(true).unwrap();
     let read = stream.read(&mut [0]);

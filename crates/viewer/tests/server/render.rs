@@ -6,7 +6,7 @@ fn lane(status: &Value, number: usize) -> &Value {
 }
 
 #[test]
-fn the_status_tells_what_is_rendered() {
+fn the_status_describes_the_render() {
     let place = Place::new();
     let status = place.wait_for_passes(2);
     assert_eq!(status["scene"], "room.pbrt");

@@ -18,7 +18,7 @@ use common::Place;
 const SIZE: [u32; 2] = [320, 288];
 const FRAMES: usize = 24;
 
-/// The memory of this process. None: the system does not tell. Unit: bytes.
+/// The memory of this process. None: the system does not report it. Unit: bytes.
 fn memory() -> Option<usize> {
     let text = std::fs::read_to_string("/proc/self/statm").ok()?;
     let pages: usize = text.split(' ').nth(1)?.parse().ok()?;

@@ -196,7 +196,7 @@ fn extensions_of_materials_are_read() {
     assert_eq!(principled(&draft.load().unwrap()).wall, Wall::Thin);
 }
 
-/// How much of the triangle is there.
+/// The visible part of the triangle.
 fn met(loaded: &Loaded) -> f32 {
     let end = |z: f32| SegmentEnd {
         point: Vec3::new(0.1, 0.1, z),
@@ -362,7 +362,7 @@ fn cameras_look_along_minus_z_with_their_vertical_angle() {
     assert!(seen(&loaded, Vec3::ZERO).distance(Vec2::splat(0.5)) < 1e-5);
     assert!(seen(&loaded, Vec3::Y * 2.0).distance(Vec2::new(0.5, 0.0)) < 1e-5);
     assert!(seen(&loaded, Vec3::X * 3.0).distance(Vec2::new(1.0, 0.5)) < 1e-5);
-    // What is in view stays in view on a film of another shape, and nothing is stretched.
+    // A film of another shape keeps everything in view, and stretches nothing.
     for (size, corner) in [
         ([300, 100], Vec3::new(6.0, 2.0, 0.0)),
         ([100, 100], Vec3::new(3.0, 3.0, 0.0)),

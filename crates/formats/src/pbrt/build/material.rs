@@ -353,8 +353,7 @@ fn roughness(
     })
 }
 
-/// What is accepted in place of a material that is not built yet. Its own parameters are not
-/// looked through.
+/// Returns the substitute of a material that is not supported, whose parameters are not checked.
 fn substitute(
     context: &mut Context<'_>,
     textures: &mut Textures<'_>,

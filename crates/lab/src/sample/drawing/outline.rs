@@ -12,7 +12,7 @@ use bidir::scene::Chances;
 
 /// The distance between rays. Unit: pixels of the page.
 const CELL: f32 = 3.0;
-/// How often bisection halves the distance between two rays.
+/// The number of halvings of the distance between two rays.
 const HALVINGS: usize = 5;
 /// The least cosine between the normals of one surface.
 const LEAST_COSINE: f32 = 0.8;

@@ -25,7 +25,7 @@ fn rays<'a>(document: &'a Document<'_>) -> Vec<(&'a str, Node<'a, 'a>)> {
     rays.collect()
 }
 
-/// What every drawing has; returns how many rays are solid, dashed and dotted.
+/// Checks the parts that every drawing has; returns the numbers of solid, dashed and dotted rays.
 #[track_caller]
 fn check(report: &SampleReport, scene: &Scene) -> [usize; 3] {
     let drawing = report.drawing(scene, "a <b> & \"c\"\u{1}");
