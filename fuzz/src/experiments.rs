@@ -33,7 +33,7 @@ fn results(bytes: &[u8]) {
         tables: &[],
         plots: &[],
         images: &[],
-        sheets: &[],
+        layers: &[],
         command: "",
     });
 }
