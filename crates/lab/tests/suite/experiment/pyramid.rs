@@ -99,7 +99,7 @@ fn large_images_are_rendered_small() {
         "out",
     );
     assert_eq!(results.scenes[0].size, [240, 8]);
-    assert_eq!(results.pyramids[0].size, [180, 6]);
+    assert_eq!(results.pyramids[0].size, [128, 4]);
 }
 
 #[test]
