@@ -85,17 +85,21 @@ const STYLE: &str = include_str!("../../page/report.css");
 /// The page. The same report gives the same bytes.
 pub fn html(report: &Report<'_>) -> String {
     let script = bundle::script();
-    let json = serde_json::to_string(&Data::new(report)).expect("texts and numbers are JSON");
-    let data = element("script")
-        .with("type", "application/json")
-        .with("id", "data")
-        .code(script_json(&json));
     let head = head(&report.results.title, &script);
     let body = element("body")
         .child(element("noscript").children(without_script(&report.results.claims)))
-        .child(data)
+        .child(data(report))
         .child(element("script").with("type", "module").code(script));
     format!("<!DOCTYPE html>\n<html lang=\"en\">{head}{body}\n</html>\n")
+}
+
+/// The element with the data.
+fn data(report: &Report<'_>) -> Element {
+    let json = serde_json::to_string(&Data::new(report)).expect("texts and numbers are JSON");
+    element("script")
+        .with("type", "application/json")
+        .with("id", "data")
+        .code(script_json(&json))
 }
 
 fn head(title: &str, script: &str) -> Element {

@@ -98,7 +98,7 @@ fn strategies_of_large_images_are_rendered_at_the_size_of_a_tile() {
         "out",
     );
     assert_eq!(results.scenes[0].size, [240, 8]);
-    assert_eq!(results.pyramids[0].size, [180, 6]);
+    assert_eq!(results.pyramids[0].size, [128, 4]);
 }
 
 #[test]
