@@ -91,7 +91,13 @@ impl Experiment {
         }
         let folder = formats::file::folder_of(file);
         let (scenes, absent) = scene::all(&mut top, folder, &defaults, memory)?;
-        let method = |section: &mut Section<'_>| method(section, &defaults);
+        let mut names = Names::of_scenes(&scenes, &absent);
+        let method = |section: &mut Section<'_>| method(section, &defaults, &names);
+        let methods = all(&mut top, "method", method)?;
+        names.methods = methods.iter().map(|method| method.name.clone()).collect();
+        let budget = |section: &mut Section<'_>| budget(section, &names);
+        let budgets = all(&mut top, "budget", budget)?;
+        names.budgets = budgets.iter().map(|budget| budget.kind).collect();
         let (shown, shown_spp) = (top.take("pyramid"), top.take("pyramid-spp"));
         let mut experiment = Self {
             title: or(text_of(&mut top, "title")?, "Experiment"),
@@ -102,48 +108,49 @@ impl Experiment {
             metrics: metrics(&mut top)?,
             scenes,
             absent,
-            methods: all(&mut top, "method", method)?,
-            budgets: all(&mut top, "budget", budget)?,
+            methods,
+            budgets,
             pyramid: None,
-            contributions: contributions(&mut top)?,
+            contributions: contributions(&mut top, &names)?,
             claims: Vec::new(),
             tables: Vec::new(),
             quick: quick(&mut top)?,
         };
         experiment.pyramid = pyramid(shown, shown_spp, &experiment.methods)?;
-        if let (Some(pyramid), scenes) =
-            (&mut experiment.pyramid, list(&mut top, "pyramid-scenes")?)
-        {
+        if let (Some(pyramid), scenes) = (
+            &mut experiment.pyramid,
+            list(&mut top, "pyramid-scenes", &names.scenes)?,
+        ) {
             pyramid.scenes = scenes;
         }
-        let names = Names::of(&experiment);
         experiment.claims = claims::claims(&mut top, &names)?;
         experiment.tables = claims::tables(&mut top, &names, &experiment.claims)?;
+        experiment.add_metrics();
         Ok(experiment)
     }
 }
 
-/// Reads a list of names; empty if the key is missing.
-fn list(section: &mut Section<'_>, key: &str) -> Result<Vec<String>> {
+/// Reads a list of names, each of which is one of `known`; empty if the key is missing.
+fn list(section: &mut Section<'_>, key: &str, known: &[String]) -> Result<Vec<String>> {
     let Some(entry) = section.take(key) else {
         return Ok(Vec::new());
     };
     let names = entry.list("a list of names")?;
     names
         .iter()
-        .map(|name| Ok(name.text()?.to_owned()))
+        .map(|name| claims::known(name, known))
         .collect()
 }
 
-fn contributions(top: &mut Section<'_>) -> Result<Option<ContributionsSpec>> {
+fn contributions(top: &mut Section<'_>, names: &Names) -> Result<Option<ContributionsSpec>> {
     let Some(entry) = top.take("contributions") else {
         return Ok(None);
     };
     let mut section = entry.section()?;
     section.only(&CONTRIBUTIONS, &[])?;
     Ok(Some(ContributionsSpec {
-        methods: list(&mut section, "methods")?,
-        scenes: list(&mut section, "scenes")?,
+        methods: list(&mut section, "methods", &names.methods)?,
+        scenes: list(&mut section, "scenes", &names.scenes)?,
         spp: whole(&mut section, "spp", 2)?.unwrap_or(CONTRIBUTIONS_SPP),
     }))
 }
@@ -343,14 +350,14 @@ fn settings(section: &mut Section<'_>, inherited: Option<IntegratorKind>) -> Res
     }
 }
 
-fn method(section: &mut Section<'_>, defaults: &Request) -> Result<MethodSpec> {
+fn method(section: &mut Section<'_>, defaults: &Request, of: &Names) -> Result<MethodSpec> {
     let names = names();
     let known = ["name", "scenes"].into_iter().chain(borrowed(&names));
     section.only(&known.collect::<Vec<_>>(), &OLD_SETTINGS)?;
     Ok(MethodSpec {
         name: section.need("name")?.text()?.to_owned(),
         request: settings(section, defaults.integrator)?.over(defaults),
-        scenes: list(section, "scenes")?,
+        scenes: list(section, "scenes", &of.scenes)?,
     })
 }
 
@@ -358,7 +365,7 @@ fn borrowed(names: &[String]) -> Vec<&str> {
     names.iter().map(String::as_str).collect()
 }
 
-fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
+fn budget(section: &mut Section<'_>, names: &Names) -> Result<BudgetSpec> {
     section.only(&BUDGET, &[])?;
     let name = text_of(section, "name")?;
     let kinds = [
@@ -384,8 +391,8 @@ fn budget(section: &mut Section<'_>) -> Result<BudgetSpec> {
     let budget = BudgetSpec::new(kind, amount);
     Ok(BudgetSpec {
         name: name.unwrap_or_else(|| budget.name.clone()),
-        methods: list(section, "methods")?,
-        scenes: list(section, "scenes")?,
+        methods: list(section, "methods", &names.methods)?,
+        scenes: list(section, "scenes", &names.scenes)?,
         ..budget
     })
 }

@@ -75,7 +75,7 @@ const KEYS: &[Key] = &[
     key("contributions", "methods", "list of names", "none", "Methods whose contributions before visibility are measured; they need `integrator = \"bdpt\"`."),
     key("contributions", "scenes", "list of names", "all", "Scenes in which they are measured."),
     key("contributions", "spp", "whole number from 2", "16", "Samples per pixel that are measured."),
-    key("claim", "id", "text", "required", "Name in results; unique."),
+    key("claim", "id", "text", "required", "Name in results, in lower case with hyphens; unique."),
     key("claim", "claim", "text", "required", "The statement, in a sentence."),
     key("claim", "source", "text", "`This description`", "Its origin."),
     key("claim", "goal", "`true` or `false`", "`false`", "The verdict is `met` or `not met` instead of `reproduced` or `not reproduced`."),
@@ -105,7 +105,7 @@ const NUMBER: [Key; 7] = [
     key("", "budget", "`samples`, `rays` or `seconds`", "the first of the method", "Kind of the budget of the renders."),
     key("", "scene", "name", "required", "The scene."),
     key("", "method", "name", "required", "The method."),
-    key("", "over", "name of a method, or number", "the plain mean", "Divides the measure, paired by seed; `over = 1` gives the mean with an interval."),
+    key("", "over", "name of a method, or number", "1 in a claim, the plain mean in a table", "Divides the measure, paired by seed; `over = 1` gives the geometric mean with an interval."),
     key("", "gain-over", "name of a method", "none", "The inverse: by which factor this method has more."),
     key("", "than", "name of a scene", "none", "Divides the ratio by the same ratio in this scene."),
 ];
@@ -216,13 +216,16 @@ fn list() -> String {
                 write!(text, "\n`[{table}]`:\n\n").unwrap();
             }
             "claim" | "table" => {
-                write!(text, "\n`[[{table}]]`, and the keys of a number:\n\n").unwrap();
+                write!(
+                    text,
+                    "\n`[[{table}]]`, with the keys of a number below:\n\n"
+                )
+                .unwrap();
             }
             _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
         }
         text += "| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
-        let more = NUMBER.iter().filter(|_| table == "table");
-        for key in KEYS.iter().filter(|key| key.table == table).chain(more) {
+        for key in KEYS.iter().filter(|key| key.table == table) {
             let name = match key.name {
                 "" => settings()
                     .iter()
@@ -237,6 +240,16 @@ fn list() -> String {
             };
             writeln!(text, "| {name} | {value} | {default} | {} |", key.meaning).unwrap();
         }
+    }
+    text += "\nThe keys of a number:\n\n| Key | Value | Default | Meaning |\n|---|---|---|---|\n";
+    for key in &NUMBER {
+        let (name, value) = (key.name, key.value);
+        writeln!(
+            text,
+            "| `{name}` | {value} | {} | {} |",
+            key.default, key.meaning
+        )
+        .unwrap();
     }
     text + "\n"
 }

@@ -37,6 +37,7 @@ pub use measure::{Cost, Measure};
 
 use super::Experiment;
 use super::analysis::{self, Section};
+use crate::metric::Metric;
 use crate::results::{BudgetKind, Claim, Results, Scale};
 
 /// The range stated for a number.
@@ -153,6 +154,28 @@ pub struct PlotSpec {
 }
 
 impl Experiment {
+    /// Adds the metrics of claims and tables to those that are computed.
+    pub(super) fn add_metrics(&mut self) {
+        let parts = self.claims.iter().flat_map(|claim| &claim.parts);
+        let of_claims = parts.map(|(_, of)| of.measure);
+        let cells = self
+            .tables
+            .iter()
+            .flat_map(|table| table.rows.iter().flatten());
+        let of_tables = cells.filter_map(|cell| match cell {
+            CellSpec::Quantity(of) => Some(of.measure),
+            CellSpec::Value(_) => None,
+        });
+        for measure in of_claims.chain(of_tables) {
+            let (Measure::Metric(metric) | Measure::AtCost(metric, _)) = measure else {
+                continue;
+            };
+            if metric != Metric::Rmse && !self.metrics.contains(&metric) {
+                self.metrics.push(metric);
+            }
+        }
+    }
+
     /// Judges the claims of the description by the records.
     pub fn judge(&self, results: &Results) -> Vec<Claim> {
         let findings = Findings::new(self, results);

@@ -8,7 +8,7 @@ use super::super::error::ExperimentError;
 use super::super::expand::Binding;
 use super::super::names::{file_name, value_of};
 use super::super::reader::{Entry, Section};
-use super::super::{BudgetSpec, Experiment};
+use super::super::{Absent, SceneSpec};
 use super::text_of;
 use crate::results::{BudgetKind, Scale};
 use bidir::names::UnknownName;
@@ -48,29 +48,27 @@ const KINDS: [(&str, BudgetKind); 3] = [
 ];
 
 /// The names that quantities can refer to.
+#[derive(Default)]
 pub(super) struct Names {
-    scenes: Vec<String>,
-    methods: Vec<String>,
-    budgets: Vec<BudgetKind>,
+    /// Also of scenes that are not there.
+    pub(super) scenes: Vec<String>,
+    pub(super) methods: Vec<String>,
+    pub(super) budgets: Vec<BudgetKind>,
 }
 
 impl Names {
-    pub(super) fn of(experiment: &Experiment) -> Self {
-        let methods = experiment.methods.iter();
+    pub(super) fn of_scenes(scenes: &[SceneSpec], absent: &[Absent]) -> Self {
+        let scenes = scenes.iter().map(|scene| scene.name.clone());
+        let absent = absent.iter().map(|scene| scene.name.clone());
         Self {
-            scenes: experiment.scene_names(),
-            methods: methods.map(|method| method.name.clone()).collect(),
-            budgets: experiment
-                .budgets
-                .iter()
-                .map(|budget: &BudgetSpec| budget.kind)
-                .collect(),
+            scenes: scenes.chain(absent).collect(),
+            ..Self::default()
         }
     }
 }
 
 /// Reads a name, which is one of `names`.
-fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
+pub(super) fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
     let name = entry.written()?;
     if names.iter().any(|known| known == name) {
         return Ok(name.to_owned());
