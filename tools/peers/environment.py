@@ -1,6 +1,6 @@
-"""The environment of the peers: a virtual environment of Python beside the build.
+"""The environment of the peers: a Python virtual environment next to the build.
 
-Every package is installed by itself, so that one that cannot be had keeps no other from running.
+Every package is installed separately, so that one that cannot be installed does not affect the others.
 """
 
 import glob
@@ -10,7 +10,7 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-# Import name: what pip installs. Versions are pinned, as figures are of versions.
+# Import names and requirements. Versions are pinned, as figures depend on them.
 TOOLS = {"numpy": "numpy==2.4.6", "OpenEXR": "OpenEXR==3.5.3"}
 PEERS = {"mitsuba": "mitsuba==3.9.1", "pyluxcore": "pyluxcore==2.11.2"}
 CYCLES = {"bpy": "bpy==5.0.1"}

@@ -27,7 +27,7 @@ type Result<T> = std::result::Result<T, ExperimentError>;
 pub struct Setup {
     /// The folder of the results.
     pub folder: PathBuf,
-    /// The fate of existing records.
+    /// The treatment of existing records.
     pub start: Start,
     /// The program with its version.
     pub program: String,
@@ -35,7 +35,7 @@ pub struct Setup {
     pub machine: Machine,
 }
 
-/// The fate of existing records.
+/// The treatment of existing records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// Keeps them and renders the missing ones. Refuses records of another experiment, machine or program.
