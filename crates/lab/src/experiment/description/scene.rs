@@ -91,7 +91,7 @@ struct Source {
     /// The file, as messages and results name it.
     file: String,
     path: PathBuf,
-    source: SceneSource,
+    files: SceneSource,
     /// The place in the description that names the file. None: it is a room.
     place: Option<Place>,
 }
@@ -102,7 +102,7 @@ impl Source {
         Ok(Self {
             file: room.name().display().to_string(),
             path: room.name(),
-            source: SceneSource::Room(room),
+            files: SceneSource::Room(room),
             place: None,
         })
     }
@@ -120,7 +120,7 @@ impl Source {
         Ok(Self {
             file,
             path,
-            source: SceneSource::Disk,
+            files: SceneSource::Disk,
             place: Some(entry.at()),
         })
     }
@@ -144,7 +144,7 @@ fn scene(section: &mut Section<'_>, folder: &Path, defaults: &Request) -> Result
     Ok(SceneSpec {
         name,
         path: source.path,
-        source: source.source,
+        source: source.files,
         size,
         reference,
         file: source.file,
