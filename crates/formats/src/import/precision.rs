@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 /// The largest error without a warning, relative to half the longest side of the mesh.
 const NOTICED: f64 = 0.01;
-/// The largest error that is rendered, relative to [`Survey::reach`](crate::space::Survey::reach).
+/// The largest error that is rendered, relative to [`Survey::reach`](super::space::Survey::reach).
 const ACCEPTED: f64 = 0.25;
 
 /// The error of the vertices of a mesh.
