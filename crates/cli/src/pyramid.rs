@@ -1,5 +1,5 @@
 //! `bidir render --pyramid DIR`: the image of each strategy (s, t), weighted and raw, as layers of one EXR
-//! and as contact sheets ([`lab::pyramid`]).
+//! ([`lab::pyramid`]).
 
 use crate::exit::Failure;
 use crate::film_header;

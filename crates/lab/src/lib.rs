@@ -4,7 +4,7 @@
 //! - [`image`]: linear images in memory, image–reference pairs, resampling.
 //! - [`metric`]: the error of an image against a reference, per pixel and as one number.
 //! - [`flip`]: FLIP, the difference that an observer sees when two images alternate.
-//! - [`pyramid`]: contact sheets and figures of each strategy (s, t).
+//! - [`pyramid`]: images and numbers of each strategy (s, t).
 //! - [`reference`](mod@reference): reference images, rendered by two estimators that agree.
 //! - [`report`]: the results of an experiment as an HTML page.
 //! - [`results`]: the results of an experiment as `results.json`.

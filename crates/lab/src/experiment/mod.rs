@@ -12,7 +12,7 @@
 //! |---|---|
 //! | `records.ndjson` | experiment, program and machine in the first line, then a record per line; replaced after each run |
 //! | `results.json` | [`Results`](crate::results::Results), written at the end and when stopped |
-//! | `images/` | the images of the first seed, EXR; contact sheets of strategies, PNG |
+//! | `images/` | the images of the first seed and those of strategies, EXR |
 //! | `references/` | references made for this experiment |
 //!
 //! # Budgets
@@ -42,7 +42,6 @@
 pub mod analysis;
 mod block;
 mod builtin;
-
 pub mod claims;
 pub mod contributions;
 mod description;

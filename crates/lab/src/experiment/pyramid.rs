@@ -1,7 +1,7 @@
 //! Images of each strategy (s, t) of one method, rendered once in every scene, apart from the runs.
 //!
-//! Images of strategies take kilobytes per pixel, and a contact sheet shows them as small tiles: scenes with
-//! larger images are rendered at the size of a tile.
+//! Images of strategies take kilobytes per pixel, and the report shows them as small tiles: scenes with larger
+//! images are rendered at the size of a tile.
 
 use super::error::ExperimentError;
 use super::journal::Journal;
