@@ -27,16 +27,22 @@ impl Section<'_> {
     }
 
     /// Reads all combinations listed in the key `key`; without it, returns a single empty one.
+    ///
+    /// Errors: a list is empty, or there are more than [`MOST`].
     pub(super) fn bindings(&mut self, key: &str) -> Result<Vec<Binding>> {
         let Some(entry) = self.take(key) else {
             return Ok(vec![Binding::new()]);
         };
+        let nothing = entry.fault(format!("`{key}` has an empty list"));
         let too_many = entry.fault(format!("`{key}` makes more than {MOST} combinations"));
         let mut all = vec![Binding::new()];
         for (name, list) in entry.section()?.ordered() {
             let elements = list.list("a list")?;
             let elements = elements.into_iter().map(|element| binding(&name, element));
             let elements = elements.collect::<Result<Vec<_>>>()?;
+            if elements.is_empty() {
+                return Err(nothing);
+            }
             if all.len() * elements.len() > MOST {
                 return Err(too_many);
             }
@@ -163,6 +169,8 @@ mod tests {
             error.ends_with("`for` makes more than 10000 combinations"),
             "{error}"
         );
+        let error = read("for.a = []\nname = \"x\"").unwrap_err();
+        assert!(error.ends_with("`for` has an empty list"), "{error}");
         let error = read("for.a = 3\nname = \"{a}\"").unwrap_err();
         assert!(error.ends_with("a.toml:7:9: expected a list"), "{error}");
     }

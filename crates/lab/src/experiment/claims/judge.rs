@@ -186,7 +186,8 @@ fn part(name: &str, found: Option<Interval>) -> String {
 /// Returns the verdict on a statement about the range of all these numbers.
 fn verdict(intervals: &[Option<Interval>], expected: Expected) -> Verdict {
     let Expected { low, high } = expected;
-    let Some(known) = intervals.iter().copied().collect::<Option<Vec<_>>>() else {
+    let known = intervals.iter().copied().collect::<Option<Vec<_>>>();
+    let Some(known) = known.filter(|known| !known.is_empty()) else {
         return Verdict::NotMeasured;
     };
     let is_outside = |found: &Interval| found.high < low || found.low > high;

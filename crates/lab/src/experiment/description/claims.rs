@@ -142,10 +142,14 @@ fn claim(section: &mut Section<'_>, names: &Names) -> Result<ClaimSpec> {
     let claim = section.need("claim")?.text()?.to_owned();
     let source = text_of(section, "source")?;
     let expected = expected(section)?;
+    let name = file_name(id.text()?);
+    if name.is_empty() {
+        return Err(id.fault("an id needs a letter or a digit"));
+    }
     let bindings = section.bindings("each")?;
     let parts = bindings.iter().map(|binding| part(section, binding, names));
     Ok(ClaimSpec {
-        id: file_name(id.text()?),
+        id: name,
         source: source.unwrap_or_else(|| "This description".to_owned()),
         claim,
         kind,
