@@ -43,6 +43,7 @@ pub(crate) fn run(args: &ExperimentArgs, console: Console) -> Result<Exit, Failu
     let mut parts: Vec<_> = results.claims.iter().map(claims::text).collect();
     let of_sections = sections.iter().flat_map(|section| &section.tables);
     parts.extend(of_sections.map(table_text));
+    parts.extend(claims::methods(&results.claims));
     parts.extend(claims::summary(&results.claims));
     print(&parts.join("\n"))?;
     if outcome.end == End::Stopped {

@@ -3,17 +3,17 @@
 use formats::printable;
 use lab::report::table_text;
 use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
+use std::collections::BTreeSet;
 
 /// Returns a claim with its figures. The numbers of curves stand in tables, so only histograms are drawn.
 pub(super) fn text(claim: &Claim) -> String {
     let mut text = format!(
-        "{}: {}\n  {}: {}\n  {}\n  {}\n",
+        "{}: {}\n  {}: {}\n  {}\n",
         claim.id,
         verdict(claim.verdict),
         claim.source,
         claim.claim,
-        printable(&claim.found),
-        claim.method
+        printable(&claim.found)
     );
     let figures = claim.tables.iter().map(table_text);
     let plots = claim.plots.iter();
@@ -23,6 +23,13 @@ pub(super) fn text(claim: &Claim) -> String {
         text.push_str(&figure);
     }
     text
+}
+
+/// Returns how certain the claims are: each text once. None: there are no claims.
+pub(super) fn methods(claims: &[Claim]) -> Option<String> {
+    let methods: BTreeSet<&str> = claims.iter().map(|claim| claim.method.as_str()).collect();
+    let text = methods.into_iter().map(|method| format!("{method}\n"));
+    Some(text.collect::<String>()).filter(|text| !text.is_empty())
 }
 
 /// Returns a table of all verdicts. None: there are no claims.
@@ -120,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_text_of_a_claim_has_its_histogram() {
-        let expected = "figure: not reproduced\n  Figure 2: It is so.\n  It is not.\n  By looking.\n\
+        let expected = "figure: not reproduced\n  Figure 2: It is so.\n  It is not.\n\
                         \nBars.\n\
                         size  one                   two\n\
                         -1    ####################\n\
@@ -135,5 +142,11 @@ mod tests {
                         not reproduced  figure  It is so.\n";
         assert_eq!(summary(&[claim()]).unwrap(), expected);
         assert_eq!(summary(&[]), None);
+    }
+
+    #[test]
+    fn claims_with_the_same_certainty_share_its_text() {
+        assert_eq!(methods(&[claim(), claim()]).unwrap(), "By looking.\n");
+        assert_eq!(methods(&[]), None);
     }
 }
