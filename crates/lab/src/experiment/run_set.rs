@@ -166,41 +166,58 @@ pub(super) fn begin<'a>(
     Ok(Begun { scenes, given, key })
 }
 
-/// Refuses methods whose strategies sample no path in a scene, and warns once for each method whose
-/// strategies lose light.
+/// Refuses methods whose strategies make no path in a scene, and warns of methods that lose light, once for
+/// all that lose the same.
 fn check_strategies(
     experiment: &Experiment,
     scenes: &[LoadedScene<'_>],
     observer: &mut dyn Observer,
 ) -> Result<()> {
+    let mut losses: Vec<(String, Vec<&str>)> = Vec::new();
     for method in &experiment.methods {
-        let mut warned = Vec::new();
-        for loaded in scenes
-            .iter()
-            .filter(|loaded| loaded.has(experiment, method))
-        {
-            let settings = method.request.apply(&loaded.settings);
+        let scenes = scenes.iter();
+        for loaded in scenes.filter(|loaded| loaded.has(experiment, method)) {
             check_effect(method, loaded)?;
-            let path = &settings.path;
-            let Some(lost) = lost_light(&loaded.scene, settings.integrator, path) else {
+            let Some(text) = loss(method, loaded)? else {
                 continue;
             };
-            let text = format!("strategies {} {lost}", path.strategies);
-            if matches!(lost, LostLight::All { .. }) {
-                return Err(ExperimentError::Strategies {
-                    scene: loaded.spec.name.clone(),
-                    method: method.name.clone(),
-                    text,
-                });
-            }
-            if !warned.contains(&text) {
-                let warning = format!("method `{}`: {text}", method.name);
-                observer.notify(Event::Warning(&warning));
-                warned.push(text);
+            match losses.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, methods)) => methods.push(&method.name),
+                None => losses.push((text, vec![&method.name])),
             }
         }
     }
+    for (text, mut methods) in losses {
+        methods.dedup();
+        let others = match methods.len() - 1 {
+            0 => String::new(),
+            1 => " and another".to_owned(),
+            others => format!(" and {others} others"),
+        };
+        let warning = format!("method `{}`{others}: {text}", methods[0]);
+        observer.notify(Event::Warning(&warning));
+    }
     Ok(())
+}
+
+/// Describes the light that a method loses in a scene. None: it loses none.
+///
+/// Errors: its strategies make no path.
+fn loss(method: &MethodSpec, loaded: &LoadedScene<'_>) -> Result<Option<String>> {
+    let settings = method.request.apply(&loaded.settings);
+    let path = &settings.path;
+    let Some(lost) = lost_light(&loaded.scene, settings.integrator, path) else {
+        return Ok(None);
+    };
+    let text = format!("strategies {} {lost}", path.strategies);
+    if matches!(lost, LostLight::All { .. }) {
+        return Err(ExperimentError::Strategies {
+            scene: loaded.spec.name.clone(),
+            method: method.name.clone(),
+            text,
+        });
+    }
+    Ok(Some(text))
 }
 
 /// Refuses a setting without effect on the integrator that the scene file sets.

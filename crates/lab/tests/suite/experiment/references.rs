@@ -206,6 +206,18 @@ fn strategies_without_paths_are_refused_and_lost_light_is_a_warning() {
         "{:?}",
         watch.warnings
     );
+    let both = text("s2").replace(
+        "name = \"all\"",
+        "name = \"all\"\nstrategies = \"s2\"\nintegrator = \"bdpt\"",
+    );
+    let mut watch = Watch::default();
+    place.run(&both, "both", &mut watch).unwrap();
+    let lost = lost.replace("`one`", "`all` and another");
+    let losses = watch
+        .warnings
+        .iter()
+        .filter(|warning| warning.contains("loses light"));
+    assert_eq!(losses.collect::<Vec<_>>(), [&lost]);
 }
 
 #[test]
