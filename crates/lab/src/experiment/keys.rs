@@ -215,12 +215,9 @@ fn list() -> String {
             "settings" | "contributions" | "quick" => {
                 write!(text, "\n`[{table}]`:\n\n").unwrap();
             }
-            "claim" | "table" => {
-                write!(
-                    text,
-                    "\n`[[{table}]]`, with the keys of a number below:\n\n"
-                )
-                .unwrap();
+            "claim" => text += "\n`[[claim]]`, with the keys of a number below:\n\n",
+            "table" => {
+                text += "\n`[[table]]`, in place of the usual tables, with the keys of a number below:\n\n";
             }
             _ => write!(text, "\n`[[{table}]]`, at least one:\n\n").unwrap(),
         }
