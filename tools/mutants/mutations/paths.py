@@ -543,6 +543,6 @@ PATHS = [
         "crates/bidir/src/integrator/light.rs",
         "contribution: counted.whole().behind(arrives),",
         "contribution: counted.whole().behind(arrives.ceil()),",
-        coverage("transmittances_of_walls"),
+        coverage("a_half_transparent_plane"),
     ),
 ]
