@@ -1,6 +1,6 @@
 """Faults in cameras without a lens, in shapes, spectra and lamps that are pictures."""
 
-from .tests import PATH, estimators, formats, unit
+from .tests import estimators, formats, unit
 
 VIEWS = [
     (
@@ -8,7 +8,7 @@ VIEWS = [
         "crates/bidir/src/path/densities.rs",
         "if x0.is_infinite && x1.is_infinite => 0.0,",
         "if x0.is_infinite && x1.is_infinite => x0.pdf_fwd,",
-        PATH,
+        ("bidir", "--test suite", "seen_directly::parallel_rays"),
     ),
     (
         "splats from behind the plane of parallel rays",

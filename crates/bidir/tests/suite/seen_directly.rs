@@ -1,11 +1,12 @@
 //! Light that is seen directly: hits of the light, and its light image.
 
 use crate::common::{builder, emission, metal, sphere};
+use bidir::camera::{Camera, Orthographic, OrthographicSettings};
 use bidir::driver::{Resources, Settings, render};
 use bidir::film::Picture;
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
-use bidir::math::Vec3;
+use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::MisHeuristic;
 use bidir::scene::Scene;
 
@@ -37,6 +38,30 @@ fn a_sky_has_no_noise() {
                     "{integrator:?} {mis:?}: {radiance}"
                 );
             }
+        }
+    }
+}
+
+/// Parallel rays from infinity and a sky make no connection: camera rays alone see the sky, also under uniform
+/// weights, which cut no light image off.
+#[test]
+fn parallel_rays_see_the_whole_sky() {
+    let mut builder = builder(8, 0.0);
+    let settings = OrthographicSettings {
+        world_from_camera: Affine3A::IDENTITY,
+        resolution: Vec2::splat(8.0),
+        screen: [Vec2::new(-1.5, 1.5), Vec2::new(1.5, -1.5)],
+    };
+    let camera = Orthographic::new(&settings).expect("the camera is rigid");
+    builder.camera(Camera::Orthographic(camera));
+    builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
+    let scene = builder.build().expect("the scene is valid");
+    for (name, mis) in MisHeuristic::NAMES {
+        for radiance in picture(&scene, IntegratorKind::Bdpt, mis, 0)
+            .pixels
+            .as_flattened()
+        {
+            assert!((radiance - 2.0).abs() < 1e-3, "{name}: {radiance}");
         }
     }
 }
