@@ -84,7 +84,7 @@ pub(crate) struct ExperimentArgs {
     pub(crate) restart: bool,
     /// Small and coarse: at most 3 seeds and 64 pixels a side, an eighth of budgets and references.
     ///
-    /// A description's [quick] can say otherwise. paper: all claims with wider intervals, in six minutes
+    /// A description's [quick] can say otherwise. paper: all claims with wider intervals, in three minutes
     /// on two cores instead of forty. beyond: 3 seeds of small images and 2 seconds, in half an hour
     /// instead of a day.
     #[arg(long)]
