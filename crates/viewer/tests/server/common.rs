@@ -138,8 +138,7 @@ impl Place {
         serde_json::from_slice(&answer.body).unwrap()
     }
 
-    /// The status, when it is as it is waited for. While lanes are made those that are told are the ones
-    /// before.
+    /// Waits for a status of which `is_so` is true. While new lanes are made it is that of the lanes before.
     #[track_caller]
     pub fn wait(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
