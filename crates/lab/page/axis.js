@@ -15,7 +15,7 @@ import { exponent, number, powerOfTen, shifted, withDecimals } from "./number.js
 const MARGIN = 0.04;
 
 /**
- * Whether a value has a place on such an axis at all.
+ * True if a value has a place on such an axis.
  * @param {Scale} scale
  * @param {number | null} value
  * @returns {value is number}
@@ -40,7 +40,7 @@ export function ruler(scale, values) {
 }
 
 /**
- * Where a value is, in [0, 1]; what is beyond an end is at the end.
+ * The place of a value, in [0, 1]; a value beyond an end is at the end.
  * @param {Ruler} ruler
  * @param {number} value
  */

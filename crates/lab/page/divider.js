@@ -5,7 +5,7 @@ import { clamp } from "./view.js";
 
 /** @import { Stage } from "./stage.js" */
 
-/** What keys do to the border's place, as a share of the width. */
+/** The steps of the border by each key, as a share of the width. */
 const KEYS = new Map([
   ["ArrowLeft", -0.02],
   ["ArrowDown", -0.02],

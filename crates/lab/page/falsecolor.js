@@ -1,6 +1,6 @@
 // False colour: luminance on a scale of stops, by the colour map magma [SmithWalt15].
 
-/** What has the darkest colour and the brightest, as stops of exposed light. */
+/** The ends of the scale, from the darkest colour to the brightest, in stops of exposed light. */
 export const STOPS = [-8, 4];
 
 /** Polynomials of degree 6 for red, green and blue, coded in sRGB; the constant first. */

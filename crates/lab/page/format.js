@@ -26,7 +26,7 @@ export function digits(value, count) {
 }
 
 /**
- * Nine digits: as many as it takes to tell any two floats apart.
+ * Nine digits: enough to distinguish any two floats.
  * @param {number} value
  */
 export function exact(value) {

@@ -5,7 +5,7 @@ import { box } from "./dom.js";
 /** @import { Stage } from "./stage.js" */
 /** @import { Point } from "./view.js" */
 
-/** How far a hand may shake in a click. Unit: CSS pixels. */
+/** The longest way of the pointer in a click. Unit: CSS pixels. */
 const SHAKE = 4;
 
 /** @type {Map<string, Point>} */
@@ -169,7 +169,7 @@ export class Gestures {
   }
 
   /**
-   * Whether the key means something.
+   * True if the key has an action.
    * @param {KeyboardEvent} event
    */
   letter({ key }) {
@@ -179,7 +179,7 @@ export class Gestures {
   }
 
   /**
-   * What keys do.
+   * The actions of keys.
    * @returns {Map<string, () => void>}
    */
   actions() {

@@ -42,7 +42,7 @@ export class Image {
     this.stored = stored;
     /** @type {Float32Array | null} */
     this.decoded = null;
-    /** What was asked for of `errors`. @type {Map<Layer, Float32Array | null>} */
+    /** The computed maps of `errors`. @type {Map<Layer, Float32Array | null>} */
     this.known = new Map();
   }
 
@@ -83,7 +83,7 @@ export class Image {
 }
 
 /**
- * Where an error is between the darkest and the brightest colour.
+ * The place of an error between the darkest and the brightest colour.
  * @param {Layer} layer
  * @param {number} error
  */

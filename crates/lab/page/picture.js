@@ -9,7 +9,7 @@ import { FRAGMENT, VERTEX } from "./shaders.js";
 export const OPERATORS = ["srgb", "agx", "neutral", "false", "linear", "errors"];
 
 /**
- * How light is shown.
+ * The mapping of light to colours.
  * @typedef {{exposure: number, operator: string}} Look
  */
 

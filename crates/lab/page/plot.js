@@ -14,7 +14,7 @@ import { number } from "./number.js";
 
 /** @typedef {{x: Ruler, y: Ruler, left: number, right: number, top: number, bottom: number}} Frame */
 
-/** Colours that also the colour-blind tell apart [Okabe08]; its yellow is too pale for lines. */
+/** Colours that colour-blind readers distinguish, too [Okabe08]; its yellow is too pale for lines. */
 const COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "currentColor"];
 
 /** Markers around the origin, of about the same area. */
@@ -57,7 +57,7 @@ function lastEdge({ points }) {
 }
 
 /**
- * Where the values of a plot are. Null: no point has a place on both axes.
+ * The ranges of the values of a plot. Null: no point has a place on both axes.
  * @param {Plot} plot
  * @param {Size} size
  * @returns {Frame | null}
@@ -76,7 +76,7 @@ export function frameOf({ kind, x, y, series }, size) {
 }
 
 /**
- * Where a point is; what is beyond an end is at the end.
+ * The place of a point; a point beyond an end is at the end.
  * @param {Frame} frame
  * @param {Place} point
  * @returns {Place}
@@ -96,7 +96,7 @@ function shown({ x, y }, { points }) {
 }
 
 /**
- * How many points cannot be drawn. Empty bins are drawn, as nothing.
+ * The number of points that cannot be drawn. Empty bins are drawn, as nothing.
  * @param {Plot} plot
  * @param {Frame} frame
  */
@@ -132,7 +132,7 @@ export function drawing(plot, frame, size) {
 }
 
 /**
- * What the drawing shows, for people who do not see it.
+ * Describes the drawing, for people who do not see it.
  * @param {Plot} plot
  */
 function inWords({ x, y, series }) {

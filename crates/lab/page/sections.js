@@ -20,7 +20,7 @@ const LINKS = [
   ["glossary", "Glossary"],
 ];
 
-/** How a verdict is shown, in the order in which they are counted. @type {Record<Verdict, [string, string]>} */
+/** The class and text of each verdict, in the order in which they are counted. @type {Record<Verdict, [string, string]>} */
 const VERDICTS = {
   reproduced: ["good", "✔ reproduced"],
   "not-reproduced": ["bad", "✘ not reproduced"],
@@ -102,7 +102,7 @@ export function verdicts({ claims }) {
 }
 
 /**
- * How many claims have which verdict.
+ * The number of claims with each verdict.
  * @param {Claim[]} claims
  */
 export function counts(claims) {
@@ -114,7 +114,7 @@ export function counts(claims) {
 }
 
 /**
- * What was compared, on what, with which settings, seeds and machine.
+ * The comparison: methods, settings, scenes, budgets, seeds and machine.
  * @param {Report} report
  */
 export function setting({ results, noises }) {
@@ -142,7 +142,7 @@ export function setting({ results, noises }) {
 }
 
 /**
- * How much was rendered.
+ * The number of renders, with their rays and seconds.
  * @param {Results} results
  */
 function extent({ records, scenes, methods, budgets }) {
@@ -175,7 +175,7 @@ function methods(methods) {
 }
 
 /**
- * What the images of a scene are compared with, and how far that is from the truth.
+ * The reference of a scene, with its own error.
  * @param {SceneInfo} scene
  * @param {Report["noises"]} noises
  */
@@ -273,7 +273,7 @@ function pointsOf({ x, y, series }) {
 }
 
 /**
- * How to make all of it again.
+ * The command that repeats the experiment.
  * @param {Report} report
  */
 export function again({ results, command }) {

@@ -10,7 +10,7 @@ import { centred, clamp, fit, pan, pixelAt, toScreen, zoomAt } from "./view.js";
 /** @import { Point, View } from "./view.js" */
 
 /**
- * What a stage has to know of a film; `split`: lane b is beside lane a.
+ * The film of a stage; `split`: lane b is beside lane a.
  * @typedef {{film: {resolution: [number, number], crop: [number, number, number, number]}, split: boolean}} Scenery
  */
 
@@ -29,7 +29,7 @@ export class Stage {
     this.view = { zoom: 1, offset: [0, 0] };
     /** The whole film is shown, however large the stage is. */
     this.isFitted = true;
-    /** Where lane b begins, as a share of the stage's width. */
+    /** The left border of lane b, as a share of the stage's width. */
     this.divide = 0.5;
     /** @type {Point | null} The pixel that was chosen. */
     this.pixel = null;
@@ -54,7 +54,7 @@ export class Stage {
     box("zoom-one").addEventListener("click", () => this.oneToOne());
   }
 
-  /** How light is shown. */
+  /** The mapping of light to colours. */
   get look() {
     return { exposure: Number(input("exposure").value), operator: select("operator").value };
   }
@@ -191,7 +191,7 @@ export class Stage {
   }
 
   /**
-   * What is written at the colours of the scale. Null: the picture has none.
+   * The labels at the colours of the scale. Null: the picture has none.
    * @returns {string[] | null}
    */
   scale() {

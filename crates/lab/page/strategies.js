@@ -38,7 +38,7 @@ export function strategies({ results, layers }) {
 }
 
 /**
- * What there is of a scene.
+ * The strategies of a scene.
  * @param {PyramidInfo} pyramid
  * @param {Layers} layers
  * @param {boolean} isWhole

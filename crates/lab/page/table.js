@@ -18,7 +18,7 @@ import { interval, number } from "./number.js";
 /** A longer text is divided into lines. Unit: characters. */
 const LONGEST_NAME = 28;
 
-/** What stands where a number would, if there were one. */
+/** The text of a missing number. */
 export const NOTHING = "–";
 
 const MARKS = {

@@ -4,7 +4,7 @@ import { make } from "./dom.js";
 import { cell, compact, count, luminance, percent } from "./format.js";
 
 /**
- * What a tile says of its strategy.
+ * The text of a tile.
  * @typedef {object} StrategyTile
  * @property {number} s
  * @property {number} t
@@ -37,7 +37,7 @@ export function rowName(vertices) {
 }
 
 /**
- * What a strategy does, in words.
+ * Describes a strategy in words.
  * @param {{s: number, t: number}} strategy
  */
 export function meaning({ s, t }) {
@@ -70,7 +70,7 @@ export function rowOf(name, tiles) {
 }
 
 /**
- * How many stops brighter images of a row are shown, so that nine tenths of the lit pixels of the
+ * The stops by which images of a row are brightened, so that nine tenths of the lit pixels of the
  * brightest are below white. An image of few lit pixels, compared with others of its row, is noise: it
  * has no say.
  * @param {Float32Array[]} images

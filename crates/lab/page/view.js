@@ -5,7 +5,7 @@
 
 /** @typedef {{zoom: number, offset: Point}} View */
 
-/** How far one can look: a film as a dot, a pixel as large as a window. */
+/** The range of the zoom, from a film as a dot to a pixel as large as a window. */
 export const ZOOM_RANGE = [1 / 64, 512];
 
 /** From where on numbers fit into a pixel. Unit: CSS pixels of a side. */

@@ -15,7 +15,7 @@ import { MISSING, ROOT, Renderer, launch, open, sleep } from "./stand.js";
 const WINDOW = { width: 1280, height: 800 };
 /** Keeps photographs of noise under 200 KB. Unit: percent. */
 const QUALITY = 70;
-/** How long both integrators render before the picture is taken. Unit: milliseconds. */
+/** The time that both integrators render before the picture is taken. Unit: milliseconds. */
 const RENDERING = 40_000;
 
 /** The part of the window above the chart, which shows a table. Unit: pixels. */

@@ -22,7 +22,7 @@ const SHOTS = path.join(TARGET, "browser");
 /** Why nothing can be tested here; null: it can. */
 export const MISSING = CHROMIUM ? (existsSync(BIDIR) ? null : `${BIDIR} is not built`) : "Chromium is not installed";
 
-/** How long to wait for what a page has to show, on however slow a machine. Unit: milliseconds. */
+/** The longest wait for a page, also on a slow machine. Unit: milliseconds. */
 const PATIENCE = 300_000;
 
 const FLAGS = [
@@ -91,7 +91,7 @@ export class Renderer {
   }
 
   /**
-   * The state, once it is as it should be; while lanes are made, those that are told are the ones before.
+   * Waits for an expected state; while new lanes are made it has the lanes before.
    * @param {(status: Status) => boolean} isIt
    */
   async until(isIt) {
@@ -190,7 +190,7 @@ export async function decode(browser, png) {
 }
 
 /**
- * How far two images are apart, on average over all channels.
+ * The mean distance of two images over all channels.
  * @param {{data: number[]}} a
  * @param {{data: number[]}} b
  */
@@ -199,7 +199,7 @@ export function difference(a, b) {
 }
 
 /**
- * How bright it is.
+ * The brightness of an image.
  * @param {{data: number[]}} image
  */
 export function brightness({ data }) {

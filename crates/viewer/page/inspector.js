@@ -21,7 +21,7 @@ export class Inspector {
     this.pixel = null;
     /** @type {LaneName[]} */
     this.lanes = [];
-    /** What the tables were made of. */
+    /** The data of the tables. */
     this.known = "";
     this.asked = 0;
     get("pixel-form", HTMLFormElement).addEventListener("submit", (event) => {

@@ -9,7 +9,7 @@ import { decodeFrame } from "./frame.js";
 /** @typedef {{[name: string]: string | number | boolean}} Query */
 
 /**
- * What the page does with what comes.
+ * The handlers of messages.
  * @typedef {object} Listener
  * @property {(status: Status) => void} onStatus
  * @property {(frame: Frame) => void} onFrame
@@ -18,7 +18,7 @@ import { decodeFrame } from "./frame.js";
  */
 
 /**
- * How long to wait before another try: twice as long each time, up to a quarter of a minute.
+ * The wait before another try: twice as long each time, up to a quarter of a minute.
  * @param {number} tries
  */
 export function backoff(tries) {

@@ -176,7 +176,7 @@ function nameLanes() {
   }
 }
 
-/** Tells the value under the pointer, as it came with the newest frames. */
+/** Shows the value under the pointer, as it came with the newest frames. */
 function tellHovered() {
   const pixel = hovered;
   if (!pixel) return say(box("hover"), "");

@@ -8,7 +8,7 @@
 /** The time between two commands. Unit: milliseconds. */
 export const INTERVAL = 1000 / 15;
 
-/** What waits to be sent, a sum for each kind of motion; for dolly a product. */
+/** The motion that waits to be sent: a sum for each kind, for dolly a product. */
 export class Motions {
   constructor() {
     /** @type {Map<MotionName, Amounts>} */
@@ -39,7 +39,7 @@ export class Motions {
   }
 }
 
-/** How far a key walks in a second, in distances to the target. */
+/** The way that a key walks in a second, in distances to the target. */
 const SPEED = 0.6;
 
 /** Keys that walk: forward, right, up. */
@@ -58,7 +58,7 @@ export function walks(code) {
 }
 
 /**
- * How far the held keys walk in some time; null: they keep each other in place.
+ * The way that the held keys walk in some time; null: they keep each other in place.
  * @param {Iterable<string>} codes
  * @param {number} seconds
  * @returns {Amounts | null}

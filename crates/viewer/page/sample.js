@@ -54,7 +54,7 @@ export class SampleView {
     return report !== null && (!told || told.generation > report.generation);
   }
 
-  /** Who answers after a break may be another server, whose renders are counted anew. */
+  /** After a break another server may answer, which counts its renders anew. */
   expire() {
     if (this.report) this.report.generation = 0;
   }

@@ -8,7 +8,7 @@ import { luminance } from "./format.js";
 /** @typedef {"chosen" | "blocked" | "left" | "splat"} Fate */
 
 /**
- * A line between two points of the film. Its width tells the value, its opacity the probability.
+ * A line between two points of the film. Its width shows the value, its opacity the probability.
  * @typedef {object} Ray
  * @property {string} name
  * @property {Fate} fate
@@ -24,7 +24,7 @@ const WIDTHS = [1.5, 6];
 const FAINTEST = 0.35;
 
 /**
- * What became of a candidate.
+ * The fate of a candidate.
  * @param {{is_chosen: boolean, is_visible: boolean}} candidate
  * @returns {Fate}
  */

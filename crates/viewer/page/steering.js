@@ -10,7 +10,7 @@ import { walks } from "./motion.js";
 /** @typedef {"look" | "move" | "sample"} Mode */
 
 /**
- * What the page does with it.
+ * The actions of the page.
  * @typedef {object} Hands
  * @property {() => Mode} mode
  * @property {(pixel: Point) => void} onClick

@@ -56,7 +56,7 @@
  */
 
 /**
- * What is known of a pixel.
+ * The values of a pixel.
  * @typedef {object} PixelReport
  * @property {number} x
  * @property {number} y
@@ -94,7 +94,7 @@
 /** @typedef {{position: Triple, is_infinite: boolean, raster: [number, number] | null}} Place */
 
 /**
- * What all strategies have in common. `value` is w C; `added` is what the pixel got.
+ * The part that all strategies share. `value` is w C; `added` is what the pixel got.
  * @typedef {{s: number, t: number, contribution: Triple, weight: number, value: Triple, added: Triple}} SampleTerm
  */
 
@@ -105,7 +105,7 @@
 /** @typedef {SampleTerm & {light_end: Place, is_visible: boolean, raster: [number, number]}} SampleSplat */
 
 /**
- * One sample, told.
+ * One sample, step by step.
  * @typedef {object} SampleReport
  * @property {number} generation That of the lane; 0 for one of a server that went away.
  * @property {[number, number]} pixel

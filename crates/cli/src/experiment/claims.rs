@@ -2,7 +2,7 @@
 
 use formats::printable;
 use lab::report::table_text;
-use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table, Verdict};
+use lab::results::{Cell, Claim, Plot, PlotKind, Series, Table};
 use std::collections::BTreeSet;
 
 /// Returns a claim with its figures. The numbers of curves stand in tables, so only histograms are drawn.
@@ -10,7 +10,7 @@ pub(super) fn text(claim: &Claim) -> String {
     let mut text = format!(
         "{}: {}\n  {}: {}\n  {}\n",
         claim.id,
-        verdict(claim.verdict),
+        claim.verdict.words(),
         claim.source,
         claim.claim,
         printable(&claim.found)
@@ -35,7 +35,7 @@ pub(super) fn methods(claims: &[Claim]) -> Option<String> {
 /// Returns a table of all verdicts. None: there are no claims.
 pub(super) fn summary(claims: &[Claim]) -> Option<String> {
     let row = |claim: &Claim| {
-        let words = [verdict(claim.verdict), &claim.id, &claim.claim];
+        let words = [claim.verdict.words(), &claim.id, &claim.claim];
         words.map(|words| Cell::Text(words.to_owned())).into()
     };
     let table = Table {
@@ -44,17 +44,6 @@ pub(super) fn summary(claims: &[Claim]) -> Option<String> {
         rows: claims.iter().map(row).collect(),
     };
     (!claims.is_empty()).then(|| table_text(&table))
-}
-
-fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Reproduced => "reproduced",
-        Verdict::NotReproduced => "not reproduced",
-        Verdict::Undecided => "undecided",
-        Verdict::Met => "met",
-        Verdict::NotMet => "not met",
-        Verdict::NotMeasured => "not measured",
-    }
 }
 
 /// The length of the longest bar. Unit: characters.
@@ -92,7 +81,7 @@ fn histogram(plot: &Plot) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lab::results::{Axis, Scale};
+    use lab::results::{Axis, Scale, Verdict};
 
     fn claim() -> Claim {
         let axis = |label: &str| Axis {

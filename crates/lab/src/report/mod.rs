@@ -29,7 +29,7 @@ use crate::experiment::analysis::{ReferenceNoise, reference_noise};
 use crate::image::Pixels;
 use crate::markup::{Element, element, script_json};
 use crate::metric::ErrorMap;
-use crate::results::{Claim, Plot, Results, Table, Verdict};
+use crate::results::{Claim, Plot, Results, Table};
 use crate::statistics::RATIOS;
 use half::{base64, half_bytes};
 use serde::Serialize;
@@ -130,16 +130,8 @@ fn policy(script: &str) -> String {
 /// The page for readers whose browser runs no scripts.
 fn without_script(claims: &[Claim]) -> Vec<Element> {
     let line = |claim: &Claim| {
-        let verdict = match claim.verdict {
-            Verdict::Reproduced => "reproduced",
-            Verdict::NotReproduced => "not reproduced",
-            Verdict::Undecided => "undecided",
-            Verdict::Met => "met",
-            Verdict::NotMet => "not met",
-            Verdict::NotMeasured => "not measured",
-        };
         let rest = format!(": {} {}", claim.claim, claim.found);
-        let verdict = element("b").text(verdict);
+        let verdict = element("b").text(claim.verdict.words());
         element("p").child(verdict).text(rest)
     };
     let notice = "This page needs JavaScript. Its figures are in results.json, too.";

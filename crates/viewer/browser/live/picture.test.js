@@ -34,7 +34,7 @@ after(async () => {
   await renderer?.end();
 });
 
-/** What the page saves as PNG. */
+/** The PNG that the page saves. */
 async function shown() {
   const download = page.waitForEvent("download");
   await page.click("#png-shown");
@@ -68,7 +68,7 @@ async function resumeUpTo(passes) {
   await pause();
 }
 
-/** What the page shows, once the last frame is there. */
+/** The pixels of the page, once the last frame is there. */
 async function settled() {
   await page.waitForTimeout(500);
   return decode(browser, await shown());

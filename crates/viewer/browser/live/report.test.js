@@ -153,7 +153,7 @@ test("strategies are tiles, and a table has their numbers", { skip }, async () =
   assert.ok(ink > 300, `${ink} channels of the picture are lit`);
 });
 
-/** What the canvas shows. */
+/** The pixels of the canvas. */
 function picture() {
   return page.locator("#stage").screenshot();
 }
