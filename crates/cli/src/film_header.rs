@@ -16,7 +16,7 @@ pub(crate) fn header(
     let scene = SceneIdentity {
         name,
         digest: &loaded.digest,
-        film: loaded.scene.film(),
+        film: loaded.view.film(),
     };
     scene.header(settings, training)
 }

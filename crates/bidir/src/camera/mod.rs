@@ -94,6 +94,11 @@ impl Camera {
         self
     }
 
+    /// True where all rays go the same way.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self, Self::Orthographic(_))
+    }
+
     /// The same view on a film with `factor` times as many pixels to each side, all positive.
     #[must_use]
     pub fn resized(self, factor: Vec2) -> Self {

@@ -118,7 +118,7 @@ impl FirstSurface {
             point: space.world_point(surface.point).as_vec3(),
             n_g: toward_camera(surface.n_g),
             n_s: toward_camera(n_s),
-            depth: space.world_length(context.scene.camera().depth(surface.point)),
+            depth: space.world_length(context.view.camera().depth(surface.point)),
         }
     }
 }

@@ -124,7 +124,7 @@ impl ReplayedTerm {
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
             Link::LightImage(_, place) => {
-                let (landing, scale) = land(scene.film(), *place);
+                let (landing, scale) = land(context.view.film(), *place);
                 (Some(landing), scale)
             }
         };

@@ -48,7 +48,7 @@ pub(super) struct LightImage<'a> {
 
 /// The lens point for light vertex number `s`.
 pub(super) fn lens_vertex(context: &PathContext<'_>, sample: &Sample, s: usize) -> Vertex {
-    let camera = context.scene.camera();
+    let camera = context.view.camera();
     let u = || {
         sample
             .light
@@ -78,7 +78,7 @@ pub(super) fn light_image<'a>(
     } else {
         lens.point
     };
-    let raster = scene.camera().raster(on_ray, -path.segment.w)?;
+    let raster = context.view.camera().raster(on_ray, -path.segment.w)?;
     if !reaches_film(context, raster) {
         return None;
     }
@@ -98,7 +98,7 @@ fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Segment
     if !lens.is_infinite {
         return lens.segment_end();
     }
-    let depth = context.scene.camera().depth(end.point);
+    let depth = context.view.camera().depth(end.point);
     SegmentEnd {
         point: end.point + lens.point * depth,
         n_g: Vec3::ZERO,
@@ -109,7 +109,7 @@ fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Segment
 
 /// True where the filter of some pixel of the crop may reach `raster`.
 fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
-    let film = context.scene.film();
+    let film = context.view.film();
     let corner = |c: [u32; 2]| Vec2::new(c[0] as f32, c[1] as f32);
     let margin = film.filter.radius();
     let (min, max) = (

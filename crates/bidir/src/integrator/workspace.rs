@@ -331,10 +331,10 @@ impl Workspace {
 /// The ray of a camera sample, and the weight of its film position.
 pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
     let get = |purpose| sample.ray.get_2d(Dimension::at(0, purpose));
-    let (offset, weight) = context.scene.film().filter.sample(get(Purpose::Film));
+    let (offset, weight) = context.view.film().filter.sample(get(Purpose::Film));
     let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
     let ray = context
-        .scene
+        .view
         .camera()
         .sample_ray(raster, || get(Purpose::Lens));
     (ray, weight)

@@ -49,6 +49,7 @@ pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
 
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
+use crate::view::View;
 
 /// The most vertices of any path, whatever the limits: a walk between perfect mirrors would not
 /// end.
@@ -99,6 +100,8 @@ impl PathSettings {
 pub struct PathContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
+    /// The camera that sees it, and its film.
+    pub view: &'a View,
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.

@@ -147,7 +147,7 @@ impl Vertex {
         let (scene, surface) = (context.scene, &hit.surface);
         let mut at = TexturePoint::new(surface);
         if let Some(differentials) = &hit.differentials {
-            at = at.seen(scene.footprint(surface.point), differentials);
+            at = at.seen(context.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
         let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);

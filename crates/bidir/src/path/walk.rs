@@ -71,7 +71,7 @@ pub fn camera_subpath(
     let step = Step {
         direction: ray.direction,
         beta: Spectrum::splat(weight),
-        pdf_w: context.scene.camera().pdf_direction(ray.direction),
+        pdf_w: context.view.camera().pdf_direction(ray.direction),
     };
     walker.walk(subpath, ray.origin, step, &mut stats.rays.camera);
 }

@@ -5,6 +5,7 @@
 //! with one that is computed from scratch.
 
 use crate::common;
+use crate::common::Shot;
 use crate::common::walks::{
     for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals,
 };
@@ -16,7 +17,6 @@ use bidir::path::{
     Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisCount,
     MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
 };
-use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
@@ -259,11 +259,11 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     }
 }
 
-fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
+fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
     check_paths_with(&settings(mis, light_point), scene, Connections::ONE_SUBPATH);
 }
 
-fn check_paths_with(settings: &PathSettings, scene: &Scene, connections: Connections<'_>) {
+fn check_paths_with(settings: &PathSettings, scene: &Shot, connections: Connections<'_>) {
     let mut paths = 0;
     for_some_pairs(
         400,
@@ -414,7 +414,7 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
         assert_close(there.geometry_term, back.geometry_term, "G");
         if let [lens, first, ..] = &camera.vertices[..] {
             let raster = context
-                .scene
+                .view
                 .camera()
                 .raster(lens.point, lens.segment_to(first).w);
             let inside =

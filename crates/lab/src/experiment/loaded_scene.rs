@@ -7,6 +7,7 @@ use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::scene::Scene;
+use bidir::view::View;
 use formats::scene::{Files, LoadOptions};
 use std::path::PathBuf;
 
@@ -14,6 +15,7 @@ use std::path::PathBuf;
 pub(super) struct LoadedScene<'a> {
     pub(super) spec: &'a SceneSpec,
     pub(super) scene: Scene,
+    pub(super) view: View,
     /// The settings of the file, over the defaults.
     pub(super) settings: Settings,
     pub(super) digest: String,
@@ -77,6 +79,7 @@ impl<'a> LoadedScene<'a> {
         Ok(Self {
             spec,
             scene: loaded.scene,
+            view: loaded.view,
             settings,
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
@@ -110,7 +113,7 @@ impl<'a> LoadedScene<'a> {
             threads,
             ..Resources::default()
         };
-        let session = Session::new(&self.scene, settings, &resources);
+        let session = Session::new(&self.scene, &self.view, settings, &resources);
         session.map_err(|error| ExperimentError::Render {
             scene: self.spec.name.clone(),
             error,
@@ -119,7 +122,7 @@ impl<'a> LoadedScene<'a> {
 
     /// Returns width and height of the images. Unit: pixels.
     pub(super) fn size(&self) -> [usize; 2] {
-        let crop = self.scene.film().crop;
+        let crop = self.view.film().crop;
         [crop.width() as usize, crop.height() as usize]
     }
 

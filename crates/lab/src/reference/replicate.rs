@@ -87,7 +87,7 @@ impl Estimator<'_> {
         let untrained = self.subject.identity().header(settings, None);
         let earlier = self.earlier(path, &untrained)?;
         if let Some(file) = &earlier {
-            host.found(file.header.passes.len() * self.subject.scene.film().crop.area());
+            host.found(file.header.passes.len() * self.subject.view.film().crop.area());
         }
         match earlier {
             Some(file) if file.header.passes.len() == self.passes => Ok(Some(file)),
@@ -125,7 +125,12 @@ impl Estimator<'_> {
     ) -> Result<Option<FilmFile>, Error> {
         let start = host.nanoseconds();
         let since = |start| Duration::from_nanos(host.nanoseconds().saturating_sub(start));
-        let mut session = Session::new(self.subject.scene, settings.clone(), self.resources)?;
+        let mut session = Session::new(
+            self.subject.scene,
+            self.subject.view,
+            settings.clone(),
+            self.resources,
+        )?;
         let header = self.subject.identity();
         let header = header.header(settings, session.training());
         let before = earlier.as_ref().map(|file| file.header.clone());

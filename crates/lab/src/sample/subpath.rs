@@ -2,9 +2,10 @@
 
 use super::report::Color;
 use bidir::camera::{Camera, LensSample};
+use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{Subpath, Vertex, VertexKind};
-use bidir::scene::{RenderSpace, Scene, SegmentEnd};
+use bidir::scene::{RenderSpace, SegmentEnd};
 use bidir::spectrum::Rgb;
 use serde::Serialize;
 
@@ -82,13 +83,13 @@ pub(super) struct View<'a> {
 impl<'a> View<'a> {
     /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
     /// camera subpath, from the middle of the lens.
-    pub(super) fn new(scene: &'a Scene, subpath: &Subpath) -> Self {
-        let camera = scene.camera();
+    pub(super) fn new(session: &'a Session<'_>, subpath: &Subpath) -> Self {
+        let camera = session.view().camera();
         let middle = middle_of_lens(camera);
         let point = subpath.vertices.first().map_or(middle.point, |y0| y0.point);
         let lens = LensSample { point, ..middle };
         Self {
-            space: *scene.space(),
+            space: *session.scene().space(),
             camera,
             lens,
         }

@@ -346,9 +346,9 @@ fn with_camera(camera: &Value) -> Draft {
 
 /// The raster position of the direction towards `point`, as part of the film.
 pub(super) fn seen(loaded: &Loaded, point: Vec3) -> Vec2 {
-    let camera = loaded.scene.camera();
+    let camera = loaded.view.camera();
     let eye = camera.sample_lens(|| Vec2::ZERO).point;
-    let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
+    let [width, height] = loaded.view.film().resolution.map(|side| side as f32);
     camera.raster(eye, (point - eye).normalize()).unwrap() / Vec2::new(width, height)
 }
 
@@ -358,7 +358,7 @@ fn cameras_look_along_minus_z_with_their_vertical_angle() {
     let draft = with_camera(&json!({ "type": "perspective", "perspective":
         { "yfov": angle, "aspectRatio": 1.5, "znear": 0.1 } }));
     let loaded = draft.load().unwrap();
-    assert_eq!(loaded.scene.film().resolution, [1080, 720]);
+    assert_eq!(loaded.view.film().resolution, [1080, 720]);
     assert!(seen(&loaded, Vec3::ZERO).distance(Vec2::splat(0.5)) < 1e-5);
     assert!(seen(&loaded, Vec3::Y * 2.0).distance(Vec2::new(0.5, 0.0)) < 1e-5);
     assert!(seen(&loaded, Vec3::X * 3.0).distance(Vec2::new(1.0, 0.5)) < 1e-5);
@@ -413,10 +413,10 @@ fn orthographic_cameras_see_parallel_rays() {
     let draft = with_camera(&json!({ "type": "orthographic", "orthographic":
         { "xmag": 3, "ymag": 2, "znear": 0.1, "zfar": 9 } }));
     let loaded = draft.load().unwrap();
-    assert_eq!(loaded.scene.film().resolution, [1080, 720]);
+    assert_eq!(loaded.view.film().resolution, [1080, 720]);
     let at = |loaded: &Loaded, point: Vec3| {
-        let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
-        let raster = loaded.scene.camera().raster(point, -Vec3::Z).unwrap();
+        let [width, height] = loaded.view.film().resolution.map(|side| side as f32);
+        let raster = loaded.view.camera().raster(point, -Vec3::Z).unwrap();
         raster / Vec2::new(width, height)
     };
     for depth in [0.0, -70.0] {
@@ -445,7 +445,7 @@ fn crops_are_parts_of_the_film() {
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).unwrap();
-    assert_eq!(loaded.scene.film().crop.max, [640, 720]);
+    assert_eq!(loaded.view.film().crop.max, [640, 720]);
     let options = LoadOptions {
         crop: Some(Crop::Pixels([5000, 6000, 0, 10])),
         ..options
