@@ -73,6 +73,7 @@ pub mod driver;
 pub mod film;
 pub mod integrator;
 pub mod light;
+pub mod locus;
 pub mod material;
 pub mod math;
 pub mod names;
@@ -84,6 +85,7 @@ pub mod settings;
 pub mod shape;
 pub mod spectrum;
 pub mod stats;
+pub mod strategy;
 pub mod texture;
 pub mod view;
 

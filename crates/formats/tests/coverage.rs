@@ -6,9 +6,9 @@ mod statistics;
 
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
+use bidir::locus::Locus;
 use bidir::math::Vec3;
 use bidir::path::PathSettings;
-use bidir::scene::SegmentEnd;
 use bidir_formats::pbrt::{LoadOptions, Loaded, build, load, parse_text};
 use statistics::{Replicates, Shown, WHOLE, check_agree, replicates};
 
@@ -50,15 +50,6 @@ fn wall(z: f32, alpha: f32) -> String {
     )
 }
 
-fn in_space(point: Vec3) -> SegmentEnd {
-    SegmentEnd {
-        point,
-        n_g: Vec3::ZERO,
-        error: 0.0,
-        is_infinite: false,
-    }
-}
-
 /// Checks that transmittances are equal to the last bit.
 #[track_caller]
 fn same(actual: f32, expected: f32) {
@@ -72,7 +63,8 @@ fn transmittances_of_walls_multiply() {
     let sphere = "Shape \"sphere\" \"float alpha\" 0.2\n";
     let scene = scene(&format!("{walls}{light}{sphere}")).scene;
     let behind = Vec3::new(3.1, 1.2, 9.0);
-    let seen = |from: Vec3, to: Vec3| scene.transmittance(&in_space(from), &in_space(to));
+    let seen =
+        |from: Vec3, to: Vec3| scene.transmittance(&Locus::in_space(from), &Locus::in_space(to));
     let eye = Vec3::new(3.0, 1.0, -4.0);
     // 1 - α of the file's numbers, rounded once.
     let factors = [0.5_f32, 0.3].map(|alpha| f64::from(1.0 - alpha));
@@ -190,5 +182,8 @@ fn an_invisible_lamp_still_emits() {
     let path = check_estimators(&loaded);
     assert!(path.mean() > 0.05, "{}", path.mean());
     let (front, back) = (Vec3::new(0.0, 1.3, -2.0), Vec3::new(0.0, 1.3, 1.5));
-    same(scene.transmittance(&in_space(front), &in_space(back)), 1.0);
+    same(
+        scene.transmittance(&Locus::in_space(front), &Locus::in_space(back)),
+        1.0,
+    );
 }

@@ -51,7 +51,7 @@ impl Side {
         Self {
             world,
             local: vertex.shading.to_local(world),
-            cos_g: vertex.n_g.dot(world),
+            cos_g: vertex.locus.n_g.dot(world),
         }
     }
 

@@ -3,13 +3,13 @@
 
 use super::check::check_shape;
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, RenderSpace, Scene, Surface, clamped_coverage};
+use super::{Presence, RenderSpace, Scene, Surface};
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
-use crate::texture::{ColorTexture, FloatTexture};
+use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].

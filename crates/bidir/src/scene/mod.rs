@@ -15,10 +15,8 @@ pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
 pub use coverage::Chances;
-pub(crate) use coverage::clamped_coverage;
 pub use object::ObjectId;
 pub use space::RenderSpace;
-pub use visibility::{SegmentEnd, offset_origin};
 
 use object::Placed;
 

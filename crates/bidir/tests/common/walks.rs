@@ -41,7 +41,7 @@ pub(crate) fn some_proposals(scene: &Shot) -> LightProposals {
     let (mut points, settings) = (Vec::new(), PathSettings::default());
     for_each_pair(&settings, scene, |_, light, camera| {
         let vertices = light.vertices.iter().chain(&camera.vertices);
-        points.extend(vertices.map(|vertex| vertex.point));
+        points.extend(vertices.map(|vertex| vertex.locus.point));
     });
     // Any numbers, zero among them.
     let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 11;

@@ -97,7 +97,7 @@ impl Comparison {
         let lens = context.view.camera().sample_lens(|| Vec2::new(0.3, 0.8));
         let lens = Vertex::camera(&lens);
         for s in 1..=light.len() {
-            if !(light[s - 1].is_infinite && lens.is_infinite) {
+            if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
                 self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));
             }
         }

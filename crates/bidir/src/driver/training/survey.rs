@@ -105,7 +105,7 @@ impl Survey {
         self.light.extend(connectable.filter_map(vertex));
         let camera = workspace.camera.vertices.iter().skip(1);
         let camera = camera.filter(|y| !y.is_delta());
-        self.camera.extend(camera.map(|y| y.point));
+        self.camera.extend(camera.map(|y| y.locus.point));
     }
 
     /// Cells that suit the vertices.

@@ -100,7 +100,7 @@ fn lengths_and_intensities_follow_the_unit() {
         let Camera::Perspective(_) = view.camera() else {
             panic!("the camera is one of perspective");
         };
-        let lens = |x| view.camera().sample_lens(|| Vec2::new(x, 0.5)).point;
+        let lens = |x| view.camera().sample_lens(|| Vec2::new(x, 0.5)).locus.point;
         let radius = scene.space().world_length(lens(1.0).distance(lens(0.5)));
         assert!(
             (f64::from(radius) / (0.25 * by) - 1.0).abs() < 1e-4,
