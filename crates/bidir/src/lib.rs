@@ -69,6 +69,7 @@
 
 pub mod bsdf;
 pub mod camera;
+pub mod contribution;
 pub mod driver;
 pub mod film;
 pub mod integrator;

@@ -38,7 +38,7 @@ fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
         let replay = session.replay(crop.pixel(pixel), pass)?;
         let rgb = |value| color.to_rgb(value, &replay.wavelengths);
         let splats = replay.workspace.splats.iter();
-        let splats = splats.map(|splat| (splat.place, rgb(splat.contribution.value)));
+        let splats = splats.map(|splat| (splat.place, rgb(splat.contribution.value())));
         Some(Contributions {
             camera: rgb(replay.workspace.value),
             splats: splats.collect(),

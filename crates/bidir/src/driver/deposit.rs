@@ -1,7 +1,8 @@
 //! From a sample's workspace to the running pass: the picture, its parts, and raw images.
 
+use crate::contribution::Contribution;
 use crate::film::{Layers, PassBuffer};
-use crate::integrator::{Contribution, Splat, Workspace};
+use crate::integrator::{Splat, Workspace};
 use crate::path::{PathContext, Strategy};
 use crate::spectrum::{Rgb, Spectrum, luminance};
 use crate::stats::Stats;
@@ -31,7 +32,7 @@ impl Deposit<'_> {
     pub(super) fn take_light(&self, workspace: &mut Workspace) {
         for splat in &workspace.splats {
             let contribution = &splat.contribution;
-            let (place, value) = (splat.place, self.rgb(contribution.value));
+            let (place, value) = (splat.place, self.rgb(contribution.value()));
             let parts = self.parts_of(contribution);
             let film = self.context.view.film();
             self.buffer.splat(film, place, value, parts);
@@ -49,7 +50,7 @@ impl Deposit<'_> {
 
     /// Adds to the parts of the sample's own pixel.
     fn part_of_pixel(&self, contribution: &Contribution) {
-        let value = self.rgb(contribution.value);
+        let value = self.rgb(contribution.value());
         for part in self.parts_of(contribution) {
             self.buffer.add_to_part(self.pixel, part, value);
         }
@@ -57,8 +58,8 @@ impl Deposit<'_> {
 
     /// The parts of the picture that a contribution is in.
     fn parts_of(&self, contribution: &Contribution) -> impl Iterator<Item = usize> {
-        let group = self.context.scene.light_group(contribution.light);
-        self.layers.parts_of(contribution.strategy, group)
+        let group = self.context.scene.light_group(contribution.term.light);
+        self.layers.parts_of(contribution.term.strategy, group)
     }
 
     /// Adds to raw images, and counts squares.
@@ -89,7 +90,7 @@ impl Deposit<'_> {
     /// contribute often, and others in between: by several light points, by several vertices of a light
     /// cache, by each environment that a walk escapes to.
     fn add_luminance(&self, contribution: &Contribution, sums: &mut Vec<(Strategy, f64)>) {
-        let strategy = contribution.strategy;
+        let strategy = contribution.term.strategy;
         if self.layers.weighted_part(strategy).is_none() {
             return;
         }
@@ -107,9 +108,13 @@ impl Deposit<'_> {
             return;
         };
         // A light subpath has one splat by each strategy.
-        if self.layers.weighted_part(contribution.strategy).is_some() {
+        if self
+            .layers
+            .weighted_part(contribution.term.strategy)
+            .is_some()
+        {
             let luminance = self.luminance(contribution) * f64::from(weight);
-            stats.add_square(contribution.strategy, luminance);
+            stats.add_square(contribution.term.strategy, luminance);
         }
         if let Some((part, value)) = self.raw(contribution, stats) {
             self.buffer.splat_to_part(film, splat.place, value, part);
@@ -117,15 +122,15 @@ impl Deposit<'_> {
     }
 
     fn luminance(&self, contribution: &Contribution) -> f64 {
-        f64::from(luminance(self.rgb(contribution.value)))
+        f64::from(luminance(self.rgb(contribution.value())))
     }
 
     /// What a contribution adds to which raw image. None: it has none, or the value is counted as
     /// dropped from it.
     fn raw(&self, contribution: &Contribution, stats: &mut Stats) -> Option<(usize, Rgb)> {
-        let part = self.layers.raw_part(contribution.strategy)?;
+        let part = self.layers.raw_part(contribution.term.strategy)?;
         let Some(value) = contribution.unweighted() else {
-            stats.drop_raw(contribution.strategy);
+            stats.drop_raw(contribution.term.strategy);
             return None;
         };
         Some((part, self.rgb(value)))
@@ -135,6 +140,7 @@ impl Deposit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contribution::Term;
     use crate::film::{Film, FilmSettings, Filter, SplatPlace};
     use crate::light::{InfiniteLight, Light};
     use crate::math::Vec2;
@@ -149,14 +155,10 @@ mod tests {
         builder.build().unwrap()
     }
 
-    fn contribution((s, t): (usize, usize), value: f32, weight: f32) -> Contribution {
-        Contribution {
-            strategy: Strategy::new(s, t),
-            light: 0,
-            value: Spectrum::splat(value),
-            weight,
-            term: 0,
-        }
+    /// A contribution C w of this strategy.
+    fn contribution((s, t): (usize, usize), c: f32, weight: f32) -> Contribution {
+        let strategy = Strategy::new(s, t);
+        Term::new(strategy, 0, Spectrum::splat(c), weight).certain(1.0)
     }
 
     /// The film and the counters after one sample that leaves these behind, the last as a splat.
@@ -200,21 +202,25 @@ mod tests {
 
     #[test]
     fn raw_values_that_are_too_large_are_counted_and_harm_nothing() {
-        let fine = contribution((1, 2), 0.5, 0.25);
-        let large = contribution((0, 3), 3.0, 1e-30);
-        let splat = contribution((2, 1), 7.0, 1e-30);
+        let fine = contribution((1, 2), 2.0, 0.25);
+        let large = contribution((0, 3), 3e30, 1e-30);
+        let splat = contribution((2, 1), 7e30, 1e-30);
         let (film, stats) = deposit(&[fine, large], splat);
         let layers = film.layers();
-        check_image(&film, layers.raw_part(fine.strategy), 2.0);
+        check_image(&film, layers.raw_part(fine.term.strategy), 2.0);
         for (contribution, weighted) in [(fine, 0.5), (large, 3.0), (splat, 7.0)] {
-            check_image(&film, layers.weighted_part(contribution.strategy), weighted);
+            check_image(
+                &film,
+                layers.weighted_part(contribution.term.strategy),
+                weighted,
+            );
         }
         for contribution in [large, splat] {
-            check_image(&film, layers.raw_part(contribution.strategy), 0.0);
-            let counts = stats.strategy_images.get(contribution.strategy);
+            check_image(&film, layers.raw_part(contribution.term.strategy), 0.0);
+            let counts = stats.strategy_images.get(contribution.term.strategy);
             assert_eq!(counts.raw_dropped, 1);
         }
-        assert_eq!(stats.strategy_images.get(fine.strategy).raw_dropped, 0);
+        assert_eq!(stats.strategy_images.get(fine.term.strategy).raw_dropped, 0);
     }
 
     #[test]

@@ -4,8 +4,9 @@
 //! Nothing here adds to a film. Visibility of what was not traced is found afterwards, by rays that
 //! are not counted.
 
+use crate::contribution::Term;
 use crate::film::{FilmSettings, SplatPlace};
-use crate::integrator::{Entry, Fate, Link, Term, Workspace};
+use crate::integrator::{Entry, Fate, Link, Workspace};
 use crate::locus::Locus;
 use crate::path::{PathContext, Strategy, Subpath};
 use crate::select::Selector;
@@ -78,7 +79,7 @@ impl Replay {
         let entries = workspace.journal.iter().flat_map(|j| &j.entries);
         let term = |(number, entry): (u32, &Entry)| {
             let mut candidates = workspace.candidates.iter().zip(&probs);
-            let candidate = candidates.find(|(candidate, _)| candidate.term == number);
+            let candidate = candidates.find(|(candidate, _)| candidate.term.number == number);
             let selection = candidate.map(|(candidate, &prob)| Selection {
                 score: candidate.score,
                 prob,

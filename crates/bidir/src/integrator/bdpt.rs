@@ -1,11 +1,11 @@
 //! Bidirectional path tracing [Veach97, §10], with its shadow rays chosen \[Lafortune95\].
 
-use super::journal::Counted;
 use super::light::{lens_vertex, light_image};
 use super::pairs::Pairs;
 use super::workspace::own_light_vertices;
-use super::{Integrator, Link, Sample, Term, Workspace};
+use super::{Integrator, Link, Sample, Workspace};
 use crate::bsdf::TransportMode;
+use crate::contribution::{Contribution, Term};
 use crate::light::LightPoint;
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{
@@ -87,12 +87,8 @@ fn hit(
         camera, weights, ..
     } = workspace;
     let path = JoinedPath::hit(x0, &camera.vertices[..i]);
-    let term = Term {
-        strategy: Strategy::new(0, i + 1),
-        light,
-        contribution,
-        weight: weights.weight(context, &path),
-    };
+    let weight = weights.weight(context, &path);
+    let term = Term::new(Strategy::new(0, i + 1), light, contribution, weight);
     workspace.add_hit(sample, term);
 }
 
@@ -211,8 +207,8 @@ fn candidate(
     } = connected;
     if let Some(term) = connection(context, workspace, connected) {
         let link = |workspace: &Workspace| Link::Connection(workspace.ends(strategy, light_vertex));
-        let counted = workspace.count(term, link);
-        offer(context, sample, workspace, &counted, light_vertex);
+        let term = workspace.count(term, link);
+        offer(context, sample, workspace, term, light_vertex);
     }
 }
 
@@ -222,19 +218,16 @@ pub(super) fn offer(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
-    counted: &Counted,
+    term: Term,
     light_vertex: LightVertex,
 ) {
-    let whole = counted.whole();
-    if workspace.accepts(sample, counted.mark(), whole.value) && !whole.value.is_black() {
-        let luminance = context.luminance(whole.value.map(f32::abs));
-        let [z, y] = workspace.vertices(counted.term.strategy, light_vertex);
-        let root_visibility = context.root_visibility(z, y);
-        workspace.candidates.push(Candidate::new(
-            &whole,
-            luminance * root_visibility,
-            light_vertex,
-        ));
+    let value = term.value();
+    if workspace.accepts(sample, &term, value) && !value.is_black() {
+        let luminance = context.luminance(value.map(f32::abs));
+        let [z, y] = workspace.vertices(term.strategy, light_vertex);
+        let score = luminance * context.root_visibility(z, y);
+        let candidate = Candidate::new(term, score, light_vertex);
+        workspace.candidates.push(candidate);
     }
 }
 
@@ -265,11 +258,9 @@ fn connection(
     let start = light[0].light?;
     let path = JoinedPath::connection(light, camera);
     let contribution = path.contribution(context);
-    (contribution != Spectrum::ZERO).then(|| Term {
-        strategy,
-        light: start,
-        contribution: contribution * share,
-        weight: weights.weight(context, &path),
+    (contribution != Spectrum::ZERO).then(|| {
+        let weight = weights.weight(context, &path);
+        Term::new(strategy, start, contribution * share, weight)
     })
 }
 
@@ -295,10 +286,17 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
     for i in 0..workspace.chosen.len() {
         let chosen = workspace.chosen[i];
         let candidate = workspace.candidates[chosen.candidate as usize];
-        let contribution = candidate.contribution(chosen.prob);
-        let ends = workspace.ends(candidate.strategy, candidate.light_vertex);
-        if let Some(arrives) = workspace.trace(context.scene, contribution.mark(), &ends) {
-            workspace.add(sample, contribution.behind(arrives));
+        let Candidate {
+            term, light_vertex, ..
+        } = candidate;
+        let ends = workspace.ends(term.strategy, light_vertex);
+        if let Some(transmittance) = workspace.trace(context.scene, &term, &ends) {
+            let contribution = Contribution {
+                term,
+                prob: chosen.prob,
+                transmittance,
+            };
+            workspace.add(sample, contribution);
         }
     }
 }

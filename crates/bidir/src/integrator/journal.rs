@@ -3,71 +3,10 @@
 //!
 //! A render drops them as it goes; a replayed sample keeps a journal of what became of each.
 
-use super::Contribution;
+use crate::contribution::Term;
 use crate::film::SplatPlace;
 use crate::locus::Locus;
-use crate::path::Strategy;
 use crate::spectrum::Spectrum;
-
-/// What a strategy gives through one path, before selection and visibility.
-#[derive(Clone, Copy, Debug)]
-pub struct Term {
-    /// The strategy.
-    pub strategy: Strategy,
-    /// The light that the path begins on, by index.
-    pub light: u32,
-    /// The unweighted contribution C = f / p. For t = 1 that of one light path among many.
-    pub contribution: Spectrum,
-    /// The strategy's share of the path.
-    pub weight: f32,
-}
-
-impl Term {
-    /// The weighted contribution.
-    #[inline]
-    pub fn value(&self) -> Spectrum {
-        self.contribution * self.weight
-    }
-}
-
-/// A term that was counted.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Counted {
-    pub(super) term: Term,
-    /// Its number among the terms of the sample.
-    pub(super) number: u32,
-}
-
-/// Which term of a sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Mark {
-    /// Its strategy, for counters.
-    pub(super) strategy: Strategy,
-    /// Its number, for the journal.
-    pub(super) number: u32,
-}
-
-impl Counted {
-    #[inline]
-    pub(super) fn mark(&self) -> Mark {
-        Mark {
-            strategy: self.term.strategy,
-            number: self.number,
-        }
-    }
-
-    /// What it adds where it is certain to be traced.
-    #[inline]
-    pub(super) fn whole(&self) -> Contribution {
-        Contribution {
-            strategy: self.term.strategy,
-            light: self.term.light,
-            value: self.term.value(),
-            weight: self.term.weight,
-            term: self.number,
-        }
-    }
-}
 
 /// What links the two subpaths of a term.
 #[derive(Clone, Copy, Debug)]

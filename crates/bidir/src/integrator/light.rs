@@ -2,7 +2,8 @@
 //! vertex is connected to a lens point of its own, and lands wherever on the film that is. A splat
 //! is divided by the number of light paths by the film, not here.
 
-use super::{Integrator, Link, Sample, Splat, Term, Workspace};
+use super::{Integrator, Link, Sample, Splat, Workspace};
+use crate::contribution::Term;
 use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
@@ -119,12 +120,12 @@ impl LightImage<'_> {
     pub(super) fn weighted(&self, weight: f32) -> WeightedImage {
         let [light, camera] = [self.path.light, self.path.camera].map(<[Vertex]>::len);
         WeightedImage {
-            term: Term {
-                strategy: Strategy::new(light, camera),
-                light: self.light,
-                contribution: self.contribution,
+            term: Term::new(
+                Strategy::new(light, camera),
+                self.light,
+                self.contribution,
                 weight,
-            },
+            ),
             raster: self.raster,
             ends: [self.path.light[light - 1].locus, self.camera_end],
         }
@@ -153,12 +154,12 @@ impl Workspace {
             .light
             .get_2d(Dimension::at(s, Purpose::LightImagePixel));
         let place = SplatPlace { raster, u };
-        let counted = self.count(term, |_| Link::LightImage(ends, place));
-        if self.accepts(sample, counted.mark(), term.value())
-            && let Some(arrives) = self.trace(context.scene, counted.mark(), &ends)
+        let term = self.count(term, |_| Link::LightImage(ends, place));
+        if self.accepts(sample, &term, term.value())
+            && let Some(transmittance) = self.trace(context.scene, &term, &ends)
         {
             self.add_splat(Splat {
-                contribution: counted.whole().behind(arrives),
+                contribution: term.certain(transmittance),
                 place,
             });
         }

@@ -18,14 +18,14 @@ mod workspace;
 pub use bdpt::Bdpt;
 pub(crate) use blind::no_path;
 pub use blind::{BlindSpot, LostLight, blind_spots, lost_light, missing_light};
-pub use journal::{Entry, Fate, Journal, Link, Term};
+pub use journal::{Entry, Fate, Journal, Link};
 pub use light::LightTracer;
 pub use lvc::Lvc;
 pub use lvc::settings::*;
 pub(crate) use lvc::{connectable, group_size};
 pub use path::PathTracer;
 pub(crate) use workspace::{BroughtLight, camera_ray};
-pub use workspace::{Contribution, Sample, Splat, Workspace};
+pub use workspace::{Sample, Splat, Workspace};
 
 use crate::names::named;
 use crate::path::{Connections, PathContext};

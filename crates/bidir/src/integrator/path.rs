@@ -2,8 +2,9 @@
 //! tracing with next-event estimation. p and q are densities in the same measure, area or solid
 //! angle. It walks no light subpaths and chooses no shadow rays: all are traced.
 
-use super::{Integrator, Link, Sample, Term, Workspace};
+use super::{Integrator, Link, Sample, Workspace};
 use crate::bsdf::TransportMode;
+use crate::contribution::Term;
 use crate::light::{LightPoint, LightSample};
 use crate::math::Vec3;
 use crate::path::{PathContext, Segment, Strategy, Turn, next_event_pdf, sample_next_event};
@@ -76,12 +77,7 @@ fn hit(
             let q = next_event_pdf(context, from, arrival.light, &arrival.at);
             context.settings.mis.weight_of_two(arrival.pdf, q)
         };
-        let term = Term {
-            strategy: Strategy::new(0, i + 1),
-            light: arrival.light,
-            contribution,
-            weight,
-        };
+        let term = Term::new(Strategy::new(0, i + 1), arrival.light, contribution, weight);
         workspace.add_hit(sample, term);
     }
 }
@@ -107,17 +103,13 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     } else {
         turn.pdf(context) * segment.to_a
     };
-    let term = Term {
-        strategy: Strategy::new(1, i + 1),
-        light,
-        contribution,
-        weight: context.settings.mis.weight_of_two(x0.pdf, p),
-    };
-    let counted = workspace.count(term, |_| Link::Connection(ends));
-    if workspace.accepts(sample, counted.mark(), term.value())
-        && let Some(arrives) = workspace.trace(context.scene, counted.mark(), &ends)
+    let weight = context.settings.mis.weight_of_two(x0.pdf, p);
+    let term = Term::new(Strategy::new(1, i + 1), light, contribution, weight);
+    let term = workspace.count(term, |_| Link::Connection(ends));
+    if workspace.accepts(sample, &term, term.value())
+        && let Some(transmittance) = workspace.trace(context.scene, &term, &ends)
     {
-        workspace.add(sample, counted.whole().behind(arrives));
+        workspace.add(sample, term.certain(transmittance));
     }
 }
 

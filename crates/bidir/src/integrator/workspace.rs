@@ -1,14 +1,13 @@
 //! What a sample leaves behind: subpaths, candidates, chosen rays and contributions, in buffers
 //! that the next sample uses again. A value that no film can sum is dropped and counted here.
 
-use super::journal::{Counted, Mark};
 use super::lvc::LightCache;
-use super::{Entry, Fate, Journal, Link, Term};
+use super::{Entry, Fate, Journal, Link};
 use crate::camera::CameraRay;
+use crate::contribution::{Contribution, Term, is_summable};
 use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
-use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::path::{
     Cell, PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
@@ -31,56 +30,6 @@ pub struct Sample {
     pub camera: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
-}
-
-/// What one path adds to an image: the weighted contribution, divided by the probability of
-/// tracing it.
-#[derive(Clone, Copy, Debug)]
-pub struct Contribution {
-    /// How the path was made.
-    pub strategy: Strategy,
-    /// The light that it begins on, by index.
-    pub light: u32,
-    /// Its value.
-    pub value: Spectrum,
-    /// The strategy's share of the path, which is in the value.
-    pub weight: f32,
-    /// The number of its term within the sample.
-    pub term: u32,
-}
-
-impl Contribution {
-    #[inline]
-    pub(super) fn mark(&self) -> Mark {
-        Mark {
-            strategy: self.strategy,
-            number: self.term,
-        }
-    }
-
-    /// What is left of it behind surfaces that let `transmittance` pass.
-    #[inline]
-    pub(super) fn behind(self, transmittance: f32) -> Self {
-        Self {
-            value: self.value * transmittance,
-            ..self
-        }
-    }
-
-    /// C/π: the value without the weight. None: no film can sum it, though it can sum the value.
-    ///
-    /// Zero where the value is zero: what a weight of 0 leaves out is not known here.
-    pub fn unweighted(&self) -> Option<Spectrum> {
-        let unweighted = |lane: f32| if lane == 0.0 { 0.0 } else { lane / self.weight };
-        Some(self.value.map(unweighted)).filter(|value| is_summable(*value))
-    }
-}
-
-/// True where a film can sum `value`.
-#[inline]
-fn is_summable(value: Spectrum) -> bool {
-    let mut lanes = value.0.iter();
-    lanes.all(|lane| lane.abs() <= LARGEST_CONTRIBUTION)
 }
 
 /// A contribution to the light image.
@@ -214,28 +163,29 @@ impl Workspace {
         let mut contributions = self.contributions.iter().peekable();
         self.candidates.iter().map(move |candidate| {
             // Both are in the order of terms; hits are no candidates.
-            while contributions.next_if(|c| c.term < candidate.term).is_some() {}
-            let arrived = contributions.next_if(|c| c.term == candidate.term);
-            (candidate, arrived.map(|contribution| contribution.value))
+            let number = candidate.term.number;
+            while contributions.next_if(|c| c.term.number < number).is_some() {}
+            let arrived = contributions.next_if(|c| c.term.number == number);
+            (candidate, arrived.map(Contribution::value))
         })
     }
 
     /// The cells of a candidate's vertices. None: nothing is learnt about connections with such a light
     /// vertex.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let [z, y] = self.vertices(candidate.strategy, candidate.light_vertex);
+        let [z, y] = self.vertices(candidate.term.strategy, candidate.light_vertex);
         let is_placed = candidate.light_vertex != LightVertex::Own && !z.locus.is_infinite();
         is_placed.then_some([z.cell, y.cell])
     }
 
     /// The cell of a candidate's camera vertex.
     pub(crate) fn camera_cell(&self, candidate: &Candidate) -> Cell {
-        self.camera.vertices[usize::from(candidate.strategy.t) - 1].cell
+        self.camera.vertices[usize::from(candidate.term.strategy.t) - 1].cell
     }
 
-    /// Counts a term that is not zero; `link` is asked for the journal only.
+    /// Counts a term that is not zero, and numbers it; `link` is asked for the journal only.
     #[inline]
-    pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) -> Counted {
+    pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) -> Term {
         self.stats.count_candidate(term.strategy);
         if let Some(mut journal) = self.journal.take() {
             journal.begin(term, link(self));
@@ -243,45 +193,45 @@ impl Workspace {
         }
         let number = self.terms;
         self.terms += 1;
-        Counted { term, number }
+        Term { number, ..term }
     }
 
     /// True where a contribution can be summed; else it is counted as dropped.
-    pub(super) fn accepts(&mut self, sample: &Sample, mark: Mark, value: Spectrum) -> bool {
+    pub(super) fn accepts(&mut self, sample: &Sample, term: &Term, value: Spectrum) -> bool {
         let fine = is_summable(value);
         if !fine {
             let dropped = Dropped {
                 pass: sample.pass,
                 pixel: sample.pixel,
-                strategy: mark.strategy,
+                strategy: term.strategy,
             };
             self.stats.drop_contribution(dropped);
-            self.note(mark, Fate::Dropped, Spectrum::ZERO);
+            self.note(term, Fate::Dropped, Spectrum::ZERO);
         }
         fine
     }
 
     /// Adds a contribution to the sample's own pixel, if it can be summed.
     pub(super) fn add(&mut self, sample: &Sample, contribution: Contribution) {
-        let (mark, value) = (contribution.mark(), contribution.value);
-        if self.accepts(sample, mark, value) {
+        let (term, value) = (&contribution.term, contribution.value());
+        if self.accepts(sample, term, value) {
             self.contributions.push(contribution);
             self.value += value;
-            self.note(mark, Fate::Added, value);
+            self.note(term, Fate::Added, value);
         }
     }
 
     /// Adds the light that a camera walk found by itself: s = 0.
     pub(super) fn add_hit(&mut self, sample: &Sample, term: Term) {
-        let counted = self.count(term, |_| Link::Walk);
-        self.add(sample, counted.whole());
+        let term = self.count(term, |_| Link::Walk);
+        self.add(sample, term.certain(1.0));
     }
 
     /// Adds a contribution to the light image.
     pub(super) fn add_splat(&mut self, splat: Splat) {
         self.splats.push(splat);
-        let contribution = &splat.contribution;
-        self.note(contribution.mark(), Fate::Added, contribution.value);
+        let Contribution { term, .. } = &splat.contribution;
+        self.note(term, Fate::Added, splat.contribution.value());
     }
 
     /// Takes the light subpath that was walked last.
@@ -304,22 +254,22 @@ impl Workspace {
     }
 
     /// Traces the shadow ray of a term: how much of it arrives. None: nothing.
-    pub(super) fn trace(&mut self, scene: &Scene, mark: Mark, [a, b]: &[Locus; 2]) -> Option<f32> {
-        self.stats.count_shadow_ray(mark.strategy);
+    pub(super) fn trace(&mut self, scene: &Scene, term: &Term, [a, b]: &[Locus; 2]) -> Option<f32> {
+        self.stats.count_shadow_ray(term.strategy);
         let transmittance = scene.transmittance(a, b);
         if transmittance > 0.0 {
             return Some(transmittance);
         }
-        self.stats.count_blocked(mark.strategy);
-        self.note(mark, Fate::Blocked, Spectrum::ZERO);
+        self.stats.count_blocked(term.strategy);
+        self.note(term, Fate::Blocked, Spectrum::ZERO);
         None
     }
 
     /// Completes the journal of a term.
     #[inline]
-    fn note(&mut self, mark: Mark, fate: Fate, added: Spectrum) {
+    fn note(&mut self, term: &Term, fate: Fate, added: Spectrum) {
         if let Some(journal) = &mut self.journal {
-            journal.end(mark.number, fate, added);
+            journal.end(term.number, fate, added);
         }
     }
 }

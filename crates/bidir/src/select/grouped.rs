@@ -32,9 +32,9 @@ impl OnePerGroup {
             // Light points have 0; beside a cache no subpath is connected as a sample's own.
             (Group::LightVertex, LightVertex::Cached(vertex)) => 1 + vertex,
             (Group::LightVertex, LightVertex::Own | LightVertex::NextEvent(_)) => {
-                u32::from(candidate.strategy.s) - 1
+                u32::from(candidate.term.strategy.s) - 1
             }
-            (Group::CameraVertex, _) => u32::from(candidate.strategy.t) - 2,
+            (Group::CameraVertex, _) => u32::from(candidate.term.strategy.t) - 2,
             (Group::Pair, _) => 0,
         }
     }

@@ -1,6 +1,6 @@
 //! Choosing the shadow rays that are traced.
 //!
-//! All connections of a sample are [`Candidate`]s: their value, weighted, before visibility. A
+//! All connections of a sample are [`Candidate`]s: their terms, before visibility. A
 //! [`Selector`] gives each an inclusion probability π and draws; the chosen ones are traced and
 //! count value·v/π. With π > 0 wherever the value is not zero, and with π a function of the
 //! candidates alone, the sum keeps its expectation Σ value·v, whatever the rule
@@ -20,30 +20,20 @@ pub use budget::Budget;
 pub use grouped::{Group, OnePerGroup};
 pub use simple::{All, RayRoulette};
 
-use crate::integrator::Contribution;
+use crate::contribution::Term;
 use crate::names::as_text;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::spectrum::Spectrum;
-use crate::strategy::Strategy;
 use std::fmt;
 use std::str::FromStr;
 
 /// A connection that may be traced.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
-    /// The weighted contribution if nothing blocks it.
-    pub value: Spectrum,
-    /// What candidates are compared by: its luminance, times what is known of the root of the chance that
-    /// it arrives. Positive.
+    /// Its term; s ≥ 1 and t ≥ 2.
+    pub term: Term,
+    /// What candidates are compared by: the luminance of C w, times what is known of the root of the chance
+    /// that it arrives. Positive.
     pub score: f32,
-    /// How it was made; s ≥ 1 and t ≥ 2.
-    pub strategy: Strategy,
-    /// The light that the path begins on, by index.
-    pub light: u32,
-    /// The strategy's share of the path, which is in `value` already.
-    pub weight: f32,
-    /// The number of its term within the sample.
-    pub term: u32,
     /// Where its light vertex is.
     pub light_vertex: LightVertex,
 }
@@ -60,31 +50,14 @@ pub enum LightVertex {
 }
 
 impl Candidate {
-    /// A candidate for what is certain to be traced, which is not black and is compared by `score`.
+    /// A candidate for a term that is not black and is compared by `score`.
     #[inline]
-    pub fn new(whole: &Contribution, score: f32, light_vertex: LightVertex) -> Self {
+    pub fn new(term: Term, score: f32, light_vertex: LightVertex) -> Self {
         Self {
-            value: whole.value,
+            term,
             // What underflows must keep a chance.
             score: score.max(f32::MIN_POSITIVE),
-            strategy: whole.strategy,
-            light: whole.light,
-            weight: whole.weight,
-            term: whole.term,
             light_vertex,
-        }
-    }
-
-    /// What the candidate adds if it was chosen with probability `prob` and nothing blocks it:
-    /// value / π.
-    #[inline]
-    pub fn contribution(&self, prob: f64) -> Contribution {
-        Contribution {
-            strategy: self.strategy,
-            light: self.light,
-            value: self.value.map(|lane| (f64::from(lane) / prob) as f32),
-            weight: self.weight,
-            term: self.term,
         }
     }
 }

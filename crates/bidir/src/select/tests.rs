@@ -1,14 +1,12 @@
 use super::*;
 use crate::sampler::{Domain, Sampler, SamplerKind};
+use crate::spectrum::Spectrum;
+use crate::strategy::Strategy;
 
 fn candidate(s: usize, t: usize, score: f32) -> Candidate {
     Candidate {
-        value: Spectrum::splat(score),
+        term: Term::new(Strategy::new(s, t), 0, Spectrum::splat(score), 1.0),
         score,
-        strategy: Strategy::new(s, t),
-        light: 0,
-        weight: 1.0,
-        term: 0,
         light_vertex: LightVertex::Own,
     }
 }

@@ -253,7 +253,7 @@ fn check_replays(integrator: IntegratorKind) {
             let rgb = |light: bidir::spectrum::Spectrum| [light[0], light[1], light[2]];
             buffer.set_camera_sample(i, rgb(replay.workspace.value));
             for splat in &replay.workspace.splats {
-                let value = rgb(splat.contribution.value);
+                let value = rgb(splat.contribution.value());
                 buffer.splat(film, splat.place, value, std::iter::empty());
             }
         }

@@ -175,7 +175,7 @@ fn connections_are_candidates_or_zero() {
         let pairs = (1..=light).flat_map(|s| (2..=camera).map(move |t| s + t));
         let all = pairs.filter(|n| *n <= longest).count();
         let candidates = replay.workspace.candidates.iter();
-        let own = candidates.filter(|c| usize::from(c.strategy.s) <= light);
+        let own = candidates.filter(|c| usize::from(c.term.strategy.s) <= light);
         assert_eq!(own.count() + replay.zeros.len(), all);
     }
 }

@@ -67,7 +67,7 @@ impl Witness for Found {
                 keep(&mut self.next_events, next_event);
             } else {
                 let connection = Connection {
-                    light: candidate.light,
+                    light: candidate.term.light,
                     cells,
                     square: arrived.map(square),
                 };

@@ -67,11 +67,11 @@ pub(super) fn landed<'a>(
 ) -> impl Iterator<Item = Landed> + 'a {
     workspace.splats.iter().filter_map(|splat| {
         let (pixel, part) = context.view.film().pick_pixel(splat.place)?;
-        let value = context.luminance(splat.contribution.value) * part;
+        let value = context.luminance(splat.contribution.value()) * part;
         Some(Landed {
             pixel,
             value: value.into(),
-            weight: splat.contribution.weight.into(),
+            weight: splat.contribution.term.weight.into(),
         })
     })
 }

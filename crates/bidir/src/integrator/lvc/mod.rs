@@ -20,7 +20,8 @@ mod tests;
 pub(crate) use cache::{LightCache, connectable};
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};
-use super::{CandidateCount, Integrator, Link, Sample, SharedLight, Term, Workspace};
+use super::{CandidateCount, Integrator, Link, Sample, SharedLight, Workspace};
+use crate::contribution::Term;
 use crate::locus::Locus;
 use crate::path::{Connections, JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
@@ -131,9 +132,9 @@ impl Lvc {
         let Some((term, ends)) = self.connection(context, workspace, t, draw) else {
             return;
         };
-        let counted = workspace.count(term, |_| Link::Connection(ends));
+        let term = workspace.count(term, |_| Link::Connection(ends));
         let light_vertex = LightVertex::Cached(draw.entry as u32);
-        offer(context, sample, workspace, &counted, light_vertex);
+        offer(context, sample, workspace, term, light_vertex);
     }
 
     /// The term of such a connection, with the ends of its shadow ray. None: it is zero.
@@ -162,12 +163,12 @@ impl Lvc {
             return None;
         }
         let share = draw.share / f64::from(self.candidates.at(t));
-        let term = Term {
-            strategy: Strategy::new(s, t),
-            light: light[0].light?,
-            contribution: contribution * share as f32,
-            weight: weights.weight_of_cached(context, &path, shares),
-        };
+        let term = Term::new(
+            Strategy::new(s, t),
+            light[0].light?,
+            contribution * share as f32,
+            weights.weight_of_cached(context, &path, shares),
+        );
         let ends = [light[s - 1].locus, camera[t - 1].locus];
         Some((term, ends))
     }

@@ -1,0 +1,92 @@
+//! ⟨I⟩ = Σ C w v / π: the terms of a sample's estimate. The contribution C, the weight w, the probability π of
+//! tracing the shadow ray and what v of it arrives stay apart until a film adds them.
+
+use crate::math::fixed::LARGEST_CONTRIBUTION;
+use crate::spectrum::Spectrum;
+use crate::strategy::Strategy;
+
+/// The term of a strategy and one path, before selection and visibility.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// The light that the path begins on, by index.
+    pub light: u32,
+    /// The unweighted contribution C = f / p. For t = 1 that of one light path among many.
+    pub contribution: Spectrum,
+    /// The strategy's share w of the path.
+    pub weight: f32,
+    /// Its number among the terms of the sample that are not zero; 0 until it is counted.
+    pub number: u32,
+}
+
+impl Term {
+    /// A term that is not counted yet.
+    #[inline]
+    pub fn new(strategy: Strategy, light: u32, contribution: Spectrum, weight: f32) -> Self {
+        Self {
+            strategy,
+            light,
+            contribution,
+            weight,
+            number: 0,
+        }
+    }
+
+    /// C w.
+    #[inline]
+    pub fn value(&self) -> Spectrum {
+        self.contribution * self.weight
+    }
+
+    /// What the term adds where its shadow ray is certain to be traced and `transmittance` of it arrives.
+    #[inline]
+    pub fn certain(self, transmittance: f32) -> Contribution {
+        Contribution {
+            term: self,
+            prob: 1.0,
+            transmittance,
+        }
+    }
+}
+
+/// What a term adds to an image.
+#[derive(Clone, Copy, Debug)]
+pub struct Contribution {
+    /// The term.
+    pub term: Term,
+    /// The probability π of tracing its shadow ray.
+    pub prob: f64,
+    /// How much v of it arrives, in `[0, 1]`.
+    pub transmittance: f32,
+}
+
+impl Contribution {
+    /// C w v / π.
+    #[inline]
+    pub fn value(&self) -> Spectrum {
+        self.arriving(self.term.value())
+    }
+
+    /// C v / π: the value without the weight. None: no film can sum it, though it can sum the value.
+    ///
+    /// Zero where the weight is zero, as not all such terms are traced.
+    pub fn unweighted(&self) -> Option<Spectrum> {
+        if self.term.weight == 0.0 {
+            return Some(Spectrum::ZERO);
+        }
+        Some(self.arriving(self.term.contribution)).filter(|&value| is_summable(value))
+    }
+
+    #[inline]
+    fn arriving(&self, value: Spectrum) -> Spectrum {
+        value.map(|lane| (f64::from(lane) / self.prob) as f32) * self.transmittance
+    }
+}
+
+/// True where a film can sum `value`.
+#[inline]
+pub fn is_summable(value: Spectrum) -> bool {
+    let mut lanes = value.0.iter();
+    lanes.all(|lane| lane.abs() <= LARGEST_CONTRIBUTION)
+}
