@@ -18,7 +18,7 @@ use super::{Effort, Progress, Replay, Resources, SessionError, Settings, Trainin
 use crate::film::{Film, FilmError, MergeError, PassBuffer};
 use crate::integrator::{Integrator, IntegratorKind, Sample, Workspace, group_size, no_path};
 use crate::path::{Connections, PathContext};
-use crate::sampler::{Dimension, Domain, Purpose, Sampler};
+use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
@@ -245,13 +245,8 @@ impl<'a> Session<'a> {
     }
 
     fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(
-            &self.scene,
-            &self.view,
-            &self.settings,
-            self.connections(),
-            sample,
-        )
+        let settings = &self.settings.path;
+        sample.context(&self.scene, &self.view, settings, self.connections())
     }
 
     /// How many connections a camera vertex makes.
@@ -401,24 +396,6 @@ impl<'a> Session<'a> {
     /// The film, without the session.
     pub fn into_film(self) -> Film {
         self.film
-    }
-}
-
-/// The context of a sample, with the wavelengths that it draws.
-pub(super) fn path_context<'a>(
-    scene: &'a Scene,
-    view: &'a View,
-    settings: &'a Settings,
-    connections: Connections<'a>,
-    sample: &Sample,
-) -> PathContext<'a> {
-    let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
-    PathContext {
-        scene,
-        view,
-        settings: &settings.path,
-        wavelengths: scene.color().sample_wavelengths(u),
-        connections,
     }
 }
 

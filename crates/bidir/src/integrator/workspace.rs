@@ -9,13 +9,15 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
 use crate::path::{
-    Cell, PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
+    Cell, Connections, PathContext, PathSettings, RunningSums, Strategy, Subpath, Vertex,
+    camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::Scene;
 use crate::select::{Candidate, Chosen, LightVertex};
 use crate::spectrum::Spectrum;
 use crate::stats::{Clock, Dropped, Stage, Stats, Stopwatch};
+use crate::view::View;
 
 /// One camera sample, with the light subpath that goes with it.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,26 @@ pub struct Sample {
     pub camera: SampleStream,
     /// The random numbers of the light subpath and of its light image.
     pub light: SampleStream,
+}
+
+impl Sample {
+    /// The context of the sample, with the wavelengths that it draws.
+    pub(crate) fn context<'a>(
+        &self,
+        scene: &'a Scene,
+        view: &'a View,
+        settings: &'a PathSettings,
+        connections: Connections<'a>,
+    ) -> PathContext<'a> {
+        let u = self.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
+        PathContext {
+            scene,
+            view,
+            settings,
+            wavelengths: scene.color().sample_wavelengths(u),
+            connections,
+        }
+    }
 }
 
 /// A contribution to the light image.

@@ -20,7 +20,6 @@ pub use effort::Effort;
 pub use plan::Plan;
 
 use super::Settings;
-use super::session::path_context;
 use crate::integrator::{
     IntegratorKind, LightStart, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
 };

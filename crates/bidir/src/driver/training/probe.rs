@@ -1,9 +1,9 @@
 //! Groups of training samples, taken as the image takes its own.
 
 use super::super::spread;
+use super::Settings;
 use super::effort::{IsLate, Late};
 use super::extent::Extent;
-use super::{Settings, path_context};
 use crate::integrator::{Integrator, Sample, Workspace};
 use crate::path::{Connections, PathContext};
 use crate::sampler::{Domain, Sampler};
@@ -156,13 +156,8 @@ impl Probe<'_> {
     }
 
     pub(super) fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(
-            self.scene,
-            self.view,
-            self.settings,
-            self.connections,
-            sample,
-        )
+        let settings = &self.settings.path;
+        sample.context(self.scene, self.view, settings, self.connections)
     }
 }
 
