@@ -4,12 +4,10 @@ use super::light::{lens_vertex, light_image};
 use super::pairs::Pairs;
 use super::workspace::own_light_vertices;
 use super::{Integrator, Link, Sample, Workspace};
-use crate::bsdf::TransportMode;
 use crate::contribution::{Contribution, Term};
-use crate::light::LightPoint;
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{
-    Escape, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
+    Arrival, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
 };
 use crate::sampler::{Dimension, Purpose, kronecker_point};
 use crate::select::{Candidate, Draws, LightVertex, Selector};
@@ -42,53 +40,42 @@ impl Integrator for Bdpt {
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 #[inline(never)] // Profiles shall show the stages, each of which is called once.
 pub(super) fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-    for i in 1..workspace.camera.vertices.len() {
-        let vertex = &workspace.camera.vertices[i];
-        let Some(light) = vertex.light else { continue };
-        let mut x0 = Vertex::light(context, light, &vertex.light_point());
-        (x0.beta, x0.wo, x0.pdf_rev) = (vertex.beta, vertex.wo, vertex.pdf_fwd);
-        hit(context, sample, workspace, i, &x0);
+    let count = workspace.camera.vertices.len();
+    for i in 1..count {
+        if let Some(arrival) = Arrival::at(&workspace.camera.vertices[i]) {
+            hit(context, sample, workspace, i, &arrival);
+        }
     }
-    let Some(Escape {
-        direction,
-        beta,
-        pdf_fwd,
-    }) = workspace.camera.escape
-    else {
-        return;
-    };
-    let i = workspace.camera.vertices.len();
-    for &light in context.scene.environment() {
-        let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(direction));
-        (x0.beta, x0.wo, x0.pdf_rev) = (beta, -direction, pdf_fwd);
-        hit(context, sample, workspace, i, &x0);
+    if let Some(escape) = workspace.camera.escape {
+        for arrival in Arrival::of_escape(context.scene, escape) {
+            hit(context, sample, workspace, count, &arrival);
+        }
     }
 }
 
-/// Adds the path whose camera vertices are the first `i`, and whose x_0 is the light vertex that
-/// was hit, with the throughput, direction and density of the camera walk.
+/// Adds the path whose camera vertices are the first `i`, and whose x_0 is on the light that was hit.
 fn hit(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
     i: usize,
-    x0: &Vertex,
+    arrival: &Arrival,
 ) {
     if !context.takes(0, i + 1) {
         return;
     }
-    let at_x0 = x0.turn(x0.wo, x0.wo);
-    let contribution = x0.beta * at_x0.scatter(context, TransportMode::Importance);
+    let contribution = arrival.contribution(context);
     if contribution == Spectrum::ZERO {
         return;
     }
-    let Some(light) = x0.light else { return };
     let Workspace {
         camera, weights, ..
     } = workspace;
-    let path = JoinedPath::hit(x0, &camera.vertices[..i]);
+    let x0 = arrival.vertex(context);
+    let path = JoinedPath::hit(&x0, &camera.vertices[..i]);
     let weight = weights.weight(context, &path);
-    let term = Term::new(Strategy::new(0, i + 1), light, contribution, weight);
+    let strategy = Strategy::new(0, i + 1);
+    let term = Term::new(strategy, arrival.light, contribution, weight);
     workspace.add_hit(sample, term);
 }
 

@@ -5,9 +5,10 @@
 use super::{Integrator, Link, Sample, Workspace};
 use crate::bsdf::TransportMode;
 use crate::contribution::Term;
-use crate::light::{LightPoint, LightSample};
-use crate::math::Vec3;
-use crate::path::{PathContext, Segment, Strategy, Turn, next_event_pdf, sample_next_event};
+use crate::light::LightSample;
+use crate::path::{
+    Arrival, PathContext, Segment, Strategy, Turn, next_event_pdf, sample_next_event,
+};
 use crate::sampler::{Dimension, Purpose};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -28,35 +29,21 @@ impl Integrator for PathTracer {
         for i in 1..workspace.camera.vertices.len() {
             let vertex = &workspace.camera.vertices[i];
             let connects = i + 2 <= context.settings.max_vertices() && !vertex.is_delta();
-            if let Some(light) = vertex.light {
-                let arrival = Arrival {
-                    light,
-                    at: vertex.light_point(),
-                    wo: vertex.wo,
-                    beta: vertex.beta,
-                    pdf: vertex.pdf_fwd,
-                };
+            if let Some(arrival) = Arrival::at(vertex) {
                 hit(context, sample, workspace, i, &arrival);
             }
             if connects {
                 next_event(context, sample, workspace, i);
             }
         }
-        escape(context, sample, workspace);
+        if let Some(escape) = workspace.camera.escape {
+            let i = workspace.camera.vertices.len();
+            for arrival in Arrival::of_escape(context.scene, escape) {
+                hit(context, sample, workspace, i, &arrival);
+            }
+        }
         workspace.stopwatch.end(Stage::Direct);
     }
-}
-
-/// Where a camera walk came upon a light.
-struct Arrival {
-    light: u32,
-    at: LightPoint,
-    /// The unit direction back along the walk.
-    wo: Vec3,
-    /// Throughput up to the light.
-    beta: Spectrum,
-    /// The density p of the light point, in the measure of next-event estimation.
-    pdf: f32,
 }
 
 /// Adds the light that the walk came upon after the first `i` vertices.
@@ -67,7 +54,7 @@ fn hit(
     i: usize,
     arrival: &Arrival,
 ) {
-    let contribution = arrival.beta * context.emitted(arrival.light, &arrival.at, arrival.wo);
+    let contribution = arrival.contribution(context);
     if contribution != Spectrum::ZERO {
         let from = &workspace.camera.vertices[i - 1];
         // Next-event estimation begins at the first surface, and skips Dirac scattering.
@@ -132,22 +119,4 @@ fn arriving(
         return Spectrum::ZERO;
     }
     emitted * turn.scatter(context, TransportMode::Radiance) * turn.vertex().beta * factor
-}
-
-/// Adds the lights at infinity that the walk escaped to.
-fn escape(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-    let Some(escape) = workspace.camera.escape else {
-        return;
-    };
-    let i = workspace.camera.vertices.len();
-    for &light in context.scene.environment() {
-        let arrival = Arrival {
-            light,
-            at: LightPoint::at_infinity(escape.direction),
-            wo: -escape.direction,
-            beta: escape.beta,
-            pdf: escape.pdf_fwd,
-        };
-        hit(context, sample, workspace, i, &arrival);
-    }
 }

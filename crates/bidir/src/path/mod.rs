@@ -18,6 +18,7 @@
 //!
 //! Nothing here knows the film, and no ray is traced but those of the walks.
 
+mod arrival;
 mod cells;
 mod connect;
 mod count;
@@ -33,6 +34,7 @@ mod vertex;
 mod walk;
 
 pub use crate::strategy::{Strategies, Strategy};
+pub use arrival::Arrival;
 pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
 pub use count::MisCount;

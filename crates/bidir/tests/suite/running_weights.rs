@@ -5,12 +5,12 @@ use crate::common;
 use crate::common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
 use crate::common::{Shot, ShotBuilder};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
-use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
+use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic,
-    PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
-    Vertex, sample_next_event,
+    Arrival, Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisCount,
+    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies,
+    Subpath, Vertex, sample_next_event,
 };
 use bidir::shape::Shape;
 
@@ -80,15 +80,14 @@ impl Comparison {
 
     fn compare_hits(&mut self, context: &PathContext<'_>, camera: &Subpath) {
         for (i, vertex) in camera.vertices.iter().enumerate().skip(1) {
-            let Some(light) = vertex.light else { continue };
-            let mut x0 = Vertex::light(context, light, &vertex.light_point());
-            (x0.wo, x0.pdf_rev) = (vertex.wo, vertex.pdf_fwd);
-            self.compare(context, &JoinedPath::hit(&x0, &camera.vertices[..i]));
+            if let Some(arrival) = Arrival::at(vertex) {
+                let x0 = arrival.vertex(context);
+                self.compare(context, &JoinedPath::hit(&x0, &camera.vertices[..i]));
+            }
         }
         let Some(escape) = camera.escape else { return };
-        for &light in context.scene.environment() {
-            let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(escape.direction));
-            (x0.wo, x0.pdf_rev) = (-escape.direction, escape.pdf_fwd);
+        for arrival in Arrival::of_escape(context.scene, escape) {
+            let x0 = arrival.vertex(context);
             self.compare(context, &JoinedPath::hit(&x0, &camera.vertices));
         }
     }

@@ -1,0 +1,66 @@
+//! s = 0: the light that a camera walk comes upon by itself, at a vertex on a light or where it escapes.
+
+use super::{Escape, PathContext, Vertex};
+use crate::light::LightPoint;
+use crate::math::Vec3;
+use crate::scene::Scene;
+use crate::spectrum::Spectrum;
+
+/// A camera walk that came upon a light.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival {
+    /// The light, by index.
+    pub light: u32,
+    /// Its point.
+    pub at: LightPoint,
+    /// The unit direction back along the walk.
+    pub wo: Vec3,
+    /// Throughput up to the light.
+    pub beta: Spectrum,
+    /// The density of the point as the walk drew it, without roulette. Measure: area, 1/m²; at infinity
+    /// solid angle, 1/sr.
+    pub pdf: f32,
+}
+
+impl Arrival {
+    /// The arrival at a vertex of the walk. None: it is on no light.
+    #[inline]
+    pub fn at(vertex: &Vertex) -> Option<Self> {
+        Some(Self {
+            light: vertex.light?,
+            at: vertex.light_point(),
+            wo: vertex.wo,
+            beta: vertex.beta,
+            pdf: vertex.pdf_fwd,
+        })
+    }
+
+    /// The arrivals at the lights at infinity that the walk escaped to.
+    #[inline]
+    pub fn of_escape(scene: &Scene, escape: Escape) -> impl Iterator<Item = Self> {
+        scene.environment().iter().map(move |&light| Self {
+            light,
+            at: LightPoint::at_infinity(escape.direction),
+            wo: -escape.direction,
+            beta: escape.beta,
+            pdf: escape.pdf_fwd,
+        })
+    }
+
+    /// C = β L_e: the contribution before its weight.
+    #[inline]
+    pub fn contribution(&self, context: &PathContext<'_>) -> Spectrum {
+        self.beta * context.emitted(self.light, &self.at, self.wo)
+    }
+
+    /// The light as the first vertex of the path, with the density of the walk as that of the other
+    /// direction.
+    pub fn vertex(&self, context: &PathContext<'_>) -> Vertex {
+        Vertex {
+            wo: self.wo,
+            beta: self.beta,
+            pdf_rev: self.pdf,
+            ..Vertex::light(context, self.light, &self.at)
+        }
+    }
+}
