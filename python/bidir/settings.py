@@ -34,7 +34,6 @@ LightChoice: TypeAlias = Literal["power", "tree"]
 LightPoint: TypeAlias = Literal["fresh", "shared"]
 Proposal: TypeAlias = Literal["uniform", "learned"]
 LightStart: TypeAlias = Literal["power", "learned"]
-MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 
 
 class Selector:
@@ -204,9 +203,6 @@ class Lvc(_Bidirectional):
     light_start: LightStart | None = None
     #: Samples per light subpath: a power of two up to 256.
     samples_per_subpath: int | None = None
-    #: Sample counts in the MIS weights of shared light subpaths: connections per path, fewer where they
-    #: share a rare camera subpath, or traced rays.
-    mis_count: MisCount | None = None
     #: The former name of ``light_start``, which warns.
     emission: InitVar[LightStart | None] = None
 

@@ -202,13 +202,6 @@ PATHS = [
         RUNNING,
     ),
     (
-        "next-event estimation counted by the cell of its lamp",
-        "crates/bidir/src/path/count.rs",
-        "all.next_events(y.cell)",
-        "all.next_events(if t > 3 { z.cell } else { y.cell })",
-        RUNNING,
-    ),
-    (
         "weights that take lights to be chosen by power where they are not",
         "crates/bidir/src/path/vertex.rs",
         "context.emission().prob(light as usize)",
@@ -232,8 +225,8 @@ PATHS = [
     (
         "the first vertex's light points counted for those behind it",
         "crates/bidir/src/path/count.rs",
-        "next_events[usize::from(t > 2)] *",
-        "next_events[0] *",
+        "_ => next_events[usize::from(t > 2)],",
+        "_ => next_events[0],",
         PATH,
     ),
     (
@@ -384,13 +377,6 @@ PATHS = [
         unit("light_subpaths_of_many_samples"),
     ),
     (
-        "light images that tell what counts of traced rays do not",
-        "crates/bidir/src/driver/training/choice.rs",
-        "is_in_densities && !is_by_rays",
-        "is_in_densities || is_by_rays",
-        unit("light_images_tell_where"),
-    ),
-    (
         "light images that tell of path tracing with another roulette",
         "crates/bidir/src/driver/training/choice.rs",
         "Some(plan.roulette) == roulette",
@@ -403,13 +389,6 @@ PATHS = [
         "if !settings.open.candidates {",
         "if !settings.open.candidates && settings.open.roulette {",
         unit("what_is_named_stays"),
-    ),
-    (
-        "correlation of the strategy at hand alone",
-        "crates/bidir/src/path/count.rs",
-        "MisCount::Correlated if is_shared =>",
-        "MisCount::Correlated if is_shared && j == self.light.len() =>",
-        PATH,
     ),
     (
         "blocked connections counted as those that arrive",

@@ -227,11 +227,6 @@ impl Workspace {
         is_placed.then_some([z.cell, y.cell])
     }
 
-    /// The cell of a candidate's camera vertex.
-    pub(crate) fn camera_cell(&self, candidate: &Candidate) -> Cell {
-        self.camera.vertices[usize::from(candidate.strategy.t) - 1].cell
-    }
-
     /// Counts a term that is not zero; `link` is asked for the journal only.
     #[inline]
     pub(super) fn count(&mut self, term: Term, link: impl FnOnce(&Self) -> Link) -> Counted {

@@ -126,7 +126,7 @@ impl<'a> JoinedPath<'a> {
             Junction::Hit => 0,
             Junction::Connection => self.light.len(),
         };
-        let count = |j| self.count(context, densities, j);
+        let count = |j| self.count(context, j);
         mis_weight(densities, count, context.settings.mis, s) as f32
     }
 }

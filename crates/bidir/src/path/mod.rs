@@ -34,11 +34,10 @@ mod walk;
 
 pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
-pub use count::MisCount;
 pub use densities::{PathDensities, VertexDensities};
 pub use mis::{MisHeuristic, mis_weight};
 pub(crate) use proposals::CellDraw;
-pub use proposals::{Connections, Inclusion, LightProposals, PairSums};
+pub use proposals::{Connections, LightProposals, PairSums};
 pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
 pub use scatter::Turn;

@@ -18,7 +18,6 @@
 //! varies least where the probability to be chosen is ∝ √E[C² V] = C √V̂ for binary V: that is what
 //! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
-use super::MisCount;
 use super::cells::{Cell, Cells};
 use crate::light::LightChoice;
 
@@ -48,8 +47,6 @@ pub struct LightProposals {
     first: Vec<u8>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
-    /// For each cell of camera vertices, the part of the light points of s = 1 that n counts.
-    next_events: Vec<f32>,
     /// For each pair √V̂.
     root_visibility: Vec<f32>,
 }
@@ -63,15 +60,6 @@ pub struct PairSums {
     pub squares: Vec<f64>,
     /// Of how many connections it is known whether they arrived, and how many did.
     pub arrived: Vec<[u32; 2]>,
-}
-
-/// The mean probability with which candidates are chosen to be traced.
-#[derive(Clone, Debug)]
-pub struct Inclusion {
-    /// For each pair of cells, by that of camera vertices first. Positive.
-    pub connections: Vec<f64>,
-    /// For each cell of camera vertices, of s = 1. Positive.
-    pub next_events: Vec<f64>,
 }
 
 impl PairSums {
@@ -144,20 +132,8 @@ impl LightProposals {
             cumulative,
             first,
             relative,
-            next_events: vec![1.0; Cells::COUNT],
             root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
         }
-    }
-
-    /// The same where n counts traced rays alone.
-    #[must_use]
-    pub fn counting_rays(mut self, inclusion: &Inclusion) -> Self {
-        let counts = self.relative.iter_mut().chain(&mut self.next_events);
-        let chosen = inclusion.connections.iter().chain(&inclusion.next_events);
-        for (count, &chosen) in counts.zip(chosen) {
-            *count = (f64::from(*count) * chosen) as f32;
-        }
-        self
     }
 
     /// The cells of vertices.
@@ -170,12 +146,6 @@ impl LightProposals {
     #[inline]
     pub(super) fn relative(&self, light: Cell, camera: Cell) -> f64 {
         f64::from(self.relative[Cells::pair(light, camera)])
-    }
-
-    /// The part of the light points of s = 1 that n counts for a camera vertex in the cell `camera`.
-    #[inline]
-    pub(super) fn next_events(&self, camera: Cell) -> f64 {
-        f64::from(self.next_events[camera.index()])
     }
 
     /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
@@ -266,8 +236,6 @@ pub struct Connections<'a> {
     pub emission: Option<&'a LightChoice>,
     /// How many samples there are for each light subpath.
     pub samples_per_subpath: f64,
-    /// What weights take for how many there are.
-    pub mis_count: MisCount,
 }
 
 impl Connections<'_> {
@@ -278,7 +246,6 @@ impl Connections<'_> {
         proposals: None,
         emission: None,
         samples_per_subpath: 1.0,
-        mis_count: MisCount::Expected,
     };
 }
 
@@ -358,24 +325,5 @@ mod tests {
         for u in [0.0, 0.3, 0.999] {
             assert!(matches!(proposals.draw(y, u), CellDraw::All(part) if (part - u).abs() < 1e-9));
         }
-    }
-
-    #[test]
-    fn traced_rays_are_a_part_of_the_samples() {
-        let cells = Cells::new(&mut []);
-        let sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
-        let all = LightProposals::new(cells, &sums);
-        let [z, y] = [3, 5].map(Cells::cell);
-        let mut inclusion = Inclusion {
-            connections: vec![1.0; Cells::COUNT * Cells::COUNT],
-            next_events: vec![1.0; Cells::COUNT],
-        };
-        inclusion.connections[Cells::pair(z, y)] = 0.25;
-        inclusion.next_events[y.index()] = 0.5;
-        let thinned = all.clone().counting_rays(&inclusion);
-        assert!((thinned.relative(z, y) - 0.25 * all.relative(z, y)).abs() < 1e-6);
-        assert!((thinned.relative(y, z) - all.relative(y, z)).abs() < 1e-12);
-        assert!((thinned.next_events(y) - 0.5).abs() < 1e-6);
-        assert!((thinned.next_events(z) - 1.0).abs() < 1e-12);
     }
 }

@@ -5,9 +5,7 @@ use crate::integrator::{
     CandidateCount, IntegratorKind, LightStart, ProposalKind, SamplesPerSubpath,
 };
 use crate::names::Parse;
-use crate::path::{
-    LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
-};
+use crate::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use crate::sampler::SamplerKind;
 use crate::select::ShadowRays;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -168,15 +166,6 @@ pub struct Request {
         arg(long, value_name = "K", help_heading = "Shared light subpaths")
     )]
     pub samples_per_subpath: Option<SamplesPerSubpath>,
-    /// Sample counts in the MIS weights of shared light subpaths (lvc, auto) [default: expected].
-    ///
-    /// expected: connections per path. correlated: fewer where connections share a camera subpath that
-    /// the camera rarely samples. resampled: traced shadow rays.
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_name = "RULE", help_heading = "Shared light subpaths")
-    )]
-    pub mis_count: Option<MisCount>,
 }
 
 /// Why a setting cannot be read: there is none of that name, or it has no such value.
@@ -217,7 +206,6 @@ impl Request {
             proposal: shared.map(|lvc| lvc.proposal),
             light_start: shared.map(|lvc| lvc.light_start),
             samples_per_subpath: (*integrator == Lvc).then_some(lvc.samples_per_subpath),
-            mis_count: shared.map(|lvc| lvc.mis_count),
         }
     }
 
@@ -240,7 +228,6 @@ impl Request {
             proposal,
             light_start,
             samples_per_subpath,
-            mis_count,
         } = self.clone();
         let mut settings = settings.clone();
         if let Some(integrator) = integrator {
@@ -266,7 +253,6 @@ impl Request {
         put(&mut lvc.proposal, proposal);
         put(&mut lvc.light_start, light_start);
         put(&mut lvc.samples_per_subpath, samples_per_subpath);
-        put(&mut lvc.mis_count, mis_count);
         if let Some(choice) = path_roulette {
             open.roulette = choice.is_open(own.open.roulette);
             path.roulette = choice.or(own.path.roulette);

@@ -2,13 +2,13 @@
 //! make, and for every way to weigh them.
 
 use crate::common;
-use crate::common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
+use crate::common::walks::{for_some_pairs, some_emission, some_proposals};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisCount, MisHeuristic,
+    Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
     PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
     Vertex, sample_next_event,
 };
@@ -181,31 +181,14 @@ fn check(scene: &Scene, pairs: u64) {
         proposals: Some(&proposals),
         emission: Some(&emission),
         samples_per_subpath: 4.0,
-        mis_count: MisCount::Expected,
     };
     let uniform = Connections {
         proposals: None,
         ..shared
     };
-    let thinned = proposals.clone().counting_rays(&some_inclusion());
-    let resampled = Connections {
-        proposals: Some(&thinned),
-        mis_count: MisCount::Resampled,
-        ..shared
-    };
-    let correlated = Connections {
-        mis_count: MisCount::Correlated,
-        ..shared
-    };
     for settings in all_settings() {
         for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
-            for connections in [
-                Connections::ONE_SUBPATH,
-                uniform,
-                shared,
-                resampled,
-                correlated,
-            ] {
+            for connections in [Connections::ONE_SUBPATH, uniform, shared] {
                 let context = PathContext {
                     connections,
                     ..*context

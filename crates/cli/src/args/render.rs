@@ -236,7 +236,6 @@ mod tests {
             "samples-per-subpath",
             "proposal",
             "light-start",
-            "mis-count",
         ];
         for name in same
             .into_iter()

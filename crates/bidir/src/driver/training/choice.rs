@@ -18,7 +18,7 @@ use super::blocks::{BLOCKS, Blocks};
 use super::plan::{Plan, Tried};
 use super::trial::Trial;
 use crate::integrator::IntegratorKind;
-use crate::path::{MisCount, MisHeuristic, PathRoulette};
+use crate::path::{MisHeuristic, PathRoulette};
 use crate::sampler::SamplerKind;
 
 #[cfg(test)]
@@ -223,12 +223,10 @@ impl<'a> Scale<'a> {
 }
 
 /// True where weights of light images tell how often all others make a path: by the balance heuristic,
-/// where path tracing's strategies count in full, and densities have the roulette in them. By traced rays
-/// next-event estimation counts less.
+/// where path tracing's strategies count in full, and densities have the roulette in them.
 fn is_told(settings: &Settings, plan: &Plan) -> bool {
-    let is_by_rays = plan.is_shared() && settings.lvc.mis_count == MisCount::Resampled;
     let is_in_densities = !matches!(plan.roulette, PathRoulette::Throughput { .. });
-    let has_weights = settings.path.mis == MisHeuristic::Balance && is_in_densities && !is_by_rays;
+    let has_weights = settings.path.mis == MisHeuristic::Balance && is_in_densities;
     plan.has_light_images() && has_weights
 }
 

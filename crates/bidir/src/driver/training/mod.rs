@@ -10,7 +10,6 @@ mod extent;
 mod pilot;
 mod plan;
 mod probe;
-mod rays;
 mod survey;
 #[cfg(test)]
 mod tests;
@@ -25,9 +24,8 @@ use crate::integrator::{
     IntegratorKind, LightStart, LvcSettings, ProposalKind, SamplesPerSubpath, group_size,
 };
 use crate::light::LightChoice;
-use crate::path::{Cells, Connections, LightProposals, MisCount};
+use crate::path::{Cells, Connections, LightProposals};
 use crate::scene::Scene;
-use crate::select::ShadowRays;
 use crate::stats::RayCounts;
 use blocks::Blocks;
 use choice::Judge;
@@ -228,13 +226,11 @@ impl Training {
                 proposals: self.proposals.as_ref(),
                 emission: self.emission.as_ref(),
                 samples_per_subpath: 1.0,
-                mis_count: settings.mis_count,
             },
         }
     }
 
-    /// Learns where light subpaths shall begin, which of their vertices to propose, which are visible, and
-    /// which are chosen.
+    /// Learns where light subpaths shall begin, which of their vertices to propose, and which are visible.
     fn learn(&mut self, task: Task<'_>, survey: &Survey) -> Result<(), Late> {
         let (scene, lvc, cells) = (task.scene, &task.settings.lvc, survey.cells());
         let found = self.explore(task, survey, &cells)?;
@@ -257,14 +253,8 @@ impl Training {
                 sums.see(next_event.pair, next_event.has_arrived);
             }
         }
-        let proposals = match lvc.proposal {
-            ProposalKind::Learned => LightProposals::new(cells, &sums),
-            ProposalKind::Uniform => LightProposals::uniform(cells, &sums),
-        };
-        let proposals = self.counting_rays(task, proposals)?;
-        let is_uniform =
-            lvc.proposal == ProposalKind::Uniform && lvc.mis_count != MisCount::Resampled;
-        self.proposals = (!is_uniform).then_some(proposals);
+        self.proposals =
+            (lvc.proposal == ProposalKind::Learned).then(|| LightProposals::new(cells, &sums));
         Ok(())
     }
 
@@ -282,23 +272,6 @@ impl Training {
         let (found, rays) = pilot::run(&self.probe(task, &uniform))?;
         self.count(self.learning.samples(), rays);
         Ok(found)
-    }
-
-    /// The proposals with counts of traced rays, where weights take these and not all are traced.
-    fn counting_rays(
-        &mut self,
-        task: Task<'_>,
-        proposals: LightProposals,
-    ) -> Result<LightProposals, Late> {
-        let settings = task.settings;
-        let all_are_traced = settings.shadow_rays == ShadowRays::All;
-        if settings.lvc.mis_count != MisCount::Resampled || all_are_traced {
-            return Ok(proposals);
-        }
-        let probe = self.probe(task, &proposals);
-        let (inclusion, rays) = rays::run(&probe, self.mean_luminance)?;
-        self.count(self.learning.samples(), rays);
-        Ok(proposals.counting_rays(&inclusion))
     }
 
     /// More samples, where `proposals` are all that is known.

@@ -56,15 +56,13 @@ fn light_images_tell_where_their_weights_count_all_that_path_tracing_takes() {
         let missed = Missed::new(&Scale::new(&blocks, &tried), &settings, &tried);
         missed.missed > 0.0
     };
-    let with = |mis, mis_count| {
+    let with = |mis| {
         let mut settings = Settings::default();
-        (settings.path.mis, settings.lvc.mis_count) = (mis, mis_count);
+        settings.path.mis = mis;
         [BDPT, LVC].map(|plan| missed(settings.clone(), plan))
     };
-    let balance = MisHeuristic::Balance;
-    assert_eq!(with(balance, MisCount::Expected), [true, true]);
-    assert_eq!(with(balance, MisCount::Resampled), [true, false]);
-    assert_eq!(with(MisHeuristic::Uniform, MisCount::Expected), [false; 2]);
+    assert_eq!(with(MisHeuristic::Balance), [true; 2]);
+    assert_eq!(with(MisHeuristic::Uniform), [false; 2]);
 }
 
 #[test]
