@@ -219,7 +219,7 @@ class Lvc(_Bidirectional):
 
 @dataclass(frozen=True, kw_only=True)
 class Auto(Lvc):
-    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short trial before the first pass.
+    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short survey before the first pass.
 
     It tries several values of ``samples_per_subpath`` and ignores the setting.
     ``film.settings["plan"]`` has the choice.

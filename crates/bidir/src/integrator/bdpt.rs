@@ -4,12 +4,13 @@ use super::journal::Counted;
 use super::light::{lens_vertex, light_image};
 use super::pairs::Pairs;
 use super::workspace::own_light_vertices;
-use super::{Integrator, Link, Sample, Term, Workspace};
+use super::{Contribution, Integrator, Link, Sample, Term, Workspace};
 use crate::bsdf::TransportMode;
 use crate::light::LightPoint;
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{
-    Escape, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
+    JoinedPath, LightPointChoice, PathContext, PathDensities, Shares, Strategy, Subpath, Vertex,
+    sample_next_event,
 };
 use crate::sampler::{Dimension, Purpose, kronecker_point};
 use crate::select::{Candidate, Draws, LightVertex, Selector};
@@ -42,51 +43,58 @@ impl Integrator for Bdpt {
 /// s = 0: the camera subpath hits lights, or escapes to those at infinity. No shadow rays.
 #[inline(never)] // Profiles shall show the stages, each of which is called once.
 pub(super) fn hits(context: &PathContext<'_>, sample: &Sample, workspace: &mut Workspace) {
-    for i in 1..workspace.camera.vertices.len() {
-        let vertex = &workspace.camera.vertices[i];
-        let Some(light) = vertex.light else { continue };
-        let mut x0 = Vertex::light(context, light, &vertex.light_point());
-        (x0.beta, x0.wo, x0.pdf_rev) = (vertex.beta, vertex.wo, vertex.pdf_fwd);
-        hit(context, sample, workspace, i, &x0);
+    let end = workspace.camera.vertices.len();
+    for i in 1..end {
+        if let Some(light) = workspace.camera.vertices[i].light {
+            hit(context, sample, workspace, i, light);
+        }
     }
-    let Some(Escape {
-        direction,
-        beta,
-        pdf_fwd,
-    }) = workspace.camera.escape
-    else {
-        return;
-    };
-    let i = workspace.camera.vertices.len();
-    for &light in context.scene.environment() {
-        let mut x0 = Vertex::light(context, light, &LightPoint::at_infinity(direction));
-        (x0.beta, x0.wo, x0.pdf_rev) = (beta, -direction, pdf_fwd);
-        hit(context, sample, workspace, i, &x0);
+    if workspace.camera.escape.is_some() {
+        for &light in context.scene.environment() {
+            hit(context, sample, workspace, end, light);
+        }
     }
 }
 
-/// Adds the path whose camera vertices are the first `i`, and whose x_0 is the light vertex that
-/// was hit, with the throughput, direction and density of the camera walk.
+/// x_0 of a path whose camera vertices are the first `i` of a walk that then hit `light`, or left the scene: a
+/// light vertex with the throughput, direction and density of the walk. None: it did neither.
+#[inline]
+fn hit_vertex(context: &PathContext<'_>, camera: &Subpath, i: usize, light: u32) -> Option<Vertex> {
+    let (at, beta, wo, pdf_fwd) = if let Some(vertex) = camera.vertices.get(i) {
+        (vertex.light_point(), vertex.beta, vertex.wo, vertex.pdf_fwd)
+    } else {
+        let escape = camera.escape.as_ref()?;
+        let at = LightPoint::at_infinity(escape.direction);
+        (at, escape.beta, -escape.direction, escape.pdf_fwd)
+    };
+    let mut x0 = Vertex::light(context, light, &at);
+    (x0.beta, x0.wo, x0.pdf_rev) = (beta, wo, pdf_fwd);
+    Some(x0)
+}
+
+/// Adds the path whose camera vertices are the first `i`, and whose x_0 is on `light`.
 fn hit(
     context: &PathContext<'_>,
     sample: &Sample,
     workspace: &mut Workspace,
     i: usize,
-    x0: &Vertex,
+    light: u32,
 ) {
     if !context.takes(0, i + 1) {
         return;
     }
+    let Some(x0) = hit_vertex(context, &workspace.camera, i, light) else {
+        return;
+    };
     let at_x0 = x0.turn(x0.wo, x0.wo);
     let contribution = x0.beta * at_x0.scatter(context, TransportMode::Importance);
     if contribution == Spectrum::ZERO {
         return;
     }
-    let Some(light) = x0.light else { return };
     let Workspace {
         camera, weights, ..
     } = workspace;
-    let path = JoinedPath::hit(x0, &camera.vertices[..i]);
+    let path = JoinedPath::hit(&x0, &camera.vertices[..i]);
     let term = Term {
         strategy: Strategy::new(0, i + 1),
         light,
@@ -300,5 +308,33 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
         if let Some(arrives) = workspace.trace(context.scene, contribution.mark(), &ends) {
             workspace.add(sample, contribution.behind(arrives));
         }
+    }
+}
+
+impl Workspace {
+    /// What each kind of strategy takes of the path of `contribution`, which the last sample, of [`Bdpt`], found
+    /// by `light_vertex`. None: it found no such path.
+    pub(crate) fn shares(
+        &self,
+        (context, sample): (&PathContext<'_>, &Sample),
+        contribution: &Contribution,
+        light_vertex: LightVertex,
+        densities: &mut PathDensities,
+    ) -> Option<Shares> {
+        let Strategy { s, t } = contribution.strategy;
+        let (s, t) = (usize::from(s), usize::from(t));
+        let camera = &self.camera.vertices;
+        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities);
+        Some(if s == 0 {
+            let x0 = hit_vertex(context, &self.camera, t - 1, contribution.light)?;
+            shares(JoinedPath::hit(&x0, &camera[..t - 1]))
+        } else if t == 1 {
+            let lens = lens_vertex(context, sample, s);
+            let lens = std::slice::from_ref(&lens);
+            shares(JoinedPath::connection(&self.light.vertices[..s], lens))
+        } else {
+            let light = own_light_vertices(&self.light, &self.next_events, s, light_vertex);
+            shares(JoinedPath::connection(light, &camera[..t]))
+        })
     }
 }

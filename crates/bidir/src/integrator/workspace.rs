@@ -9,7 +9,7 @@ use crate::film::SplatPlace;
 use crate::film::fixed::LARGEST_CONTRIBUTION;
 use crate::math::Vec2;
 use crate::path::{
-    Cell, PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
+    PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::{Scene, SegmentEnd};
@@ -192,7 +192,7 @@ impl Workspace {
 
     /// What a candidate connects: light vertex and camera vertex.
     #[inline]
-    pub(super) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
+    pub(crate) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let light = match light_vertex {
             LightVertex::Cached(number) => self.light_cache.get(number as usize).light,
@@ -209,22 +209,16 @@ impl Workspace {
     }
 
     /// The candidates, each with what of it arrived, if anything.
-    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<Spectrum>)> {
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<&Contribution>)> {
         let mut contributions = self.contributions.iter().peekable();
         self.candidates.iter().map(move |candidate| {
             // Both are in the order of terms; hits are no candidates.
             while contributions.next_if(|c| c.term < candidate.term).is_some() {}
-            let arrived = contributions.next_if(|c| c.term == candidate.term);
-            (candidate, arrived.map(|contribution| contribution.value))
+            (
+                candidate,
+                contributions.next_if(|c| c.term == candidate.term),
+            )
         })
-    }
-
-    /// The cells of a candidate's vertices. None: nothing is learnt about connections with such a light
-    /// vertex.
-    pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let [z, y] = self.vertices(candidate.strategy, candidate.light_vertex);
-        let is_placed = candidate.light_vertex != LightVertex::Own && !z.is_infinite;
-        is_placed.then_some([z.cell, y.cell])
     }
 
     /// Counts a term that is not zero; `link` is asked for the journal only.

@@ -38,8 +38,6 @@ const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
-    /// ε.
-    uniform_part: f32,
     /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
     cumulative: Vec<f32>,
     /// For each cell of camera vertices the first cell c that numbers of each part lead to: draws begin
@@ -98,15 +96,6 @@ pub(crate) enum CellDraw {
 impl LightProposals {
     /// The proposals that suit `sums`.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
-        Self::with_uniform_part(UNIFORM_PART, cells, sums)
-    }
-
-    /// Those to which each light vertex is as likely as others: ε = 1.
-    pub fn uniform(cells: Cells, sums: &PairSums) -> Self {
-        Self::with_uniform_part(1.0, cells, sums)
-    }
-
-    fn with_uniform_part(uniform_part: f32, cells: Cells, sums: &PairSums) -> Self {
         let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
         let mut first = Vec::with_capacity(Cells::COUNT * PARTS);
         let mut relative = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
@@ -118,17 +107,16 @@ impl LightProposals {
             let ends = &cumulative[begin..];
             first.extend((0..PARTS).map(|part| first_end_beyond(ends, part)));
             let of_cell = |(&kappa, ends): (&f64, &[f32])| match kappa {
-                0.0 => uniform_part,
+                0.0 => UNIFORM_PART,
                 kappa => {
                     let prob = f64::from(ends[1] - ends[0]);
-                    uniform_part + (1.0 - uniform_part) * (prob * all / kappa) as f32
+                    UNIFORM_PART + (1.0 - UNIFORM_PART) * (prob * all / kappa) as f32
                 }
             };
             relative.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
         }
         Self {
             cells,
-            uniform_part,
             cumulative,
             first,
             relative,
@@ -157,7 +145,7 @@ impl LightProposals {
     /// Draws a cell of light vertices for a camera vertex in the cell `camera`.
     #[inline]
     pub(crate) fn draw(&self, camera: Cell, u: f64) -> CellDraw {
-        let part = f64::from(self.uniform_part);
+        let part = f64::from(UNIFORM_PART);
         if u < part {
             return CellDraw::All(u / part);
         }
@@ -177,7 +165,7 @@ impl LightProposals {
     pub(crate) fn prob(&self, light: Cell, camera: Cell, [all, of_cell]: [usize; 2]) -> f64 {
         let (row, cell) = (self.row(camera), light.index());
         let gamma = f64::from(row[cell + 1] - row[cell]);
-        let part = f64::from(self.uniform_part);
+        let part = f64::from(UNIFORM_PART);
         part / all as f64 + (1.0 - part) * gamma / of_cell as f64
     }
 
@@ -307,23 +295,6 @@ mod tests {
             };
             let [from, to] = [row[cell.index()], row[cell.index() + 1]].map(f64::from);
             assert!(from <= u && u < to, "{u} leads to {from} .. {to}");
-        }
-    }
-
-    #[test]
-    fn uniform_proposals_know_no_cells() {
-        let cells = Cells::new(&mut []);
-        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
-        let [z, y] = [3, 5].map(Cells::cell);
-        sums.light_vertices[z.index()] = 0.0;
-        sums.add(Cells::pair(y, y), Some(9.0));
-        let proposals = LightProposals::uniform(cells, &sums);
-        for light in [y, z] {
-            assert!((proposals.relative(light, y) - 1.0).abs() < 1e-9);
-            assert!((proposals.prob(light, y, [50, 7]) - 0.02).abs() < 1e-9);
-        }
-        for u in [0.0, 0.3, 0.999] {
-            assert!(matches!(proposals.draw(y, u), CellDraw::All(part) if (part - u).abs() < 1e-9));
         }
     }
 }

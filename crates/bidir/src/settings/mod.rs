@@ -32,7 +32,7 @@ pub struct Settings {
     pub lvc: LvcSettings,
     /// How paths are made and weighted.
     pub path: PathSettings,
-    /// The settings above that [`IntegratorKind::Auto`] chooses by trials.
+    /// The settings above that [`IntegratorKind::Auto`] chooses.
     pub open: Open,
     /// The random numbers.
     pub sampler: SamplerKind,

@@ -31,11 +31,11 @@ mod tests;
     reason = "the comments are the help of the command"
 )]
 pub struct Request {
-    /// path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
+    /// path, light, bdpt, lvc, or auto to choose by a short survey [default: the scene's].
     ///
     /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
-    /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
-    /// few samples and takes the one with the least variance × cost, counted in rays. A glTF file names no integrator
+    /// light subpaths shared by many samples (light vertex cache). auto: takes path, bdpt or lvc, by
+    /// the variance × cost that a few samples of bdpt predict, counted in rays. A glTF file names no integrator
     /// and is rendered with auto.
     #[cfg_attr(
         feature = "clap",
@@ -121,7 +121,7 @@ pub struct Request {
     /// [default: the integrator's].
     ///
     /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
-    /// 12,1 for lvc, auto for auto, which tries several numbers together with budgets of shadow rays.
+    /// 12,1 for lvc, auto for auto.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")
@@ -159,8 +159,8 @@ pub struct Request {
     pub light_start: Option<LightStart>,
     /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
     ///
-    /// auto tries 1, 2 and 4. Where light subpaths are so long that those of a group would fill more than
-    /// about 30 MB, there are fewer.
+    /// Where light subpaths are so long that those of a group would fill more than about 30 MB, there are
+    /// fewer.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "K", help_heading = "Shared light subpaths")
