@@ -17,9 +17,6 @@ use std::time::{Duration, Instant};
 const GAP: Duration = Duration::from_millis(100);
 /// Number of intervals after which a message says that training is running.
 const LONG: u32 = 20;
-/// Training takes at most one part in so many of the samples and of the time of a render.
-const TRAINING_PART: u32 = 10;
-
 /// The limits of training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TrainingLimits {
@@ -42,8 +39,8 @@ impl TrainingLimits {
             return Self { samples, end: None };
         }
         Self {
-            samples: samples.map_or(u64::MAX, |samples| samples / u64::from(TRAINING_PART)),
-            end: time.and_then(|time| Instant::now().checked_add(time / TRAINING_PART)),
+            samples: samples.map_or(u64::MAX, |samples| samples / u64::from(Effort::PART)),
+            end: time.and_then(|time| Instant::now().checked_add(time / Effort::PART)),
         }
     }
 }

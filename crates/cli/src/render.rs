@@ -79,10 +79,13 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     .run(checkpoint, load, server)
 }
 
-/// Returns the number of samples of the whole render, whichever part of it this is. None: it is not limited.
+/// Returns the number of samples of the whole render, whichever part of it this is. None: it is not limited, or
+/// not known.
 fn samples(args: &RenderArgs, loaded: &LoadedScene) -> Option<u64> {
-    let is_open = args.budget.time.is_some() || args.budget.noise.is_some();
-    let passes = args.budget.spp.or((!is_open).then_some(loaded.spp))?;
+    let budget = &args.budget;
+    let is_open = budget.time.is_some() || budget.noise.is_some() || args.long.passes.is_some();
+    let spp = budget.spp.filter(|_| args.long.passes.is_none());
+    let passes = spp.or((!is_open).then_some(loaded.spp))?;
     Some(passes.saturating_mul(loaded.scene.film().crop.area()))
 }
 

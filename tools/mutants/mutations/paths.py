@@ -325,7 +325,7 @@ PATHS = [
         "crates/bidir/src/driver/training/plan.rs",
         "if !settings.open.candidates {",
         "if !settings.open.candidates && settings.open.roulette {",
-        unit("what_is_named_stays"),
+        unit("settings_that_are_named_stay"),
     ),
     (
         "blocked connections counted as those that arrive",

@@ -312,8 +312,8 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
 }
 
 impl Workspace {
-    /// What each kind of strategy takes of the path of `contribution`, which the last sample, of [`Bdpt`], found
-    /// by `light_vertex`. None: it found no such path.
+    /// The shares of the path of `contribution`, which the last sample, of [`Bdpt`], found by `light_vertex`. None:
+    /// it found no such path.
     pub(crate) fn shares(
         &self,
         (context, sample): (&PathContext<'_>, &Sample),

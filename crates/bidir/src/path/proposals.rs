@@ -21,8 +21,8 @@
 use super::cells::{Cell, Cells};
 use crate::light::LightChoice;
 
-/// ε: how often what was learnt is not asked. What training did not see costs no more than 1/ε times
-/// as much as without it.
+/// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
+/// without it.
 const UNIFORM_PART: f32 = 0.2;
 
 /// The least V̂: where all connections of training were blocked, others are chosen a quarter as often
@@ -34,7 +34,7 @@ const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 const PARTS: usize = 64;
 const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 
-/// How light vertices of a cache are proposed to camera vertices.
+/// The proposals of light vertices of a cache to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
@@ -49,7 +49,7 @@ pub struct LightProposals {
     root_visibility: Vec<f32>,
 }
 
-/// What training found of pairs of cells.
+/// The results of training for pairs of cells.
 #[derive(Clone, Debug)]
 pub struct PairSums {
     /// κ_c.

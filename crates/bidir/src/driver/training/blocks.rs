@@ -38,7 +38,7 @@ impl Blocks {
         self.sizes[i].max(1.0)
     }
 
-    /// How many of the first `count` samples of the survey each has.
+    /// The number of samples of each, of the first `count` of the survey.
     pub(super) fn samples(&self, count: u64) -> Vec<f64> {
         let mut samples = vec![0.0; BLOCKS];
         for number in 0..count {
@@ -61,7 +61,7 @@ fn part(i: usize, size: usize) -> usize {
     i * SIDE / size
 }
 
-/// How many pixels the parts of a side have.
+/// The numbers of pixels of the parts of a side.
 fn sizes(size: u32) -> [f64; SIDE] {
     let begin = |i: usize| (i * size as usize).div_ceil(SIDE);
     std::array::from_fn(|i| (begin(i + 1) - begin(i)) as f64)

@@ -1,7 +1,7 @@
-//! How long training may take.
+//! The limits of training.
 
-/// How long training may take. A host that has little time for it renders with the results of fewer samples:
-/// with more noise, but of the same image.
+/// The limits of training. A host that has little time for it renders with the results of fewer samples: with
+/// more noise, but of the same image.
 #[derive(Clone, Copy)]
 pub struct Effort<'a> {
     /// The most samples. The first 16 are always taken, and the others in rounds that double their number:
@@ -12,10 +12,12 @@ pub struct Effort<'a> {
     pub is_late: IsLate<'a>,
 }
 
-/// Whether training is to end.
+/// True where training is to end.
 pub(super) type IsLate<'a> = &'a (dyn Fn() -> bool + Sync);
 
 impl Effort<'_> {
+    /// Hosts let training take at most one part in so many of the samples and of the time of a render.
+    pub const PART: u32 = 10;
     /// As many samples as training needs.
     pub const WHOLE: Effort<'static> = Effort::at_most(u64::MAX);
 

@@ -49,7 +49,7 @@ pub(super) fn learned(
     ))
 }
 
-/// How much more often than by `power` subpaths begin on a light.
+/// The factor by which subpaths begin on a light more often than by `power`.
 pub(super) fn gain(power: &LightChoice, learned: Option<&LightChoice>, light: u32) -> f64 {
     let light = light as usize;
     learned.map_or(1.0, |learned| {

@@ -1,4 +1,4 @@
-//! How many samples training takes: 2¹⁴ where a sample costs no more than it usually does, and
+//! The number of samples of training: 2¹⁴ where a sample costs no more than it usually does, and
 //! fewer where subpaths are long. With w the mean work of a sample and w₀ the usual one, it is the power of
 //! two just below
 //!

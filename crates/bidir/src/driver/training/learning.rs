@@ -1,5 +1,5 @@
-//! What is learned from the connections of the survey, before the first pass: which light vertices to propose
-//! to camera vertices, which of them are visible, and where light subpaths begin.
+//! Learns from the connections of the survey, before the first pass: which light vertices to propose to camera
+//! vertices, which of them are visible, and where light subpaths begin.
 
 use super::constants::LEAST_SAMPLES;
 use super::emission::{self, Connection};
@@ -118,7 +118,8 @@ impl Survey {
         self.found.traced.iter().map(connection).collect()
     }
 
-    /// How many light vertices each cell has where a light begins `gain` times as many subpaths as here.
+    /// Sums without connections, with the light vertices of each cell where a light begins `gain` times as many
+    /// subpaths as here.
     fn pair_sums(&self, cells: &Cells, gain: impl Fn(u32) -> f64) -> PairSums {
         let mut light_vertices = vec![0.0; Cells::COUNT];
         for &(place, light) in &self.found.light {

@@ -28,7 +28,7 @@ use crate::stats::RayCounts;
 use constants::MOST_CACHED;
 use survey::Survey;
 
-/// What a short render before the first pass found: a pure function of scene, settings and its number of
+/// The results of a short render before the first pass: a pure function of scene, settings and its number of
 /// samples. These have random numbers of their own and never enter the film.
 #[derive(Clone, Debug)]
 pub struct Training {
@@ -36,9 +36,9 @@ pub struct Training {
     pub mean_luminance: f32,
     /// The mean number of vertices of a light subpath that camera vertices can be connected with.
     pub light_vertices: f64,
-    /// How light vertices are chosen, where that is learned.
+    /// The choice of light vertices, where that is learned.
     pub proposals: Option<LightProposals>,
-    /// How light subpaths choose their light, where that is learned.
+    /// The choice of the light of light subpaths, where that is learned.
     pub emission: Option<LightChoice>,
     /// The plan of `auto`.
     pub plan: Option<Plan>,
@@ -122,7 +122,7 @@ impl Training {
         }
     }
 
-    /// How many connections a camera vertex makes, where each sample has a light subpath.
+    /// The numbers of connections of camera vertices, where each sample has a light subpath.
     pub(super) fn connections(&self, settings: LvcSettings) -> Connections<'_> {
         let each = |count: u16| match self.light_vertices {
             0.0 => 1.0,

@@ -26,7 +26,7 @@ use std::ops::AddAssign;
 /// The first surfaces at which the roulette of a plan may differ from that of the survey.
 const STARTS: usize = 3;
 
-/// What a path added to the image in the survey.
+/// A contribution to the image of the survey.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Term {
     /// The number of its pixel in the crop.
@@ -53,7 +53,7 @@ impl Term {
         }
     }
 
-    /// What it adds to the mean of `film`: there is a sample for each pixel, and a light image for the film.
+    /// Its part of the mean of `film`: there is a sample for each pixel, and a light image for the film.
     pub(super) fn of_mean_pixel(&self, film: &FilmSettings) -> f64 {
         if self.is_light_image {
             f64::from(self.value) / film.light_paths() as f64
@@ -112,34 +112,27 @@ impl Counts {
             let surfaces = (usize::from(shares.vertices) - j).saturating_sub(2);
             longer(shares.albedos)[self.start.min(surfaces)]
         };
-        let sum = |parts: [f32; 2], counts: [f64; 2]| {
-            f64::from(parts[0]) * counts[0] + f64::from(parts[1]) * counts[1]
-        };
+        let pair = |parts: [f32; 2], counts| dot(parts.map(f64::from), counts);
         let share = f64::from(shares.hits) * walked(0)
-            + sum(shares.next_events, self.next_events) * walked(1)
-            + sum(shares.connections, self.connections)
+            + pair(shares.next_events, self.next_events) * walked(1)
+            + pair(shares.connections, self.connections)
             + f64::from(shares.light_images) * self.light_images;
         share.max(LEAST_SHARE)
     }
 }
 
-/// How much more often walks go on whose roulette begins at surface 0, 1 or 2, where these have the albedos.
+/// The factors by which walks go on more often whose roulette begins at surface 0, 1 and 2, where the first two
+/// have these albedos.
 fn longer(albedos: [f32; 2]) -> [f64; STARTS] {
     let [a, b] = albedos.map(|albedo| f64::from(albedo.clamp(LEAST_ALBEDO, 1.0)));
     [1.0, 1.0 / a, 1.0 / (a * b)]
 }
 
-/// What the samples of the survey did.
+/// Counts of the survey's samples, with walks whose roulette begins at surface 0, 1 and 2: camera rays, light
+/// points for the first camera vertex and for others, connections with light walks likewise, and samples that
+/// have any of these.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Work {
-    /// Of walks whose roulette begins at surface 0, 1 and 2: camera rays, and light points for the first camera
-    /// vertex and for others.
-    walks: [[f64; 3]; STARTS],
-    /// Connections with light walks, of t = 2 and of t > 2.
-    connections: [f64; 2],
-    /// Samples that have any connection.
-    connected: f64,
-}
+pub(super) struct Work([[f64; 6]; STARTS]);
 
 impl Work {
     /// Adds a sample that took so many camera rays.
@@ -147,47 +140,44 @@ impl Work {
         let camera = &workspace.camera.vertices;
         let albedo = |i: usize| camera.get(i).map_or(1.0, |vertex| vertex.albedo_fwd);
         let longer = longer([albedo(1), albedo(2)]);
-        for (start, walk) in self.walks.iter_mut().enumerate() {
+        for (start, walk) in self.0.iter_mut().enumerate() {
             let rays = (0..rays).map(|before| longer[before.min(start)]);
             walk[0] += rays.sum::<f64>();
             for candidate in &workspace.candidates {
                 let t = usize::from(candidate.strategy.t);
-                if let LightVertex::NextEvent(_) = candidate.light_vertex {
-                    walk[1 + usize::from(t > 2)] += longer[(t - 2).min(start)];
+                let deeper = usize::from(t > 2);
+                match candidate.light_vertex {
+                    LightVertex::NextEvent(_) => walk[1 + deeper] += longer[(t - 2).min(start)],
+                    _ => walk[3 + deeper] += 1.0,
                 }
             }
+            walk[5] += f64::from(u8::from(!workspace.candidates.is_empty()));
         }
-        for candidate in &workspace.candidates {
-            if candidate.light_vertex == LightVertex::Own {
-                self.connections[usize::from(candidate.strategy.t > 2)] += 1.0;
-            }
-        }
-        self.connected += f64::from(u8::from(!workspace.candidates.is_empty()));
     }
 }
 
 impl AddAssign for Work {
     fn add_assign(&mut self, more: Self) {
-        let walks = self.walks.as_flattened_mut().iter_mut();
-        for (sum, more) in walks.zip(more.walks.as_flattened()) {
+        let sums = self.0.as_flattened_mut().iter_mut();
+        for (sum, more) in sums.zip(more.0.as_flattened()) {
             *sum += more;
         }
-        for (sum, more) in self.connections.iter_mut().zip(more.connections) {
-            *sum += more;
-        }
-        self.connected += more.connected;
     }
 }
 
+/// a_0 b_0 + a_1 b_1.
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 impl Survey {
-    /// What a sample by `settings` costs, with `counts` of these. Unit: rays of path tracing's walks.
+    /// The cost of a sample by `settings`, with `counts` of these. Unit: rays of path tracing's walks.
     pub(super) fn cost(&self, settings: &Settings, counts: &Counts) -> f64 {
-        let [rays, points @ ..] = self.work.walks[counts.start];
-        let sum = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        let candidates =
-            sum(points, counts.next_events) + sum(self.work.connections, counts.connections);
+        let [rays, first, deeper, with_first, with_deeper, connected] = self.work.0[counts.start];
+        let candidates = dot([first, deeper], counts.next_events)
+            + dot([with_first, with_deeper], counts.connections);
         let traced = match settings.shadow_rays {
-            ShadowRays::Budget(most) => candidates.min(f64::from(most) * self.work.connected),
+            ShadowRays::Budget(most) => candidates.min(f64::from(most) * connected),
             _ => candidates,
         };
         let camera_ray = match settings.integrator {

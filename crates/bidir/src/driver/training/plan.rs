@@ -21,11 +21,11 @@ mod tests;
 pub struct Plan {
     /// The estimator.
     pub integrator: IntegratorKind,
-    /// How walks end at random.
+    /// The roulette of walks.
     pub roulette: PathRoulette,
-    /// How many samples there are for a light subpath, where these are shared.
+    /// The number of samples for a light subpath, where these are shared.
     pub samples_per_subpath: SamplesPerSubpath,
-    /// How many candidates camera vertices have there.
+    /// The candidates of camera vertices there.
     pub candidates: CandidateCount,
     /// Which connections are traced.
     pub shadow_rays: ShadowRays,
@@ -104,34 +104,25 @@ impl Plan {
         settings
     }
 
-    /// True where samples share light subpaths.
-    fn is_shared(&self) -> bool {
-        self.integrator == IntegratorKind::Lvc
-    }
-
     /// True where it makes all light paths that the settings ask for, and misses none that another
     /// plan finds.
     fn is_possible(&self, scene: &Scene, settings: &Settings) -> bool {
         let missing = |integrator| {
             let spots = blind_spots(scene, integrator).into_iter();
-            spots
-                .filter(|spot| spot.is_missing())
-                .collect::<Vec<BlindSpot>>()
+            spots.filter(|spot: &BlindSpot| spot.is_missing())
         };
-        let of_lvc = missing(IntegratorKind::Lvc);
+        let of_lvc: Vec<_> = missing(IntegratorKind::Lvc).collect();
+        let is_whole = settings.path.strategies.is_all()
+            && settings.path.light_point == LightPointChoice::Fresh;
         self.integrator != IntegratorKind::Path
-            || settings.path.strategies.is_all()
-                && settings.path.light_point == LightPointChoice::Fresh
-                && missing(self.integrator)
-                    .iter()
-                    .all(|spot| of_lvc.contains(spot))
+            || is_whole && missing(self.integrator).all(|spot| of_lvc.contains(&spot))
     }
 }
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {}", self.integrator, self.roulette)?;
-        if !self.is_shared() {
+        if self.integrator != IntegratorKind::Lvc {
             return Ok(());
         }
         if self.samples_per_subpath.get() > 1 {

@@ -17,15 +17,15 @@ use crate::stats::Stats;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What the samples found.
+/// The results of the samples.
 #[derive(Default)]
 pub(super) struct Survey {
     /// The sum of luminances that samples add to the mean pixel.
     pub(super) luminance: f64,
-    /// What reached the image.
+    /// The contributions to the image.
     pub(super) terms: Vec<Term>,
     pub(super) work: Work,
-    /// What connections are learned from.
+    /// Vertices and connections, to learn from.
     pub(super) found: Found,
     pub(super) stats: Stats,
     /// True where there was no time for all samples.
@@ -94,7 +94,7 @@ impl Survey {
     }
 }
 
-/// How samples are taken.
+/// Takes the samples.
 struct Surveyor<'a> {
     scene: &'a Scene,
     settings: Settings,

@@ -71,7 +71,7 @@ pub(super) fn room() -> Scene {
     builder.build().expect("the scene is valid")
 }
 
-/// What `auto` renders a black sphere with.
+/// The estimator that `auto` takes for a black sphere.
 fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
     let scene = sphere(WHOLE, z, radiance);
     let settings = Settings::new(IntegratorKind::Auto);
