@@ -74,7 +74,7 @@ pub fn mis_weight(
     let own = heuristic.share(counts(s));
     let mut others = 0.0;
     for_each_other(path, s, |j, ratio| {
-        others += heuristic.share(counts(j) * ratio)
+        others += heuristic.share(counts(j) * ratio);
     });
     let [own, others] = match (path.vertices.len(), s) {
         (2, 0) => [own, heuristic.share_of_image(others, own)],

@@ -109,7 +109,10 @@ impl Survey {
 
     /// The connections, by what they contribute where the numbers of samples are `counts`.
     fn connections(&self, cells: &Cells, counts: &Counts) -> Vec<Connection> {
-        let square = |term: u32| self.terms[term as usize].value_by(counts).powi(2);
+        let square = |term: u32| {
+            let value = self.terms[term as usize].value_by(counts);
+            value * value
+        };
         let connection = |traced: &Traced| Connection {
             light: traced.light,
             cells: traced.places.map(|place| self.found.cell(cells, place)),

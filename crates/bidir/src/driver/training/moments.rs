@@ -197,25 +197,32 @@ impl Survey {
     pub(super) fn relative_squares(&self, film: &FilmSettings) -> Option<Vec<f64>> {
         let blocks = Blocks::new(film.crop);
         let samples = blocks.samples(self.stats.samples);
-        let scale = |term: &Term, block: usize| match term.is_light_image {
-            true => 1.0 / (self.samples() * blocks.size(block)),
-            false => 1.0 / samples[block],
+        // The block of a term, and s of (4).
+        let place = |term: &Term| {
+            let block = blocks.of(term.pixel as usize);
+            let count = if term.is_light_image {
+                self.samples() * blocks.size(block)
+            } else {
+                samples[block]
+            };
+            (block, 1.0 / count)
         };
-        let of = |term: &Term| blocks.of(term.pixel as usize);
         let mut means = [0.0; BLOCKS];
         for term in &self.terms {
-            means[of(term)] += f64::from(term.value) * scale(term, of(term));
+            let (block, scale) = place(term);
+            means[block] += f64::from(term.value) * scale;
         }
         let mean = means.iter().sum::<f64>() / BLOCKS as f64;
         let square = |term: &Term| {
-            let relative = 1.0 / (means[of(term)].powi(2) + DARK * mean * mean);
+            let (block, scale) = place(term);
             let value = f64::from(term.value);
-            value * value * scale(term, of(term)) * relative
-                / if term.is_light_image {
-                    blocks.pixels()
-                } else {
-                    1.0
-                }
+            let in_pass = if term.is_light_image {
+                blocks.pixels()
+            } else {
+                1.0
+            };
+            let relative = value * value / (means[block] * means[block] + DARK * mean * mean);
+            relative * scale / in_pass
         };
         (mean > 0.0).then(|| self.terms.iter().map(square).collect())
     }

@@ -133,7 +133,9 @@ impl<'a> Surveyor<'a> {
         });
         let found: Vec<Survey> = found.collect::<Option<_>>()?;
         let mut all = Survey::default();
-        found.into_iter().for_each(|group| all.add(group));
+        for group in found {
+            all.add(group);
+        }
         Some(all)
     }
 
