@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from bidir import _bidir
 from bidir.errors import FilmError, RenderInterruptedError, SettingsError
@@ -148,6 +148,8 @@ class Session:
         light_groups: bool = False,
         strategy_layers: int = 0,
         threads: int = 0,
+        training: int | None = None,
+        _budget: _Budget | None = None,
     ) -> None:
         """Start a render; only training, if the integrator has any, is done here.
 
@@ -161,6 +163,8 @@ class Session:
             threads: Number of threads, 0 is one per processor; does not change the image. More than 4 per
                 processor are not used, with a `RuntimeWarning`; more than 1024 are an error. Where the system
                 starts fewer, the session warns and continues with those, or with the calling thread only.
+            training: The maximum number of samples of training; None is as many as it wants. To continue a
+                film whose ``settings`` have ``training``, pass that number.
 
         Errors: :class:`bidir.SettingsError`, :class:`bidir.RenderError`, and those of :func:`bidir.load`.
         """
@@ -169,7 +173,10 @@ class Session:
         native = self.request.native(self.scene)
         if threads < 0:
             raise SettingsError(f"threads: {threads} is below 0")
-        self._native = _bidir.Session(self.scene._native, native, threads)
+        if training is not None and training < 0:
+            raise SettingsError(f"training: {training} is below 0")
+        limits = _TrainingLimits(training, *(_budget.of_training if _budget else (None, None)))
+        self._native = _bidir.Session(self.scene._native, native, threads, limits)
         self._stopping = "fixed"
 
     def step(self, passes: int = 1) -> None:
@@ -281,6 +288,13 @@ def render(
     finished passes, which ``checkpoint`` contains too; :class:`bidir.FilmError` if ``checkpoint`` belongs
     to another render.
     """
+    scene = scene if isinstance(scene, Scene) else load(scene)
+    open_end = time is not None or noise is not None
+    limit = spp if spp is not None else None if open_end else scene.spp
+    if limit is not None and limit < 1:
+        raise SettingsError(f"spp: {limit} is below 1")
+    budget = _Budget(limit, time, noise)
+    earlier = _earlier(checkpoint)
     session = Session(
         scene,
         integrator,
@@ -289,13 +303,10 @@ def render(
         light_groups=light_groups,
         strategy_layers=strategy_layers,
         threads=threads,
+        training=None if earlier is None else _training(earlier),
+        _budget=budget if earlier is None else None,
     )
-    open_end = time is not None or noise is not None
-    limit = spp if spp is not None else None if open_end else session.scene.spp
-    if limit is not None and limit < 1:
-        raise SettingsError(f"spp: {limit} is below 1")
-    budget = _Budget(limit, time, noise)
-    keeper = _Keeper(session, checkpoint, checkpoint_every, limit)
+    keeper = _Keeper(session, checkpoint, earlier, checkpoint_every, limit)
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
             while budget.allows(session):
@@ -313,6 +324,25 @@ def render(
     return session.snapshot()
 
 
+def _earlier(checkpoint: StrPath | None) -> Film | None:
+    """Return the film that a render continues."""
+    return Film.load(checkpoint) if checkpoint is not None and Path(checkpoint).exists() else None
+
+
+def _training(film: Film) -> int | None:
+    """Return the number of samples that the training of a film was limited to."""
+    samples = film.settings.get("training")
+    return None if samples is None else int(samples)
+
+
+class _TrainingLimits(NamedTuple):
+    """The limits of training: its samples, or passes and seconds of the render."""
+
+    samples: int | None
+    passes: int | None
+    time: float | None
+
+
 class _Budget:
     """The limits of a render: decides if another pass is rendered; there is always a first one."""
 
@@ -321,6 +351,11 @@ class _Budget:
         self._begin = clock.monotonic()
         self._rendered = 0
         self.stopping = "fixed"
+
+    @property
+    def of_training(self) -> tuple[int | None, float | None]:
+        """Passes and seconds of the render, of which training takes at most a tenth."""
+        return self._spp, self._time
 
     def allows(self, session: Session) -> bool:
         passes = session.next_pass
@@ -346,13 +381,14 @@ class _Budget:
 class _Keeper:
     """Writes checkpoints at intervals."""
 
-    def __init__(self, session: Session, path: StrPath | None, every: float, limit: int | None) -> None:
+    def __init__(
+        self, session: Session, path: StrPath | None, film: Film | None, every: float, limit: int | None
+    ) -> None:
         self._session, self._every = session, every
         self._path = None if path is None else Path(path)
         self._written = clock.monotonic()
         self._kept = 0
-        if self._path is not None and self._path.exists():
-            film = Film.load(self._path)
+        if self._path is not None and film is not None:
             beyond = [part for part in film.passes if limit is not None and part.stop > limit]
             if beyond:
                 message = f"{os.fspath(self._path)}: it has passes beyond the {limit} asked for"

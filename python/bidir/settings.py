@@ -34,7 +34,6 @@ LightChoice: TypeAlias = Literal["power", "tree"]
 LightPoint: TypeAlias = Literal["fresh", "shared"]
 Proposal: TypeAlias = Literal["uniform", "learned"]
 LightStart: TypeAlias = Literal["power", "learned"]
-MisCount: TypeAlias = Literal["expected", "correlated", "resampled"]
 
 
 class Selector:
@@ -204,9 +203,6 @@ class Lvc(_Bidirectional):
     light_start: LightStart | None = None
     #: Samples per light subpath: a power of two up to 256.
     samples_per_subpath: int | None = None
-    #: Sample counts in the MIS weights of shared light subpaths: connections per path, fewer where they
-    #: share a rare camera subpath, or traced rays.
-    mis_count: MisCount | None = None
     #: The former name of ``light_start``, which warns.
     emission: InitVar[LightStart | None] = None
 
@@ -223,7 +219,7 @@ class Lvc(_Bidirectional):
 
 @dataclass(frozen=True, kw_only=True)
 class Auto(Lvc):
-    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short trial before the first pass.
+    """:class:`Path`, :class:`Bdpt` or :class:`Lvc`, chosen by a short survey before the first pass.
 
     It tries several values of ``samples_per_subpath`` and ignores the setting.
     ``film.settings["plan"]`` has the choice.

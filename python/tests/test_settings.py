@@ -19,7 +19,6 @@ def test_settings_are_those_of_the_flags() -> None:
         proposal="uniform",
         light_start="power",
         samples_per_subpath=8,
-        mis_count="resampled",
         mis="power",
         strategies="all,-s0",
         light_point="shared",
@@ -36,7 +35,6 @@ def test_settings_are_those_of_the_flags() -> None:
         "proposal": "uniform",
         "light-start": "power",
         "samples-per-subpath": "8",
-        "mis-count": "resampled",
         "mis": "power",
         "strategies": "all,-s0",
         "light-point": "shared",
@@ -56,9 +54,7 @@ def test_classes_have_the_settings_of_the_command(kind: type[bidir.Integrator]) 
     assert {"integrator", *own} == set(_bidir.settings_of(kind.__name__.lower()))
 
 
-@pytest.mark.parametrize(
-    "name", ["mis", "light_choice", "light_point", "proposal", "light_start", "mis_count"]
-)
+@pytest.mark.parametrize("name", ["mis", "light_choice", "light_point", "proposal", "light_start"])
 def test_the_names_of_values_are_those_of_the_command(name: str) -> None:
     values = typing.get_args(typing.get_args(typing.get_type_hints(bidir.Lvc)[name])[0])
     with pytest.raises(bidir.SettingsError) as refused:

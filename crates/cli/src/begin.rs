@@ -17,29 +17,30 @@ use std::time::{Duration, Instant};
 const GAP: Duration = Duration::from_millis(100);
 /// Number of intervals after which a message says that training is running.
 const LONG: u32 = 20;
-/// Time beyond the budget after which training is cut short.
-const GRACE: Duration = Duration::from_secs(1);
-
-/// The effort of training.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Training {
-    /// Full training.
-    Whole,
-    /// Full training, cut short at this time.
-    By(Instant),
-    /// Short training from the start, as in the run that the render continues.
-    Short,
+/// The limits of training.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TrainingLimits {
+    /// The maximum number of samples.
+    samples: u64,
+    /// Training ends at this time.
+    end: Option<Instant>,
 }
 
-impl Training {
-    /// Returns the training of a render that starts now with a limit of `time`. A render that continues the
-    /// film of `earlier` repeats its training.
-    pub(crate) fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
-        let end = time.and_then(|time| Instant::now().checked_add(time.saturating_add(GRACE)));
-        match (earlier, end) {
-            (Some(earlier), _) if film_header::is_short(earlier) => Self::Short,
-            (None, Some(end)) => Self::By(end),
-            (Some(_), _) | (None, None) => Self::Whole,
+impl TrainingLimits {
+    /// Returns the limits for a render that starts now, with the limits of all its samples and of its time. A
+    /// render that continues the film of `earlier` repeats its training.
+    pub(crate) fn new(
+        samples: Option<u64>,
+        time: Option<Duration>,
+        earlier: Option<&FilmHeader>,
+    ) -> Self {
+        if let Some(earlier) = earlier {
+            let samples = film_header::training_samples(earlier).unwrap_or(u64::MAX);
+            return Self { samples, end: None };
+        }
+        Self {
+            samples: samples.map_or(u64::MAX, |samples| samples / u64::from(Effort::PART)),
+            end: time.and_then(|time| Instant::now().checked_add(time / Effort::PART)),
         }
     }
 }
@@ -60,18 +61,16 @@ pub(crate) fn session(
     loaded: &LoadedScene,
     settings: &Settings,
     signals: &Signals,
-    training: Training,
+    limits: TrainingLimits,
     console: Console,
 ) -> Result<Started, Failure> {
     let (scene, view) = (Arc::clone(&loaded.scene), loaded.view.clone());
     let settings = settings.clone();
     let resources = resources(args);
     let train = move || {
-        let is_late = || matches!(training, Training::By(end) if Instant::now() >= end);
-        let effort = match training {
-            Training::Whole => Effort::Whole,
-            Training::By(_) => Effort::Until(&is_late),
-            Training::Short => Effort::Short,
+        let effort = Effort {
+            samples: limits.samples,
+            is_late: &|| limits.end.is_some_and(|end| Instant::now() >= end),
         };
         Session::with_effort(scene, &view, settings, &resources, effort).map(Box::new)
     };
@@ -175,18 +174,21 @@ mod tests {
         };
         let (whole, short) = (
             header(&[("trained-mean", "1e0")]),
-            header(&[("trained-mean", "1e0"), ("training", "short")]),
+            header(&[("trained-mean", "1e0"), ("training", "64")]),
         );
+        let limits = |time, earlier| TrainingLimits::new(Some(1000), time, earlier);
         for time in [None, Some(Duration::from_secs(2)), Some(Duration::MAX)] {
-            assert!(matches!(Training::new(time, Some(&whole)), Training::Whole));
-            assert!(matches!(Training::new(time, Some(&short)), Training::Short));
+            for (earlier, samples) in [(&whole, u64::MAX), (&short, 64)] {
+                let end = None;
+                assert_eq!(limits(time, Some(earlier)), TrainingLimits { samples, end });
+            }
         }
-        assert!(matches!(Training::new(None, None), Training::Whole));
-        assert!(matches!(
-            Training::new(Some(Duration::MAX), None),
-            Training::Whole
-        ));
-        let by = Training::new(Some(Duration::from_secs(2)), None);
-        assert!(matches!(by, Training::By(end) if end > Instant::now() + Duration::from_secs(2)));
+        let alone = limits(Some(Duration::from_secs(20)), None);
+        assert_eq!(alone.samples, 100);
+        let end = alone.end.expect("the time is limited");
+        let left = end.saturating_duration_since(Instant::now());
+        assert!(left <= Duration::from_secs(2) && left > Duration::from_secs(1));
+        let open = TrainingLimits::new(None, None, None);
+        assert_eq!((open.samples, open.end), (u64::MAX, None));
     }
 }

@@ -4,7 +4,7 @@ use crate::scene_io::{FilmHeader, LoadedScene};
 use bidir::driver::{Settings, Training};
 use formats::film::SceneIdentity;
 
-pub(crate) use formats::film::{counts_by_name, is_short, metadata, of_run, untrained};
+pub(crate) use formats::film::{counts_by_name, metadata, of_run, training_samples, untrained};
 
 /// Returns the header of an empty film of the scene `name`.
 pub(crate) fn header(

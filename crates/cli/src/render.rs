@@ -1,7 +1,7 @@
 //! `bidir render`: renders a scene to an image.
 
 use crate::args::RenderArgs;
-use crate::begin::{self, Started, Training};
+use crate::begin::{self, Started, TrainingLimits};
 use crate::checkpoint::{Checkpoint, CheckpointWriter};
 use crate::console::{Console, json, say};
 use crate::denoise::Filter;
@@ -52,8 +52,9 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     loaded.print_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
-        let training = Training::Whole;
-        return match begin::session(args, &loaded, &settings, &signals, training, console)? {
+        // The sample is one of the render with the other arguments.
+        let limits = TrainingLimits::new(samples(args, &loaded), None, None);
+        return match begin::session(args, &loaded, &settings, &signals, limits, console)? {
             Started::Session(session) => replay::run(args, &session, target),
             Started::Stopped(exit) => Ok(exit),
         };
@@ -76,6 +77,16 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
         signals: &signals,
     }
     .run(checkpoint, load, server)
+}
+
+/// Returns the number of samples of the whole render, whichever part of it this is. None: it is not limited, or
+/// not known.
+fn samples(args: &RenderArgs, loaded: &LoadedScene) -> Option<u64> {
+    let budget = &args.budget;
+    let is_open = budget.time.is_some() || budget.noise.is_some() || args.long.passes.is_some();
+    let spp = budget.spp.filter(|_| args.long.passes.is_none());
+    let passes = spp.or((!is_open).then_some(loaded.spp))?;
+    Some(passes.saturating_mul(loaded.view.film().crop.area()))
 }
 
 /// A render whose arguments are checked: only a signal, a full disk or a bug can prevent its image.
@@ -105,14 +116,15 @@ impl Job<'_> {
         }
         let is_resumed = checkpoint.as_ref().is_some_and(Checkpoint::is_resumed);
         let earlier = checkpoint.as_ref().and_then(Checkpoint::earlier);
-        let training = Training::new(budget.time, earlier);
+        let samples = samples(self.args, self.loaded);
+        let limits = TrainingLimits::new(samples, budget.time, earlier);
         let start = Instant::now();
         let started = begin::session(
             self.args,
             self.loaded,
             self.settings,
             self.signals,
-            training,
+            limits,
             self.console,
         );
         let mut session = match started? {
@@ -120,7 +132,6 @@ impl Job<'_> {
             Started::Stopped(_) if is_resumed => return Ok(self.stopped(Exit::Checkpoint)),
             Started::Stopped(exit) => return Ok(self.stopped(exit)),
         };
-        self.warn_short(training, &session);
         session.start_at(budget.first);
         let header = header(session.training());
         let mut writer = CheckpointWriter::new(checkpoint, header, &mut session, start)?;
@@ -164,17 +175,6 @@ impl Job<'_> {
             End::Signal(exit) => self.exit(exit),
             End::Passes | End::Time | End::Noise => Exit::Done,
         })
-    }
-
-    /// Warns if training was cut short.
-    fn warn_short(&self, training: Training, session: &Session<'_>) {
-        let is_short = session.training().is_some_and(|training| training.is_short);
-        if is_short && matches!(training, Training::By(_)) {
-            self.console.warning(
-                "training did not end within --time, so the image has more noise than it could; allow more \
-                 time, or choose --integrator path or bdpt, which need none",
-            );
-        }
     }
 
     /// Says that nothing was written because of a signal before the first pass, and returns `exit`.

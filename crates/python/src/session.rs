@@ -5,7 +5,7 @@ use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
-use bidir::driver::{self, Progress, Resources};
+use bidir::driver::{self, Effort, Progress, Resources};
 use bidir::film::FilmError;
 use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
 use pyo3::prelude::*;
@@ -70,6 +70,33 @@ impl State {
     }
 }
 
+/// The limits of training, of which None is none.
+#[derive(FromPyObject)]
+struct TrainingLimits {
+    /// The maximum number of samples.
+    samples: Option<u64>,
+    /// The passes of the render, of whose samples training takes at most a tenth.
+    passes: Option<u64>,
+    /// The time of the render, likewise. Unit: seconds.
+    time: Option<f64>,
+}
+
+impl TrainingLimits {
+    /// The maximum number of samples of training for a film of so many pixels.
+    fn samples(&self, pixels: u64) -> u64 {
+        let of_passes = self
+            .passes
+            .map(|passes| passes.saturating_mul(pixels) / u64::from(Effort::PART));
+        self.samples.or(of_passes).unwrap_or(u64::MAX)
+    }
+
+    /// True if training that began at `begin` has no time left.
+    fn is_late(&self, begin: Instant) -> bool {
+        let part = self.time.map(|time| time / f64::from(Effort::PART));
+        part.is_some_and(|part| begin.elapsed().as_secs_f64() >= part)
+    }
+}
+
 impl Session {
     /// Calls `f` with the state; other Python threads run while this one waits for it.
     fn with<T: Send>(&self, py: Python<'_>, f: impl FnOnce(&mut State) -> T + Send) -> T {
@@ -91,7 +118,13 @@ fn no_memory(py: Python<'_>, error: &FilmError) -> PyErr {
 impl Session {
     /// Starts a session without passes; `bidir.Session` makes `requested`.
     #[new]
-    fn new(py: Python<'_>, scene: &Scene, requested: Requested, threads: usize) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        scene: &Scene,
+        requested: Requested,
+        threads: usize,
+        limits: TrainingLimits,
+    ) -> PyResult<Self> {
         let settings = resolve(py, &requested, &scene.settings)?;
         let resources = Resources {
             threads: threads_of(py, threads)?.count(),
@@ -99,7 +132,13 @@ impl Session {
         };
         let begin = Instant::now();
         let (shared, view, own) = (scene.shared.clone(), &scene.view, settings.clone());
-        let session = wait_silently(py, |_| driver::Session::new(shared, view, own, &resources))?;
+        let session = wait_silently(py, |_| {
+            let effort = Effort {
+                samples: limits.samples(view.film().crop.area()),
+                is_late: &|| limits.is_late(begin),
+            };
+            driver::Session::with_effort(shared, view, own, &resources, effort)
+        })?;
         let session = session.map_err(|error| {
             let class = match error {
                 driver::SessionError::NoPath { .. } => "SettingsError",

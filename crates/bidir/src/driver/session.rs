@@ -98,7 +98,7 @@ impl<'a> Session<'a> {
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
-        Self::with_effort(scene, view, settings, resources, Effort::Whole)
+        Self::with_effort(scene, view, settings, resources, Effort::WHOLE)
     }
 
     /// The same with training of some effort, on which the bits of the image depend.

@@ -7,7 +7,8 @@ use super::{Integrator, Link, Sample, Workspace};
 use crate::contribution::{Contribution, Term};
 use crate::math::ONE_MINUS_EPSILON;
 use crate::path::{
-    Arrival, JoinedPath, LightPointChoice, PathContext, Strategy, Vertex, sample_next_event,
+    Arrival, JoinedPath, LightPointChoice, PathContext, PathDensities, Shares, Strategy, Vertex,
+    sample_next_event,
 };
 use crate::sampler::{Dimension, Purpose, kronecker_point};
 use crate::select::{Candidate, Draws, LightVertex, Selector};
@@ -285,5 +286,34 @@ fn trace_chosen(context: &PathContext<'_>, sample: &Sample, workspace: &mut Work
             };
             workspace.add(sample, contribution);
         }
+    }
+}
+
+impl Workspace {
+    /// The shares of the path of `contribution`, which the last sample, of [`Bdpt`], found by `light_vertex`. None:
+    /// it found no such path.
+    pub(crate) fn shares(
+        &self,
+        (context, sample): (&PathContext<'_>, &Sample),
+        contribution: &Contribution,
+        light_vertex: LightVertex,
+        densities: &mut PathDensities,
+    ) -> Option<Shares> {
+        let Strategy { s, t } = contribution.term.strategy;
+        let (s, t) = (usize::from(s), usize::from(t));
+        let camera = &self.camera.vertices;
+        let mut shares = |path: JoinedPath<'_>| path.shares(context, densities);
+        Some(if s == 0 {
+            let light = contribution.term.light;
+            let arrival = Arrival::of(context.scene, &self.camera, t - 1, light)?;
+            shares(JoinedPath::hit(&arrival.vertex(context), &camera[..t - 1]))
+        } else if t == 1 {
+            let lens = lens_vertex(context, sample, s);
+            let lens = std::slice::from_ref(&lens);
+            shares(JoinedPath::connection(&self.light.vertices[..s], lens))
+        } else {
+            let light = own_light_vertices(&self.light, &self.next_events, s, light_vertex);
+            shares(JoinedPath::connection(light, &camera[..t]))
+        })
     }
 }

@@ -9,8 +9,8 @@ use crate::film::SplatPlace;
 use crate::locus::Locus;
 use crate::math::Vec2;
 use crate::path::{
-    Cell, Connections, PathContext, PathSettings, RunningSums, Strategy, Subpath, Vertex,
-    camera_subpath, light_subpath,
+    Connections, PathContext, PathSettings, RunningSums, Strategy, Subpath, Vertex, camera_subpath,
+    light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::scene::Scene;
@@ -164,7 +164,7 @@ impl Workspace {
 
     /// What a candidate connects: light vertex and camera vertex.
     #[inline]
-    pub(super) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
+    pub(crate) fn vertices(&self, strategy: Strategy, light_vertex: LightVertex) -> [&Vertex; 2] {
         let (s, t) = (usize::from(strategy.s), usize::from(strategy.t));
         let light = match light_vertex {
             LightVertex::Cached(number) => self.light_cache.get(number as usize).light,
@@ -181,28 +181,17 @@ impl Workspace {
     }
 
     /// The candidates, each with what of it arrived, if anything.
-    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<Spectrum>)> {
+    pub(crate) fn connections(&self) -> impl Iterator<Item = (&Candidate, Option<&Contribution>)> {
         let mut contributions = self.contributions.iter().peekable();
         self.candidates.iter().map(move |candidate| {
             // Both are in the order of terms; hits are no candidates.
             let number = candidate.term.number;
             while contributions.next_if(|c| c.term.number < number).is_some() {}
-            let arrived = contributions.next_if(|c| c.term.number == number);
-            (candidate, arrived.map(Contribution::value))
+            (
+                candidate,
+                contributions.next_if(|c| c.term.number == number),
+            )
         })
-    }
-
-    /// The cells of a candidate's vertices. None: nothing is learnt about connections with such a light
-    /// vertex.
-    pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
-        let [z, y] = self.vertices(candidate.term.strategy, candidate.light_vertex);
-        let is_placed = candidate.light_vertex != LightVertex::Own && !z.locus.is_infinite();
-        is_placed.then_some([z.cell, y.cell])
-    }
-
-    /// The cell of a candidate's camera vertex.
-    pub(crate) fn camera_cell(&self, candidate: &Candidate) -> Cell {
-        self.camera.vertices[usize::from(candidate.term.strategy.t) - 1].cell
     }
 
     /// Counts a term that is not zero, and numbers it; `link` is asked for the journal only.

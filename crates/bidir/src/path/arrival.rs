@@ -1,6 +1,6 @@
 //! s = 0: the light that a camera walk comes upon by itself, at a vertex on a light or where it escapes.
 
-use super::{Escape, PathContext, Vertex};
+use super::{Escape, PathContext, Subpath, Vertex};
 use crate::light::LightPoint;
 use crate::math::Vec3;
 use crate::scene::Scene;
@@ -45,6 +45,15 @@ impl Arrival {
             beta: escape.beta,
             pdf: escape.pdf_fwd,
         })
+    }
+
+    /// The arrival at `light` of a walk that hit it behind its first `i` vertices, or left the scene there. None:
+    /// it did neither.
+    pub fn of(scene: &Scene, camera: &Subpath, i: usize, light: u32) -> Option<Self> {
+        match camera.vertices.get(i) {
+            Some(vertex) => Self::at(vertex),
+            None => Self::of_escape(scene, camera.escape?).find(|arrival| arrival.light == light),
+        }
     }
 
     /// C = β L_e: the contribution before its weight.

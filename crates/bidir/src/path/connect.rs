@@ -122,12 +122,17 @@ impl<'a> JoinedPath<'a> {
     #[inline]
     pub fn weight(&self, context: &PathContext<'_>, densities: &mut PathDensities) -> f32 {
         densities.gather(context, self);
-        let s = match self.junction {
+        let count = |j| self.count(context, j);
+        mis_weight(densities, count, context.settings.mis, self.strategy()) as f32
+    }
+
+    /// s of the strategy that made the path.
+    #[inline]
+    pub(super) fn strategy(&self) -> usize {
+        match self.junction {
             Junction::Hit => 0,
             Junction::Connection => self.light.len(),
-        };
-        let count = |j| self.count(context, densities, j);
-        mis_weight(densities, count, context.settings.mis, s) as f32
+        }
     }
 }
 

@@ -63,12 +63,7 @@ impl MisHeuristic {
 /// The weight of strategy `s`: share(n_s p_s) / Σ_j share(n_j p_j).
 ///
 /// `counts(j)` is n_j, the expected number of samples that strategy j takes of this path in a pass; 0
-/// switches it off. With a_i and b_i the densities of x_i drawn from the light and from the camera,
-/// p_{j+1} / p_j = a_j / b_j, except that s = 1 draws x_0 by next-event estimation, with density e:
-///
-/// p_1 / p_0 = e / b_0 and p_2 / p_1 = (a_0 / e) · (a_1 / b_1).
-///
-/// The sums run outwards from s as running ratios [Veach97, §10.2.1].
+/// switches it off.
 #[inline]
 pub fn mis_weight(
     path: &PathDensities,
@@ -76,8 +71,30 @@ pub fn mis_weight(
     heuristic: MisHeuristic,
     s: usize,
 ) -> f64 {
+    let own = heuristic.share(counts(s));
+    let mut others = 0.0;
+    for_each_other(path, s, |j, ratio| {
+        others += heuristic.share(counts(j) * ratio);
+    });
+    let [own, others] = match (path.vertices.len(), s) {
+        (2, 0) => [own, heuristic.share_of_image(others, own)],
+        (2, 1) => [heuristic.share_of_image(own, others), others],
+        _ => [own, others],
+    };
+    own / (own + others)
+}
+
+/// Calls `visit` with every strategy j other than `s` that can make the path, and with p_j / p_s.
+///
+/// With a_i and b_i the densities of x_i drawn from the light and from the camera, p_{j+1} / p_j = a_j / b_j,
+/// except that s = 1 draws x_0 by next-event estimation, with density e:
+///
+/// p_1 / p_0 = e / b_0 and p_2 / p_1 = (a_0 / e) · (a_1 / b_1).
+///
+/// The ratios run outwards from s [Veach97, §10.2.1].
+#[inline]
+pub(super) fn for_each_other(path: &PathDensities, s: usize, mut visit: impl FnMut(usize, f64)) {
     let x = &path.vertices[..];
-    let n = x.len();
     // Never zero: where s = 1 is impossible, the ratios across it must still cancel.
     let next_event = f64::from(path.next_event).max(f64::from(f32::MIN_POSITIVE));
     let up = |j: usize| match j {
@@ -85,31 +102,21 @@ pub fn mis_weight(
         1 => f64::from(x[0].from_light) / next_event * x[1].ratio(),
         _ => x[j].ratio(),
     };
-    let share = |j: usize, ratio: f64| {
+    let mut visit_possible = |j: usize, ratio: f64| {
         if is_possible(path, j) {
-            heuristic.share(counts(j) * ratio)
-        } else {
-            0.0
+            visit(j, ratio);
         }
     };
-    let own = heuristic.share(counts(s));
-    let mut others = 0.0;
-    let mut ratio = 1.0; // p_j / p_s
-    for j in s..n - 1 {
+    let mut ratio = 1.0;
+    for j in s..x.len() - 1 {
         ratio *= up(j);
-        others += share(j + 1, ratio);
+        visit_possible(j + 1, ratio);
     }
     ratio = 1.0;
     for j in (0..s).rev() {
         ratio /= up(j);
-        others += share(j, ratio);
+        visit_possible(j, ratio);
     }
-    let [own, others] = match (n, s) {
-        (2, 0) => [own, heuristic.share_of_image(others, own)],
-        (2, 1) => [heuristic.share_of_image(own, others), others],
-        _ => [own, others],
-    };
-    own / (own + others)
 }
 
 /// True where strategy `j` can make the path: it links x_{j-1} with x_j, and a Dirac scattering at

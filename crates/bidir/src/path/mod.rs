@@ -30,6 +30,7 @@ mod roulette;
 mod running;
 mod scatter;
 mod segment;
+mod shares;
 mod vertex;
 mod walk;
 
@@ -37,16 +38,16 @@ pub use crate::strategy::{Strategies, Strategy};
 pub use arrival::Arrival;
 pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
-pub use count::MisCount;
 pub use densities::{PathDensities, VertexDensities};
 pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
 pub(crate) use proposals::CellDraw;
-pub use proposals::{Connections, Inclusion, LightProposals, PairSums};
+pub use proposals::{Connections, LightProposals, PairSums};
 pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
 pub use scatter::Turn;
 pub use segment::Segment;
+pub(crate) use shares::Shares;
 pub use vertex::{Vertex, VertexKind};
 pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
 

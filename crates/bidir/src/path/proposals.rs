@@ -18,12 +18,11 @@
 //! varies least where the probability to be chosen is ∝ √E[C² V] = C √V̂ for binary V: that is what
 //! they are compared by, V̂ being the part of the connections of two cells that arrived in training.
 
-use super::MisCount;
 use super::cells::{Cell, Cells};
 use crate::light::LightChoice;
 
-/// ε: how often what was learnt is not asked. What training did not see costs no more than 1/ε times
-/// as much as without it.
+/// ε: the fraction of uniform proposals. Connections that training did not see cost at most 1/ε times as much as
+/// without it.
 const UNIFORM_PART: f32 = 0.2;
 
 /// The least V̂: where all connections of training were blocked, others are chosen a quarter as often
@@ -35,12 +34,10 @@ const LEAST_VISIBILITY: f64 = 1.0 / 16.0;
 const PARTS: usize = 64;
 const _: () = assert!(Cells::COUNT <= 256, "the number of a cell takes a byte");
 
-/// How light vertices of a cache are proposed to camera vertices.
+/// The proposals of light vertices of a cache to camera vertices.
 #[derive(Clone, Debug)]
 pub struct LightProposals {
     cells: Cells,
-    /// ε.
-    uniform_part: f32,
     /// For each cell of camera vertices Σ_{c' < c} Γ(c' | r), and 1 at the end.
     cumulative: Vec<f32>,
     /// For each cell of camera vertices the first cell c that numbers of each part lead to: draws begin
@@ -48,13 +45,11 @@ pub struct LightProposals {
     first: Vec<u8>,
     /// For each pair of cells, by that of camera vertices first, n κ / M.
     relative: Vec<f32>,
-    /// For each cell of camera vertices, the part of the light points of s = 1 that n counts.
-    next_events: Vec<f32>,
     /// For each pair √V̂.
     root_visibility: Vec<f32>,
 }
 
-/// What training found of pairs of cells.
+/// The results of training for pairs of cells.
 #[derive(Clone, Debug)]
 pub struct PairSums {
     /// κ_c.
@@ -63,15 +58,6 @@ pub struct PairSums {
     pub squares: Vec<f64>,
     /// Of how many connections it is known whether they arrived, and how many did.
     pub arrived: Vec<[u32; 2]>,
-}
-
-/// The mean probability with which candidates are chosen to be traced.
-#[derive(Clone, Debug)]
-pub struct Inclusion {
-    /// For each pair of cells, by that of camera vertices first. Positive.
-    pub connections: Vec<f64>,
-    /// For each cell of camera vertices, of s = 1. Positive.
-    pub next_events: Vec<f64>,
 }
 
 impl PairSums {
@@ -110,15 +96,6 @@ pub(crate) enum CellDraw {
 impl LightProposals {
     /// The proposals that suit `sums`.
     pub fn new(cells: Cells, sums: &PairSums) -> Self {
-        Self::with_uniform_part(UNIFORM_PART, cells, sums)
-    }
-
-    /// Those to which each light vertex is as likely as others: ε = 1.
-    pub fn uniform(cells: Cells, sums: &PairSums) -> Self {
-        Self::with_uniform_part(1.0, cells, sums)
-    }
-
-    fn with_uniform_part(uniform_part: f32, cells: Cells, sums: &PairSums) -> Self {
         let mut cumulative = Vec::with_capacity(Cells::COUNT * (Cells::COUNT + 1));
         let mut first = Vec::with_capacity(Cells::COUNT * PARTS);
         let mut relative = Vec::with_capacity(Cells::COUNT * Cells::COUNT);
@@ -130,34 +107,21 @@ impl LightProposals {
             let ends = &cumulative[begin..];
             first.extend((0..PARTS).map(|part| first_end_beyond(ends, part)));
             let of_cell = |(&kappa, ends): (&f64, &[f32])| match kappa {
-                0.0 => uniform_part,
+                0.0 => UNIFORM_PART,
                 kappa => {
                     let prob = f64::from(ends[1] - ends[0]);
-                    uniform_part + (1.0 - uniform_part) * (prob * all / kappa) as f32
+                    UNIFORM_PART + (1.0 - UNIFORM_PART) * (prob * all / kappa) as f32
                 }
             };
             relative.extend(kappa.iter().zip(ends.windows(2)).map(of_cell));
         }
         Self {
             cells,
-            uniform_part,
             cumulative,
             first,
             relative,
-            next_events: vec![1.0; Cells::COUNT],
             root_visibility: sums.arrived.iter().copied().map(root_visibility).collect(),
         }
-    }
-
-    /// The same where n counts traced rays alone.
-    #[must_use]
-    pub fn counting_rays(mut self, inclusion: &Inclusion) -> Self {
-        let counts = self.relative.iter_mut().chain(&mut self.next_events);
-        let chosen = inclusion.connections.iter().chain(&inclusion.next_events);
-        for (count, &chosen) in counts.zip(chosen) {
-            *count = (f64::from(*count) * chosen) as f32;
-        }
-        self
     }
 
     /// The cells of vertices.
@@ -172,12 +136,6 @@ impl LightProposals {
         f64::from(self.relative[Cells::pair(light, camera)])
     }
 
-    /// The part of the light points of s = 1 that n counts for a camera vertex in the cell `camera`.
-    #[inline]
-    pub(super) fn next_events(&self, camera: Cell) -> f64 {
-        f64::from(self.next_events[camera.index()])
-    }
-
     /// √V̂ of a light vertex in the cell `light` and a camera vertex in the cell `camera`.
     #[inline]
     pub(super) fn root_visibility(&self, light: Cell, camera: Cell) -> f32 {
@@ -187,7 +145,7 @@ impl LightProposals {
     /// Draws a cell of light vertices for a camera vertex in the cell `camera`.
     #[inline]
     pub(crate) fn draw(&self, camera: Cell, u: f64) -> CellDraw {
-        let part = f64::from(self.uniform_part);
+        let part = f64::from(UNIFORM_PART);
         if u < part {
             return CellDraw::All(u / part);
         }
@@ -207,7 +165,7 @@ impl LightProposals {
     pub(crate) fn prob(&self, light: Cell, camera: Cell, [all, of_cell]: [usize; 2]) -> f64 {
         let (row, cell) = (self.row(camera), light.index());
         let gamma = f64::from(row[cell + 1] - row[cell]);
-        let part = f64::from(self.uniform_part);
+        let part = f64::from(UNIFORM_PART);
         part / all as f64 + (1.0 - part) * gamma / of_cell as f64
     }
 
@@ -266,8 +224,6 @@ pub struct Connections<'a> {
     pub emission: Option<&'a LightChoice>,
     /// How many samples there are for each light subpath.
     pub samples_per_subpath: f64,
-    /// What weights take for how many there are.
-    pub mis_count: MisCount,
 }
 
 impl Connections<'_> {
@@ -278,7 +234,6 @@ impl Connections<'_> {
         proposals: None,
         emission: None,
         samples_per_subpath: 1.0,
-        mis_count: MisCount::Expected,
     };
 }
 
@@ -341,41 +296,5 @@ mod tests {
             let [from, to] = [row[cell.index()], row[cell.index() + 1]].map(f64::from);
             assert!(from <= u && u < to, "{u} leads to {from} .. {to}");
         }
-    }
-
-    #[test]
-    fn uniform_proposals_know_no_cells() {
-        let cells = Cells::new(&mut []);
-        let mut sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
-        let [z, y] = [3, 5].map(Cells::cell);
-        sums.light_vertices[z.index()] = 0.0;
-        sums.add(Cells::pair(y, y), Some(9.0));
-        let proposals = LightProposals::uniform(cells, &sums);
-        for light in [y, z] {
-            assert!((proposals.relative(light, y) - 1.0).abs() < 1e-9);
-            assert!((proposals.prob(light, y, [50, 7]) - 0.02).abs() < 1e-9);
-        }
-        for u in [0.0, 0.3, 0.999] {
-            assert!(matches!(proposals.draw(y, u), CellDraw::All(part) if (part - u).abs() < 1e-9));
-        }
-    }
-
-    #[test]
-    fn traced_rays_are_a_part_of_the_samples() {
-        let cells = Cells::new(&mut []);
-        let sums = PairSums::uniform(vec![1.0; Cells::COUNT]);
-        let all = LightProposals::new(cells, &sums);
-        let [z, y] = [3, 5].map(Cells::cell);
-        let mut inclusion = Inclusion {
-            connections: vec![1.0; Cells::COUNT * Cells::COUNT],
-            next_events: vec![1.0; Cells::COUNT],
-        };
-        inclusion.connections[Cells::pair(z, y)] = 0.25;
-        inclusion.next_events[y.index()] = 0.5;
-        let thinned = all.clone().counting_rays(&inclusion);
-        assert!((thinned.relative(z, y) - 0.25 * all.relative(z, y)).abs() < 1e-6);
-        assert!((thinned.relative(y, z) - all.relative(y, z)).abs() < 1e-12);
-        assert!((thinned.next_events(y) - 0.5).abs() < 1e-6);
-        assert!((thinned.next_events(z) - 1.0).abs() < 1e-12);
     }
 }

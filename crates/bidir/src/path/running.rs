@@ -59,7 +59,7 @@ impl RunningSums {
         self.light.clear();
         self.camera.clear();
         self.shortest = usize::MAX;
-        if settings.strategies.is_all() && context.connections.mis_count.is_local() {
+        if settings.strategies.is_all() {
             self.shortest = settings.roulette.density_start().unwrap_or(0);
             self.sum_light(context, &light.vertices);
             self.sum_camera(context, &camera.vertices);
@@ -78,9 +78,8 @@ impl RunningSums {
     ///
     /// Each of the path's subpaths is one vertex, or the beginning of the walk that was summed.
     ///
-    /// It is the pure form itself where not all strategies take part, where n_j depends on more than
-    /// the vertices that strategy j links, and where the roulette of densities begins at a later bounce than the shorter subpath has vertices: it is then another
-    /// for every path length.
+    /// It is the pure form itself where not all strategies take part, and where the roulette of densities begins
+    /// at a later bounce than the shorter subpath has vertices: it is then another for every path length.
     #[inline]
     pub fn weight(&mut self, context: &PathContext<'_>, path: &JoinedPath<'_>) -> f32 {
         let (s, t) = (path.light.len(), path.camera.len());

@@ -17,7 +17,7 @@ pub use request::{Request, RequestError};
 
 use crate::film::Layers;
 use crate::integrator::{CandidateCount, IntegratorKind, LightStart, LvcSettings, ProposalKind};
-use crate::path::{MisCount, PathRoulette, PathSettings};
+use crate::path::{PathRoulette, PathSettings};
 use crate::sampler::SamplerKind;
 use crate::select::ShadowRays;
 
@@ -32,7 +32,7 @@ pub struct Settings {
     pub lvc: LvcSettings,
     /// How paths are made and weighted.
     pub path: PathSettings,
-    /// The settings above that [`IntegratorKind::Auto`] chooses by trials.
+    /// The settings above that [`IntegratorKind::Auto`] chooses.
     pub open: Open,
     /// The random numbers.
     pub sampler: SamplerKind,
@@ -95,8 +95,7 @@ impl Settings {
     /// True where the estimator learns about connections before the first pass.
     pub(crate) fn learns(&self) -> bool {
         let learns = self.lvc.proposal == ProposalKind::Learned
-            || self.lvc.light_start == LightStart::Learned
-            || self.lvc.mis_count == MisCount::Resampled;
+            || self.lvc.light_start == LightStart::Learned;
         self.integrator == IntegratorKind::Lvc && learns
     }
 }

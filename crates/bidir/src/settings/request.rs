@@ -5,9 +5,7 @@ use crate::integrator::{
     CandidateCount, IntegratorKind, LightStart, ProposalKind, SamplesPerSubpath,
 };
 use crate::names::Parse;
-use crate::path::{
-    LightChoiceKind, LightPointChoice, MisCount, MisHeuristic, PathRoulette, Strategies,
-};
+use crate::path::{LightChoiceKind, LightPointChoice, MisHeuristic, PathRoulette, Strategies};
 use crate::sampler::SamplerKind;
 use crate::select::ShadowRays;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -33,11 +31,11 @@ mod tests;
     reason = "the comments are the help of the command"
 )]
 pub struct Request {
-    /// path, light, bdpt, lvc, or auto to choose by a short trial [default: the scene's].
+    /// path, light, bdpt, lvc, or auto to choose by a short survey [default: the scene's].
     ///
     /// path: path tracing. light: light tracing. bdpt: bidirectional path tracing. lvc: the same with
-    /// light subpaths shared by many samples (light vertex cache). auto: tries path, bdpt and lvc on a
-    /// few samples and takes the one with the least variance × cost, counted in rays. A glTF file names no integrator
+    /// light subpaths shared by many samples (light vertex cache). auto: takes path, bdpt or lvc, by
+    /// the variance × cost that a few samples of bdpt predict, counted in rays. A glTF file names no integrator
     /// and is rendered with auto.
     #[cfg_attr(
         feature = "clap",
@@ -123,7 +121,7 @@ pub struct Request {
     /// [default: the integrator's].
     ///
     /// Each from 1 to 4096; one number is for all vertices; auto: the integrator's default. Defaults:
-    /// 12,1 for lvc, auto for auto, which tries several numbers together with budgets of shadow rays.
+    /// 12,1 for lvc, auto for auto.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "M[,N]", help_heading = "Shared light subpaths")
@@ -161,22 +159,13 @@ pub struct Request {
     pub light_start: Option<LightStart>,
     /// Samples per light subpath, a power of two up to 256 (lvc) [default: 2].
     ///
-    /// auto tries 1, 2 and 4. Where light subpaths are so long that those of a group would fill more than
-    /// about 30 MB, there are fewer.
+    /// Where light subpaths are so long that those of a group would fill more than about 30 MB, there are
+    /// fewer.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "K", help_heading = "Shared light subpaths")
     )]
     pub samples_per_subpath: Option<SamplesPerSubpath>,
-    /// Sample counts in the MIS weights of shared light subpaths (lvc, auto) [default: expected].
-    ///
-    /// expected: connections per path. correlated: fewer where connections share a camera subpath that
-    /// the camera rarely samples. resampled: traced shadow rays.
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_name = "RULE", help_heading = "Shared light subpaths")
-    )]
-    pub mis_count: Option<MisCount>,
 }
 
 /// Why a setting cannot be read: there is none of that name, or it has no such value.
@@ -217,7 +206,6 @@ impl Request {
             proposal: shared.map(|lvc| lvc.proposal),
             light_start: shared.map(|lvc| lvc.light_start),
             samples_per_subpath: (*integrator == Lvc).then_some(lvc.samples_per_subpath),
-            mis_count: shared.map(|lvc| lvc.mis_count),
         }
     }
 
@@ -240,7 +228,6 @@ impl Request {
             proposal,
             light_start,
             samples_per_subpath,
-            mis_count,
         } = self.clone();
         let mut settings = settings.clone();
         if let Some(integrator) = integrator {
@@ -266,7 +253,6 @@ impl Request {
         put(&mut lvc.proposal, proposal);
         put(&mut lvc.light_start, light_start);
         put(&mut lvc.samples_per_subpath, samples_per_subpath);
-        put(&mut lvc.mis_count, mis_count);
         if let Some(choice) = path_roulette {
             open.roulette = choice.is_open(own.open.roulette);
             path.roulette = choice.or(own.path.roulette);

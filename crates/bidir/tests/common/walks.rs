@@ -3,7 +3,7 @@
 use super::Shot;
 use bidir::light::LightChoice;
 use bidir::path::{
-    Cells, Connections, Inclusion, LightProposals, PairSums, PathContext, PathSettings, Subpath,
+    Cells, Connections, LightProposals, PairSums, PathContext, PathSettings, Subpath,
     camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
@@ -58,15 +58,6 @@ pub(crate) fn some_proposals(scene: &Shot) -> LightProposals {
 pub(crate) fn some_emission(scene: &Shot) -> LightChoice {
     let lights = 0..scene.light_choice().count();
     LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
-}
-
-/// Chances to be traced that are another for every pair of cells.
-pub(crate) fn some_inclusion() -> Inclusion {
-    let chance = |i: usize| ((1 + i.wrapping_mul(2_654_435_761) % 97) as f64) / 97.0;
-    Inclusion {
-        connections: (0..Cells::COUNT * Cells::COUNT).map(chance).collect(),
-        next_events: (0..Cells::COUNT).map(chance).collect(),
-    }
 }
 
 /// The same with the first `pairs` of them.

@@ -6,16 +6,14 @@
 
 use crate::common;
 use crate::common::Shot;
-use crate::common::walks::{
-    for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals,
-};
+use crate::common::walks::{for_each_pair, for_some_pairs, some_emission, some_proposals};
 use bidir::bsdf::TransportMode;
 use bidir::light::Part;
 use bidir::math::Vec2;
 use bidir::math::Vec3;
 use bidir::path::{
-    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisCount,
-    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
+    Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisHeuristic,
+    PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
 };
 use bidir::spectrum::Spectrum;
 
@@ -248,12 +246,11 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
         next_events,
         proposals,
         samples_per_subpath,
-        mis_count,
         ..
     } = context.connections;
     match (s, path.len() - s) {
         (_, 1) => 64.0 / samples_per_subpath,
-        (1, t) if mis_count == MisCount::Expected => next_events[usize::from(t > 2)],
+        (1, t) => next_events[usize::from(t > 2)],
         (s, t) if s > 0 && proposals.is_some() => context.count(s, t, [&path[s - 1], &path[s]]),
         _ => 1.0,
     }
@@ -308,9 +305,7 @@ fn check_path(context: &PathContext<'_>, path: &[Vertex], mis: MisHeuristic) {
         "the weights of {} vertices sum to {sum}",
         path.len()
     );
-    // What is correlated counts less than n_s.
-    let counts_samples = context.connections.mis_count != MisCount::Correlated;
-    if mis == MisHeuristic::Balance && counts_samples {
+    if mis == MisHeuristic::Balance {
         // w_s ∝ n_s p_s and the value is f / (n_s p_s): their product is one constant.
         let constant = possible[0].2 * possible[0].1;
         for (s, w, value) in &possible {
@@ -366,37 +361,10 @@ fn proposals_are_one_function_of_the_path() {
             proposals: Some(&proposals),
             emission: Some(&emission),
             samples_per_subpath: 4.0,
-            mis_count: MisCount::Expected,
         };
         for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
             let settings = settings(mis, LightPointChoice::Fresh);
             check_paths_with(&settings, &scene, connections);
-        }
-    }
-}
-
-/// The same whatever weights take for the number of samples.
-#[test]
-fn counts_are_one_function_of_the_path() {
-    for scene in [common::room(0.1), common::gallery(0.1)] {
-        let proposals = some_proposals(&scene);
-        let thinned = proposals.clone().counting_rays(&some_inclusion());
-        for (mis_count, proposals) in [
-            (MisCount::Correlated, &proposals),
-            (MisCount::Resampled, &thinned),
-        ] {
-            let connections = Connections {
-                per_vertex: [3.0, 1.5],
-                next_events: [2.0, 1.0],
-                proposals: Some(proposals),
-                emission: None,
-                samples_per_subpath: 2.0,
-                mis_count,
-            };
-            for mis in [MisHeuristic::Balance, MisHeuristic::Power] {
-                let settings = settings(mis, LightPointChoice::Fresh);
-                check_paths_with(&settings, &scene, connections);
-            }
         }
     }
 }

@@ -2,15 +2,15 @@
 //! make, and for every way to weigh them.
 
 use crate::common;
-use crate::common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
+use crate::common::walks::{for_some_pairs, some_emission, some_proposals};
 use crate::common::{Shot, ShotBuilder};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
 use bidir::light::{DistantLight, InfiniteLight, Light, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
-    Arrival, Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisCount,
-    MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies,
-    Subpath, Vertex, sample_next_event,
+    Arrival, Connections, JoinedPath, Junction, LightChoiceKind, LightPointChoice, MisHeuristic,
+    PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
+    Vertex, sample_next_event,
 };
 use bidir::shape::Shape;
 
@@ -179,31 +179,14 @@ fn check(scene: &Shot, pairs: u64) {
         proposals: Some(&proposals),
         emission: Some(&emission),
         samples_per_subpath: 4.0,
-        mis_count: MisCount::Expected,
     };
     let uniform = Connections {
         proposals: None,
         ..shared
     };
-    let thinned = proposals.clone().counting_rays(&some_inclusion());
-    let resampled = Connections {
-        proposals: Some(&thinned),
-        mis_count: MisCount::Resampled,
-        ..shared
-    };
-    let correlated = Connections {
-        mis_count: MisCount::Correlated,
-        ..shared
-    };
     for settings in all_settings() {
         for_some_pairs(pairs, &settings, scene, shared, |context, light, camera| {
-            for connections in [
-                Connections::ONE_SUBPATH,
-                uniform,
-                shared,
-                resampled,
-                correlated,
-            ] {
+            for connections in [Connections::ONE_SUBPATH, uniform, shared] {
                 let context = PathContext {
                     connections,
                     ..*context

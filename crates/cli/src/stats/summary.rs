@@ -29,6 +29,8 @@ pub(crate) struct Summary {
     lacks_error: bool,
     is_denoised: bool,
     plan: Option<Plan>,
+    /// The samples of training, where it was limited.
+    trained: Option<u64>,
 }
 
 impl Summary {
@@ -43,6 +45,7 @@ impl Summary {
         let (passes, settings) = (film.passes(), film.settings());
         let crop = settings.crop;
         let size = [0, 1].map(|axis| crop.max[axis] - crop.min[axis]);
+        let training = session.training();
         let error = (passes.len() >= LEAST_PASSES).then(|| session.noise());
         Self {
             passes: passes.len(),
@@ -54,15 +57,21 @@ impl Summary {
             error: error.filter(|error| error.is_finite() && *error > 0.0),
             lacks_error: budget.noise.is_some() && passes.len() < LEAST_PASSES,
             is_denoised,
-            plan: session.training().and_then(|training| training.plan),
+            plan: training.and_then(|training| training.plan),
+            trained: training.and_then(|training| training.is_short.then_some(training.samples)),
         }
     }
 
-    /// A line of samples, time and error, and one of what `auto` chose.
+    /// A line of samples, time and error, and one of what `auto` chose and of limited training.
     pub(crate) fn lines(&self) -> Vec<String> {
         let plan = self.plan.as_ref();
         let plan = plan.map(|plan| format!("auto chose {}", describe(plan)));
-        std::iter::once(self.samples()).chain(plan).collect()
+        let trained = self.trained.map(|samples| {
+            format!("training was limited to {samples} samples, a tenth of the render")
+        });
+        let training: Vec<_> = plan.into_iter().chain(trained).collect();
+        let training = Some(training.join("; ")).filter(|line| !line.is_empty());
+        std::iter::once(self.samples()).chain(training).collect()
     }
 
     fn samples(&self) -> String {
@@ -159,6 +168,7 @@ mod tests {
             lacks_error: false,
             is_denoised: false,
             plan: None,
+            trained: None,
         }
     }
 
@@ -232,6 +242,19 @@ mod tests {
         check(
             &part,
             "64 samples per pixel (passes 64..128) of a crop of 8x4 pixels in 0.7 s",
+        );
+    }
+
+    #[test]
+    fn limited_training_is_named() {
+        let limited = Summary {
+            trained: Some(512),
+            ..summary()
+        };
+        let [_, line] = limited.lines().try_into().expect("two lines");
+        assert_eq!(
+            line,
+            "training was limited to 512 samples, a tenth of the render"
         );
     }
 

@@ -35,7 +35,7 @@ fn every_flag_is_described() {
     check_flags(
         "render",
         "--aov --candidates --checkpoint --checkpoint-every --crop --cropwindow --denoise --display-server --help --integrator \
-         --isa --json --lenient --light-choice --light-groups --light-point --light-start --max-depth --mis --mis-count --next-events --no-color --noise \
+         --isa --json --lenient --light-choice --light-groups --light-point --light-start --max-depth --mis --next-events --no-color --noise \
          --output --part --passes --path-roulette --pixelbounds --progress --proposal --pyramid --quiet --replay --restart \
          --resume --sampler --samples-per-subpath --seed --serve --shadow-rays --size --spp --stats --strategies --strategy-layers \
          --strict --svg --threads --time --version",
@@ -43,7 +43,7 @@ fn every_flag_is_described() {
     check_flags(
         "view",
         "--bind --candidates --crop --cropwindow --help --integrator --isa --lenient --light-choice --light-point \
-         --light-start --max-depth --mis --mis-count --next-events --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
+         --light-start --max-depth --mis --next-events --no-color --path-roulette --pixelbounds --port --proposal --quiet --sampler \
          --samples-per-subpath --seed --shadow-rays --size --spp --strategies --strict --threads --version",
     );
     check_flags(

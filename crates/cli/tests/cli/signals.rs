@@ -1,4 +1,4 @@
-use crate::common::{Ran, Workplace};
+use crate::common::{Ran, SCENE, Workplace};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -88,7 +88,16 @@ fn with_a_film_file_the_render_can_continue() {
 
 /// Runs a render with long training, and sends a signal after its message.
 fn stopped_in_training(place: &Workplace, what: &str, signal: &str) -> Ran {
-    let long = "--integrator lvc --candidates 4096 --next-events 4096 --size 480x320";
+    // Every ray from the camera passes thousands of surfaces that are nearly invisible.
+    let curtain = |i: i32| {
+        let height = -3.0 - f64::from(i) / 40_000.0;
+        format!(
+            "Shape \"disk\" \"float radius\" 3 \"float height\" {height} \"float alpha\" 1e-5\n"
+        )
+    };
+    let curtains: String = (0..20_000).map(curtain).collect();
+    place.write("room.pbrt", &(SCENE.to_owned() + &curtains));
+    let long = "--integrator lvc --spp 100000";
     let mut command = place.command(&format!("render room.pbrt {long} {what}"));
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());

@@ -16,12 +16,10 @@ use std::time::Duration;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// A setting that is known only after training.
 const TRAINED_MEAN: &str = "trained-mean";
-/// A setting that is present, after training, only if training was cut short.
+/// The number of samples of training, present only if there was no time for all that it wanted.
 const TRAINING: &str = "training";
 /// The plan of `auto`, known only after training.
 const PLAN: &str = "plan";
-/// The value of [`TRAINING`].
-const SHORT: &str = "short";
 
 /// The scene of a film.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +61,7 @@ impl SceneIdentity<'_> {
             let mean = format!("{:e}", training.mean_luminance);
             settings.insert(TRAINED_MEAN.to_owned(), mean);
             if training.is_short {
-                settings.insert(TRAINING.to_owned(), SHORT.to_owned());
+                settings.insert(TRAINING.to_owned(), training.samples.to_string());
             }
             let plan = training
                 .plan
@@ -83,9 +81,9 @@ fn new(name: &str, settings: BTreeMap<String, String>) -> FilmHeader {
     FilmHeader::new(&program(), name.to_owned(), settings)
 }
 
-/// Returns true if the training of the render was cut short.
-pub fn is_short(header: &FilmHeader) -> bool {
-    header.settings.contains_key(TRAINING)
+/// Returns the number of samples that the training of the render was limited to. None: it had all.
+pub fn training_samples(header: &FilmHeader) -> Option<u64> {
+    header.settings.get(TRAINING)?.parse().ok()
 }
 
 /// Returns the header without the settings that are known only after training.

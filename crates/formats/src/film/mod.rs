@@ -38,7 +38,9 @@ mod tests;
 
 pub use developed::Developed;
 pub use header::{FilmHeader, Stopping};
-pub use identity::{SceneIdentity, counts_by_name, is_short, metadata, of_run, program, untrained};
+pub use identity::{
+    SceneIdentity, counts_by_name, metadata, of_run, program, training_samples, untrained,
+};
 pub use layers::{LayerNames, StrategyImagesName};
 pub use settings::SettingsText;
 

@@ -1,9 +1,9 @@
 //! The film in blocks, for each of which variance is estimated.
 
+use super::super::spread;
+use super::constants::BLOCKS_PER_SIDE as SIDE;
 use crate::film::PixelRect;
 
-/// Blocks along each side of the film.
-const SIDE: usize = 16;
 /// The blocks.
 pub(super) const BLOCKS: usize = SIDE * SIDE;
 
@@ -38,6 +38,18 @@ impl Blocks {
         self.sizes[i].max(1.0)
     }
 
+    /// The number of samples of each, of the first `count` of the survey.
+    pub(super) fn samples(&self, count: u64) -> Vec<f64> {
+        let mut samples = vec![0.0; BLOCKS];
+        for number in 0..count {
+            let [x, y] = spread::point(&self.crop, number).map(i64::from);
+            if let Some(index) = self.crop.index(x, y) {
+                samples[self.of(index)] += 1.0;
+            }
+        }
+        samples
+    }
+
     /// The pixels of all.
     pub(super) fn pixels(&self) -> f64 {
         self.crop.area() as f64
@@ -49,13 +61,10 @@ fn part(i: usize, size: usize) -> usize {
     i * SIDE / size
 }
 
-/// How many pixels the parts of a side have.
+/// The numbers of pixels of the parts of a side.
 fn sizes(size: u32) -> [f64; SIDE] {
-    let mut sizes = [0.0; SIDE];
-    for i in 0..size as usize {
-        sizes[part(i, size as usize)] += 1.0;
-    }
-    sizes
+    let begin = |i: usize| (i * size as usize).div_ceil(SIDE);
+    std::array::from_fn(|i| (begin(i + 1) - begin(i)) as f64)
 }
 
 #[cfg(test)]
@@ -79,6 +88,17 @@ mod tests {
     fn blocks_divide_the_crop() {
         let blocks = check(40, 20);
         assert!(blocks.sizes.iter().all(|size| (2.0..=6.0).contains(size)));
+    }
+
+    #[test]
+    fn samples_are_spread_over_films_of_all_sizes() {
+        for &max in &spread::tests::SIZES[..6] {
+            let blocks = Blocks::new(PixelRect { min: [0; 2], max });
+            let counts = blocks.samples(16 * BLOCKS as u64);
+            for count in counts {
+                assert!((8.0..=24.0).contains(&count), "{max:?}: {count}");
+            }
+        }
     }
 
     #[test]

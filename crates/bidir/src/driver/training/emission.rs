@@ -6,66 +6,72 @@
 //! second moment of all connections of the same cell of camera vertices: a dark corner counts as much as
 //! what is bright.
 
-use super::pilot::Connection;
+use super::constants::{LIGHT_PRIOR, POWER_FRACTION};
 use crate::light::LightChoice;
-use crate::path::Cells;
+use crate::path::{Cell, Cells};
 
-/// How often what was learnt is not asked.
-const POWER_PART: f64 = 0.1;
-/// As many subpaths as this tell no more of a light than what is known of all.
-const PRIOR: f64 = 16.0;
+/// A connection that was traced.
+#[derive(Clone, Copy)]
+pub(super) struct Connection {
+    /// The light that its light subpath begins on. None: it is with a light point of next-event estimation.
+    pub(super) light: Option<u32>,
+    /// The cells of its light vertex and of its camera vertex.
+    pub(super) cells: [Cell; 2],
+    /// The square of what arrived. None: it was blocked.
+    pub(super) square: Option<f64>,
+}
 
 /// The choice that suits what `found` connections contribute, whose `subpaths` chose by `power`. None: it is
 /// that one.
-pub(super) fn learnt(
+pub(super) fn learned(
     power: &LightChoice,
     found: &[Connection],
-    subpaths: u64,
+    subpaths: f64,
 ) -> Option<LightChoice> {
     let moments = relative_moments(power.count(), found);
     let all: f64 = moments.iter().sum();
     if power.count() < 2 || all == 0.0 {
         return None;
     }
-    let subpaths = subpaths as f64;
     let wanted = |(light, moment): (usize, &f64)| {
         let prob = f64::from(power.prob(light));
-        let mean = (moment + PRIOR * all / subpaths) / (prob * subpaths + PRIOR);
+        let mean = (moment + LIGHT_PRIOR * all / subpaths) / (prob * subpaths + LIGHT_PRIOR);
         prob * mean.sqrt()
     };
     let wanted: Vec<f64> = moments.iter().enumerate().map(wanted).collect();
     let sum: f64 = wanted.iter().sum();
     let weight = |(light, wanted): (usize, &f64)| {
         let prob = f64::from(power.prob(light));
-        (POWER_PART * prob + (1.0 - POWER_PART) * wanted / sum) as f32
+        (POWER_FRACTION * prob + (1.0 - POWER_FRACTION) * wanted / sum) as f32
     };
     Some(LightChoice::with_weights(
         wanted.iter().enumerate().map(weight),
     ))
 }
 
-/// How much more often than by `power` subpaths begin on a light.
-pub(super) fn gain(power: &LightChoice, learnt: Option<&LightChoice>, light: u32) -> f64 {
+/// The factor by which subpaths begin on a light more often than by `power`.
+pub(super) fn gain(power: &LightChoice, learned: Option<&LightChoice>, light: u32) -> f64 {
     let light = light as usize;
-    learnt.map_or(1.0, |learnt| {
-        f64::from(learnt.prob(light)) / f64::from(power.prob(light))
+    learned.map_or(1.0, |learned| {
+        f64::from(learned.prob(light)) / f64::from(power.prob(light))
     })
 }
 
 /// For each light the sum of the squares of its connections, each divided by the mean square of its cell
 /// of camera vertices.
 fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
+    let walked = || (found.iter()).filter_map(|found| Some((found, found.light? as usize)));
     let mut of_cells = vec![[0.0, 0.0]; Cells::COUNT];
-    for connection in found {
+    for (connection, _) in walked() {
         let [sum, count] = &mut of_cells[connection.cells[1].index()];
         *sum += connection.square.unwrap_or(0.0);
         *count += 1.0;
     }
     let mut moments = vec![0.0; lights];
-    for connection in found {
+    for (connection, light) in walked() {
         let [sum, count] = of_cells[connection.cells[1].index()];
         if let Some(square) = connection.square.filter(|square| *square > 0.0) {
-            moments[connection.light as usize] += square * count / sum;
+            moments[light] += square * count / sum;
         }
     }
     moments
@@ -75,7 +81,7 @@ fn relative_moments(lights: usize, found: &[Connection]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    const SUBPATHS: u64 = 1 << 14;
+    const SUBPATHS: f64 = 16_384.0;
 
     fn by_power(weights: &[f32]) -> LightChoice {
         LightChoice::with_weights(weights.iter().copied())
@@ -83,16 +89,16 @@ mod tests {
 
     fn connection(light: u32, camera: usize, square: Option<f64>) -> Connection {
         Connection {
-            light,
+            light: Some(light),
             cells: [0, camera].map(Cells::cell),
             square,
         }
     }
 
     fn probs(power: &LightChoice, found: &[Connection]) -> Vec<f64> {
-        let learnt = learnt(power, found, SUBPATHS).expect("there is something to learn");
+        let learned = learned(power, found, SUBPATHS).expect("there is something to learn");
         (0..power.count())
-            .map(|light| f64::from(learnt.prob(light)))
+            .map(|light| f64::from(learned.prob(light)))
             .collect()
     }
 
@@ -109,7 +115,7 @@ mod tests {
         let hidden = libm::sqrt(16.0 / (16384.0 + 16.0));
         let expected = 0.05 + 0.9 * hidden / (1.0 + hidden);
         assert!((probs[1] - expected).abs() < 1e-4, "{probs:?}");
-        let gain = gain(&power, learnt(&power, &seen, SUBPATHS).as_ref(), 1);
+        let gain = gain(&power, learned(&power, &seen, SUBPATHS).as_ref(), 1);
         assert!((gain - 2.0 * expected).abs() < 2e-4);
     }
 
@@ -128,9 +134,9 @@ mod tests {
     }
 
     #[test]
-    fn where_there_is_no_choice_nothing_is_learnt() {
-        assert!(learnt(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))], SUBPATHS).is_none());
-        assert!(learnt(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)], SUBPATHS).is_none());
+    fn where_there_is_no_choice_nothing_is_learned() {
+        assert!(learned(&by_power(&[1.0]), &[connection(0, 3, Some(1.0))], SUBPATHS).is_none());
+        assert!(learned(&by_power(&[1.0, 1.0]), &[connection(0, 3, None)], SUBPATHS).is_none());
         assert!((gain(&by_power(&[1.0]), None, 0) - 1.0).abs() < 1e-12);
     }
 }

@@ -1,79 +1,56 @@
-//! The first samples: of the full estimator, which traces every connection. They tell how bright the
-//! image is, and where vertices are.
+//! The samples of training: of `bdpt`, with a light subpath each, and every connection traced. They have random
+//! numbers of their own and are spread evenly over the film.
 
-use super::effort::Late;
-use super::extent::{Extent, work};
-use super::pilot;
-use super::probe::{Probe, groups, landed};
+use super::super::spread;
+use super::constants::{FIRST_SAMPLES, GROUPS};
+use super::effort::{Effort, IsLate};
+use super::extent;
+use super::learning::Found;
+use super::moments::{Term, Work};
 use super::{Settings, Task};
-use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Workspace, connectable};
-use crate::math::Vec3;
-use crate::path::{Cells, Connections, PairSums, PathContext};
+use crate::contribution::Contribution;
+use crate::integrator::{Integrator, IntegratorKind, LvcSettings, Sample, Workspace};
+use crate::path::{Connections, MisHeuristic, PathContext, PathDensities};
+use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
-use crate::select::ShadowRays;
+use crate::select::{LightVertex, ShadowRays};
 use crate::stats::Stats;
 use crate::view::View;
+use rayon::prelude::*;
+use std::ops::Range;
 
-/// Samples seldom cost so much where the length of paths is limited, or surfaces absorb something. Unit: as
-/// [`work`].
-const USUAL: f64 = 256.0;
-/// The same of samples that learn about connections.
-const USUAL_OF_LEARNING: f64 = 384.0;
-/// The first samples, by which the others are counted.
-const FIRST: u64 = 16;
-
-/// A light vertex that can be connected.
-#[derive(Clone, Copy)]
-pub(super) struct LightVertex {
-    /// Point and normal.
-    place: [Vec3; 2],
-    /// The light that its subpath begins on.
-    light: u32,
-}
-
-/// What the samples of every connection found.
+/// The results of the samples.
 #[derive(Default)]
 pub(super) struct Survey {
     /// The sum of luminances that samples add to the mean pixel.
     pub(super) luminance: f64,
-    /// The light vertices that can be connected.
-    pub(super) light: Vec<LightVertex>,
-    /// The camera vertices that can be, by their points.
-    camera: Vec<Vec3>,
+    /// The contributions to the image.
+    pub(super) terms: Vec<Term>,
+    pub(super) work: Work,
+    /// Vertices and connections, to learn from.
+    pub(super) found: Found,
     pub(super) stats: Stats,
-}
-
-/// How samples of every connection are taken.
-struct Full<'a> {
-    probe: Probe<'a>,
-    integrator: Box<dyn Integrator>,
+    /// True where there was no time for all samples.
+    pub(super) is_short: bool,
 }
 
 impl Survey {
-    pub(super) fn run(task: Task<'_>) -> Result<Self, Late> {
-        let full = Full::new(task);
-        let first = full.take(FIRST, 1)?;
-        let extent = Extent::new(USUAL, work(&first.stats) / FIRST as f64);
-        full.take(extent.groups(), extent.group())
-    }
-
-    /// A few samples, which take no time.
-    pub(super) fn short(scene: &Scene, view: &View, settings: &Settings) -> Self {
-        let task = Task {
-            scene,
-            view,
-            settings,
-            is_late: &|| false,
-        };
-        // It is never late.
-        Full::new(task).take(FIRST, 1).unwrap_or_default()
-    }
-
-    fn add(&mut self, group: Self, stats: &Stats) {
-        self.luminance += group.luminance;
-        self.light.extend(group.light);
-        self.camera.extend(group.camera);
-        self.stats += stats;
+    pub(super) fn run(task: Task<'_>, effort: Effort<'_>) -> Self {
+        let surveyor = Surveyor::new(task);
+        let first = surveyor.round(0..FIRST_SAMPLES, &|| false);
+        let mut survey = first.unwrap_or_default();
+        let wanted = extent::samples(extent::work(&survey.stats));
+        loop {
+            let count = survey.stats.samples;
+            survey.is_short = count < wanted;
+            if !survey.is_short || 2 * count > effort.samples {
+                return survey;
+            }
+            let Some(more) = surveyor.round(count..2 * count, effort.is_late) else {
+                return survey;
+            };
+            survey.add(more);
+        }
     }
 
     /// The number of samples.
@@ -81,115 +58,128 @@ impl Survey {
         self.stats.samples as f64
     }
 
-    /// How many samples connections are learnt from.
-    pub(super) fn extent_of_learning(&self) -> Extent {
-        let connected = 2 * u64::from(pilot::CANDIDATES) * self.stats.rays.camera;
-        let work = work(&self.stats) + connected as f64;
-        Extent::new(USUAL_OF_LEARNING, work / self.samples())
+    fn add(&mut self, more: Self) {
+        self.found.add(more.found, self.terms.len() as u32);
+        self.terms.extend(more.terms);
+        self.luminance += more.luminance;
+        self.work += more.work;
+        self.stats += &more.stats;
     }
 
-    /// How many samples compare plans.
-    pub(super) fn extent_of_trials(&self) -> Extent {
-        Extent::new(USUAL, work(&self.stats) / self.samples())
-    }
-
-    fn keep_vertices(&mut self, context: &PathContext<'_>, workspace: &Workspace) {
-        let light = &workspace.light.vertices;
-        let connectable = connectable(context.settings.light_point, light);
-        let vertex = |i: usize| {
-            Some(LightVertex {
-                place: light[i].place(),
-                light: light[0].light?,
-            })
+    /// Adds what the last sample left in `workspace`.
+    fn keep(&mut self, taken: (&PathContext<'_>, &Sample), workspace: &Workspace) {
+        let film = taken.0.view.film();
+        let [x, y] = taken.1.pixel.map(i64::from);
+        let own = film.crop.index(x, y).map(|pixel| (pixel, 1.0));
+        let mut densities = PathDensities::default();
+        let mut keep = |contribution: &Contribution, by: LightVertex, landed| {
+            let shares = workspace.shares(taken, contribution, by, &mut densities)?;
+            let term = Term::new(taken.0, contribution, landed?, shares);
+            self.luminance += term.of_mean_pixel(film);
+            self.terms.push(term);
+            Some(self.terms.len() as u32 - 1)
         };
-        self.light.extend(connectable.filter_map(vertex));
-        let camera = workspace.camera.vertices.iter().skip(1);
-        let camera = camera.filter(|y| !y.is_delta());
-        self.camera.extend(camera.map(|y| y.locus.point));
-    }
-
-    /// Cells that suit the vertices.
-    pub(super) fn cells(&self) -> Cells {
-        let light = self.light.iter().map(|vertex| vertex.place[0]);
-        let mut points: Vec<_> = light.chain(self.camera.iter().copied()).collect();
-        Cells::new(&mut points)
-    }
-
-    /// How many light vertices each cell has where a light begins `gain` times as many subpaths as here.
-    pub(super) fn pair_sums(&self, cells: &Cells, gain: impl Fn(u32) -> f64) -> PairSums {
-        let mut light_vertices = vec![0.0; Cells::COUNT];
-        for vertex in &self.light {
-            let [point, n] = vertex.place;
-            light_vertices[cells.of(point, n).index()] += gain(vertex.light) / self.samples();
+        let hits = workspace.contributions.iter();
+        for hit in hits.filter(|contribution| contribution.term.strategy.s == 0) {
+            keep(hit, LightVertex::Own, own);
         }
-        PairSums::uniform(light_vertices)
+        for splat in &workspace.splats {
+            let landed = film.pick_pixel(splat.place);
+            keep(&splat.contribution, LightVertex::Own, landed);
+        }
+        let connections = workspace.connections();
+        let terms = connections.map(|(candidate, arrived)| {
+            arrived.and_then(|contribution| keep(contribution, candidate.light_vertex, own))
+        });
+        let terms: Vec<_> = terms.collect();
+        self.found.keep(taken.0, workspace, &terms);
     }
 }
 
-impl<'a> Full<'a> {
+/// Takes the samples.
+struct Surveyor<'a> {
+    scene: &'a Scene,
+    view: &'a View,
+    settings: Settings,
+    integrator: Box<dyn Integrator>,
+}
+
+impl<'a> Surveyor<'a> {
     fn new(task: Task<'a>) -> Self {
-        let probe = Probe {
-            scene: task.scene,
-            view: task.view,
-            settings: task.settings,
-            connections: Connections::ONE_SUBPATH,
-            is_late: task.is_late,
-            extent: Extent::new(USUAL, 0.0),
-            first: 0,
-            pixels: u64::MAX,
-        };
+        let mut settings = task.settings.clone();
+        // Shares of paths are those of these weights.
+        settings.path.mis = MisHeuristic::Balance;
         let all = ShadowRays::All.selector(0.0);
         Self {
-            probe,
+            scene: task.scene,
+            view: task.view,
+            settings,
             integrator: IntegratorKind::Bdpt.integrator(all, &LvcSettings::default()),
         }
     }
 
-    /// Takes the first samples, in so many groups of `size`.
-    fn take(&self, count: u64, size: u64) -> Result<Survey, Late> {
-        let groups = groups(count, self.probe.is_late, |group, workspace| {
+    /// Takes samples in groups, whose results are in order whichever threads had them. None: it became late.
+    fn round(&self, numbers: Range<u64>, is_late: IsLate<'_>) -> Option<Survey> {
+        let count = numbers.end - numbers.start;
+        let size = (count / GROUPS).max(1);
+        let groups = (0..count / size).into_par_iter();
+        let found = groups.map_init(Workspace::default, |workspace, group| {
+            if is_late() {
+                return None;
+            }
+            let begin = numbers.start + group * size;
             let mut survey = Survey::default();
-            for number in group * size..(group + 1) * size {
+            for number in begin..begin + size {
                 self.sample(number, workspace, &mut survey);
             }
-            survey
-        })?;
+            survey.stats = std::mem::take(&mut workspace.stats);
+            Some(survey)
+        });
+        let found: Vec<Survey> = found.collect::<Option<_>>()?;
         let mut all = Survey::default();
-        for (group, stats) in groups {
-            all.add(group, &stats);
+        for group in found {
+            all.add(group);
         }
-        Ok(all)
+        Some(all)
     }
 
     fn sample(&self, number: u64, workspace: &mut Workspace, survey: &mut Survey) {
-        let sample = self.probe.sample(number);
-        let context = self.probe.context(&sample);
+        let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
+        let camera = sampler.stream(Domain::TrainingCamera, number, 0);
+        let sample = Sample {
+            pass: 0,
+            pixel: spread::point(&self.view.film().crop, number),
+            ray: camera,
+            camera,
+            light: sampler.stream(Domain::TrainingLight, 0, number),
+        };
+        let connections = Connections::ONE_SUBPATH;
+        let context = sample.context(self.scene, self.view, &self.settings.path, connections);
+        let before = workspace.stats.rays.camera;
         self.integrator.sample(&context, &sample, workspace);
-        let splats: f64 = landed(&context, workspace).map(|splat| splat.value).sum();
-        let own = f64::from(context.luminance(workspace.value));
-        let pixels = context.view.film().crop.area() as f64;
-        survey.luminance += own + splats / pixels;
-        survey.keep_vertices(&context, workspace);
+        survey.keep((&context, &sample), workspace);
+        let rays = workspace.stats.rays.camera - before;
+        survey.work.add(workspace, rays as usize);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::driver::training::trial::tests::{lamp, view};
+    use crate::driver::training::tests::{lamp, view};
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
     use crate::film::{FilmSettings, Filter};
     use crate::light::{Light, PointLight};
     use crate::material::Material;
-    use crate::math::Affine3A;
+    use crate::math::{Affine3A, Vec3};
     use crate::path::{MAX_VERTICES, PathSettings};
     use crate::scene::SceneBuilder;
     use crate::shape::{Orientation, Shape, Sphere};
     use crate::spectrum::luminance;
     use crate::texture::ColorTexture;
 
-    /// A camera and a lamp in a white sphere: no walk ends before it is as long as any may be.
+    /// A lamp in a white sphere: no walk ends before it is as long as any may be.
     fn white_room() -> Scene {
         let mut builder = SceneBuilder::new();
         let white = builder.material(Material::Diffuse {
@@ -206,10 +196,8 @@ mod tests {
 
     #[test]
     fn where_walks_do_not_end_samples_and_training_do() {
-        let (scene, view) = (
-            white_room(),
-            crate::testing::view(FilmSettings::new([8; 2], Filter::default())),
-        );
+        let film = FilmSettings::new([8; 2], Filter::default());
+        let (scene, view) = (white_room(), crate::testing::view(film));
         let settings = Settings {
             path: PathSettings {
                 max_depth: None,
@@ -217,21 +205,18 @@ mod tests {
             },
             ..Settings::default()
         };
-        let count = 4;
         let task = Task {
             scene: &scene,
             view: &view,
             settings: &settings,
-            is_late: &|| false,
         };
-        let survey = Full::new(task).take(count, 1).expect("nothing is late");
-        let longest = count * (MAX_VERTICES as u64 - 1);
+        let survey = Survey::run(task, Effort::WHOLE);
+        let longest = survey.stats.samples * (MAX_VERTICES as u64 - 1);
         assert_eq!(survey.stats.rays.camera, longest);
         // All pairs are half a million.
-        let of_sample = work(&survey.stats) / survey.samples();
+        let of_sample = extent::work(&survey.stats);
         assert!((20_000.0..40_000.0).contains(&of_sample), "{of_sample}");
-        let [learning, trials] = [survey.extent_of_learning(), survey.extent_of_trials()];
-        assert_eq!([learning, trials].map(Extent::samples), [64; 2]);
+        assert_eq!((survey.stats.samples, survey.is_short), (64, false));
     }
 
     /// Compares the mean of training with that of the image by these strategies.

@@ -1,84 +1,153 @@
 use super::*;
+use crate::camera::{Camera, Perspective, PerspectiveSettings};
 use crate::driver::{Resources, Session};
-use crate::film::PixelRect;
-use trial::tests::{sphere, view};
+use crate::film::{FilmSettings, Filter, FilterKind, PixelRect};
+use crate::light::EmissionSides;
+use crate::material::Material;
+use crate::math::{Affine3A, Vec2, Vec3};
+use crate::scene::{Emission, SceneBuilder};
+use crate::shape::{Orientation, Shape, Sphere};
+use crate::texture::ColorTexture;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What `auto` renders a black sphere with.
-fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
-    let view = view(PixelRect {
-        min: [0; 2],
-        max: [16; 2],
-    });
-    let scene = sphere(z, radiance);
-    let mut settings = Settings::default();
-    settings.set_integrator(IntegratorKind::Auto);
-    let task = Task {
-        scene: &scene,
-        view: &view,
-        settings: &settings,
-        is_late: &|| false,
+pub(super) const WHOLE: PixelRect = PixelRect {
+    min: [0; 2],
+    max: [16; 2],
+};
+
+/// A camera that looks along z, for a film of 16 x 16 of which a crop is rendered.
+pub(super) fn view(crop: PixelRect) -> View {
+    let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
+    let film = FilmSettings {
+        crop,
+        ..FilmSettings::new([16; 2], filter)
     };
-    let (plan, training) = Training::plan(task).expect("nothing is late");
-    assert_eq!(training.plan, Some(plan));
-    plan.integrator
+    let camera = Perspective::new(&PerspectiveSettings {
+        world_from_camera: Affine3A::IDENTITY,
+        resolution: Vec2::splat(16.0),
+        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+        lens_radius: 0.1,
+        focal_distance: 2.0,
+    });
+    let camera = Camera::Perspective(camera.expect("a rigid camera"));
+    View::new(camera, film).expect("the film is not empty")
+}
+
+fn add_sphere(
+    builder: &mut SceneBuilder,
+    [z, radius, reflectance]: [f32; 3],
+    radiance: Option<[f32; 3]>,
+) {
+    let material = builder.material(Material::Diffuse {
+        reflectance: ColorTexture::Constant([reflectance; 3]),
+    });
+    let place = Affine3A::from_translation(Vec3::new(0.0, 0.0, z));
+    let sphere = Shape::Sphere(Sphere::new(place, radius, Orientation::Natural));
+    let light = radiance.map(|radiance| Emission {
+        radiance,
+        pattern: None,
+        sides: EmissionSides::Front,
+    });
+    builder.shape(sphere, material, light);
+}
+
+/// A black sphere of this radiance, at this place before the camera.
+fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
+    let mut builder = SceneBuilder::new();
+    add_sphere(&mut builder, [z, 1.5, 0.0], radiance);
+    builder.build().expect("the scene is valid")
+}
+
+/// A black lamp before nothing.
+pub(super) fn lamp() -> Scene {
+    sphere(3.0, Some([2.0; 3]))
+}
+
+/// A lamp and a grey ball in a grey sphere.
+pub(super) fn room() -> Scene {
+    let mut builder = SceneBuilder::new();
+    add_sphere(&mut builder, [0.0, 6.0, 0.6], None);
+    add_sphere(&mut builder, [3.5, 1.0, 0.4], None);
+    add_sphere(&mut builder, [-3.0, 1.0, 0.0], Some([5.0; 3]));
+    builder.build().expect("the scene is valid")
+}
+
+/// The estimator that `auto` takes for a black sphere.
+fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
+    let scene = sphere(z, radiance);
+    let settings = Settings::new(IntegratorKind::Auto);
+    let (decided, training) = prepare(&scene, &view(WHOLE), settings, Effort::WHOLE);
+    let plan = training.and_then(|training| training.plan);
+    assert_eq!(plan.map(|plan| plan.integrator), Some(decided.integrator));
+    decided.integrator
 }
 
 #[test]
 fn without_lights_and_where_none_is_found_there_is_a_plan() {
     assert_eq!(planned(3.0, Some([2.0; 3])), IntegratorKind::Path);
     assert_eq!(planned(3.0, None), IntegratorKind::Path);
-    // Behind the camera: what nothing found yet is found by what makes most paths.
+    // Behind the camera: where nothing was found, the plan is the one that makes most paths.
     assert_eq!(planned(-9.0, Some([2.0; 3])), IntegratorKind::Lvc);
 }
 
 /// A thread keeps the subpaths of 2048 samples: of the longest ones there are fewer.
 #[test]
 fn long_light_subpaths_are_few() {
-    let view = view(PixelRect {
-        min: [0; 2],
-        max: [16; 2],
-    });
     let scene = sphere(3.0, None);
-    let mut training = Training::of(&Survey::short(&scene, &view, &Settings::default()));
+    let settings = Settings::new(IntegratorKind::Lvc);
+    let task = Task {
+        scene: &scene,
+        view: &view(WHOLE),
+        settings: &settings,
+    };
+    let mut training = Training::new(&Survey::run(task, Effort::at_most(16)));
+    let film = FilmSettings::new([1024; 2], Filter::default());
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
-        let samples = training.samples_per_subpath(1 << 20, SamplesPerSubpath::default());
-        assert_eq!(samples.get(), expected, "{rays}");
+        let mut settings = settings.clone();
+        training.bound_cache(&film, &mut settings);
+        let samples = settings.lvc.samples_per_subpath.get();
+        assert_eq!(samples, expected, "{rays}");
         assert!(2048.0 / f64::from(expected) * rays <= MOST_CACHED);
     }
 }
 
-/// A pass of a sphere with some effort, and whether training was cut short.
-fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, bool) {
-    let view = view(PixelRect {
-        min: [0; 2],
-        max: [16; 2],
-    });
-    let scene = sphere(3.0, Some([2.0; 3]));
-    let mut settings = Settings::default();
-    settings.set_integrator(integrator);
-    let session = Session::with_effort(&scene, &view, settings, &Resources::default(), effort);
+/// A pass of a sphere with some effort, and the samples of training.
+fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, u64) {
+    let settings = Settings::new(integrator);
+    let scene = room();
+    let session = Session::with_effort(
+        &scene,
+        &view(WHOLE),
+        settings,
+        &Resources::default(),
+        effort,
+    );
     let mut session = session.expect("the film is small");
     session.step(&());
     let pixels = session.film().develop().pixels;
     let bits = pixels.iter().map(|pixel| pixel.map(f32::to_bits));
     let training = session.training().expect("there is some");
-    (bits.collect(), training.is_short)
+    assert_eq!(training.is_short, training.samples < 1 << 14);
+    (bits.collect(), training.samples)
 }
 
-/// It depends on no clock how far training came.
+/// It depends on no clock what training found, once its number of samples is known.
 #[test]
-fn late_training_is_as_if_it_had_been_short_from_the_first() {
+fn training_that_ends_late_is_training_with_as_many_samples() {
+    let asked = AtomicU64::new(0);
     for integrator in [IntegratorKind::Lvc, IntegratorKind::Auto] {
-        let [short, late, last, whole] = [
-            Effort::Short,
-            Effort::Until(&|| true),
-            Effort::Until(&|| false),
-            Effort::Whole,
-        ]
-        .map(|effort| rendered(integrator, effort));
-        assert_eq!(late, short, "{integrator:?}");
-        assert_eq!(last, whole, "{integrator:?}");
-        assert!(short.1 && !whole.1, "{integrator:?}");
+        for (questions, expected) in [(0, 16), (70, 64), (1 << 20, 1 << 14)] {
+            asked.store(0, Ordering::Relaxed);
+            let effort = Effort {
+                samples: u64::MAX,
+                is_late: &|| asked.fetch_add(1, Ordering::Relaxed) >= questions,
+            };
+            let late = rendered(integrator, effort);
+            assert_eq!(late.1, expected, "{integrator:?}");
+            assert_eq!(late, rendered(integrator, Effort::at_most(expected)));
+        }
+        let limited = [31, 16, 0].map(|samples| rendered(integrator, Effort::at_most(samples)).1);
+        assert_eq!(limited, [16; 3]);
     }
 }

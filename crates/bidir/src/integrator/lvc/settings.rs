@@ -1,7 +1,6 @@
 //! How a light vertex cache is made and used.
 
 use crate::names::{as_text, named};
-use crate::path::MisCount;
 use std::fmt;
 use std::str::FromStr;
 
@@ -18,8 +17,6 @@ pub struct LvcSettings {
     pub light_start: LightStart,
     /// How many samples bring one light subpath to the cache.
     pub samples_per_subpath: SamplesPerSubpath,
-    /// What weights take for the number of samples of a strategy.
-    pub mis_count: MisCount,
 }
 
 impl Default for LvcSettings {
@@ -30,7 +27,6 @@ impl Default for LvcSettings {
             proposal: ProposalKind::default(),
             light_start: LightStart::default(),
             samples_per_subpath: SamplesPerSubpath::default(),
-            mis_count: MisCount::default(),
         }
     }
 }

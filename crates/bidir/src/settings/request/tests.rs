@@ -1,7 +1,7 @@
 use super::super::Open;
 use super::*;
 
-const VALUES: [(&str, &str); 16] = [
+const VALUES: [(&str, &str); 15] = [
     ("integrator", "lvc"),
     ("max-depth", "7"),
     ("mis", "uniform"),
@@ -17,7 +17,6 @@ const VALUES: [(&str, &str); 16] = [
     ("proposal", "uniform"),
     ("light-start", "power"),
     ("samples-per-subpath", "4"),
-    ("mis-count", "correlated"),
 ];
 
 fn request(values: &[(&str, &str)]) -> Request {
@@ -78,13 +77,7 @@ fn choices_are_made_or_left_open() {
 #[test]
 fn settings_without_influence_are_named() {
     let ignored = |kind| request(&VALUES).ignored(&Settings::new(kind));
-    let of_cache = [
-        "candidates",
-        "light-start",
-        "mis-count",
-        "next-events",
-        "proposal",
-    ];
+    let of_cache = ["candidates", "light-start", "next-events", "proposal"];
     let of_path = [&of_cache[..], &["light-point", "shadow-rays", "strategies"]].concat();
     let of_light = [&of_path[..], &["light-choice", "mis"]].concat();
     let expected: [(_, &[&str]); 5] = [

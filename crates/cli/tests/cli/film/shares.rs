@@ -218,6 +218,33 @@ fn a_film_with_passes_outside_the_render_is_not_continued() {
     assert_eq!(fs::read(place.path("a.film")).unwrap(), before);
 }
 
+/// Training takes at most a tenth of the samples of the whole render, which is known to each of its parts.
+#[test]
+fn films_keep_the_training_that_they_began_with() {
+    let place = Workplace::new();
+    let render = "render room.pbrt -q --integrator lvc";
+    let run = |flags: &str| place.run(&format!("{render} {flags}")).expect(0);
+    let training = |film: &str| {
+        let info = place.run(&format!("film info {film} --json")).expect(0);
+        info.json()["settings"]["training"].clone()
+    };
+    run("--spp 40 -o whole.exr --checkpoint whole.film");
+    assert_eq!(training("whole.film"), "1024");
+    run("--spp 40 --part 0/2 --checkpoint a.film");
+    run("--spp 40 --part 1/2 --checkpoint b.film");
+    let merge = "merge a.film b.film -o parts.film --image parts.exr";
+    place.run(merge).expect(0);
+    place.expect_same("whole.exr", "parts.exr");
+    // Whatever the limits of later runs, they repeat the training of the first.
+    for (first, samples) in [("--spp 2", "64"), ("--time 0.000001 --spp 40", "16")] {
+        run(&format!("{first} --checkpoint c.film --restart"));
+        for later in ["--spp 3", "--spp 40 --time 99"] {
+            run(&format!("{later} --checkpoint c.film --resume"));
+            assert_eq!(training("c.film"), samples, "{first}, {later}");
+        }
+    }
+}
+
 #[test]
 fn an_image_has_the_attributes_of_all_runs_by_any_command() {
     let place = Workplace::new();

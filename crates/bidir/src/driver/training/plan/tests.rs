@@ -7,9 +7,9 @@ fn open() -> Settings {
 }
 
 #[test]
-fn every_plan_is_open_where_nothing_is_named() {
-    assert_eq!(open_plans(&open()), PLANS);
-    for plan in PLANS {
+fn plans_are_applied_where_nothing_is_named() {
+    for (plan, _) in PLANS {
+        assert_eq!(plan.keeping(&open()), plan);
         let applied = plan.apply(&open());
         assert_eq!(applied.integrator, plan.integrator);
         assert_eq!(plan.keeping(&applied), plan);
@@ -17,7 +17,7 @@ fn every_plan_is_open_where_nothing_is_named() {
 }
 
 #[test]
-fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
+fn settings_that_are_named_stay() {
     let request = Request {
         path_roulette: Some(Choice::Fixed(PathRoulette::Off)),
         shadow_rays: Some(Choice::Fixed(ShadowRays::PerPair)),
@@ -25,11 +25,8 @@ fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
         ..Request::default()
     };
     let settings = request.apply(&open());
-    let plans = open_plans(&settings);
-    // Path tracing, bidirectional path tracing, and three numbers of samples for a light subpath.
-    assert_eq!(plans.len(), 5, "{plans:?}");
-    for plan in plans {
-        let applied = plan.apply(&settings);
+    for (plan, _) in PLANS {
+        let applied = plan.keeping(&settings).apply(&settings);
         assert_eq!(applied.path.roulette, PathRoulette::Off);
         assert_eq!(applied.shadow_rays, ShadowRays::PerPair);
         assert_eq!(applied.lvc.candidates, settings.lvc.candidates);
@@ -37,10 +34,11 @@ fn what_is_named_stays_and_plans_that_differ_by_it_alone_are_one() {
 }
 
 #[test]
-fn a_plan_is_what_the_estimator_does_by_default() {
-    let mut settings = Settings::default();
-    settings.set_integrator(LVC.integrator);
-    assert_eq!(LVC.keeping(&settings), LVC);
-    assert_eq!(LVC.roulette, settings.path.roulette);
+fn plans_are_what_estimators_do_by_default() {
+    for plan in [BDPT, LVC] {
+        let settings = Settings::new(plan.integrator);
+        assert_eq!(plan.keeping(&settings), plan);
+    }
+    let settings = Settings::new(LVC.integrator);
     assert_eq!(LVC.samples_per_subpath, settings.lvc.samples_per_subpath);
 }

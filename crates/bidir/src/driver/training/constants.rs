@@ -1,0 +1,52 @@
+//! The numbers of training and of `auto`. Their sources are measurements (docs/performance.md) where no other
+//! is given.
+
+/// The most samples of the survey: the mean luminance is then within a few percent in most scenes, and four
+/// times as many change variances by 3 % at most. Unit: samples, a power of two.
+pub(super) const MOST_SAMPLES: u64 = 1 << 14;
+/// Nothing is learned about connections from fewer. Unit: samples, a power of two.
+pub(super) const LEAST_SAMPLES: u64 = 1 << 6;
+/// The first samples, whose work decides how many follow. Unit: samples, a power of two.
+pub(super) const FIRST_SAMPLES: u64 = 1 << 4;
+/// Groups of samples for the threads to share. Unit: groups in a round of the survey.
+pub(super) const GROUPS: u64 = 64;
+/// The work of a sample beyond which there are fewer: samples of most scenes stay below. Unit: rays and
+/// connections.
+pub(super) const USUAL_WORK: f64 = 256.0;
+
+/// Blocks along each side of the film, of each of which variances are relative to the mean.
+pub(super) const BLOCKS_PER_SIDE: usize = 16;
+/// ε relative to the square of the image's mean: bounds what dark blocks count.
+pub(super) const DARK: f64 = 0.01;
+
+/// `path` may cost so many times as much as `lvc`, whose pixels share noise: 1.1 to 1.25 are equally good in 39
+/// scenes.
+pub(super) const PATH_ALLOWANCE: f64 = 1.1;
+/// `bdpt` may cost so many times as much as `lvc`, whose second moment lacks the gain by learned proposals: 0.8
+/// to 0.9 are equally good in 39 scenes.
+pub(super) const BDPT_ALLOWANCE: f64 = 0.85;
+/// The least albedo that a second moment is divided by: bounds rare dark paths.
+pub(super) const LEAST_ALBEDO: f32 = 1e-3;
+/// The least share of a path that a second moment is divided by: what a plan misses makes it very bad, not
+/// infinitely so.
+pub(super) const LEAST_SHARE: f64 = 1e-9;
+
+/// The cost of a ray of a camera walk whose vertices are connected with shared light subpaths. Unit of this
+/// and the next four, which fit the times of 41 scenes to 7 %: a ray of path tracing's walk.
+pub(super) const CONNECTED_CAMERA_RAY: f64 = 1.8;
+/// The cost of a ray of a light walk, with the light that it begins on.
+pub(super) const LIGHT_RAY: f64 = 1.75;
+/// The cost of a connection ray.
+pub(super) const CONNECTION_RAY: f64 = 0.55;
+/// The cost of a candidate.
+pub(super) const CANDIDATE: f64 = 0.4;
+/// The cost of a light image, with its ray.
+pub(super) const LIGHT_IMAGE: f64 = 1.0;
+
+/// The vertices of a light cache, of which each thread has one: 30 MB. Unit: vertices.
+pub(super) const MOST_CACHED: f64 = 131_072.0;
+/// The fraction of light subpaths that begin on a light by power: light that training missed costs at most ten
+/// times as much.
+pub(super) const POWER_FRACTION: f64 = 0.1;
+/// The strength of what is known of all lights beside what is learned of one. Unit: subpaths.
+pub(super) const LIGHT_PRIOR: f64 = 16.0;
