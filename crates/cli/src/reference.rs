@@ -12,7 +12,7 @@ use crate::signals::Signals;
 use crate::threads;
 use bidir::driver::{Progress, Resources, SessionError};
 use bidir::film::PixelRect;
-use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference, Subject};
+use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -176,13 +176,13 @@ impl Job<'_> {
             signals: self.signals,
         };
         let made = reference::make(self.folder, &subject, &self.plan, &resources, &watcher);
-        if let Ok(Made::Whole(_)) = made {
+        if let Ok(Some(_)) = made {
             watcher.reporter.complete();
         }
         watcher.reporter.finish();
         match made.map_err(failure)? {
-            Made::Whole(reference) => Ok(self.report(&reference)),
-            Made::Stopped => Ok(self.stopped()),
+            Some(reference) => Ok(self.report(&reference)),
+            None => Ok(self.stopped()),
         }
     }
 
@@ -248,9 +248,7 @@ impl Job<'_> {
             &agreement.blocks
         };
         let [left, top, right, bottom] = worst.block;
-        let channel = ["red", "green", "blue"][worst.channel % 3];
-        let means = worst.means.map(|mean| mean.unwrap_or(f64::NAN));
-        let [a, b] = means;
+        let ([a, b], channel) = (worst.means, worst.channel_name());
         self.console.warning(format_args!(
             "the estimators disagree, most in {channel} of the pixels {left},{top} to \
              {right},{bottom}: {a:.6e} and {b:.6e}; do not use this as ground truth"

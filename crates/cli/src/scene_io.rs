@@ -219,18 +219,15 @@ pub(crate) fn write_error_map(
     if Format::of(path) != Some(Format::Exr) {
         return write_screen(path, &errors.false_color(full));
     }
-    let [width, height] = errors.size;
     let data: Vec<f32> = errors.data.iter().map(|&error| error as f32).collect();
-    let layer = ExrLayer {
+    let layers = [ExrLayer {
         name: "",
         channels: &["Y"],
         data: &data,
-    };
+    }];
     let image = ExrImage {
-        resolution: errors.size,
-        crop: [0, 0, width, height],
-        layers: &[layer],
         metadata,
+        ..ExrImage::whole(errors.size, &layers)
     };
     Ok(formats::image::write_exr(path, &image)?)
 }

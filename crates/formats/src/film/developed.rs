@@ -57,11 +57,7 @@ impl Developed {
     }
 
     fn exr_layers(&self) -> Vec<ExrLayer<'_>> {
-        let picture = ExrLayer {
-            name: "",
-            channels: &["R", "G", "B"],
-            data: self.picture.pixels.as_flattened(),
-        };
+        let picture = ExrLayer::rgb("", &self.picture.pixels);
         let others = self.layers.iter().map(|layer| ExrLayer {
             name: &layer.name,
             channels: layer.channels,

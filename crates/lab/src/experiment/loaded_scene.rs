@@ -1,7 +1,6 @@
 //! A scene in memory, and its reference.
 
 use super::error::{ExperimentError, Place};
-use super::observer::{Event, Observer};
 use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
@@ -35,17 +34,6 @@ pub(super) struct Reference {
     pub(super) image: Option<String>,
     /// Its own mean square error. None: unknown.
     pub(super) mse: Option<f64>,
-    /// A warning about its files.
-    pub(super) warning: Option<String>,
-}
-
-impl Reference {
-    /// Passes its warning on to the observer.
-    pub(super) fn warn(&self, observer: &mut dyn Observer) {
-        if let Some(warning) = &self.warning {
-            observer.notify(Event::Warning(warning));
-        }
-    }
 }
 
 impl<'a> LoadedScene<'a> {

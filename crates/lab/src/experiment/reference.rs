@@ -9,7 +9,7 @@ use super::run_set::{Ready, Setup};
 use super::settings::texts;
 use super::{Absent, Experiment, Presence, ReferenceSpec};
 use crate::image::Pixels;
-use crate::reference::{self as references, Host, Made, Plan, Subject};
+use crate::reference::{self as references, Host, Plan, Subject};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
@@ -34,7 +34,6 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
             words: format!("the image {}", path.display()),
             image: None,
             mse: stored_mse(path),
-            warning: None,
         })),
         ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Ok(None),
     }
@@ -180,7 +179,6 @@ fn new(
 ) -> Result<Reference> {
     Ok(Reference {
         mse: reference.mse(),
-        warning: reference.warning(),
         words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
         pixels: finite(reference.picture, &reference.folder, loaded)?,
@@ -263,13 +261,7 @@ fn plan(
 
 /// Returns the folder of a reference within that of the results; its name contains a hash of the plan.
 fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
-    let settings = plan.estimators.each_ref().map(|settings| {
-        // The older name keeps existing folders valid.
-        let mut texts = texts(settings);
-        let start = texts.remove("light-start");
-        texts.extend(start.map(|start| ("emission".to_owned(), start)));
-        texts
-    });
+    let settings = plan.estimators.each_ref().map(texts);
     let [width, height] = loaded.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
@@ -293,7 +285,6 @@ fn make(
     let name = folder(loaded, plan);
     let path = setup.folder.join(&name);
     if let Ok(reference) = load(loaded, &path, Some(&name)) {
-        reference.warn(observer);
         return Ok(Some(reference));
     }
     let subject = Subject {
@@ -307,12 +298,12 @@ fn make(
     };
     let watch = Watch::new(loaded, plan, observer);
     let made = references::make(&path, &subject, plan, &resources, &watch);
-    let Made::Whole(reference) = made.map_err(|error| failed(loaded, error))? else {
+    let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
     let usable = reference.provenance.check_usable(&path);
     usable.map_err(|error| failed(loaded, error))?;
-    new(loaded, *reference, Some(&name)).map(Some)
+    new(loaded, reference, Some(&name)).map(Some)
 }
 
 /// Passes the progress of a reference on to an observer.

@@ -225,18 +225,9 @@ fn pixels(picture: &Picture) -> Pixels {
 
 /// Writes an image as EXR.
 pub(super) fn write_image(path: &Path, image: &Pixels) -> Result<(), ExperimentError> {
-    let layer = ExrLayer {
-        name: "",
-        channels: &["R", "G", "B"],
-        data: image.data.as_flattened(),
-    };
-    let exr = ExrImage {
-        resolution: image.size,
-        crop: [0, 0, image.size[0], image.size[1]],
-        layers: &[layer],
-        metadata: &[],
-    };
-    Ok(formats::image::write_exr(path, &exr)?)
+    let layers = [ExrLayer::rgb("", &image.data)];
+    let image = ExrImage::whole(image.size, &layers);
+    Ok(formats::image::write_exr(path, &image)?)
 }
 
 #[cfg(test)]
