@@ -225,13 +225,13 @@ impl Journal {
 
     /// Returns true if there is a record of the same run.
     pub(super) fn has_like(&self, record: &Record) -> bool {
-        self.records.iter().any(|other| {
-            let key = |record: &Record| {
-                let names = [&record.scene, &record.method, &record.budget].map(String::clone);
-                (record.seed, names)
-            };
-            key(other) == key(record)
-        })
+        let key = |of: &Record| {
+            (
+                of.seed,
+                [&of.scene, &of.method, &of.budget].map(String::clone),
+            )
+        };
+        self.records.iter().any(|other| key(other) == key(record))
     }
 
     pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {

@@ -5,6 +5,7 @@ use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
+use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
 use formats::scene::{Files, LoadOptions};
 use std::path::PathBuf;
@@ -86,6 +87,25 @@ impl<'a> LoadedScene<'a> {
     pub(super) fn has(&self, experiment: &Experiment, method: &MethodSpec) -> bool {
         let mut methods = experiment.methods_in(&self.spec.name);
         methods.any(|other| other.name == method.name)
+    }
+
+    /// Returns the settings of a method here.
+    ///
+    /// Errors: it is not bidirectional, so that it lacks the requested `figures`.
+    pub(super) fn bidirectional(
+        &self,
+        method: &MethodSpec,
+        figures: &'static str,
+    ) -> Result<Settings, ExperimentError> {
+        let settings = method.request.apply(&self.settings);
+        if settings.integrator == IntegratorKind::Bdpt {
+            return Ok(settings);
+        }
+        Err(ExperimentError::NotBidirectional {
+            scene: self.spec.name.clone(),
+            method: method.name.clone(),
+            figures,
+        })
     }
 
     /// Starts a session of this scene.

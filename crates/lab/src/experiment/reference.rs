@@ -7,7 +7,7 @@ use super::observer::{Event, Observer};
 use super::run::write_image;
 use super::run_set::{Ready, Setup};
 use super::settings::texts;
-use super::{Absent, Experiment, Presence, ReferenceSpec};
+use super::{Absent, Experiment, Presence, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
 use crate::reference::{self as references, Host, Plan, Subject};
 use crate::seal::sha256;
@@ -15,7 +15,6 @@ use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
-use bidir::settings::Request;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -35,7 +34,7 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
             image: None,
             mse: stored_mse(path),
         })),
-        ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Ok(None),
+        ReferenceSpec::Make(_) | ReferenceSpec::Of(_) => Ok(None),
     }
 }
 
@@ -112,16 +111,8 @@ fn obtain(
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     match (&loaded.spec.reference, given) {
-        (
-            ReferenceSpec::Make {
-                spp,
-                request,
-                cross_check,
-            },
-            _,
-        ) => {
-            let plan = plan(loaded, *spp, request, *cross_check);
-            make(loaded, &plan, setup, threads, observer)
+        (ReferenceSpec::Make(recipe), _) => {
+            make(loaded, &plan(loaded, recipe), setup, threads, observer)
         }
         (ReferenceSpec::Existing(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
@@ -152,13 +143,9 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     match &loaded.spec.reference {
         ReferenceSpec::Existing(_) => vec![setup.folder.join(copy(loaded))],
         ReferenceSpec::Of(_) => Vec::new(),
-        ReferenceSpec::Make {
-            spp,
-            request,
-            cross_check,
-        } => {
-            let plan = plan(loaded, *spp, request, *cross_check);
-            references::files(&setup.folder.join(folder(loaded, &plan)))
+        ReferenceSpec::Make(recipe) => {
+            let folder = folder(loaded, &plan(loaded, recipe));
+            references::files(&setup.folder.join(folder))
         }
     }
 }
@@ -238,13 +225,9 @@ fn stored_mse(path: &Path) -> Option<f64> {
 /// the same strategies and other weights: those of the power heuristic. Uniform weights would differ more,
 /// but their variance is infinite near edges, and the skewed mean would fail the test more often than its
 /// level.
-fn plan(
-    loaded: &LoadedScene<'_>,
-    spp: u64,
-    request: &Request,
-    named: Option<IntegratorKind>,
-) -> Plan {
-    let mut plan = Plan::with_defaults(&loaded.settings, spp);
+fn plan(loaded: &LoadedScene<'_>, recipe: &ReferenceRecipe) -> Plan {
+    let (request, named) = (&recipe.request, recipe.cross_check);
+    let mut plan = Plan::with_defaults(&loaded.settings, recipe.spp);
     let of_picture = request.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();
     let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));
