@@ -294,12 +294,14 @@ def render(
     limit = spp if spp is not None else None if open_end else session.scene.spp
     if limit is not None and limit < 1:
         raise SettingsError(f"spp: {limit} is below 1")
-    budget = _Budget(limit, time, noise)
+    reached = session._native.reached
     keeper = _Keeper(session, checkpoint, checkpoint_every, limit)
+    begin, rendered = clock.monotonic(), 0
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
-            while budget.allows(session):
+            while not (end := reached(limit, time, noise, rendered, clock.monotonic() - begin)):
                 session.step()
+                rendered += 1
                 reporter.advance(1)
                 keeper.now_and_then()
         except KeyboardInterrupt as error:
@@ -308,39 +310,9 @@ def render(
             image = session.snapshot() if session.passes else None
             done = session.next_pass
             raise RenderInterruptedError(f"stopped after {done} passes", image) from error
-    session._stopping = budget.stopping
+    session._stopping = end
     keeper.save()
     return session.snapshot()
-
-
-class _Budget:
-    """The limits of a render: decides if another pass is rendered; there is always a first one."""
-
-    def __init__(self, spp: int | None, time: float | None, noise: float | None) -> None:
-        self._spp, self._time, self._noise = spp, time, noise
-        self._begin = clock.monotonic()
-        self._rendered = 0
-        self.stopping = "fixed"
-
-    def allows(self, session: Session) -> bool:
-        passes = session.next_pass
-        if self._spp is not None and passes >= self._spp:
-            return False
-        if self._is_over():
-            self.stopping = "time"
-            return False
-        if self._noise is not None and session._native.looks_at_noise and session.noise <= self._noise:
-            self.stopping = "noise"
-            return False
-        self._rendered += 1
-        return True
-
-    def _is_over(self) -> bool:
-        if self._time is None or self._rendered == 0:
-            return False
-        elapsed = clock.monotonic() - self._begin
-        # The next pass is expected to take the mean time of earlier ones.
-        return elapsed + elapsed / max(self._rendered, 1) > self._time
 
 
 class _Keeper:

@@ -3,7 +3,6 @@
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
 use crate::exit::{Exit, Failure};
-use crate::film_header;
 use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
@@ -37,7 +36,7 @@ impl Training {
     pub(crate) fn new(time: Option<Duration>, earlier: Option<&FilmHeader>) -> Self {
         let end = time.and_then(|time| Instant::now().checked_add(time.saturating_add(GRACE)));
         match (earlier, end) {
-            (Some(earlier), _) if film_header::is_short(earlier) => Self::Short,
+            (Some(earlier), _) if formats::film::is_short(earlier) => Self::Short,
             (None, Some(end)) => Self::By(end),
             (Some(_), _) | (None, None) => Self::Whole,
         }

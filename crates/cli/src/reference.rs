@@ -7,10 +7,10 @@ use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::progress::{Clock, Reporter};
 use crate::scene_io::{self, LoadedScene};
-use crate::settings::{self, Budget};
+use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
-use bidir::driver::{Progress, Resources, SessionError};
+use bidir::driver::{Budget, Progress, Resources, SessionError};
 use bidir::film::PixelRect;
 use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
@@ -205,10 +205,8 @@ impl Job<'_> {
         let start = Instant::now();
         Clock {
             budget: Budget {
-                first: 0,
                 passes: Some(self.plan.rounded_spp().saturating_mul(2)),
-                time: None,
-                noise: None,
+                ..Budget::default()
             },
             samples_per_pass: self.loaded.scene.film().crop.area(),
             start,

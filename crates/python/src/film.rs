@@ -172,7 +172,7 @@ impl Film {
             }),
             Some(Format::Png) => beside(py, || {
                 let picture = film.develop();
-                let size = [picture.width as u32, picture.height as u32];
+                let size = [picture.width, picture.height];
                 write_png(&path, size, &picture.pixels)
             }),
             _ => {

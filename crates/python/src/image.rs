@@ -54,9 +54,7 @@ pub(crate) fn write_image(
             let layers = [ExrLayer::rgb("", &pixels.data)];
             write_exr(&path, &ExrImage::whole(size, &layers))
         }),
-        Some(Format::Png) => beside(py, || {
-            write_png(&path, size.map(|side| side as u32), &pixels.data)
-        }),
+        Some(Format::Png) => beside(py, || write_png(&path, size, &pixels.data)),
         _ => {
             let message = format!(
                 "cannot write `{}`: output images are .exr or .png",

@@ -2,7 +2,6 @@
 
 use crate::error::of_file;
 use crate::film::{Inputs, absolute};
-use crate::settings;
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
 use formats::scene::{Crop, Files, InMemory, LoadOptions, Summary, load_from};
@@ -81,7 +80,7 @@ impl Scene {
         let loaded = wait_silently(py, |_| load_from(&path, &options, &files))?;
         let loaded = loaded.map_err(|error| of_file(py, &error))?;
         Ok(Self {
-            settings: settings::of_scene(&loaded.settings),
+            settings: loaded.settings.render_settings(),
             shared: Arc::new(loaded.scene),
             name: path.display().to_string(),
             digest: loaded.digest.to_string(),

@@ -5,7 +5,7 @@ use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
-use bidir::driver::{self, Progress, Resources};
+use bidir::driver::{self, Budget, Progress, Resources, Spent};
 use bidir::film::FilmError;
 use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
 use pyo3::prelude::*;
@@ -209,10 +209,38 @@ impl Session {
         self.with(py, |state| state.session.noise())
     }
 
-    /// Returns true if a render with a noise target checks the noise before the next pass.
-    #[getter]
-    fn looks_at_noise(&self, py: Python<'_>) -> bool {
-        driver::Session::looks_at_noise(self.next_pass(py))
+    /// Returns the rule that ends a render with these limits before its next pass; None if there is one.
+    /// `rendered`: the passes so far, which took `seconds`.
+    fn reached(
+        &self,
+        py: Python<'_>,
+        spp: Option<u64>,
+        time: Option<f64>,
+        noise: Option<f64>,
+        rendered: u64,
+        seconds: f64,
+    ) -> Option<&'static str> {
+        let duration = |seconds: f64| {
+            let longest = if seconds > 0.0 {
+                Duration::MAX
+            } else {
+                Duration::ZERO
+            };
+            Duration::try_from_secs_f64(seconds).unwrap_or(longest)
+        };
+        let budget = Budget {
+            first: 0,
+            passes: spp,
+            time: time.map(duration),
+            noise,
+        };
+        let spent = Spent {
+            passes: rendered,
+            total: duration(seconds),
+            rendering: duration(seconds),
+        };
+        let limit = self.with(py, |state| budget.reached(&state.session, spent));
+        limit.map(|limit| Stopping::from(limit).name())
     }
 
     /// Returns the number of threads.

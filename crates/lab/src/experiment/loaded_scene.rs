@@ -5,6 +5,7 @@ use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
+use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
 use formats::scene::{Files, LoadOptions};
@@ -57,16 +58,15 @@ impl<'a> LoadedScene<'a> {
         };
         let loaded = formats::scene::load_from(&spec.path, &options, files);
         let loaded = loaded.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
-        let mut settings = Settings {
-            sampler: loaded.settings.sampler,
-            ..Settings::default()
-        };
-        settings.set_integrator(loaded.settings.integrator);
-        settings.path.max_depth = Some(loaded.settings.max_depth);
         Ok(Self {
             spec,
             scene: loaded.scene,
-            settings,
+            // The experiment sets the seeds, and needs no layers.
+            settings: Settings {
+                seed: 0,
+                layers: Layers::default(),
+                ..loaded.settings.render_settings()
+            },
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
             files: loaded.files,
