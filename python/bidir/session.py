@@ -294,12 +294,12 @@ def render(
     limit = spp if spp is not None else None if open_end else session.scene.spp
     if limit is not None and limit < 1:
         raise SettingsError(f"spp: {limit} is below 1")
-    reached = session._native.reached
+    limits = {"spp": limit, "time": time, "noise": noise}
     keeper = _Keeper(session, checkpoint, checkpoint_every, limit)
     begin, rendered = clock.monotonic(), 0
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
-            while not (end := reached(limit, time, noise, rendered, clock.monotonic() - begin)):
+            while not (end := session._native.reached(limits, rendered, clock.monotonic() - begin)):
                 session.step()
                 rendered += 1
                 reporter.advance(1)

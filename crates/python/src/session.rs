@@ -21,6 +21,28 @@ pub(crate) struct Session {
     threads: usize,
 }
 
+/// The limits of a render.
+#[derive(Clone, Copy, FromPyObject)]
+struct Limits {
+    #[pyo3(item)]
+    spp: Option<u64>,
+    /// Unit: seconds.
+    #[pyo3(item)]
+    time: Option<f64>,
+    #[pyo3(item)]
+    noise: Option<f64>,
+}
+
+/// Returns a time as near to `seconds` as there is.
+fn duration(seconds: f64) -> Duration {
+    let nearest = if seconds > 0.0 {
+        Duration::MAX
+    } else {
+        Duration::ZERO
+    };
+    Duration::try_from_secs_f64(seconds).unwrap_or(nearest)
+}
+
 struct State {
     session: driver::Session<'static>,
     /// The header of an empty film.
@@ -214,25 +236,15 @@ impl Session {
     fn reached(
         &self,
         py: Python<'_>,
-        spp: Option<u64>,
-        time: Option<f64>,
-        noise: Option<f64>,
+        limits: Limits,
         rendered: u64,
         seconds: f64,
     ) -> Option<&'static str> {
-        let duration = |seconds: f64| {
-            let longest = if seconds > 0.0 {
-                Duration::MAX
-            } else {
-                Duration::ZERO
-            };
-            Duration::try_from_secs_f64(seconds).unwrap_or(longest)
-        };
         let budget = Budget {
             first: 0,
-            passes: spp,
-            time: time.map(duration),
-            noise,
+            passes: limits.spp,
+            time: limits.time.map(duration),
+            noise: limits.noise,
         };
         let spent = Spent {
             passes: rendered,

@@ -336,7 +336,7 @@ impl Parameters<'_, '_, '_> {
     fn substitute(&mut self, kind: &str) -> Result<Material, Fault> {
         let span = self.reader.span();
         let what = format!("the material `{kind}`");
-        let context = &mut self.reader.context;
+        let context = &mut *self.reader.context;
         if kind == "subsurface" {
             context.unsupported(
                 span,
