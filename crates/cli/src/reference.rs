@@ -10,7 +10,7 @@ use crate::scene_io::{self, LoadedScene};
 use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
-use bidir::driver::{Budget, Progress, Resources, SessionError};
+use bidir::driver::{Budget, Resources, SessionError};
 use bidir::film::PixelRect;
 use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
@@ -171,15 +171,17 @@ impl Job<'_> {
             ..Resources::default()
         };
         let display = self.console.display(self.args.talk);
-        let watcher = Watcher {
-            reporter: Reporter::new(display, self.signals, self.clock()),
-            signals: self.signals,
+        let reporter = Reporter::new(display, self.signals, self.clock());
+        let host = Host {
+            progress: &reporter,
+            should_end: &|| self.signals.exit().is_some(),
+            found: &|samples| reporter.add_earlier(samples),
         };
-        let made = reference::make(self.folder, &subject, &self.plan, &resources, &watcher);
+        let made = reference::make(self.folder, &subject, &self.plan, &resources, host);
         if let Ok(Some(_)) = made {
-            watcher.reporter.complete();
+            reporter.complete();
         }
-        watcher.reporter.finish();
+        reporter.finish();
         match made.map_err(failure)? {
             Some(reference) => Ok(self.report(&reference)),
             None => Ok(self.stopped()),
@@ -252,32 +254,6 @@ impl Job<'_> {
              {right},{bottom}: {a:.6e} and {b:.6e}; do not use this as ground truth"
         ));
         Exit::Validation
-    }
-}
-
-/// Reports progress, and forwards signals.
-struct Watcher<'a> {
-    reporter: Reporter<'a>,
-    signals: &'a Signals,
-}
-
-impl Progress for Watcher<'_> {
-    fn advance(&self, samples: u64) {
-        self.reporter.advance(samples);
-    }
-
-    fn nanoseconds(&self) -> u64 {
-        self.reporter.nanoseconds()
-    }
-}
-
-impl Host for Watcher<'_> {
-    fn should_end(&self) -> bool {
-        self.signals.exit().is_some()
-    }
-
-    fn found(&self, samples: u64) {
-        self.reporter.add_earlier(samples);
     }
 }
 

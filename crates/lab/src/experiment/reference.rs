@@ -280,7 +280,12 @@ fn make(
         ..Resources::default()
     };
     let watch = Watch::new(loaded, plan, observer);
-    let made = references::make(&path, &subject, plan, &resources, &watch);
+    let host = Host {
+        progress: &watch,
+        should_end: &|| watch.should_end(),
+        found: &|samples| watch.advance(samples),
+    };
+    let made = references::make(&path, &subject, plan, &resources, host);
     let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
@@ -309,6 +314,19 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// Reports the finished passes. Returns true if the observer stops the render.
+    fn should_end(&self) -> bool {
+        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
+        self.with(|observer| {
+            observer.notify(Event::Reference {
+                scene: self.scene,
+                passes,
+                of: self.passes,
+            });
+            observer.should_stop()
+        })
+    }
+
     fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
         let observer = self.observer.lock();
         ask(*observer.unwrap_or_else(PoisonError::into_inner))
@@ -322,23 +340,5 @@ impl Progress for Watch<'_> {
 
     fn nanoseconds(&self) -> u64 {
         (self.with(|observer| observer.seconds()) * 1e9) as u64
-    }
-}
-
-impl Host for Watch<'_> {
-    fn should_end(&self) -> bool {
-        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
-        self.with(|observer| {
-            observer.notify(Event::Reference {
-                scene: self.scene,
-                passes,
-                of: self.passes,
-            });
-            observer.should_stop()
-        })
-    }
-
-    fn found(&self, samples: u64) {
-        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 }

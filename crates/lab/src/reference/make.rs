@@ -25,19 +25,16 @@ const SEEDS: u64 = 1 << 40;
 /// The prefixes of the film names of both estimators.
 const NAMES: [&str; 2] = ["picture", "against"];
 
-/// The host of [`make`]: receives progress, may supply a clock, and can stop it.
-pub trait Host: Progress {
+/// The host of [`make`].
+#[derive(Clone, Copy)]
+pub struct Host<'a> {
+    /// Receives progress, and may supply a clock.
+    pub progress: &'a dyn Progress,
     /// Returns true to stop after the running pass; a later [`make`] continues.
-    fn should_end(&self) -> bool {
-        false
-    }
-
+    pub should_end: &'a dyn Fn() -> bool,
     /// Receives the number of samples in existing films.
-    fn found(&self, _samples: u64) {}
+    pub found: &'a dyn Fn(u64),
 }
-
-/// A host without progress and clock, which never stops.
-impl Host for () {}
 
 /// The scene of a reference.
 #[derive(Clone, Copy)]
@@ -126,7 +123,7 @@ pub fn make(
     subject: &Subject<'_>,
     plan: &Plan,
     resources: &Resources,
-    host: &dyn Host,
+    host: Host<'_>,
 ) -> Result<Option<Reference>, Error> {
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Error::io(&films, error))?;

@@ -45,15 +45,11 @@ impl Axes<'_> {
     fn plot(&self, budgets: &[&BudgetInfo]) -> Plot {
         let methods = self.findings.results.methods.iter();
         let curves = methods.map(|method| self.curve(budgets, &method.name));
-        let logarithmic = |measure: Measure| Axis {
-            label: measure.to_string(),
-            scale: Scale::Log,
-        };
         Plot {
             caption: format!("{}: {} over {}.", self.scene.name, self.metric, self.cost),
             kind: PlotKind::Lines,
-            x: logarithmic(self.cost),
-            y: logarithmic(self.metric),
+            x: Axis::new(self.cost.to_string(), Scale::Log),
+            y: Axis::new(self.metric.to_string(), Scale::Log),
             series: curves.filter(|curve| !curve.points.is_empty()).collect(),
         }
     }
