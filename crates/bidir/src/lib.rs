@@ -34,8 +34,8 @@
 //! use bidir::scene::SceneBuilder;
 //! use bidir::shape::{Orientation, Shape, Sphere};
 //! use bidir::texture::ColorTexture;
+//! use bidir::view::View;
 //!
-//! let mut builder = SceneBuilder::new(FilmSettings::new([16, 16], Filter::default()));
 //! // At the origin, looking along +z; 90 degrees wide.
 //! let camera = PerspectiveSettings {
 //!     world_from_camera: Affine3A::IDENTITY,
@@ -45,7 +45,10 @@
 //!     focal_distance: 1.0,
 //! };
 //! let camera = Perspective::new(&camera).ok_or("no rigid camera")?;
-//! builder.camera(Camera::Perspective(camera));
+//! let film = FilmSettings::new([16, 16], Filter::default());
+//! let view = View::new(Camera::Perspective(camera), film)?;
+//!
+//! let mut builder = SceneBuilder::new();
 //! let grey = builder.material(Material::Diffuse {
 //!     reflectance: ColorTexture::Constant([0.5; 3]),
 //! });
@@ -55,7 +58,7 @@
 //! builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
 //! let scene = builder.build()?;
 //!
-//! let film = driver::render(&scene, &Settings::default(), 64, &Resources::default())?;
+//! let film = driver::render(&scene, &view, &Settings::default(), 64, &Resources::default())?;
 //! let picture = film.develop();
 //! assert!(picture.pixels.iter().flatten().all(|channel| channel.is_finite()));
 //! // The sphere is convex: it shows its reflectance times the sky.
@@ -70,6 +73,7 @@ pub mod driver;
 pub mod film;
 pub mod integrator;
 pub mod light;
+pub mod locus;
 pub mod material;
 pub mod math;
 pub mod names;
@@ -81,7 +85,9 @@ pub mod settings;
 pub mod shape;
 pub mod spectrum;
 pub mod stats;
+pub mod strategy;
 pub mod texture;
+pub mod view;
 
 #[cfg(test)]
 pub(crate) mod testing;

@@ -7,7 +7,7 @@ mod strategies;
 pub use stages::{Clock, Stage, StageTimes, Stopwatch};
 pub use strategies::{LayerCounts, StrategyCounts, StrategyTable};
 
-use crate::path::Strategy;
+use crate::strategy::Strategy;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;

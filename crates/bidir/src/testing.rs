@@ -11,8 +11,11 @@ mod math;
 
 pub(crate) use chi2::{Domain, Grid};
 
-use crate::math::Vec3;
+use crate::camera::{Camera, Perspective, PerspectiveSettings};
+use crate::film::FilmSettings;
+use crate::math::{Affine3A, Vec2, Vec3};
 use crate::sampler::{Domain as StreamDomain, SampleStream, Sampler, SamplerKind};
+use crate::view::View;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
@@ -207,6 +210,19 @@ impl Battery {
             seed()
         );
     }
+}
+
+/// A view of `film` through a pinhole at the origin that looks along +z, 90 degrees wide.
+pub(crate) fn view(film: FilmSettings) -> View {
+    let camera = Perspective::new(&PerspectiveSettings {
+        world_from_camera: Affine3A::IDENTITY,
+        resolution: Vec2::from(film.resolution.map(|side| side as f32)),
+        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
+        lens_radius: 0.0,
+        focal_distance: 1.0,
+    });
+    let camera = Camera::Perspective(camera.expect("the map is rigid"));
+    View::new(camera, film).expect("the film is not empty")
 }
 
 #[cfg(test)]

@@ -62,7 +62,8 @@ pub(crate) fn session(
     training: Training,
     console: Console,
 ) -> Result<Started, Failure> {
-    let (scene, settings) = (Arc::clone(&loaded.scene), settings.clone());
+    let (scene, view) = (Arc::clone(&loaded.scene), loaded.view.clone());
+    let settings = settings.clone();
     let resources = resources(args);
     let train = move || {
         let is_late = || matches!(training, Training::By(end) if Instant::now() >= end);
@@ -71,7 +72,7 @@ pub(crate) fn session(
             Training::By(_) => Effort::Until(&is_late),
             Training::Short => Effort::Short,
         };
-        Session::with_effort(scene, settings, &resources, effort).map(Box::new)
+        Session::with_effort(scene, &view, settings, &resources, effort).map(Box::new)
     };
     let (sender, receiver) = mpsc::channel();
     let in_thread = train.clone();
@@ -152,7 +153,7 @@ fn failure(args: &RenderArgs, loaded: &LoadedScene, error: &SessionError) -> Fai
     if matches!(error, SessionError::NoPath { .. }) {
         return Failure::usage(error.to_string());
     }
-    let [width, height] = loaded.scene.film().resolution;
+    let [width, height] = loaded.view.film().resolution;
     let scene = args.scene.scene.display();
     let message = format!("{scene}: a film of {width} x {height} pixels is too large: {error}");
     let hint =

@@ -10,6 +10,7 @@ use bidir::light::Light;
 use bidir::material::Material;
 use bidir::scene::Scene;
 use bidir::shape::Shape;
+use bidir::view::View;
 use formats::film::SettingsText;
 use formats::{number, printable};
 use serde::Serialize;
@@ -102,8 +103,8 @@ impl Info {
         });
         Self {
             scene: name,
-            film: FilmInfo::new(scene, loaded.output.as_deref()),
-            camera: scene.camera().kind(),
+            film: FilmInfo::new(&loaded.view, loaded.output.as_deref()),
+            camera: loaded.view.camera().kind(),
             settings: SettingsText::from(&loaded.settings),
             spp: loaded.spp,
             shapes: count(scene.shapes(), Shape::kind),
@@ -120,7 +121,7 @@ impl Info {
             bvh_bytes: scene.bvh().memory_bytes(),
             isa: scene.bvh().isa().to_string(),
             blind_spots: IntegratorKind::NAMES
-                .map(|(name, integrator)| (name, blind_spots_of(scene, integrator)))
+                .map(|(name, integrator)| (name, blind_spots_of(loaded, integrator)))
                 .into(),
             refused: loaded.refused.clone(),
             warnings: loaded.warnings.clone(),
@@ -233,8 +234,8 @@ impl Info {
 }
 
 impl FilmInfo {
-    fn new(scene: &Scene, output: Option<&std::path::Path>) -> Self {
-        let film = scene.film();
+    fn new(view: &View, output: Option<&std::path::Path>) -> Self {
+        let film = view.film();
         Self {
             resolution: film.resolution,
             crop: [
@@ -251,8 +252,8 @@ impl FilmInfo {
     }
 }
 
-fn blind_spots_of(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpotInfo> {
-    let spots = blind_spots(scene, integrator).into_iter();
+fn blind_spots_of(loaded: &LoadedScene, integrator: IntegratorKind) -> Vec<BlindSpotInfo> {
+    let spots = blind_spots(&loaded.scene, &loaded.view, integrator).into_iter();
     let info = |spot: BlindSpot| BlindSpotInfo {
         missing: spot.is_missing(),
         paths: spot.description(),

@@ -29,18 +29,13 @@ pub(crate) fn run(args: &ReferenceArgs, console: Console) -> Result<Exit, Failur
     let loaded = scene_io::load(&args.scene, Some(film.as_ref().unwrap_or(&args.film)))?;
     loaded.print_warnings(&args.scene, 0, console)?;
     if let Some(earlier) = &earlier {
-        let same = earlier.check(&folder, &loaded.digest, loaded.scene.film());
+        let same = earlier.check(&folder, &loaded.digest, loaded.view.film());
         same.map_err(failure)?;
     }
     let plan = plan(args, earlier.as_ref(), &loaded)?;
     warn_unused(args, &plan, console);
     for (settings, flag) in plan.estimators.iter().zip(["--estimator", "--against"]) {
-        settings::check_strategies(
-            &format!("{flag}: strategies"),
-            &loaded.scene,
-            settings,
-            console,
-        )?;
+        settings::check_strategies(&format!("{flag}: strategies"), &loaded, settings, console)?;
         settings::warn_missing(&loaded, settings, console);
     }
     check_apart(&folder, &loaded)?;
@@ -165,6 +160,7 @@ impl Job<'_> {
             name: &name,
             digest: &self.loaded.digest,
             scene: &self.loaded.scene,
+            view: &self.loaded.view,
         };
         let resources = Resources {
             threads: self.args.threads.count.into(),
@@ -210,7 +206,7 @@ impl Job<'_> {
                 passes: Some(self.plan.rounded_spp().saturating_mul(2)),
                 ..Budget::default()
             },
-            samples_per_pass: self.loaded.scene.film().crop.area(),
+            samples_per_pass: self.loaded.view.film().crop.area(),
             start,
             first_pass: start,
         }

@@ -45,14 +45,14 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     let own = loaded.settings.layers.aovs();
     settings.layers = args.layers.layers(loaded.scene.group_names(), own);
     let unused = settings::warn_unused(args, &settings, console);
-    let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
+    let lost = settings::check_strategies("--strategies", &loaded, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
     loaded.print_warnings(&args.scene, unused + lost + missing, console)?;
     if let Some(target) = args.replay {
         replay::check_apart(args, &loaded.inputs)?;
         let training = Training::Whole;
         return match begin::session(args, &loaded, &settings, &signals, training, console)? {
-            Started::Session(session) => replay::run(args, &loaded.scene, &session, target),
+            Started::Session(session) => replay::run(args, &session, target),
             Started::Stopped(exit) => Ok(exit),
         };
     }
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &RenderArgs, console: Console) -> Result<Exit, Failure> 
     outputs.check(args, &loaded.inputs)?;
     let first = || {
         let name = args.scene.scene.display().to_string();
-        Status::preparing(&name, loaded.scene.film())
+        Status::preparing(&name, loaded.view.film())
     };
     let server = listener.map(|listener| serve::start(listener, first(), &loaded.warnings));
     let server = server.transpose()?;
@@ -128,7 +128,7 @@ impl Job<'_> {
         });
         let clock = Clock {
             budget,
-            samples_per_pass: self.loaded.scene.film().crop.area(),
+            samples_per_pass: self.loaded.view.film().crop.area(),
             start,
             first_pass: Instant::now(),
         };
@@ -315,7 +315,7 @@ impl Job<'_> {
         let own = self.loaded.settings.integrator;
         self.args.estimator.integrator.is_none()
             && own == IntegratorKind::Path
-            && !blind_spots(&self.loaded.scene, own).is_empty()
+            && !blind_spots(&self.loaded.scene, &self.loaded.view, own).is_empty()
     }
 }
 

@@ -6,7 +6,6 @@ use crate::exit::{Exit, Failure};
 use crate::output;
 use crate::scene_io;
 use bidir::driver::Session;
-use bidir::scene::Scene;
 use lab::sample::SampleReport;
 use std::path::PathBuf;
 
@@ -32,13 +31,12 @@ pub(crate) fn check_apart(args: &RenderArgs, inputs: &[PathBuf]) -> Result<(), F
 /// Repeats a sample and prints its report.
 pub(crate) fn run(
     args: &RenderArgs,
-    scene: &Scene,
     session: &Session<'_>,
     target: ReplayTarget,
 ) -> Result<Exit, Failure> {
     let replay = session.replay(target.pixel, target.pass).ok_or_else(|| {
         let [x, y] = target.pixel;
-        let crop = scene.film().crop;
+        let crop = session.view().film().crop;
         let ([x0, y0], [x1, y1]) = (crop.min, crop.max);
         let hint =
             format!("the render has the pixels from {x0},{y0} up to, not including, {x1},{y1}");
@@ -54,7 +52,7 @@ pub(crate) fn run(
         return printed;
     };
     let name = args.scene.scene.display().to_string();
-    formats::file::replace(path, report.drawing(scene, &name).as_bytes())?;
+    formats::file::replace(path, report.drawing(session, &name).as_bytes())?;
     if !args.output.talk.quiet {
         say(format_args!("wrote {}", path.display()));
     }

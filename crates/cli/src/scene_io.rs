@@ -6,6 +6,7 @@ use crate::exit::{Exit, Failure};
 use bidir::driver::{Settings, Training};
 use bidir::film::FilmSettings;
 use bidir::scene::Scene;
+use bidir::view::View;
 use formats::ErrorKind;
 use formats::film::SceneIdentity;
 use formats::image::{ExrImage, ExrLayer, Format};
@@ -25,6 +26,8 @@ pub(crate) use formats::outputs::is_same;
 pub(crate) struct LoadedScene {
     /// The scene.
     pub(crate) scene: Arc<Scene>,
+    /// The view of the file, or the one that flags ask for.
+    pub(crate) view: View,
     /// The file's settings, over the defaults.
     pub(crate) settings: Settings,
     /// The file's number of samples per pixel.
@@ -57,10 +60,11 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
     let loaded =
         formats::scene::load(&args.scene, &options).map_err(|error| refused(&args.scene, error))?;
     let mut warnings = loaded.warnings;
-    warnings.extend(film.and_then(|film| crop_warning(film, &loaded.scene)));
+    warnings.extend(film.and_then(|film| crop_warning(film, &loaded.view)));
     warnings.extend(light_warning(&loaded.scene));
     Ok(LoadedScene {
         scene: Arc::new(loaded.scene),
+        view: loaded.view,
         settings: loaded.settings.render_settings(),
         spp: loaded.settings.samples_per_pixel.into(),
         output: loaded.settings.output.map(PathBuf::from),
@@ -84,7 +88,7 @@ impl LoadedScene {
         let scene = SceneIdentity {
             name,
             digest: &self.digest,
-            film: self.scene.film(),
+            film: self.view.film(),
         };
         scene.header(settings, training)
     }
@@ -122,9 +126,9 @@ fn crop(film: &FilmArgs) -> Option<Crop> {
 }
 
 /// The warning of a crop that reaches beyond the film. None: it does not.
-fn crop_warning(args: &FilmArgs, scene: &Scene) -> Option<String> {
+fn crop_warning(args: &FilmArgs, view: &View) -> Option<String> {
     let asked = args.crop.or(args.pixelbounds)?.0;
-    let film = scene.film();
+    let film = view.film();
     let [width, height] = film.resolution;
     let message = format!("the crop reaches beyond the film, which has {width} x {height} pixels");
     (film.crop != asked).then_some(message)

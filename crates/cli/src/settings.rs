@@ -8,7 +8,6 @@ use crate::scene_io::LoadedScene;
 use bidir::driver::{Budget, Settings};
 use bidir::integrator::{BlindSpot, LostLight, lost_light, missing_light};
 use bidir::path::MAX_VERTICES;
-use bidir::scene::Scene;
 use formats::scene::Lamp;
 use std::ops::Range;
 
@@ -33,12 +32,12 @@ pub(crate) fn warn_unused(args: &RenderArgs, settings: &Settings, console: Conso
 /// Errors: the list makes no path, so that the image would be black.
 pub(crate) fn check_strategies(
     flag: &str,
-    scene: &Scene,
+    loaded: &LoadedScene,
     settings: &Settings,
     console: Console,
 ) -> Result<usize, Failure> {
     let path = &settings.path;
-    let Some(lost) = lost_light(scene, settings.integrator, path) else {
+    let Some(lost) = lost_light(&loaded.scene, &loaded.view, settings.integrator, path) else {
         return Ok(0);
     };
     let message = format!("{flag} {} {lost}", path.strategies);
@@ -69,7 +68,7 @@ pub(crate) fn check_strategies(
 /// warnings.
 pub(crate) fn warn_missing(loaded: &LoadedScene, settings: &Settings, console: Console) -> usize {
     let integrator = settings.integrator;
-    let missing = missing_light(&loaded.scene, settings.integrator, &settings.path);
+    let missing = missing_light(&loaded.scene, &loaded.view, integrator, &settings.path);
     for &spot in &missing {
         let (paths, remedy) = (spot.description(), spot.remedy());
         let lamps = lamps(loaded, spot);

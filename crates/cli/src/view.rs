@@ -31,11 +31,11 @@ pub(crate) fn run(args: &ViewArgs, console: Console) -> Result<Exit, Failure> {
     let loaded = scene_io::load(&args.scene, Some(&args.film))?;
     let settings = args.estimator.apply(&loaded.settings);
     // Every flag may have influence: estimators are switched.
-    let lost = settings::check_strategies("--strategies", &loaded.scene, &settings, console)?;
+    let lost = settings::check_strategies("--strategies", &loaded, &settings, console)?;
     let missing = settings::warn_missing(&loaded, &settings, console);
     loaded.print_warnings(&args.scene, lost + missing, console)?;
     let name = args.scene.scene.display().to_string();
-    let first = Status::interactive(&name, loaded.scene.film());
+    let first = Status::interactive(&name, loaded.view.film());
     let (server, queue) = serve::start(listener, first, &loaded.warnings)?;
     let render = interactive_settings(args, loaded, settings);
     let render = InteractiveRender::open(render, queue).map_err(|error| serve::failed(&error))?;
@@ -86,6 +86,7 @@ fn interactive_settings(
         name: args.scene.scene.display().to_string(),
         digest: loaded.digest,
         scene: loaded.scene,
+        view: loaded.view,
         settings,
         roulette: args.estimator.path_roulette,
         threads: args.threads.count.into(),

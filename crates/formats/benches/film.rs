@@ -8,9 +8,8 @@
 use bidir::driver::{Progress, Resources, Session, Settings};
 use bidir::film::{Film, FilmSettings, PassBuffer, SplatPlace};
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
 use bidir::spectrum::Rgb;
-use bidir_formats::pbrt::{LoadOptions, load};
+use bidir_formats::pbrt::{LoadOptions, Loaded, load};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::iter;
 use std::path::Path;
@@ -32,7 +31,7 @@ struct Contributions {
 
 /// Records the contributions of a pass, pixel by pixel.
 fn record(session: &Session<'_>, pass: u64) -> Vec<Contributions> {
-    let crop = session.scene().film().crop;
+    let crop = session.view().film().crop;
     let color = session.scene().color();
     let pixels = 0..crop.area() as usize;
     let of = |pixel| {
@@ -132,12 +131,13 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// Measures one estimator with a number of threads. Returns a row of the table.
-fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) -> String {
+fn measure(loaded: &Loaded, name: &str, settings: &Settings, threads: usize) -> String {
     let resources = Resources {
         threads,
         ..Resources::default()
     };
-    let mut session = Session::new(scene, settings.clone(), &resources).expect("the scene's film");
+    let mut session = Session::new(&loaded.scene, &loaded.view, settings.clone(), &resources)
+        .expect("the scene's film");
     let pool = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     let passes: Vec<_> = (0..RECORDED).map(|pass| record(&session, pass)).collect();
@@ -145,8 +145,8 @@ fn measure(scene: &Scene, name: &str, settings: &Settings, threads: usize) -> St
         let rendered = render(&mut session, &());
         [
             rendered,
-            plain(&pool, scene.film(), &passes),
-            exact(&pool, scene.film(), &passes),
+            plain(&pool, loaded.view.film(), &passes),
+            exact(&pool, loaded.view.film(), &passes),
         ]
     });
     let rounds: Vec<_> = rounds.collect();
@@ -170,7 +170,7 @@ fn main() {
         resolution: Some([320, 240]),
         ..LoadOptions::default()
     };
-    let scene = load(&file, &options).expect("the project's scene").scene;
+    let loaded = load(&file, &options).expect("the project's scene");
     println!("room-indirect, 320x240, milliseconds for each pass, medians of {ROUNDS} rounds");
     println!("estimator  threads  render (exact)      plain      exact      cost");
     // `lvc` adds contributions as `bdpt` does, and cannot render a single sample; `auto` chooses one of the
@@ -181,7 +181,7 @@ fn main() {
     {
         for threads in [1, 2] {
             let settings = Settings::new(integrator);
-            println!("{}", measure(&scene, name, &settings, threads));
+            println!("{}", measure(&loaded, name, &settings, threads));
         }
     }
 }

@@ -6,11 +6,11 @@ mod statistics;
 
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
+use bidir::locus::Locus;
 use bidir::math::Vec3;
 use bidir::path::PathSettings;
-use bidir::scene::{Scene, SegmentEnd};
-use bidir_formats::pbrt::{LoadOptions, build, load, parse_text};
-use statistics::{Replicates, WHOLE, check_agree, replicates};
+use bidir_formats::pbrt::{LoadOptions, Loaded, build, load, parse_text};
+use statistics::{Replicates, Shown, WHOLE, check_agree, replicates};
 
 const CAMERA: &str = r#"
 LookAt 0 1 -4  0 1 0  0 1 0
@@ -20,13 +20,13 @@ PixelFilter "box"
 WorldBegin
 "#;
 
-fn scene(world: &str) -> Scene {
+fn scene(world: &str) -> Loaded {
     let description = parse_text("s.pbrt", &format!("{CAMERA}{world}")).expect("it is valid");
     let loaded = build(&description, &LoadOptions::default());
-    loaded.expect("it is supported").scene
+    loaded.expect("it is supported")
 }
 
-fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates {
+fn render(loaded: &Loaded, integrator: IntegratorKind, passes: u64) -> Replicates {
     let settings = Settings {
         path: PathSettings {
             max_depth: Some(3),
@@ -34,7 +34,11 @@ fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates 
         },
         ..Settings::new(integrator)
     };
-    replicates(scene, &settings, passes)
+    let shown = Shown {
+        scene: &loaded.scene,
+        view: &loaded.view,
+    };
+    replicates(shown, &settings, passes)
 }
 
 /// Describes a black wall across the view with coverage `alpha`.
@@ -44,15 +48,6 @@ fn wall(z: f32, alpha: f32) -> String {
          Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"float alpha\" {alpha}\n\
          \"point3 P\" [-9 -9 {z} -9.5 9 {z} 9 9.5 {z} 9 -9 {z}]\n"
     )
-}
-
-fn in_space(point: Vec3) -> SegmentEnd {
-    SegmentEnd {
-        point,
-        n_g: Vec3::ZERO,
-        error: 0.0,
-        is_infinite: false,
-    }
 }
 
 /// Checks that transmittances are equal to the last bit.
@@ -66,9 +61,10 @@ fn transmittances_of_walls_multiply() {
     let walls = [wall(0.0, 0.5), wall(1.0, 0.3), wall(2.0, 0.0)].concat();
     let light = "LightSource \"infinite\" \"rgb L\" [1 1 1]\n";
     let sphere = "Shape \"sphere\" \"float alpha\" 0.2\n";
-    let scene = scene(&format!("{walls}{light}{sphere}"));
+    let scene = scene(&format!("{walls}{light}{sphere}")).scene;
     let behind = Vec3::new(3.1, 1.2, 9.0);
-    let seen = |from: Vec3, to: Vec3| scene.transmittance(&in_space(from), &in_space(to));
+    let seen =
+        |from: Vec3, to: Vec3| scene.transmittance(&Locus::in_space(from), &Locus::in_space(to));
     let eye = Vec3::new(3.0, 1.0, -4.0);
     // 1 - α of the file's numbers, rounded once.
     let factors = [0.5_f32, 0.3].map(|alpha| f64::from(1.0 - alpha));
@@ -93,7 +89,7 @@ fn transmittances_of_walls_multiply() {
     );
 }
 
-fn scene_of_walls_and_light() -> Scene {
+fn scene_of_walls_and_light() -> Loaded {
     let walls = [wall(0.0, 0.5), wall(1.0, 0.3)].concat();
     scene(&format!(
         "{walls}LightSource \"infinite\" \"rgb L\" [1 1 1]\n"
@@ -115,11 +111,11 @@ AttributeEnd
 "#;
 
 #[track_caller]
-fn check_estimators(scene: &Scene) -> Replicates {
-    let path = render(scene, IntegratorKind::Path, 3072);
-    let bdpt = render(scene, IntegratorKind::Bdpt, 2048);
+fn check_estimators(loaded: &Loaded) -> Replicates {
+    let path = render(loaded, IntegratorKind::Path, 3072);
+    let bdpt = render(loaded, IntegratorKind::Bdpt, 2048);
     check_agree("bdpt", &bdpt, &path, &[WHOLE, 1]);
-    let light = render(scene, IntegratorKind::Light, 6144);
+    let light = render(loaded, IntegratorKind::Light, 6144);
     check_agree("light", &light, &path, &[WHOLE, 4]);
     path
 }
@@ -132,7 +128,7 @@ fn a_half_transparent_plane() {
 }
 
 /// Loads a file with `world` beside a mask of four by four numbers.
-fn masked(world: &str) -> (tempfile::TempDir, Scene) {
+fn masked(world: &str) -> (tempfile::TempDir, Loaded) {
     let folder = tempfile::tempdir().expect("a folder");
     let mut mask = b"PF\n4 4\n-1.0\n".to_vec();
     for i in 0..16_u32 {
@@ -146,7 +142,7 @@ fn masked(world: &str) -> (tempfile::TempDir, Scene) {
     let file = folder.path().join("s.pbrt");
     std::fs::write(&file, format!("{CAMERA}{texture}{world}")).expect("it is written");
     let loaded = load(&file, &LoadOptions::default()).expect("it is supported");
-    (folder, loaded.scene)
+    (folder, loaded)
 }
 
 const MASKED: &str = "\"texture alpha\" \"mask\" \"point2 uv\" [0 0 1 0 1 1 0 1]";
@@ -159,9 +155,9 @@ fn leaves_cut_out_by_a_texture_and_shared() {
          AttributeBegin Translate -0.7 1 0 ObjectInstance \"o\" AttributeEnd\n\
          AttributeBegin Translate 0.5 1.6 0.3 Scale -1 1 1 ObjectInstance \"o\" AttributeEnd\n"
     );
-    let (_folder, scene) = masked(&format!("{ROOM}{LAMP}{leaves}"));
-    assert_eq!(scene.instance_count(), 2);
-    check_estimators(&scene);
+    let (_folder, loaded) = masked(&format!("{ROOM}{LAMP}{leaves}"));
+    assert_eq!(loaded.scene.instance_count(), 2);
+    check_estimators(&loaded);
 }
 
 #[test]
@@ -172,18 +168,22 @@ fn lamps_cut_out_by_a_texture_and_by_a_number() {
          \"point3 P\" [-1 2.2 -1 1 2.2 -1 1 1.8 1 -1 1.8 1]\n\
          Translate 0.6 0.7 -0.2 Shape \"sphere\" \"float radius\" 0.3 \"float alpha\" 0.4\n"
     );
-    let (_folder, scene) = masked(&format!("{ROOM}{lamps}"));
-    check_estimators(&scene);
+    let (_folder, loaded) = masked(&format!("{ROOM}{lamps}"));
+    check_estimators(&loaded);
 }
 
 #[test]
 fn an_invisible_lamp_still_emits() {
     let lamp = "AreaLightSource \"diffuse\" \"rgb L\" [6 7 8] \"float scale\" 3\n\
                 Translate 0 1.3 0 Shape \"sphere\" \"float radius\" 0.3 \"float alpha\" 0\n";
-    let scene = scene(&format!("{ROOM}{lamp}"));
+    let loaded = scene(&format!("{ROOM}{lamp}"));
+    let scene = &loaded.scene;
     assert_eq!((scene.lights().len(), scene.placed_primitives()), (1, 4));
-    let path = check_estimators(&scene);
+    let path = check_estimators(&loaded);
     assert!(path.mean() > 0.05, "{}", path.mean());
     let (front, back) = (Vec3::new(0.0, 1.3, -2.0), Vec3::new(0.0, 1.3, 1.5));
-    same(scene.transmittance(&in_space(front), &in_space(back)), 1.0);
+    same(
+        scene.transmittance(&Locus::in_space(front), &Locus::in_space(back)),
+        1.0,
+    );
 }

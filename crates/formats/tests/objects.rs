@@ -10,7 +10,7 @@ use bidir::path::PathSettings;
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, Scene, SurfaceHit};
 use bidir_formats::pbrt::{LoadOptions, Loaded, build, parse_text};
-use statistics::{WHOLE, check_agree, replicates};
+use statistics::{Shown, WHOLE, check_agree, replicates};
 
 const HEAD: &str = r#"
 LookAt 0 1.2 -3.4  0 0.7 0  0 1 0
@@ -166,11 +166,15 @@ fn settings(integrator: IntegratorKind) -> Settings {
 #[test]
 fn pictures_of_shared_objects_and_of_copies_agree() {
     let (shared, copied) = (shared(), copied());
-    let path = |scene| replicates(scene, &settings(IntegratorKind::Path), 4096);
-    let reference = path(&copied.scene);
+    let [shared, copied] = [&shared, &copied].map(|loaded| Shown {
+        scene: &loaded.scene,
+        view: &loaded.view,
+    });
+    let path = |shown| replicates(shown, &settings(IntegratorKind::Path), 4096);
+    let reference = path(copied);
     let blocks = [WHOLE, 1];
-    check_agree("shared", &path(&shared.scene), &reference, &blocks);
-    let bdpt = replicates(&shared.scene, &settings(IntegratorKind::Bdpt), 3072);
+    check_agree("shared", &path(shared), &reference, &blocks);
+    let bdpt = replicates(shared, &settings(IntegratorKind::Bdpt), 3072);
     check_agree("shared, bdpt", &bdpt, &reference, &blocks);
 }
 

@@ -11,7 +11,7 @@ use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathSettings;
 use bidir_formats::scene::{Crop, LoadOptions, Loaded, load};
-use statistics::{Replicates, WHOLE, check_agree, check_means, replicates, suspects};
+use statistics::{Replicates, Shown, WHOLE, check_agree, check_means, replicates, suspects};
 use std::path::PathBuf;
 
 /// Loads a scene with a film of `size` × `size` pixels and a crop. None: the tests are skipped, which is
@@ -54,7 +54,11 @@ fn estimate_anew(
         seed,
         ..Settings::new(integrator)
     };
-    replicates(&loaded.scene, &settings, passes)
+    let shown = Shown {
+        scene: &loaded.scene,
+        view: &loaded.view,
+    };
+    replicates(shown, &settings, passes)
 }
 
 /// Compares the two estimators on a small film: the bidirectional one with `passes`, path tracing, which is

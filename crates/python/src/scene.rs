@@ -4,6 +4,7 @@ use crate::error::of_file;
 use crate::film::{Inputs, absolute};
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
+use bidir::view::View;
 use formats::scene::{Crop, Files, InMemory, LoadOptions, Summary, load_from};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -14,6 +15,8 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "bidir._bidir")]
 pub(crate) struct Scene {
     pub(crate) shared: Arc<bidir::scene::Scene>,
+    /// The camera of the file, and its film.
+    pub(crate) view: View,
     /// The settings of the file, over the defaults.
     pub(crate) settings: Settings,
     /// The file, as it was named.
@@ -82,6 +85,7 @@ impl Scene {
         Ok(Self {
             settings: loaded.settings.render_settings(),
             shared: Arc::new(loaded.scene),
+            view: loaded.view,
             name: path.display().to_string(),
             digest: loaded.digest.to_string(),
             spp: loaded.settings.samples_per_pixel.into(),
@@ -125,13 +129,13 @@ impl Scene {
     /// Returns width and height of the whole film.
     #[getter]
     fn resolution(&self) -> [u32; 2] {
-        self.shared.film().resolution
+        self.view.film().resolution
     }
 
     /// Returns left, top, right, bottom of the rendered rectangle.
     #[getter]
     fn crop(&self) -> [u32; 4] {
-        let crop = self.shared.film().crop;
+        let crop = self.view.film().crop;
         [crop.min[0], crop.min[1], crop.max[0], crop.max[1]]
     }
 

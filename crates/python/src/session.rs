@@ -120,8 +120,8 @@ impl Session {
             ..Resources::default()
         };
         let begin = Instant::now();
-        let (shared, own) = (scene.shared.clone(), settings.clone());
-        let session = wait_silently(py, |_| driver::Session::new(shared, own, &resources))?;
+        let (shared, view, own) = (scene.shared.clone(), &scene.view, settings.clone());
+        let session = wait_silently(py, |_| driver::Session::new(shared, view, own, &resources))?;
         let session = session.map_err(|error| {
             let class = match error {
                 driver::SessionError::NoPath { .. } => "SettingsError",
@@ -135,7 +135,7 @@ impl Session {
         let identity = SceneIdentity {
             name: &scene.name,
             digest: &scene.digest,
-            film: scene.shared.film(),
+            film: scene.view.film(),
         };
         let header = identity.header(&settings, session.training());
         Ok(Self {

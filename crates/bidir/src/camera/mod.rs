@@ -27,19 +27,17 @@ pub use perspective::{Perspective, PerspectiveSettings};
 pub use pose::{Pose, Turn};
 pub use spherical::{Spherical, SphericalMapping};
 
+use crate::locus::Locus;
 use crate::math::{Vec2, Vec3};
 
 /// A point on the lens.
 #[derive(Clone, Copy, Debug)]
 pub struct LensSample {
-    /// The point; for parallel rays the unit direction towards the camera. Space: world.
-    pub point: Vec3,
-    /// The optical axis, towards the scene: the lens's normal. Zero where there is no lens.
-    pub n_g: Vec3,
+    /// The place, with the optical axis towards the scene as the normal; for parallel rays the direction
+    /// towards the camera. Without a lens, in space.
+    pub locus: Locus,
     /// Its density. Measure: area, 1/m²; 1 for a pinhole and for parallel rays.
     pub pdf: f32,
-    /// True for parallel rays.
-    pub is_infinite: bool,
 }
 
 /// A ray that leaves the lens.
@@ -92,6 +90,11 @@ impl Camera {
             Self::Spherical(camera) => camera.pose = pose,
         }
         self
+    }
+
+    /// True where all rays go the same way.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self, Self::Orthographic(_))
     }
 
     /// The same view on a film with `factor` times as many pixels to each side, all positive.

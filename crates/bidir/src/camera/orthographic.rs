@@ -7,6 +7,7 @@
 
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
+use crate::locus::Locus;
 use crate::math::{Affine3A, Vec2, Vec3};
 
 /// What an [`Orthographic`] camera is made of.
@@ -58,10 +59,8 @@ impl Orthographic {
     #[inline]
     pub(super) fn lens(&self) -> LensSample {
         LensSample {
-            point: -self.pose.forward,
-            n_g: self.pose.forward,
+            locus: Locus::at_infinity(-self.pose.forward),
             pdf: 1.0,
-            is_infinite: true,
         }
     }
 

@@ -6,6 +6,7 @@
 
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
+use crate::locus::Locus;
 use crate::math::{Affine3A, PI, Vec2, Vec3, sqr, warp};
 
 /// What a [`Perspective`] camera is made of.
@@ -71,11 +72,10 @@ impl Perspective {
         } else {
             Vec2::ZERO
         };
+        let point = self.pose.origin + self.pose.right * offset.x + self.pose.up * offset.y;
         LensSample {
-            point: self.pose.origin + self.pose.right * offset.x + self.pose.up * offset.y,
-            n_g: self.pose.forward,
+            locus: Locus::on_surface(point, self.pose.forward, 0.0),
             pdf: 1.0 / self.lens_area(),
-            is_infinite: false,
         }
     }
 
@@ -96,13 +96,13 @@ impl Perspective {
         let through_centre = self.pose.to_world(screen.extend(1.0));
         // All rays of a raster position meet in the plane of focus; a pinhole needs no plane.
         let direction = if self.lens_radius > 0.0 {
-            self.pose.origin + through_centre * self.focal_distance - lens.point
+            self.pose.origin + through_centre * self.focal_distance - lens.locus.point
         } else {
             through_centre
         };
         CameraRay {
             lens,
-            origin: lens.point,
+            origin: lens.locus.point,
             direction: direction.normalize(),
         }
     }
@@ -183,7 +183,7 @@ mod tests {
                 Vec2::new(20.0, 15.0),
             ] {
                 let ray = camera.sample_ray(raster, || Vec2::new(0.3, 0.8));
-                let back = camera.raster(ray.lens.point, ray.direction).unwrap();
+                let back = camera.raster(ray.lens.locus.point, ray.direction).unwrap();
                 assert!(
                     (back - raster).length() < 1e-3,
                     "{back} instead of {raster}"

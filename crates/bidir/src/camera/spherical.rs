@@ -9,6 +9,7 @@
 
 use super::pose::Pose;
 use super::{CameraRay, LensSample};
+use crate::locus::Locus;
 use crate::math::{Affine3A, PI, Vec2, Vec3, direction_to_square, square_to_direction};
 
 /// How directions lie on the film of a [`Spherical`] camera.
@@ -55,10 +56,8 @@ impl Spherical {
     #[inline]
     pub(super) fn lens(&self) -> LensSample {
         LensSample {
-            point: self.pose.origin,
-            n_g: Vec3::ZERO,
+            locus: Locus::in_space(self.pose.origin),
             pdf: 1.0,
-            is_infinite: false,
         }
     }
 

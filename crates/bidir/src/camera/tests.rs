@@ -123,7 +123,7 @@ fn rays_follow_the_density() {
     for (name, camera, _) in examples() {
         for (place, u_lens) in [("centre", Vec2::splat(0.5)), ("rim", Vec2::new(0.02, 0.3))] {
             let name = format!("{name}, {place}");
-            let point = camera.sample_lens(|| u_lens).point;
+            let point = camera.sample_lens(|| u_lens).locus.point;
             let draws = samples(&name, 1 << 20).map(|sample| {
                 let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
                 Some(camera.sample_ray(raster, || u_lens).direction)
@@ -154,9 +154,9 @@ fn lens_points_follow_the_density() {
         };
         let draws = samples(name, 1 << 20).map(|sample| {
             let lens = camera.sample_lens(|| sample.get_2d(Dimension::at(0, Purpose::Lens)));
-            let local = frame.to_local(lens.point - EYE);
+            let local = frame.to_local(lens.locus.point - EYE);
             assert!(
-                local.z.abs() < 1e-5 && (lens.n_g - frame.z).length() < 1e-5,
+                local.z.abs() < 1e-5 && (lens.locus.n_g - frame.z).length() < 1e-5,
                 "{name}"
             );
             Some(local.with_z(0.0))
@@ -175,7 +175,7 @@ fn importance_is_the_density_of_rays_by_lens_area_and_cosine() {
             let raster = sample.get_2d(Dimension::at(0, Purpose::Film)) * RESOLUTION;
             let u_lens = sample.get_2d(Dimension::at(0, Purpose::Lens));
             let ray = camera.sample_ray(raster, || u_lens);
-            let cos = ray.lens.n_g.dot(ray.direction);
+            let cos = ray.lens.locus.n_g.dot(ray.direction);
             let importance = camera.importance(ray.direction);
             check_close(
                 importance * cos * area,
@@ -184,7 +184,7 @@ fn importance_is_the_density_of_rays_by_lens_area_and_cosine() {
                 name,
             );
             check_close(ray.lens.pdf * area, 1.0, 1e-4, name);
-            let back = camera.raster(ray.lens.point, ray.direction).unwrap();
+            let back = camera.raster(ray.lens.locus.point, ray.direction).unwrap();
             assert!(
                 (back - raster).length() < 2e-3,
                 "{name}: {back} instead of {raster}"
@@ -218,7 +218,8 @@ fn the_importance_of_a_pixel_is_one() {
                     let raster = pixel + sample.get_2d(Dimension::at(0, Purpose::Film));
                     let u_lens = sample.get_2d(Dimension::at(0, Purpose::Lens));
                     let ray = camera.sample_ray(raster, || u_lens);
-                    let value = camera.importance(ray.direction) * ray.lens.n_g.dot(ray.direction);
+                    let value =
+                        camera.importance(ray.direction) * ray.lens.locus.n_g.dot(ray.direction);
                     let measure = solid_angle(&camera, raster, u_lens) / ray.lens.pdf;
                     f64::from(value * measure)
                 })
@@ -239,7 +240,7 @@ fn a_lens_is_sharp_at_its_focal_distance() {
         let meet = |u_lens| {
             let ray = camera.sample_ray(Vec2::new(7.0, 22.0), || u_lens);
             let depth = forward().dot(ray.direction);
-            ray.lens.point + ray.direction * (4.0 * scale / depth)
+            ray.lens.locus.point + ray.direction * (4.0 * scale / depth)
         };
         let focus = meet(Vec2::splat(0.5));
         for u_lens in [Vec2::ZERO, Vec2::new(0.9, 0.2), Vec2::new(0.1, 0.7)] {

@@ -33,7 +33,7 @@ impl Deposit<'_> {
             let contribution = &splat.contribution;
             let (place, value) = (splat.place, self.rgb(contribution.value));
             let parts = self.parts_of(contribution);
-            let film = self.context.scene.film();
+            let film = self.context.view.film();
             self.buffer.splat(film, place, value, parts);
         }
         if self.layers.strategy_vertices() > 0 {
@@ -42,9 +42,9 @@ impl Deposit<'_> {
     }
 
     fn rgb(&self, value: Spectrum) -> Rgb {
-        let scene = self.context.scene;
+        let PathContext { scene, view, .. } = self.context;
         let light = scene.color().to_rgb(value, &self.context.wavelengths);
-        scene.film().sensor.respond(light)
+        view.film().sensor.respond(light)
     }
 
     /// Adds to the parts of the sample's own pixel.
@@ -102,7 +102,7 @@ impl Deposit<'_> {
 
     /// The same for a splat, where it reaches the film.
     fn splat(&self, splat: &Splat, stats: &mut Stats) {
-        let (film, contribution) = (self.context.scene.film(), &splat.contribution);
+        let (film, contribution) = (self.context.view.film(), &splat.contribution);
         let Some((_, weight)) = film.pick_pixel(splat.place) else {
             return;
         };
@@ -135,25 +135,16 @@ impl Deposit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Camera, Perspective, PerspectiveSettings};
     use crate::film::{Film, FilmSettings, Filter, SplatPlace};
     use crate::light::{InfiniteLight, Light};
-    use crate::math::{Affine3A, Vec2};
+    use crate::math::Vec2;
     use crate::path::{Connections, PathSettings};
     use crate::scene::{Scene, SceneBuilder};
     use crate::spectrum::Wavelengths;
 
-    /// A sky over one pixel.
+    /// A sky.
     fn scene() -> Scene {
-        let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
-        let camera = Perspective::new(&PerspectiveSettings {
-            world_from_camera: Affine3A::IDENTITY,
-            resolution: Vec2::ONE,
-            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
-            lens_radius: 0.0,
-            focal_distance: 1.0,
-        });
-        builder.camera(Camera::Perspective(camera.unwrap()));
+        let mut builder = SceneBuilder::new();
         builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
         builder.build().unwrap()
     }
@@ -170,8 +161,9 @@ mod tests {
 
     /// The film and the counters after one sample that leaves these behind, the last as a splat.
     fn deposit(contributions: &[Contribution], splat: Contribution) -> (Film, Stats) {
+        let view = crate::testing::view(FilmSettings::new([1, 1], Filter::default()));
         let (scene, layers) = (scene(), Layers::new(&[], &[], 3).with_raw());
-        let mut film = Film::with_layers(scene.film().clone(), layers, u64::MAX).unwrap();
+        let mut film = Film::with_layers(view.film().clone(), layers, u64::MAX).unwrap();
         let buffer = PassBuffer::new(film.settings(), film.layers()).unwrap();
         let mut workspace = Workspace::default();
         workspace.contributions.extend(contributions);
@@ -184,6 +176,7 @@ mod tests {
         });
         let context = PathContext {
             scene: &scene,
+            view: &view,
             settings: &PathSettings::default(),
             wavelengths: Wavelengths::default(),
             connections: Connections::ONE_SUBPATH,

@@ -115,10 +115,10 @@ impl FirstSurface {
         let toward_camera = |n: Vec3| if n.dot(wo) < 0.0 { -n } else { n };
         Self {
             albedo: context.scene.color().to_rgb(albedo, &context.wavelengths),
-            point: space.world_point(surface.point).as_vec3(),
-            n_g: toward_camera(surface.n_g),
+            point: space.world_point(surface.locus.point).as_vec3(),
+            n_g: toward_camera(surface.locus.n_g),
             n_s: toward_camera(n_s),
-            depth: space.world_length(context.scene.camera().depth(surface.point)),
+            depth: space.world_length(context.view.camera().depth(surface.locus.point)),
         }
     }
 }

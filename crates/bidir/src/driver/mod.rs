@@ -29,6 +29,7 @@ use crate::film::{Film, FilmError};
 use crate::integrator::LostLight;
 use crate::scene::Scene;
 use crate::stats::Clock;
+use crate::view::View;
 use thiserror::Error;
 
 /// What a render may use; nothing here changes an image.
@@ -100,11 +101,12 @@ pub enum SessionError {
 /// Errors: as [`Session::new`].
 pub fn render(
     scene: &Scene,
+    view: &View,
     settings: &Settings,
     passes: u64,
     resources: &Resources,
 ) -> Result<Film, SessionError> {
-    let mut session = Session::new(scene, settings.clone(), resources)?;
+    let mut session = Session::new(scene, view, settings.clone(), resources)?;
     for _ in 0..passes {
         session.step(&());
     }

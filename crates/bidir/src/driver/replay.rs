@@ -6,8 +6,8 @@
 
 use crate::film::{FilmSettings, SplatPlace};
 use crate::integrator::{Entry, Fate, Link, Term, Workspace};
+use crate::locus::Locus;
 use crate::path::{PathContext, Strategy, Subpath};
-use crate::scene::SegmentEnd;
 use crate::select::Selector;
 use crate::spectrum::{Spectrum, Wavelengths};
 
@@ -34,7 +34,7 @@ pub struct ReplayedTerm {
     /// What was done with it.
     pub fate: Fate,
     /// The ends of its shadow ray, light and camera. None for s = 0, which needs none.
-    pub ends: Option<[SegmentEnd; 2]>,
+    pub ends: Option<[Locus; 2]>,
     /// For what is chosen from: importance and probability.
     pub selection: Option<Selection>,
     /// How much of it arrives, traced or not: 0 where something opaque is in the way, 1 where nothing
@@ -124,7 +124,7 @@ impl ReplayedTerm {
         let (landing, scale) = match &entry.link {
             Link::Walk | Link::Connection(_) => (None, 1.0),
             Link::LightImage(_, place) => {
-                let (landing, scale) = land(scene.film(), *place);
+                let (landing, scale) = land(context.view.film(), *place);
                 (Some(landing), scale)
             }
         };

@@ -22,6 +22,7 @@ use crate::sampler::{Dimension, Domain, Purpose, Sampler};
 use crate::scene::Scene;
 use crate::select::Selector;
 use crate::stats::{Stage, StageTimes, Stats};
+use crate::view::View;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -38,9 +39,13 @@ const RUN: u64 = 256;
 /// use bidir::light::{InfiniteLight, Light};
 /// use bidir::math::{Affine3A, Vec2};
 /// use bidir::scene::SceneBuilder;
+/// use bidir::view::View;
 ///
 /// // Nothing but a sky.
-/// let mut builder = SceneBuilder::new(FilmSettings::new([4, 4], Filter::default()));
+/// let mut builder = SceneBuilder::new();
+/// builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
+/// let scene = builder.build()?;
+///
 /// let camera = Perspective::new(&PerspectiveSettings {
 ///     world_from_camera: Affine3A::IDENTITY,
 ///     resolution: Vec2::splat(4.0),
@@ -48,16 +53,15 @@ const RUN: u64 = 256;
 ///     lens_radius: 0.0,
 ///     focal_distance: 1.0,
 /// });
-/// builder.camera(Camera::Perspective(camera.ok_or("no rigid camera")?));
-/// builder.light(Light::Infinite(InfiniteLight::constant([2.0; 3])));
-/// let scene = builder.build()?;
+/// let camera = Camera::Perspective(camera.ok_or("no rigid camera")?);
+/// let view = View::new(camera, FilmSettings::new([4, 4], Filter::default()))?;
 ///
 /// // Path tracing sees a plain sky without noise.
 /// let settings = Settings {
 ///     integrator: IntegratorKind::Path,
 ///     ..Settings::default()
 /// };
-/// let mut session = Session::new(&scene, settings, &Resources::default())?;
+/// let mut session = Session::new(&scene, &view, settings, &Resources::default())?;
 /// while session.next_pass() < 2 {
 ///     // `()` reports to nobody and never stops.
 ///     session.step(&());
@@ -68,6 +72,7 @@ const RUN: u64 = 256;
 /// ```
 pub struct Session<'a> {
     scene: SceneHandle<'a>,
+    view: View,
     settings: Settings,
     integrator: Box<dyn Integrator>,
     training: Option<Training>,
@@ -89,10 +94,11 @@ impl<'a> Session<'a> {
     /// Errors: the film needs more memory than `resources` allow or the system has.
     pub fn new(
         scene: impl Into<SceneHandle<'a>>,
+        view: &View,
         settings: Settings,
         resources: &Resources,
     ) -> Result<Self, SessionError> {
-        Self::with_effort(scene, settings, resources, Effort::Whole)
+        Self::with_effort(scene, view, settings, resources, Effort::Whole)
     }
 
     /// The same with training of some effort, on which the bits of the image depend.
@@ -100,6 +106,7 @@ impl<'a> Session<'a> {
     /// Errors: as [`Self::new`].
     pub fn with_effort(
         scene: impl Into<SceneHandle<'a>>,
+        view: &View,
         settings: Settings,
         resources: &Resources,
         effort: Effort<'_>,
@@ -110,16 +117,17 @@ impl<'a> Session<'a> {
             return Err(SessionError::NoPath { strategies, lost });
         }
         let layers = settings.layers.clone();
-        let film = Film::with_layers(scene.film().clone(), layers, resources.film_memory)?;
-        let buffer = PassBuffer::new(scene.film(), film.layers())?;
+        let film = Film::with_layers(view.film().clone(), layers, resources.film_memory)?;
+        let buffer = PassBuffer::new(view.film(), film.layers())?;
         let workers = Workers::start(Threads::new(resources.threads));
         let threads = workers.count();
-        let (settings, training) = workers.install(|| prepare(&scene, settings, effort));
+        let (settings, training) = workers.install(|| prepare(&scene, view, settings, effort));
         let rule = selector(&settings, training.as_ref());
         let integrator = settings.integrator.integrator(rule, &settings.lvc);
-        let order = workers.install(|| Order::new(scene.film().crop, &*integrator));
+        let order = workers.install(|| Order::new(view.film().crop, &*integrator));
         Ok(Self {
             scene,
+            view: view.clone(),
             settings,
             integrator,
             order,
@@ -200,7 +208,7 @@ impl<'a> Session<'a> {
         workspace: &mut Workspace,
         progress: &dyn Progress,
     ) -> bool {
-        let pixels = self.scene.film().crop.area();
+        let pixels = self.view.film().crop.area();
         let shared = self.integrator.shared_light();
         let run = if shared.is_some() {
             group_size(pixels)
@@ -237,14 +245,20 @@ impl<'a> Session<'a> {
     }
 
     fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(&self.scene, &self.settings, self.connections(), sample)
+        path_context(
+            &self.scene,
+            &self.view,
+            &self.settings,
+            self.connections(),
+            sample,
+        )
     }
 
     /// How many connections a camera vertex makes.
     pub(super) fn connections(&self) -> Connections<'_> {
         match (self.settings.integrator, &self.training) {
             (IntegratorKind::Lvc, Some(training)) => {
-                let pixels = self.scene.film().light_paths();
+                let pixels = self.view.film().light_paths();
                 let subpaths = pixels.div_ceil(self.samples_per_subpath());
                 Connections {
                     samples_per_subpath: pixels as f64 / subpaths as f64,
@@ -282,7 +296,7 @@ impl<'a> Session<'a> {
 
     /// The sample at `place` in the order of a pass, with the light path that goes with it.
     fn sample(&self, place: u64, pass: u64) -> Sample {
-        let film = self.scene.film();
+        let film = self.view.film();
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
         let [x, y] = film.crop.pixel(self.order.pixel(place));
         let stream = u64::from(y) * u64::from(film.resolution[0]) + u64::from(x);
@@ -299,7 +313,7 @@ impl<'a> Session<'a> {
     /// Repeats the sample of `pixel` in `pass`. None: the pixel is outside the crop.
     pub fn replay(&self, pixel: [u32; 2], pass: u64) -> Option<Replay> {
         let [x, y] = pixel.map(i64::from);
-        let place = self.order.place(self.scene.film().crop.index(x, y)?);
+        let place = self.order.place(self.view.film().crop.index(x, y)?);
         let mut workspace = Workspace::with_journal();
         let sample = self.sample(place, pass);
         let context = self.context(&sample);
@@ -311,7 +325,12 @@ impl<'a> Session<'a> {
         Some(Replay::new(&context, workspace, light, &*selector))
     }
 
-    /// What is rendered.
+    /// The view that is rendered.
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    /// The scene that is rendered.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -388,6 +407,7 @@ impl<'a> Session<'a> {
 /// The context of a sample, with the wavelengths that it draws.
 pub(super) fn path_context<'a>(
     scene: &'a Scene,
+    view: &'a View,
     settings: &'a Settings,
     connections: Connections<'a>,
     sample: &Sample,
@@ -395,6 +415,7 @@ pub(super) fn path_context<'a>(
     let u = sample.camera.get_1d(Dimension::at(0, Purpose::Wavelengths));
     PathContext {
         scene,
+        view,
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(u),
         connections,

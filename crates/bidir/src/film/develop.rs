@@ -1,9 +1,9 @@
 //! From sums to values: mean = camera / passes + light / (passes · light paths), exposed.
 
 use super::layers::{Aov, AovKind, PART_SUMS, PICTURE_SUMS};
-use super::{CAMERA, Film, LIGHT, MOMENT, fixed};
+use super::{CAMERA, Film, LIGHT, MOMENT};
+use crate::math::fixed::{self, MOMENT_SCALE, VALUE_SCALE};
 use crate::spectrum::{Rgb, luminance};
-use fixed::{MOMENT_SCALE, VALUE_SCALE};
 
 /// A developed film: one colour and its variance per pixel, row by row from the top left of the
 /// crop.

@@ -10,11 +10,11 @@
 //! are unbiased there, but nothing bounds their variance: a strategy has a small weight where it
 //! rarely makes a path that then counts much. They are made of what the weighted picture is made
 //! of: a connection whose weighted value is zero is never traced, and is in no image. A raw value
-//! beyond [`fixed::LARGEST_CONTRIBUTION`](super::fixed::LARGEST_CONTRIBUTION) is left out of the
+//! beyond [`fixed::LARGEST_CONTRIBUTION`](crate::math::fixed::LARGEST_CONTRIBUTION) is left out of the
 //! raw image alone, and counted ([`LayerCounts`](crate::stats::LayerCounts)).
 
 use crate::names::named;
-use crate::path::Strategy;
+use crate::strategy::Strategy;
 
 /// The sums of a pixel of the picture: camera samples, splats and squares of pass totals, each of
 /// red, green and blue.

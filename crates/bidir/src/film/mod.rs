@@ -18,7 +18,6 @@
 
 mod develop;
 mod filter;
-pub mod fixed;
 mod layers;
 mod memory;
 mod pass;
@@ -35,7 +34,7 @@ pub use passes::{ParsePassSetError, PassSet};
 pub use sensor::Sensor;
 pub use settings::{FilmError, FilmSettings, PixelRect, SplatPlace};
 
-use fixed::{MOMENT_SCALE, VALUE_SCALE};
+use crate::math::fixed::{self, MOMENT_SCALE, VALUE_SCALE};
 use layers::PICTURE_SUMS;
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use std::slice::ChunksExact;

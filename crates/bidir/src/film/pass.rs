@@ -4,10 +4,10 @@
 //! Each pixel's camera sample is stored by the one thread that renders it, and so are its features
 //! and parts; splats are summed in fixed point, whose order cannot matter. Nothing is normalised here.
 
-use super::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
 use super::layers::PART_SUMS;
 use super::memory::filled;
 use super::{FilmError, FilmSettings, Layers, SplatPlace};
+use crate::math::fixed::{self, FixedSum, LARGEST_CONTRIBUTION, VALUE_SCALE};
 use crate::spectrum::Rgb;
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -13,11 +13,11 @@ pub(crate) use lists::no_path;
 pub use lists::{LostLight, lost_light};
 
 use super::IntegratorKind;
-use crate::camera::Camera;
 use crate::light::Light;
 use crate::material::Material;
 use crate::path::PathSettings;
 use crate::scene::Scene;
+use crate::view::View;
 
 /// Light paths of a scene that an estimator does not make, or makes by chance only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,7 +110,7 @@ impl BlindSpot {
 
 /// The blind spots of an estimator with all its strategies, in a scene. What is specular at a few points
 /// only, or may be by the bounds of its textures, counts as mirrors and clear glass do.
-pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> {
+pub fn blind_spots(scene: &Scene, view: &View, integrator: IntegratorKind) -> Vec<BlindSpot> {
     let lights = scene.lights();
     let has_specular = scene.materials_of_surfaces().any(Material::may_be_specular);
     let spots: &[BlindSpot] = match integrator {
@@ -121,7 +121,7 @@ pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> 
         ],
         IntegratorKind::Light => &[BlindSpot::SeenBySpecular, BlindSpot::Sky],
     };
-    let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
+    let is_parallel = view.camera().is_parallel();
     let is_there = |spot: &BlindSpot| {
         let has_surface = if *spot == BlindSpot::Sky {
             is_parallel
@@ -137,10 +137,11 @@ pub fn blind_spots(scene: &Scene, integrator: IntegratorKind) -> Vec<BlindSpot> 
 /// [`blind_spots`] that are not made at all.
 pub fn missing_light(
     scene: &Scene,
+    view: &View,
     integrator: IntegratorKind,
     settings: &PathSettings,
 ) -> Vec<BlindSpot> {
-    let mut spots = blind_spots(scene, integrator);
+    let mut spots = blind_spots(scene, view, integrator);
     spots.retain(|spot| spot.is_missing() && spot.shortest() <= settings.max_vertices());
     spots
 }

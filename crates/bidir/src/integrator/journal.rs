@@ -5,8 +5,8 @@
 
 use super::Contribution;
 use crate::film::SplatPlace;
+use crate::locus::Locus;
 use crate::path::Strategy;
-use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
 
 /// What a strategy gives through one path, before selection and visibility.
@@ -75,14 +75,14 @@ pub enum Link {
     /// The camera walk, which came to the light by itself: s = 0.
     Walk,
     /// A shadow ray for the sample's own pixel: s ≥ 1 and t ≥ 2.
-    Connection([SegmentEnd; 2]),
+    Connection([Locus; 2]),
     /// A shadow ray for a splat there: t = 1.
-    LightImage([SegmentEnd; 2], SplatPlace),
+    LightImage([Locus; 2], SplatPlace),
 }
 
 impl Link {
     /// The ends of the shadow ray, if there is one.
-    pub fn ends(&self) -> Option<&[SegmentEnd; 2]> {
+    pub fn ends(&self) -> Option<&[Locus; 2]> {
         match self {
             Self::Walk => None,
             Self::Connection(ends) | Self::LightImage(ends, _) => Some(ends),

@@ -4,10 +4,10 @@
 
 use super::{Integrator, Link, Sample, Splat, Term, Workspace};
 use crate::film::SplatPlace;
-use crate::math::{Vec2, Vec3};
+use crate::locus::Locus;
+use crate::math::Vec2;
 use crate::path::{JoinedPath, PathContext, Strategy, Vertex, VertexKind};
 use crate::sampler::{Dimension, Purpose};
-use crate::scene::SegmentEnd;
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
 
@@ -41,14 +41,14 @@ pub(super) struct LightImage<'a> {
     /// From the light to the lens.
     pub(super) path: JoinedPath<'a>,
     /// The camera's end of the shadow ray.
-    camera_end: SegmentEnd,
+    camera_end: Locus,
     raster: Vec2,
     contribution: Spectrum,
 }
 
 /// The lens point for light vertex number `s`.
 pub(super) fn lens_vertex(context: &PathContext<'_>, sample: &Sample, s: usize) -> Vertex {
-    let camera = context.scene.camera();
+    let camera = context.view.camera();
     let u = || {
         sample
             .light
@@ -69,16 +69,16 @@ pub(super) fn light_image<'a>(
     if end.kind == VertexKind::Light && end.light.is_none_or(|i| scene.light(i).is_delta()) {
         return None;
     }
-    if lens.is_infinite && end.is_infinite {
+    if lens.locus.is_infinite() && end.locus.is_infinite() {
         return None;
     }
     let path = JoinedPath::connection(light, std::slice::from_ref(lens));
-    let on_ray = if lens.is_infinite {
-        end.point
+    let on_ray = if lens.locus.is_infinite() {
+        end.locus.point
     } else {
-        lens.point
+        lens.locus.point
     };
-    let raster = scene.camera().raster(on_ray, -path.segment.w)?;
+    let raster = context.view.camera().raster(on_ray, -path.segment.w)?;
     if !reaches_film(context, raster) {
         return None;
     }
@@ -94,22 +94,17 @@ pub(super) fn light_image<'a>(
 
 /// Where a camera sees the vertex `end` from: the lens point, or the place of a parallel ray on the
 /// camera's plane, behind which nothing is in its way.
-fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> SegmentEnd {
-    if !lens.is_infinite {
-        return lens.segment_end();
+fn camera_end(context: &PathContext<'_>, lens: &Vertex, end: &Vertex) -> Locus {
+    if !lens.locus.is_infinite() {
+        return lens.locus;
     }
-    let depth = context.scene.camera().depth(end.point);
-    SegmentEnd {
-        point: end.point + lens.point * depth,
-        n_g: Vec3::ZERO,
-        is_infinite: false,
-        ..lens.segment_end()
-    }
+    let depth = context.view.camera().depth(end.locus.point);
+    Locus::in_space(end.locus.point + lens.locus.point * depth)
 }
 
 /// True where the filter of some pixel of the crop may reach `raster`.
 fn reaches_film(context: &PathContext<'_>, raster: Vec2) -> bool {
-    let film = context.scene.film();
+    let film = context.view.film();
     let corner = |c: [u32; 2]| Vec2::new(c[0] as f32, c[1] as f32);
     let margin = film.filter.radius();
     let (min, max) = (
@@ -131,7 +126,7 @@ impl LightImage<'_> {
                 weight,
             },
             raster: self.raster,
-            ends: [self.path.light[light - 1].segment_end(), self.camera_end],
+            ends: [self.path.light[light - 1].locus, self.camera_end],
         }
     }
 }
@@ -141,7 +136,7 @@ pub(super) struct WeightedImage {
     term: Term,
     raster: Vec2,
     /// The ends of its shadow ray: light vertex and camera.
-    ends: [SegmentEnd; 2],
+    ends: [Locus; 2],
 }
 
 impl Workspace {

@@ -95,7 +95,7 @@ fn next_event(context: &PathContext<'_>, sample: &Sample, workspace: &mut Worksp
     let Some((light, x0)) = sample_next_event(context, vertex, u_light, u) else {
         return;
     };
-    let ends = [x0.at.segment_end(), vertex.segment_end()];
+    let ends = [x0.at.locus, vertex.locus];
     let segment = Segment::between(&ends[0], &ends[1]);
     let turn = vertex.turn(vertex.wo, -segment.w);
     let contribution = arriving(context, &turn, light, &x0, &segment);

@@ -6,13 +6,14 @@ use super::lvc::LightCache;
 use super::{Entry, Fate, Journal, Link, Term};
 use crate::camera::CameraRay;
 use crate::film::SplatPlace;
-use crate::film::fixed::LARGEST_CONTRIBUTION;
+use crate::locus::Locus;
 use crate::math::Vec2;
+use crate::math::fixed::LARGEST_CONTRIBUTION;
 use crate::path::{
     Cell, PathContext, RunningSums, Strategy, Subpath, Vertex, camera_subpath, light_subpath,
 };
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Scene, SegmentEnd};
+use crate::scene::Scene;
 use crate::select::{Candidate, Chosen, LightVertex};
 use crate::spectrum::Spectrum;
 use crate::stats::{Clock, Dropped, Stage, Stats, Stopwatch};
@@ -203,9 +204,9 @@ impl Workspace {
 
     /// The ends of the segment that a candidate connects.
     #[inline]
-    pub(super) fn ends(&self, strategy: Strategy, light_vertex: LightVertex) -> [SegmentEnd; 2] {
+    pub(super) fn ends(&self, strategy: Strategy, light_vertex: LightVertex) -> [Locus; 2] {
         let vertices = self.vertices(strategy, light_vertex);
-        vertices.map(Vertex::segment_end)
+        vertices.map(|vertex| vertex.locus)
     }
 
     /// The candidates, each with what of it arrived, if anything.
@@ -223,7 +224,7 @@ impl Workspace {
     /// vertex.
     pub(crate) fn cells_of(&self, candidate: &Candidate) -> Option<[Cell; 2]> {
         let [z, y] = self.vertices(candidate.strategy, candidate.light_vertex);
-        let is_placed = candidate.light_vertex != LightVertex::Own && !z.is_infinite;
+        let is_placed = candidate.light_vertex != LightVertex::Own && !z.locus.is_infinite();
         is_placed.then_some([z.cell, y.cell])
     }
 
@@ -303,12 +304,7 @@ impl Workspace {
     }
 
     /// Traces the shadow ray of a term: how much of it arrives. None: nothing.
-    pub(super) fn trace(
-        &mut self,
-        scene: &Scene,
-        mark: Mark,
-        [a, b]: &[SegmentEnd; 2],
-    ) -> Option<f32> {
+    pub(super) fn trace(&mut self, scene: &Scene, mark: Mark, [a, b]: &[Locus; 2]) -> Option<f32> {
         self.stats.count_shadow_ray(mark.strategy);
         let transmittance = scene.transmittance(a, b);
         if transmittance > 0.0 {
@@ -331,10 +327,10 @@ impl Workspace {
 /// The ray of a camera sample, and the weight of its film position.
 pub(crate) fn camera_ray(context: &PathContext<'_>, sample: &Sample) -> (CameraRay, f32) {
     let get = |purpose| sample.ray.get_2d(Dimension::at(0, purpose));
-    let (offset, weight) = context.scene.film().filter.sample(get(Purpose::Film));
+    let (offset, weight) = context.view.film().filter.sample(get(Purpose::Film));
     let raster = Vec2::new(sample.pixel[0] as f32, sample.pixel[1] as f32) + 0.5 + offset;
     let ray = context
-        .scene
+        .view
         .camera()
         .sample_ray(raster, || get(Purpose::Lens));
     (ray, weight)

@@ -6,9 +6,9 @@
 
 use super::{Cone, EmissionSample, EmitterBounds, LightContext, LightPoint, LightSample, Part};
 use crate::math::{Distribution1d, Frame, PI, Vec2, Vec3, warp};
-use crate::scene::clamped_coverage;
 use crate::shape::{Normals, Shape, ShapeSample, SurfacePoint};
 use crate::spectrum::{Rgb, luminance};
+use crate::texture::clamped_coverage;
 use crate::texture::{ColorTexture, FloatTexture, TexturePoint};
 
 /// A mesh of more primitives is many emitters for a tree of lights: a quadrilateral is one.
@@ -103,8 +103,8 @@ impl AreaLight {
             return self.radiance;
         }
         let (shape, primitive) = (&context.shapes[self.shape], at.primitive as usize);
-        let parameters = shape.parameters(primitive, at.point);
-        self.radiance_at(&shape.surface_point(primitive, parameters, at.point))
+        let parameters = shape.parameters(primitive, at.locus.point);
+        self.radiance_at(&shape.surface_point(primitive, parameters, at.locus.point))
     }
 
     /// Lets no ray meet the surface, though it emits.
@@ -186,7 +186,7 @@ impl AreaLight {
 
     #[inline]
     pub(super) fn emitted(&self, context: &LightContext<'_>, at: &LightPoint, w: Vec3) -> Rgb {
-        if self.sides == EmissionSides::Both || at.n_g.dot(w) > 0.0 {
+        if self.sides == EmissionSides::Both || at.locus.n_g.dot(w) > 0.0 {
             self.radiance(context, at)
         } else {
             [0.0; 3]
@@ -234,16 +234,16 @@ impl AreaLight {
             u.x = (u.x * 2.0).fract();
         }
         let local = warp::cosine_hemisphere(u);
-        let direction = Frame::from_z(from.at.n_g * side).to_world(local);
+        let direction = Frame::from_z(from.at.locus.n_g * side).to_world(local);
         let pdf_direction = self.pdf_direction(&from.at, direction);
         (pdf_direction > 0.0 && from.pdf > 0.0).then(|| EmissionSample {
             from,
-            origin: from.at.point,
+            origin: from.at.locus.point,
             direction,
             pdf_direction,
             emitted_cos: self
                 .radiance(context, &from.at)
-                .map(|l| l * from.at.n_g.dot(direction).abs()),
+                .map(|l| l * from.at.locus.n_g.dot(direction).abs()),
         })
     }
 
@@ -252,14 +252,14 @@ impl AreaLight {
         match &context.shapes[self.shape] {
             // A primitive by area and a point evenly on it: evenly over all.
             Shape::Mesh(_) | Shape::Disk(_) => self.inverse_area,
-            Shape::Sphere(sphere) => sphere.pdf(at.point),
-            Shape::Cylinder(cylinder) => cylinder.pdf(at.point),
+            Shape::Sphere(sphere) => sphere.pdf(at.locus.point),
+            Shape::Cylinder(cylinder) => cylinder.pdf(at.locus.point),
         }
     }
 
     #[inline]
     pub(super) fn pdf_direction(&self, at: &LightPoint, w: Vec3) -> f32 {
-        let cos = at.n_g.dot(w);
+        let cos = at.locus.n_g.dot(w);
         match self.sides {
             EmissionSides::Front => warp::cosine_hemisphere_pdf(cos),
             EmissionSides::Both => warp::cosine_hemisphere_pdf(cos.abs()) / 2.0,
@@ -293,10 +293,14 @@ impl AreaLight {
     ) -> f32 {
         let shape = &context.shapes[self.shape];
         match (part, shape) {
-            (Part::Primitive(i), _) => shape.pdf_from(i as usize, reference, at.point, at.n_g),
+            (Part::Primitive(i), _) => {
+                shape.pdf_from(i as usize, reference, at.locus.point, at.locus.n_g)
+            }
             (Part::Whole, Shape::Mesh(_) | Shape::Disk(_)) => self.inverse_area,
-            (Part::Whole, Shape::Sphere(sphere)) => sphere.pdf_from(reference, at.point, at.n_g),
-            (Part::Whole, Shape::Cylinder(cylinder)) => cylinder.pdf(at.point),
+            (Part::Whole, Shape::Sphere(sphere)) => {
+                sphere.pdf_from(reference, at.locus.point, at.locus.n_g)
+            }
+            (Part::Whole, Shape::Cylinder(cylinder)) => cylinder.pdf(at.locus.point),
         }
     }
 }

@@ -27,7 +27,7 @@ fn ray_from_infinity(
     emitted: Rgb,
     u: Vec2,
 ) -> EmissionSample {
-    let to_light = from.at.point;
+    let to_light = from.at.locus.point;
     let disk = warp::concentric_disk(u);
     let across = Frame::from_z(to_light).to_world(disk.extend(1.0));
     EmissionSample {
@@ -178,7 +178,7 @@ impl InfiniteLight {
         u_direction: Vec2,
     ) -> Option<EmissionSample> {
         let from = self.sample(u_position)?;
-        let emitted = self.radiance(from.at.point);
+        let emitted = self.radiance(from.at.locus.point);
         Some(ray_from_infinity(context, from, emitted, u_direction))
     }
 }

@@ -33,8 +33,8 @@ pub use infinite::{DistantLight, InfiniteLight, Radiance};
 pub use point::{PointLight, SpotLight};
 pub use tree::{ChosenEmitter, Facing, LightTree, Receiver};
 
+use crate::locus::Locus;
 use crate::math::{Vec2, Vec3};
-use crate::scene::SegmentEnd;
 use crate::shape::{Shape, SurfacePoint};
 use crate::spectrum::Rgb;
 use tree::{Cone, EmitterBounds};
@@ -42,67 +42,34 @@ use tree::{Cone, EmitterBounds};
 /// Where a path starts.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPoint {
-    /// The point; for a light at infinity the unit direction towards it.
-    pub point: Vec3,
-    /// The normal of the emitting surface; zero where there is none.
-    pub n_g: Vec3,
-    /// What ray origins are pushed off the surface by; see [`SurfacePoint::error`].
-    pub error: f32,
+    /// The place.
+    pub locus: Locus,
     /// The primitive of the emitting shape; 0 where there is none.
     pub primitive: u32,
-    /// True for a light at infinity, where `point` is a direction.
-    pub is_infinite: bool,
 }
 
 impl LightPoint {
     /// A point on an emitting surface.
     pub fn on_surface(surface: &SurfacePoint, primitive: u32) -> Self {
         Self {
-            point: surface.point,
-            n_g: surface.n_g,
-            error: surface.error,
+            locus: surface.locus(),
             primitive,
-            is_infinite: false,
-        }
-    }
-
-    /// The point as an end of a shadow ray.
-    #[inline]
-    pub fn segment_end(&self) -> SegmentEnd {
-        SegmentEnd {
-            point: self.point,
-            n_g: self.n_g,
-            error: self.error,
-            is_infinite: self.is_infinite,
-        }
-    }
-
-    /// The direction to it from the point `from`, of any length.
-    #[inline]
-    pub fn direction_from(&self, from: Vec3) -> Vec3 {
-        if self.is_infinite {
-            self.point
-        } else {
-            self.point - from
         }
     }
 
     /// A point in space.
     pub fn in_space(point: Vec3) -> Self {
         Self {
-            point,
-            n_g: Vec3::ZERO,
-            error: 0.0,
+            locus: Locus::in_space(point),
             primitive: 0,
-            is_infinite: false,
         }
     }
 
     /// The unit `direction` towards a light at infinity.
     pub fn at_infinity(direction: Vec3) -> Self {
         Self {
-            is_infinite: true,
-            ..Self::in_space(direction)
+            locus: Locus::at_infinity(direction),
+            primitive: 0,
         }
     }
 }
@@ -229,7 +196,7 @@ impl Light {
             Self::Point(light) => light.intensity,
             Self::Spot(light) => light.intensity(w),
             Self::Distant(light) => light.irradiance,
-            Self::Infinite(light) => light.radiance(at.point),
+            Self::Infinite(light) => light.radiance(at.locus.point),
         }
     }
 
@@ -256,7 +223,7 @@ impl Light {
         match self {
             Self::Area(light) => light.pdf_position(context, at),
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
-            Self::Infinite(light) => light.pdf(at.point),
+            Self::Infinite(light) => light.pdf(at.locus.point),
         }
     }
 
@@ -331,7 +298,7 @@ impl Light {
         match self {
             Self::Area(light) => light.pdf_next_event(context, part, reference, at),
             Self::Point(_) | Self::Spot(_) | Self::Distant(_) => 1.0,
-            Self::Infinite(light) => light.pdf(at.point),
+            Self::Infinite(light) => light.pdf(at.locus.point),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! scene gives the same bits on every machine; the standard library's are forbidden by lint.
 
 mod distribution;
+pub mod fixed;
 mod frame;
 mod octahedral;
 pub mod warp;

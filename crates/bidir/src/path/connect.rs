@@ -153,7 +153,7 @@ pub fn sample_next_event(
     };
     let lights = scene.light_context();
     let of_light = scene.light(light);
-    let mut sample = of_light.sample_next_event(&lights, part, x1.point, u)?;
+    let mut sample = of_light.sample_next_event(&lights, part, x1.locus.point, u)?;
     sample.pdf *= prob;
     (sample.coverage > 0.0 && sample.pdf > 0.0).then_some((light, sample))
 }
@@ -169,13 +169,13 @@ pub fn next_event_pdf(context: &PathContext<'_>, x1: &Vertex, light: u32, at: &L
             by_power((light as usize, prob))
         }
         LightChoiceKind::Tree => {
-            let receiver = || x1.receiver(at.direction_from(x1.point));
+            let receiver = || x1.receiver(at.locus.direction_from(x1.locus.point));
             scene.light_tree().find(receiver, light, at.primitive)
         }
     };
     let lights = scene.light_context();
     let of_light = scene.light(light);
-    prob * of_light.pdf_next_event(&lights, part, x1.point, at)
+    prob * of_light.pdf_next_event(&lights, part, x1.locus.point, at)
 }
 
 /// A light that was chosen as a whole.
@@ -213,7 +213,10 @@ impl PathContext<'_> {
     #[inline]
     pub(crate) fn root_visibility(&self, z: &Vertex, y: &Vertex) -> f32 {
         let of_cells = |all: &LightProposals| all.root_visibility(z.cell, y.cell);
-        let proposals = self.connections.proposals.filter(|_| !z.is_infinite);
+        let proposals = self
+            .connections
+            .proposals
+            .filter(|_| !z.locus.is_infinite());
         proposals.map_or(1.0, of_cells)
     }
 

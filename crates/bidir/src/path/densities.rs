@@ -156,7 +156,7 @@ pub(super) fn next_event_density(context: &PathContext<'_>, x0: &Vertex, x1: &Ve
     match (context.settings.light_point, x1.kind) {
         // Of a camera and a light both at infinity no connection makes a path: the camera has to
         // see the light by itself.
-        (_, VertexKind::Camera) if x0.is_infinite && x1.is_infinite => 0.0,
+        (_, VertexKind::Camera) if x0.locus.is_infinite() && x1.locus.is_infinite() => 0.0,
         // A path of two vertices has its s = 1 by t = 1, which uses the light subpath's x_0.
         (LightPointChoice::Shared, _) | (_, VertexKind::Camera) => x0.pdf_fwd,
         _ => next_event_pdf(context, x1, index, &x0.light_point()),

@@ -22,20 +22,22 @@ mod cells;
 mod connect;
 mod count;
 mod densities;
+mod light_choice;
 mod mis;
 mod proposals;
 mod roulette;
 mod running;
 mod scatter;
 mod segment;
-mod strategy;
 mod vertex;
 mod walk;
 
+pub use crate::strategy::{Strategies, Strategy};
 pub use cells::{Cell, Cells};
 pub use connect::{JoinedPath, Junction, next_event_pdf, sample_next_event};
 pub use count::MisCount;
 pub use densities::{PathDensities, VertexDensities};
+pub use light_choice::{LightChoiceKind, LightPointChoice};
 pub use mis::{MisHeuristic, mis_weight};
 pub(crate) use proposals::CellDraw;
 pub use proposals::{Connections, Inclusion, LightProposals, PairSums};
@@ -43,12 +45,12 @@ pub use roulette::PathRoulette;
 pub use running::{LightEnd, LightShares, RunningSums};
 pub use scatter::Turn;
 pub use segment::Segment;
-pub use strategy::{LightChoiceKind, LightPointChoice, Strategies, Strategy};
 pub use vertex::{Vertex, VertexKind};
 pub use walk::{Escape, Subpath, camera_subpath, light_subpath};
 
 use crate::scene::Scene;
 use crate::spectrum::Wavelengths;
+use crate::view::View;
 
 /// The most vertices of any path, whatever the limits: a walk between perfect mirrors would not
 /// end.
@@ -99,6 +101,8 @@ impl PathSettings {
 pub struct PathContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
+    /// The camera that sees it, and its film.
+    pub view: &'a View,
     /// How paths are made and weighted.
     pub settings: &'a PathSettings,
     /// The wavelengths of the sample.

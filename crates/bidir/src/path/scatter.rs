@@ -51,7 +51,7 @@ impl Side {
         Self {
             world,
             local: vertex.shading.to_local(world),
-            cos_g: vertex.n_g.dot(world),
+            cos_g: vertex.locus.n_g.dot(world),
         }
     }
 
@@ -99,7 +99,7 @@ impl<'a> Turn<'a> {
     pub fn scatter(&self, context: &PathContext<'_>, mode: TransportMode) -> Spectrum {
         let Self { vertex, wo, wi } = self;
         match (vertex.kind, vertex.light) {
-            (VertexKind::Camera, _) => Spectrum::splat(context.scene.camera().importance(wi.world)),
+            (VertexKind::Camera, _) => Spectrum::splat(context.view.camera().importance(wi.world)),
             (VertexKind::Light, Some(light)) => {
                 context.emitted(light, &vertex.light_point(), wi.world)
             }
@@ -124,7 +124,7 @@ impl<'a> Turn<'a> {
     pub fn pdf(&self, context: &PathContext<'_>) -> f32 {
         let (scene, vertex) = (context.scene, self.vertex);
         match (vertex.kind, vertex.light) {
-            (VertexKind::Camera, _) => scene.camera().pdf_direction(self.wi.world),
+            (VertexKind::Camera, _) => context.view.camera().pdf_direction(self.wi.world),
             (VertexKind::Light, Some(light)) => {
                 let (light, at) = (scene.light(light), vertex.light_point());
                 light.pdf_direction(&scene.light_context(), &at, self.wi.world)

@@ -3,8 +3,8 @@
 //!
 //! Cosines are geometric. Towards an end at infinity there is no distance, and no cosine there.
 
+use crate::locus::Locus;
 use crate::math::Vec3;
-use crate::scene::SegmentEnd;
 
 /// The line between two ends, the first of which is called a and the second b; at most one is at
 /// infinity. All numbers are zero where both are the same point.
@@ -23,11 +23,11 @@ pub struct Segment {
 impl Segment {
     /// The segment between two ends.
     #[inline]
-    pub fn between(a: &SegmentEnd, b: &SegmentEnd) -> Self {
-        if b.is_infinite {
+    pub fn between(a: &Locus, b: &Locus) -> Self {
+        if b.is_infinite() {
             return Self::along(a, b, b.point);
         }
-        if a.is_infinite {
+        if a.is_infinite() {
             return Self::along(a, b, -a.point);
         }
         let across = b.point - a.point;
@@ -37,8 +37,8 @@ impl Segment {
 
     /// The same where the unit direction `w` from a to b is known.
     #[inline]
-    pub fn along(a: &SegmentEnd, b: &SegmentEnd, w: Vec3) -> Self {
-        let inverse2 = if a.is_infinite || b.is_infinite {
+    pub fn along(a: &Locus, b: &Locus, w: Vec3) -> Self {
+        let inverse2 = if a.is_infinite() || b.is_infinite() {
             1.0
         } else {
             inverse(a.point.distance_squared(b.point))
@@ -48,13 +48,21 @@ impl Segment {
 
     /// With one over the square of the distance, or 1 where there is none.
     #[inline]
-    fn with(a: &SegmentEnd, b: &SegmentEnd, w: Vec3, inverse2: f32) -> Self {
+    fn with(a: &Locus, b: &Locus, w: Vec3, inverse2: f32) -> Self {
         let [cos_a, cos_b] = [a, b].map(|end| end.abs_cos(w));
         Self {
             w,
             geometry_term: cos_a * cos_b * inverse2,
-            to_b: if b.is_infinite { 1.0 } else { cos_b * inverse2 },
-            to_a: if a.is_infinite { 1.0 } else { cos_a * inverse2 },
+            to_b: if b.is_infinite() {
+                1.0
+            } else {
+                cos_b * inverse2
+            },
+            to_a: if a.is_infinite() {
+                1.0
+            } else {
+                cos_a * inverse2
+            },
         }
     }
 }
@@ -70,33 +78,16 @@ fn inverse(x: f32) -> f32 {
     }
 }
 
-impl SegmentEnd {
-    /// |cosθ| between the normal and `w`; 1 where there is no surface.
-    #[inline]
-    fn abs_cos(&self, w: Vec3) -> f32 {
-        if self.n_g == Vec3::ZERO {
-            1.0
-        } else {
-            self.n_g.dot(w).abs()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn end(point: Vec3, n_g: Vec3, is_infinite: bool) -> SegmentEnd {
-        SegmentEnd {
-            point,
-            n_g,
-            error: 0.0,
-            is_infinite,
-        }
+    fn on_surface(point: Vec3, n_g: Vec3) -> Locus {
+        Locus::on_surface(point, n_g, 0.0)
     }
 
     #[track_caller]
-    fn check(a: &SegmentEnd, b: &SegmentEnd, w: Vec3, expected: [f32; 3]) {
+    fn check(a: &Locus, b: &Locus, w: Vec3, expected: [f32; 3]) {
         for segment in [Segment::between(a, b), Segment::along(a, b, w)] {
             assert!((segment.w - w).length() < 1e-6, "{segment:?}");
             let found = [segment.geometry_term, segment.to_b, segment.to_a];
@@ -112,25 +103,25 @@ mod tests {
     #[test]
     fn cosines_and_distance_are_where_the_ends_are() {
         // 2 m apart; the normals are at 60° and 0° to the segment.
-        let slanted = end(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0), false);
-        let facing = end(Vec3::X * 2.0, -Vec3::X, false);
+        let slanted = on_surface(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0));
+        let facing = on_surface(Vec3::X * 2.0, -Vec3::X);
         check(&slanted, &facing, Vec3::X, [0.125, 0.25, 0.125]);
         check(&facing, &slanted, -Vec3::X, [0.125, 0.125, 0.25]);
-        let lens = end(Vec3::X * 2.0, Vec3::ZERO, false);
+        let lens = Locus::in_space(Vec3::X * 2.0);
         check(&slanted, &lens, Vec3::X, [0.125, 0.25, 0.125]);
     }
 
     #[test]
     fn at_infinity_there_is_one_cosine() {
-        let slanted = end(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0), false);
-        let sky = end(Vec3::X, Vec3::ZERO, true);
+        let slanted = on_surface(Vec3::ZERO, Vec3::new(0.5, 0.75f32.sqrt(), 0.0));
+        let sky = Locus::at_infinity(Vec3::X);
         check(&slanted, &sky, Vec3::X, [0.5, 1.0, 0.5]);
         check(&sky, &slanted, -Vec3::X, [0.5, 0.5, 1.0]);
     }
 
     #[test]
     fn a_point_does_not_see_itself() {
-        let here = end(Vec3::ONE, Vec3::X, false);
+        let here = on_surface(Vec3::ONE, Vec3::X);
         let segment = Segment::between(&here, &here);
         assert_eq!(segment.w, Vec3::ZERO);
         let numbers = [segment.geometry_term, segment.to_b, segment.to_a];

@@ -8,8 +8,9 @@ use super::{Cell, PathContext, Segment};
 use crate::bsdf::{Bsdf, Diffuse};
 use crate::camera::LensSample;
 use crate::light::{Facing, LightPoint, Receiver};
+use crate::locus::Locus;
 use crate::math::{Frame, Vec3};
-use crate::scene::{SegmentEnd, SurfaceHit};
+use crate::scene::SurfaceHit;
 use crate::spectrum::Spectrum;
 use crate::texture::TexturePoint;
 
@@ -30,12 +31,8 @@ pub enum VertexKind {
 pub struct Vertex {
     /// What it is.
     pub kind: VertexKind,
-    /// The point; for a light or camera at infinity the unit direction towards it.
-    pub point: Vec3,
-    /// The geometric normal; zero for a point in space.
-    pub n_g: Vec3,
-    /// What ray origins are pushed off the surface by.
-    pub error: f32,
+    /// The place.
+    pub locus: Locus,
     /// The shading frame of a surface.
     pub shading: Frame,
     /// The unit direction towards the previous vertex of the walk.
@@ -62,20 +59,16 @@ pub struct Vertex {
     pub light: Option<u32>,
     /// The primitive of the light's shape.
     pub light_primitive: u32,
-    /// True for a light or camera at infinity.
-    pub is_infinite: bool,
     /// What is learnt about its connections is learnt for this cell.
     pub cell: Cell,
 }
 
 impl Vertex {
-    /// A vertex of which only the kind, the point and its normal matter.
-    fn endpoint(kind: VertexKind, point: Vec3, n_g: Vec3) -> Self {
+    /// A vertex of which only the kind and the place matter.
+    fn endpoint(kind: VertexKind, locus: Locus) -> Self {
         Self {
             kind,
-            point,
-            n_g,
-            error: 0.0,
+            locus,
             shading: Frame {
                 x: Vec3::ZERO,
                 y: Vec3::ZERO,
@@ -94,7 +87,6 @@ impl Vertex {
             went_by_delta: false,
             light: None,
             light_primitive: 0,
-            is_infinite: false,
             cell: Cell::default(),
         }
     }
@@ -104,8 +96,7 @@ impl Vertex {
         Self {
             beta: Spectrum::splat(1.0 / lens.pdf),
             pdf_fwd: lens.pdf,
-            is_infinite: lens.is_infinite,
-            ..Self::endpoint(VertexKind::Camera, lens.point, lens.n_g)
+            ..Self::endpoint(VertexKind::Camera, lens.locus)
         }
     }
 
@@ -125,13 +116,11 @@ impl Vertex {
         pdf_fwd: f32,
     ) -> Self {
         Self {
-            cell: context.cell(at.point, at.n_g),
-            error: at.error,
+            cell: context.cell(at.locus.point, at.locus.n_g),
             pdf_fwd,
             light: Some(light),
             light_primitive: at.primitive,
-            is_infinite: at.is_infinite,
-            ..Self::endpoint(VertexKind::Light, at.point, at.n_g)
+            ..Self::endpoint(VertexKind::Light, at.locus)
         }
     }
 
@@ -147,7 +136,7 @@ impl Vertex {
         let (scene, surface) = (context.scene, &hit.surface);
         let mut at = TexturePoint::new(surface);
         if let Some(differentials) = &hit.differentials {
-            at = at.seen(scene.footprint(surface.point), differentials);
+            at = at.seen(context.view.footprint(surface.point), differentials);
         }
         let material = scene.material(hit.material).choose(&at, u_mix);
         let bsdf = material.bsdf(&at, scene.color(), &context.wavelengths);
@@ -156,7 +145,6 @@ impl Vertex {
             _ => surface.shading,
         };
         Self {
-            error: surface.error,
             shading,
             wo,
             bsdf,
@@ -165,7 +153,7 @@ impl Vertex {
             light: hit.light.map(|(light, _)| light),
             light_primitive: hit.light.map_or(0, |(_, at)| at.primitive),
             cell: context.cell(surface.point, shading.z),
-            ..Self::endpoint(VertexKind::Surface, surface.point, surface.n_g)
+            ..Self::endpoint(VertexKind::Surface, surface.locus())
         }
     }
 
@@ -173,11 +161,8 @@ impl Vertex {
     #[inline]
     pub fn light_point(&self) -> LightPoint {
         LightPoint {
-            point: self.point,
-            n_g: self.n_g,
-            error: self.error,
+            locus: self.locus,
             primitive: self.light_primitive,
-            is_infinite: self.is_infinite,
         }
     }
 
@@ -185,9 +170,9 @@ impl Vertex {
     pub(crate) fn place(&self) -> [Vec3; 2] {
         let n = match self.kind {
             VertexKind::Surface => self.shading.z,
-            VertexKind::Camera | VertexKind::Light => self.n_g,
+            VertexKind::Camera | VertexKind::Light => self.locus.n_g,
         };
-        [self.point, n]
+        [self.locus.point, n]
     }
 
     /// The vertex as what a light is chosen for, on a path that goes on along `w` from here, of any
@@ -202,14 +187,8 @@ impl Vertex {
         } else {
             Facing::Front(n)
         };
-        let point = self.point;
+        let point = self.locus.point;
         Receiver { point, facing }
-    }
-
-    /// The vertex as an end of a shadow ray.
-    #[inline]
-    pub fn segment_end(&self) -> SegmentEnd {
-        self.light_point().segment_end()
     }
 
     /// True where all scattering is a Dirac distribution, so that nothing can connect here. What a
@@ -229,6 +208,6 @@ impl Vertex {
     /// This vertex and `other` as they see each other; at most one of the two is at infinity.
     #[inline]
     pub fn segment_to(&self, other: &Self) -> Segment {
-        Segment::between(&self.segment_end(), &other.segment_end())
+        Segment::between(&self.locus, &other.locus)
     }
 }

@@ -9,9 +9,10 @@ use super::{PathContext, Segment, Vertex};
 use crate::bsdf::TransportMode;
 use crate::camera::CameraRay;
 use crate::light::EmissionSample;
+use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::scene::{Chances, offset_origin};
+use crate::scene::Chances;
 use crate::spectrum::Spectrum;
 use crate::stats::Stats;
 
@@ -71,7 +72,7 @@ pub fn camera_subpath(
     let step = Step {
         direction: ray.direction,
         beta: Spectrum::splat(weight),
-        pdf_w: context.scene.camera().pdf_direction(ray.direction),
+        pdf_w: context.view.camera().pdf_direction(ray.direction),
     };
     walker.walk(subpath, ray.origin, step, &mut stats.rays.camera);
 }
@@ -96,7 +97,11 @@ pub fn light_subpath(
         beta: emitted * (emission.from.coverage / (start.pdf_fwd * emission.pdf_direction)),
         pdf_w: emission.pdf_direction,
     };
-    let origin = offset_origin(emission.origin, start.n_g, start.error, emission.direction);
+    let start_of_ray = Locus {
+        point: emission.origin,
+        ..start.locus
+    };
+    let origin = start_of_ray.ray_origin(emission.direction);
     subpath.vertices.push(start);
     let walker = Walker {
         context,
@@ -161,8 +166,8 @@ impl Walker<'_> {
             let wo = -step.direction;
             let mut vertex = Vertex::surface(self.context, &hit, wo, step.beta, u_mix);
             let last = subpath.vertices.len() - 1;
-            let from = subpath.vertices[last].segment_end();
-            let segment = Segment::along(&from, &vertex.segment_end(), step.direction);
+            let from = subpath.vertices[last].locus;
+            let segment = Segment::along(&from, &vertex.locus, step.direction);
             vertex.pdf_fwd = step.pdf_w * segment.to_b;
             vertex.to_previous = segment.to_a;
             // Rounding put the vertex on the one before it, in a corner: no density, no path.
@@ -177,7 +182,7 @@ impl Walker<'_> {
                 return;
             };
             let vertex = &subpath.vertices[last + 1];
-            origin = offset_origin(vertex.point, vertex.n_g, vertex.error, next.direction);
+            origin = vertex.locus.ray_origin(next.direction);
             step = next;
         }
     }

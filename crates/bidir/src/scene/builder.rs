@@ -1,17 +1,15 @@
 //! From parts to a [`Scene`]: the checks, the acceleration structure, and the sphere around
 //! everything (metres) that lights at infinity shine through. All errors of a scene are found here.
 
-use super::check::{check_crop, check_shape};
+use super::check::check_shape;
 use super::object::{Geometry, ObjectId, Objects};
-use super::{Presence, RenderSpace, Scene, Surface, TextureFiltering, clamped_coverage};
-use crate::camera::Camera;
-use crate::film::FilmSettings;
+use super::{Presence, RenderSpace, Scene, Surface};
 use crate::light::{AreaLight, EmissionSides, Light, LightChoice, LightContext, LightTree};
 use crate::material::Material;
 use crate::math::{DAffine3, Vec3};
 use crate::shape::{Place, Shape};
 use crate::spectrum::{ColorModel, Rgb};
-use crate::texture::{ColorTexture, FloatTexture};
+use crate::texture::{ColorTexture, FloatTexture, clamped_coverage};
 use thiserror::Error;
 
 /// A material added to a [`SceneBuilder`].
@@ -76,12 +74,6 @@ pub enum SceneError {
     /// There are more primitives than the intersector counts.
     #[error("the scene has too many primitives: {0}")]
     Intersector(String),
-    /// The camera was not set.
-    #[error("the scene has no camera")]
-    NoCamera,
-    /// A part of the film that is rendered is empty or outside it.
-    #[error("the crop is empty or outside of the film")]
-    EmptyCrop,
 }
 
 impl SceneError {
@@ -91,76 +83,46 @@ impl SceneError {
             Self::VertexIndex { shape, .. }
             | Self::AttributeCount { shape, .. }
             | Self::NotFinite { shape } => Some(*shape),
-            Self::Instance { .. } | Self::Intersector(_) | Self::NoCamera | Self::EmptyCrop => None,
+            Self::Instance { .. } | Self::Intersector(_) => None,
         }
     }
 }
 
 /// Collects the parts of a scene and checks them.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct SceneBuilder {
-    film: FilmSettings,
     space: RenderSpace,
-    camera: Option<Camera>,
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
     objects: Objects,
     coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
-    filtering: TextureFiltering,
     lights: Vec<Light>,
     /// The group of each light, by index into the names.
     light_groups: Vec<u32>,
     group_names: Vec<String>,
     /// The name of the group that lights are added to. None: that of their kind.
     group: Option<String>,
-    isa: accel::Isa,
+    /// None: the best that the machine has.
+    isa: Option<accel::Isa>,
 }
 
 impl SceneBuilder {
-    /// An empty scene with a film.
-    pub fn new(film: FilmSettings) -> Self {
-        Self {
-            film,
-            space: RenderSpace::WORLD,
-            camera: None,
-            color: ColorModel::default(),
-            shapes: Vec::new(),
-            surfaces: Vec::new(),
-            objects: Objects::default(),
-            coverages: Vec::new(),
-            materials: Vec::new(),
-            filtering: TextureFiltering::default(),
-            lights: Vec::new(),
-            light_groups: Vec::new(),
-            group_names: Vec::new(),
-            group: None,
-            isa: accel::Isa::detect(),
-        }
+    /// An empty scene.
+    pub fn new() -> Self {
+        Self::default()
     }
 
-    /// Says in which space the camera, the shapes and the lights are given; by default the world.
+    /// Says in which space the shapes, the lights and the camera of every view are given; by default the world.
     pub fn space(&mut self, space: RenderSpace) -> &mut Self {
         self.space = space;
         self
     }
 
-    /// Sets the camera.
-    pub fn camera(&mut self, camera: Camera) -> &mut Self {
-        self.camera = Some(camera);
-        self
-    }
-
     /// Sets the instruction set of the intersector; by default the best that the machine has.
     pub fn isa(&mut self, isa: accel::Isa) -> &mut Self {
-        self.isa = isa;
-        self
-    }
-
-    /// Says whether textures are averaged over what a pixel covers.
-    pub fn texture_filtering(&mut self, filtering: TextureFiltering) -> &mut Self {
-        self.filtering = filtering;
+        self.isa = Some(isa);
         self
     }
 
@@ -294,13 +256,12 @@ impl SceneBuilder {
 
     /// Checks everything and builds the acceleration structure.
     pub fn build(self) -> Result<Scene, SceneError> {
-        let camera = self.camera.ok_or(SceneError::NoCamera)?;
-        check_crop(&self.film)?;
+        let isa = self.isa.unwrap_or_else(accel::Isa::detect);
         let Geometry {
             bvh,
             primitives,
             instances,
-        } = self.objects.build(&self.shapes, &self.surfaces, self.isa)?;
+        } = self.objects.build(&self.shapes, &self.surfaces, isa)?;
         let (centre, radius) = bounding_sphere(&bvh, &self.lights);
         let context = LightContext {
             shapes: &self.shapes,
@@ -315,8 +276,6 @@ impl SceneBuilder {
             .map(|i| i as u32);
         Ok(Scene {
             space: self.space,
-            camera,
-            film: self.film,
             color: self.color,
             environment: environment.collect(),
             light_groups: self.light_groups,
@@ -327,7 +286,6 @@ impl SceneBuilder {
             instances,
             coverages: self.coverages,
             materials: self.materials,
-            filtering: self.filtering,
             lights: self.lights,
             light_choice,
             light_tree,

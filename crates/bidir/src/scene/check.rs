@@ -1,18 +1,7 @@
 //! What must hold of the parts of a scene before rays are traced in it.
 
 use super::{Presence, PrimitiveRef, SceneError, Surface};
-use crate::film::FilmSettings;
 use crate::shape::{Mesh, Shape};
-
-pub(super) fn check_crop(film: &FilmSettings) -> Result<(), SceneError> {
-    let [width, height] = film.resolution;
-    let inside = film.crop.max[0] <= width && film.crop.max[1] <= height;
-    if inside && film.crop.area() > 0 {
-        Ok(())
-    } else {
-        Err(SceneError::EmptyCrop)
-    }
-}
 
 /// Checks the shapes of these `numbers`: their primitives, for reference and for the intersector.
 pub(super) fn gather_primitives(

@@ -13,7 +13,7 @@
 use super::{Presence, Scene};
 use crate::math::Vec2;
 use crate::sampler::{Dimension, Purpose, SampleStream};
-use crate::texture::TexturePoint;
+use crate::texture::{TexturePoint, clamped_coverage};
 use accel::Hit;
 use std::ops::ControlFlow;
 
@@ -103,12 +103,6 @@ impl Scene {
             factors.product()
         }
     }
-}
-
-/// A texture's number as α.
-#[inline]
-pub(crate) fn clamped_coverage(alpha: f32) -> f32 {
-    if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
 }
 
 /// Factors that come in any order, whose product does not depend on it.

@@ -1,4 +1,4 @@
-//! The scene: everything that is rendered, checked and immutable.
+//! The scene: everything that can be seen, checked and immutable. A [`View`](crate::view::View) sees it.
 //!
 //! A [`Scene`] comes from a [`SceneBuilder`], the only place where errors are possible. All indices
 //! in a built scene are valid.
@@ -15,15 +15,11 @@ pub use builder::{
     DEFAULT_GROUP, ENVIRONMENT_GROUP, Emission, MaterialId, SceneBuilder, SceneError,
 };
 pub use coverage::Chances;
-pub(crate) use coverage::clamped_coverage;
 pub use object::ObjectId;
 pub use space::RenderSpace;
-pub use visibility::{SegmentEnd, offset_origin};
 
 use object::Placed;
 
-use crate::camera::Camera;
-use crate::film::FilmSettings;
 use crate::light::{Light, LightChoice, LightContext, LightPoint, LightTree};
 use crate::material::Material;
 use crate::math::{Vec2, Vec3};
@@ -60,20 +56,6 @@ enum Presence {
     Absent,
 }
 
-/// Whether textures are averaged over what a pixel covers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum TextureFiltering {
-    /// Those that ask for it are.
-    #[default]
-    AsAsked,
-    /// None is: a pixel's samples average them.
-    Disabled,
-}
-
-/// The part of a pixel that textures are averaged over: its samples and its filter average too, and
-/// pbrt-v4 takes as much where a pixel has four samples.
-const FILTERED_PART: f32 = 0.5;
-
 /// Where a ray meets a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
@@ -91,8 +73,6 @@ pub struct SurfaceHit {
 #[derive(Debug)]
 pub struct Scene {
     space: RenderSpace,
-    camera: Camera,
-    film: FilmSettings,
     color: ColorModel,
     shapes: Vec<Shape>,
     surfaces: Vec<Surface>,
@@ -102,7 +82,6 @@ pub struct Scene {
     /// The textures of surfaces that are not all there. Without any, rays do not ask.
     coverages: Vec<FloatTexture>,
     materials: Vec<Material>,
-    filtering: TextureFiltering,
     lights: Vec<Light>,
     light_choice: LightChoice,
     light_tree: LightTree,
@@ -117,32 +96,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The space of its camera, shapes and lights.
+    /// The space of its shapes and lights, and of the camera that sees them.
     #[inline]
     pub fn space(&self) -> &RenderSpace {
         &self.space
-    }
-
-    /// The camera.
-    #[inline]
-    pub fn camera(&self) -> &Camera {
-        &self.camera
-    }
-
-    /// Looks at the same from elsewhere, or on another film: the one change that a built scene takes,
-    /// as nothing else of it depends on either.
-    ///
-    /// Errors: the film's crop is empty or outside of it; the scene stays as it was.
-    pub fn set_view(&mut self, camera: Camera, film: FilmSettings) -> Result<(), SceneError> {
-        check::check_crop(&film)?;
-        (self.camera, self.film) = (camera, film);
-        Ok(())
-    }
-
-    /// The film's geometry, filter and exposure.
-    #[inline]
-    pub fn film(&self) -> &FilmSettings {
-        &self.film
     }
 
     /// What the lanes of a spectrum mean.
@@ -220,16 +177,6 @@ impl Scene {
     #[inline]
     pub fn material(&self, i: u32) -> &Material {
         &self.materials[i as usize]
-    }
-
-    /// How wide what textures are averaged over is at the point `p`: a function of the point and the
-    /// camera, however a path came there. Unit: m.
-    #[inline]
-    pub fn footprint(&self, p: Vec3) -> f32 {
-        match self.filtering {
-            TextureFiltering::AsAsked => FILTERED_PART * self.camera.pixel_width(p),
-            TextureFiltering::Disabled => 0.0,
-        }
     }
 
     /// All shapes, those of objects once, in the object's space.

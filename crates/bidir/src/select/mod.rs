@@ -22,9 +22,9 @@ pub use simple::{All, RayRoulette};
 
 use crate::integrator::Contribution;
 use crate::names::as_text;
-use crate::path::Strategy;
 use crate::sampler::{Dimension, Purpose, SampleStream};
 use crate::spectrum::Spectrum;
+use crate::strategy::Strategy;
 use std::fmt;
 use std::str::FromStr;
 

@@ -27,6 +27,7 @@ pub use mesh::Mesh;
 pub use place::Place;
 pub use sphere::Sphere;
 
+use crate::locus::Locus;
 use crate::math::{Affine3A, Frame, PI, Vec2, Vec3};
 
 /// The local geometry at a point of a surface.
@@ -43,6 +44,14 @@ pub struct SurfacePoint {
     pub shading: Frame,
     /// Surface parameters, for textures.
     pub uv: Vec2,
+}
+
+impl SurfacePoint {
+    /// The place.
+    #[inline]
+    pub fn locus(&self) -> Locus {
+        Locus::on_surface(self.point, self.n_g, self.error)
+    }
 }
 
 /// A point drawn on a shape.

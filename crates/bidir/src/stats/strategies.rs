@@ -1,7 +1,7 @@
 //! Counts by strategy (s, t), in a triangle of rows n = s + t; row n begins at n(n-1)/2.
 
-use crate::film::fixed::{self, MOMENT_SCALE};
-use crate::path::Strategy;
+use crate::math::fixed::{self, MOMENT_SCALE};
+use crate::strategy::Strategy;
 use serde::Serialize;
 use std::ops::AddAssign;
 

@@ -19,6 +19,12 @@ mod pattern;
 mod point;
 mod range;
 
+/// A texture's number as α.
+#[inline]
+pub(crate) fn clamped_coverage(alpha: f32) -> f32 {
+    if alpha < 1.0 { alpha.max(0.0) } else { 1.0 }
+}
+
 #[cfg(test)]
 mod tests;
 

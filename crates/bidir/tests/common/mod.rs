@@ -14,10 +14,13 @@ use bidir::material::{
     ScaledColor, ScaledFloat,
 };
 use bidir::math::{Affine3A, Vec2, Vec3};
-use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder};
+use bidir::scene::{Emission, MaterialId, Scene, SceneBuilder, SceneError};
 use bidir::shape::{Mesh, Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
 use bidir::texture::{ColorTexture, FloatTexture};
+use bidir::view::View;
+use statistics::Shown;
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 /// A camera at `eye` that looks along +z through a film of `size` pixels.
@@ -44,16 +47,86 @@ fn camera_with(eye: Vec3, size: u32, half_width: f32, lens_radius: f32) -> Camer
     Camera::Perspective(Perspective::new(&settings).expect("the camera is rigid"))
 }
 
+/// A scene with the view of it that is rendered.
+pub(crate) struct Shot {
+    pub(crate) scene: Scene,
+    pub(crate) view: View,
+}
+
+impl Deref for Shot {
+    type Target = Scene;
+
+    fn deref(&self) -> &Scene {
+        &self.scene
+    }
+}
+
+impl<'a> From<&'a Shot> for Shown<'a> {
+    fn from(shot: &'a Shot) -> Self {
+        Self {
+            scene: &shot.scene,
+            view: &shot.view,
+        }
+    }
+}
+
+/// A [`Shot`] in the making.
+pub(crate) struct ShotBuilder {
+    scene: SceneBuilder,
+    view: View,
+}
+
+impl ShotBuilder {
+    /// Looks with `camera` at a square film of `size` pixels and a box filter.
+    pub(crate) fn new(camera: Camera, size: u32) -> Self {
+        Self::with_filter(camera, size, Filter::default())
+    }
+
+    fn with_filter(camera: Camera, size: u32, filter: Filter) -> Self {
+        let film = FilmSettings::new([size; 2], filter);
+        Self {
+            scene: SceneBuilder::new(),
+            view: View::new(camera, film).expect("the film is not empty"),
+        }
+    }
+
+    /// Looks with another camera.
+    pub(crate) fn camera(&mut self, camera: Camera) {
+        let film = self.view.film().clone();
+        self.view = View::new(camera, film).expect("the film is not empty");
+    }
+
+    pub(crate) fn build(self) -> Result<Shot, SceneError> {
+        Ok(Shot {
+            scene: self.scene.build()?,
+            view: self.view,
+        })
+    }
+}
+
+impl Deref for ShotBuilder {
+    type Target = SceneBuilder;
+
+    fn deref(&self) -> &SceneBuilder {
+        &self.scene
+    }
+}
+
+impl DerefMut for ShotBuilder {
+    fn deref_mut(&mut self) -> &mut SceneBuilder {
+        &mut self.scene
+    }
+}
+
 /// A builder with a square film and a box filter, and the camera of [`camera`] at z = -1.8.
-pub(crate) fn builder(size: u32, lens_radius: f32) -> SceneBuilder {
+pub(crate) fn builder(size: u32, lens_radius: f32) -> ShotBuilder {
     builder_with(size, lens_radius, Filter::default())
 }
 
 /// The same with another filter.
-pub(crate) fn builder_with(size: u32, lens_radius: f32, filter: Filter) -> SceneBuilder {
-    let mut builder = SceneBuilder::new(FilmSettings::new([size; 2], filter));
-    builder.camera(camera(Vec3::new(0.0, 0.0, -1.8), size, lens_radius));
-    builder
+pub(crate) fn builder_with(size: u32, lens_radius: f32, filter: Filter) -> ShotBuilder {
+    let camera = camera(Vec3::new(0.0, 0.0, -1.8), size, lens_radius);
+    ShotBuilder::with_filter(camera, size, filter)
 }
 
 pub(crate) fn diffuse(reflectance: Rgb) -> Material {
@@ -242,12 +315,12 @@ pub(crate) fn tilt(mut mesh: Mesh, towards: Vec3) -> Mesh {
 /// A closed room with a ceiling light, a sphere light, a tilted-normal panel, rough metal and
 /// rough glass: every density differs from every other, and nothing is a Dirac distribution but
 /// the lens.
-pub(crate) fn room(lens_radius: f32) -> Scene {
+pub(crate) fn room(lens_radius: f32) -> Shot {
     room_of(8, lens_radius)
 }
 
 /// The same with a film of `size` × `size` pixels.
-pub(crate) fn room_of(size: u32, lens_radius: f32) -> Scene {
+pub(crate) fn room_of(size: u32, lens_radius: f32) -> Shot {
     let mut builder = builder(size, lens_radius);
     let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
     let rough_metal = builder.material(metal(0.4));
@@ -270,7 +343,7 @@ pub(crate) fn room_of(size: u32, lens_radius: f32) -> Scene {
 
 /// A closed room with many lamps: a mesh, a ball, and quadrilaterals of one and of two sides, on the
 /// walls and among what they light.
-pub(crate) fn lamp_room(lens_radius: f32) -> Scene {
+pub(crate) fn lamp_room(lens_radius: f32) -> Shot {
     let mut builder = builder(8, lens_radius);
     let wall = builder.material(diffuse([0.7, 0.6, 0.5]));
     let sheet = builder.material(paper());
@@ -302,7 +375,7 @@ pub(crate) fn lamp_room(lens_radius: f32) -> Scene {
 
 /// A closed room of varnished walls with a ceiling light, a varnished panel with tilted normals, a
 /// sheet of paper, and balls of lacquered metal and of a mixture.
-pub(crate) fn gallery(lens_radius: f32) -> Scene {
+pub(crate) fn gallery(lens_radius: f32) -> Shot {
     let mut builder = builder(8, lens_radius);
     let wall = builder.material(varnish(0.0));
     let panel = builder.material(varnish(0.3));

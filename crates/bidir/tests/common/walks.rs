@@ -1,12 +1,12 @@
 //! Pairs of subpaths, walked in a scene.
 
+use super::Shot;
 use bidir::light::LightChoice;
 use bidir::path::{
     Cells, Connections, Inclusion, LightProposals, PairSums, PathContext, PathSettings, Subpath,
     camera_subpath, light_subpath,
 };
 use bidir::sampler::{Dimension, Domain, Purpose, Sampler, SamplerKind};
-use bidir::scene::Scene;
 use bidir::spectrum::Wavelengths;
 use bidir::stats::Stats;
 
@@ -18,7 +18,7 @@ fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
     let camera = sampler.stream(Domain::Camera, 0, index);
     let raster = camera.get_2d(Dimension::at(0, Purpose::Film)) * 8.0;
     let lens = camera.get_2d(Dimension::at(0, Purpose::Lens));
-    let ray = context.scene.camera().sample_ray(raster, || lens);
+    let ray = context.view.camera().sample_ray(raster, || lens);
     let (mut light_walk, mut camera_walk) = (Subpath::default(), Subpath::default());
     let mut stats = Stats::default();
     camera_subpath(context, &camera, &ray, 1.0, &mut camera_walk, &mut stats);
@@ -30,18 +30,18 @@ fn subpaths(context: &PathContext<'_>, index: u64) -> (Subpath, Subpath) {
 /// Calls `f` with the context of a scene and a number of subpath pairs.
 pub(crate) fn for_each_pair(
     settings: &PathSettings,
-    scene: &Scene,
+    scene: &Shot,
     f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
 ) {
     for_some_pairs(PAIRS, settings, scene, Connections::ONE_SUBPATH, f);
 }
 
 /// Proposals for cells of the scene that say something else of every pair, and nothing of some.
-pub(crate) fn some_proposals(scene: &Scene) -> LightProposals {
+pub(crate) fn some_proposals(scene: &Shot) -> LightProposals {
     let (mut points, settings) = (Vec::new(), PathSettings::default());
     for_each_pair(&settings, scene, |_, light, camera| {
         let vertices = light.vertices.iter().chain(&camera.vertices);
-        points.extend(vertices.map(|vertex| vertex.point));
+        points.extend(vertices.map(|vertex| vertex.locus.point));
     });
     // Any numbers, zero among them.
     let number = |i: usize| (i.wrapping_mul(2_654_435_761) >> 7) % 11;
@@ -55,7 +55,7 @@ pub(crate) fn some_proposals(scene: &Scene) -> LightProposals {
 }
 
 /// Another choice of lights than by power.
-pub(crate) fn some_emission(scene: &Scene) -> LightChoice {
+pub(crate) fn some_emission(scene: &Shot) -> LightChoice {
     let lights = 0..scene.light_choice().count();
     LightChoice::with_weights(lights.map(|light| (7 - light * 5 % 7) as f32))
 }
@@ -73,12 +73,13 @@ pub(crate) fn some_inclusion() -> Inclusion {
 pub(crate) fn for_some_pairs(
     pairs: u64,
     settings: &PathSettings,
-    scene: &Scene,
+    shot: &Shot,
     connections: Connections<'_>,
     mut f: impl FnMut(&PathContext<'_>, &Subpath, &Subpath),
 ) {
     let context = PathContext {
-        scene,
+        scene: &shot.scene,
+        view: &shot.view,
         settings,
         wavelengths: Wavelengths::default(),
         connections,

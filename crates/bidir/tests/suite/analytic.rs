@@ -1,6 +1,7 @@
 //! Scenes whose image is known.
 
 use crate::common::statistics::{Replicates, WHOLE, check_agree, check_agree_to, replicates};
+use crate::common::{Shot, ShotBuilder};
 use crate::common::{
     builder, builder_with, diffuse, emission, glass, metal, narrow_camera, quad, sphere,
 };
@@ -10,7 +11,7 @@ use bidir::integrator::{CandidateCount, IntegratorKind};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, PI, Vec2, Vec3};
 use bidir::path::{MisCount, PathRoulette, PathSettings};
-use bidir::scene::{Scene, SceneBuilder};
+use bidir::scene::SceneBuilder;
 use bidir::select::ShadowRays;
 use bidir::shape::{Disk, Orientation, Shape, Sphere};
 use bidir::spectrum::Rgb;
@@ -27,7 +28,7 @@ fn settings(integrator: IntegratorKind, max_depth: Option<u32>) -> Settings {
 
 /// The inside of a sphere that reflects ρ of what it receives and emits 1 - ρ: radiance 1
 /// everywhere.
-fn closed_sphere_of(mut builder: SceneBuilder, reflectance: Rgb) -> Scene {
+fn closed_sphere_of(mut builder: ShotBuilder, reflectance: Rgb) -> Shot {
     let wall = builder.material(diffuse(reflectance));
     let inside = Sphere::new(Affine3A::IDENTITY, 2.0, Orientation::Reversed);
     let emitted = emission(reflectance.map(|rho| 1.0 - rho));
@@ -35,7 +36,7 @@ fn closed_sphere_of(mut builder: SceneBuilder, reflectance: Rgb) -> Scene {
     builder.build().expect("the scene is valid")
 }
 
-fn closed_sphere() -> Scene {
+fn closed_sphere() -> Shot {
     closed_sphere_of(builder(8, 0.0), [0.5; 3])
 }
 
@@ -140,7 +141,7 @@ mod statistics {
     /// after d scatterings, where a bias of `bias` would show. Passes are those of path tracing and of
     /// bidirectional path tracing.
     #[track_caller]
-    fn check_roulette(scene: &Scene, reflectance: Rgb, passes: [u64; 2], bias: f64) {
+    fn check_roulette(scene: &Shot, reflectance: Rgb, passes: [u64; 2], bias: f64) {
         let depth = 2;
         for roulette in ["albedo:0", "throughput:0", "off"] {
             for (integrator, passes) in [IntegratorKind::Path, IntegratorKind::Bdpt]
@@ -180,7 +181,7 @@ mod statistics {
 }
 
 /// An object in an environment of radiance 1 that absorbs nothing: it cannot be seen.
-fn furnace(add: impl Fn(&mut SceneBuilder)) -> Scene {
+fn furnace(add: impl Fn(&mut SceneBuilder)) -> Shot {
     let mut builder = builder(8, 0.0);
     builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
     add(&mut builder);

@@ -1,18 +1,18 @@
 //! A contribution that is not finite is dropped, counted and listed, and harms nothing else.
 
+use crate::common::Shot;
 use crate::common::{add_walls, builder, diffuse, emission, quad};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::IntegratorKind;
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
-use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::stats::LISTED_DROPS;
 use bidir::texture::{Beyond, Change, ColorTexture, Image, ImageFilter, ImageMap, Mapping, Wrap};
 use std::sync::Arc;
 
 /// A lit room with a panel whose texture has one NaN texel out of four.
-fn room_with_a_broken_texture() -> Scene {
+fn room_with_a_broken_texture() -> Shot {
     let mut builder = builder(8, 0.0);
     let wall = builder.material(diffuse([0.6; 3]));
     add_walls(&mut builder, wall);
@@ -42,7 +42,8 @@ fn nan_in_a_texture_is_dropped_and_counted() {
     for (name, integrator) in IntegratorKind::NAMES {
         let settings = Settings::new(integrator);
         let resources = Resources::default();
-        let mut session = Session::new(&scene, settings, &resources).expect("the film is small");
+        let mut session = Session::new(&scene.scene, &scene.view, settings, &resources)
+            .expect("the film is small");
         (0..16).for_each(|_| assert!(session.step(&())));
         let stats = session.stats();
         assert!(stats.dropped > 0, "{name}");

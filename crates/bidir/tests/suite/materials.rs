@@ -3,6 +3,7 @@
 //!
 //! What a material does by a Dirac lobe, and what it does beside it, has to count once in each.
 
+use crate::common::Shot;
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{
     add_walls, builder, diffuse, emission, glass, lacquer, metal, mix, paper, principled_rough,
@@ -13,14 +14,13 @@ use bidir::integrator::IntegratorKind;
 use bidir::material::Material;
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{MisHeuristic, PathSettings};
-use bidir::scene::Scene;
 use bidir::shape::Shape;
 use bidir::texture::TexturePoint;
 
 /// The film's mean and its quarters.
 const QUARTERS: &[usize] = &[WHOLE, 4];
 
-fn scene(material: Material) -> Scene {
+fn scene(material: Material) -> Shot {
     let mut builder = builder(8, 0.0);
     let wall = builder.material(diffuse([0.6, 0.5, 0.4]));
     let material = builder.material(material);
@@ -35,7 +35,7 @@ fn scene(material: Material) -> Scene {
     builder.build().expect("the scene is valid")
 }
 
-fn render(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic) -> Replicates {
+fn render(scene: &Shot, integrator: IntegratorKind, mis: MisHeuristic) -> Replicates {
     let path = PathSettings {
         max_depth: Some(4),
         mis,

@@ -5,6 +5,7 @@
 //! with one that is computed from scratch.
 
 use crate::common;
+use crate::common::Shot;
 use crate::common::walks::{
     for_each_pair, for_some_pairs, some_emission, some_inclusion, some_proposals,
 };
@@ -16,7 +17,6 @@ use bidir::path::{
     Connections, JoinedPath, LightChoiceKind, LightPointChoice, MAX_VERTICES, MisCount,
     MisHeuristic, PathContext, PathDensities, PathRoulette, PathSettings, Vertex,
 };
-use bidir::scene::Scene;
 use bidir::spectrum::Spectrum;
 
 fn settings(mis: MisHeuristic, light_point: LightPointChoice) -> PathSettings {
@@ -104,13 +104,13 @@ fn assert_spectra_close(a: Spectrum, b: Spectrum, what: &str) {
 fn is_fragile(before: &Vertex, vertex: &Vertex) -> bool {
     let w = vertex.segment_to(before).w;
     let cos = [before, vertex].map(|v| {
-        if v.n_g == Vec3::ZERO {
+        if v.locus.n_g == Vec3::ZERO {
             1.0
         } else {
-            v.n_g.dot(w).abs()
+            v.locus.n_g.dot(w).abs()
         }
     });
-    cos[0].min(cos[1]) * before.point.distance(vertex.point) < 0.03
+    cos[0].min(cos[1]) * before.locus.point.distance(vertex.locus.point) < 0.03
 }
 
 /// Counts comparisons, and those that differ by more than rounding.
@@ -202,13 +202,13 @@ fn next_event_density(context: &PathContext<'_>, path: &[Vertex]) -> f32 {
         LightChoiceKind::Power => (Part::Whole, by_power.prob(index as usize)),
         LightChoiceKind::Tree => {
             // Light leaves on the side that it goes on at.
-            let receiver = || x1.receiver(path[2].point - x1.point);
+            let receiver = || x1.receiver(path[2].locus.point - x1.locus.point);
             let tree = context.scene.light_tree();
             let chosen = tree.find(receiver, index, at.primitive);
             (chosen.part, chosen.prob)
         }
     };
-    prob * light.pdf_next_event(&lights, part, x1.point, &at)
+    prob * light.pdf_next_event(&lights, part, x1.locus.point, &at)
 }
 
 /// For every strategy that can make the path: its index, its weight, and f / (p n) with the
@@ -259,11 +259,11 @@ fn count(context: &PathContext<'_>, s: usize, path: &[Vertex]) -> f64 {
     }
 }
 
-fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Scene) {
+fn check_paths(mis: MisHeuristic, light_point: LightPointChoice, scene: &Shot) {
     check_paths_with(&settings(mis, light_point), scene, Connections::ONE_SUBPATH);
 }
 
-fn check_paths_with(settings: &PathSettings, scene: &Scene, connections: Connections<'_>) {
+fn check_paths_with(settings: &PathSettings, scene: &Shot, connections: Connections<'_>) {
     let mut paths = 0;
     for_some_pairs(
         400,
@@ -414,12 +414,12 @@ fn densities_of_points_in_front_of_each_other_are_reciprocal() {
         assert_close(there.geometry_term, back.geometry_term, "G");
         if let [lens, first, ..] = &camera.vertices[..] {
             let raster = context
-                .scene
+                .view
                 .camera()
-                .raster(lens.point, lens.segment_to(first).w);
+                .raster(lens.locus.point, lens.segment_to(first).w);
             let inside =
                 raster.is_some_and(|r| r.cmpge(Vec2::ZERO).all() && r.max_element() <= 8.0);
-            assert!(inside && first.point != Vec3::ZERO);
+            assert!(inside && first.locus.point != Vec3::ZERO);
         }
     });
     assert!(settings.max_vertices() <= MAX_VERTICES);

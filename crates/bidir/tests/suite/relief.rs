@@ -4,6 +4,7 @@
 //! What a pixel covers decides how fine textures and bumps are. It must be the same from
 //! whichever end a path was walked.
 
+use crate::common::Shot;
 use crate::common::statistics::{Replicates, WHOLE, check_agree, replicates};
 use crate::common::{add_walls, builder, diffuse, emission, metal, quad, sphere};
 use bidir::driver::Settings;
@@ -12,7 +13,7 @@ use bidir::material::{Bitangent, Material, Mixture, NormalMap, Relief};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{Connections, PathContext, PathSettings, Vertex};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene, SceneBuilder};
+use bidir::scene::{Chances, SceneBuilder};
 use bidir::shape::Shape;
 use bidir::spectrum::{Spectrum, Wavelengths};
 use bidir::texture::{
@@ -93,7 +94,7 @@ fn add_floor(builder: &mut SceneBuilder, material: Material) {
     builder.shape(Shape::Mesh(floor), material, None);
 }
 
-fn room() -> Scene {
+fn room() -> Shot {
     let mut builder = builder(SIZE, 0.0);
     let wall = builder.material(diffuse([0.6, 0.5, 0.4]));
     add_walls(&mut builder, wall);
@@ -105,7 +106,7 @@ fn room() -> Scene {
     builder.build().expect("the room is valid")
 }
 
-fn render(scene: &Scene, integrator: IntegratorKind, passes: u64) -> Replicates {
+fn render(scene: &Shot, integrator: IntegratorKind, passes: u64) -> Replicates {
     let path = PathSettings {
         max_depth: Some(3),
         ..PathSettings::default()
@@ -172,9 +173,10 @@ fn vertex(context: &PathContext<'_>, origin: Vec3, target: Vec3) -> Vertex {
 fn a_point_looks_the_same_to_every_walk() {
     let mut builder = builder(SIZE, 0.0);
     add_floor(&mut builder, floor());
-    let scene = builder.build().expect("the floor is valid");
+    let floor = builder.build().expect("the floor is valid");
     let context = PathContext {
-        scene: &scene,
+        scene: &floor.scene,
+        view: &floor.view,
         settings: &PathSettings::default(),
         wavelengths: Wavelengths::default(),
         connections: Connections::ONE_SUBPATH,

@@ -48,7 +48,14 @@ fn threads_do_not_change_a_bit() {
         for rule in rules {
             let settings = settings(integrator, rule);
             let film = |threads| {
-                render(&scene, &settings, 2, &with_threads(threads)).expect("the film is small")
+                render(
+                    &scene.scene,
+                    &scene.view,
+                    &settings,
+                    2,
+                    &with_threads(threads),
+                )
+                .expect("the film is small")
             };
             assert!(film(1) == film(3), "{integrator:?}, {rule}");
         }
@@ -64,8 +71,13 @@ fn measuring_stages_changes_no_bit_and_no_counter() {
                 clock,
                 ..with_threads(1)
             };
-            let mut session = Session::new(&scene, settings(integrator, "per-pair"), &resources)
-                .expect("the film is small");
+            let mut session = Session::new(
+                &scene.scene,
+                &scene.view,
+                settings(integrator, "per-pair"),
+                &resources,
+            )
+            .expect("the film is small");
             (0..4).for_each(|_| assert!(session.step(&())));
             session
         };
@@ -90,8 +102,8 @@ fn a_session_counts_the_same_with_any_number_of_threads() {
     let scene = common::room(0.0);
     let stats = |threads| {
         let settings = settings(IntegratorKind::Bdpt, "per-pair");
-        let mut session =
-            Session::new(&scene, settings, &with_threads(threads)).expect("the film is small");
+        let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(threads))
+            .expect("the film is small");
         (0..4).for_each(|_| assert!(session.step(&())));
         session.stats().clone()
     };
@@ -124,14 +136,15 @@ fn a_pass_that_is_given_up_leaves_no_trace() {
     let scene = common::room_of(32, 0.0);
     let settings = settings(IntegratorKind::Bdpt, "all");
     let resources = with_threads(2);
-    let mut session =
-        Session::new(&scene, settings.clone(), &resources).expect("the film is small");
+    let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
+        .expect("the film is small");
     assert!(session.step(&()));
     let before = session.stats().clone();
     assert!(!session.step(&StopAfter(AtomicU64::new(1))));
     assert_eq!((session.next_pass(), session.stats()), (1, &before));
     assert!(session.step(&()));
-    let whole = render(&scene, &settings, 2, &resources).expect("the film is small");
+    let whole =
+        render(&scene.scene, &scene.view, &settings, 2, &resources).expect("the film is small");
     assert!(*session.film() == whole);
 }
 
@@ -150,7 +163,8 @@ impl Progress for StopOnce {
 fn a_pass_with_a_hole_is_never_added() {
     let scene = common::room(0.0);
     let settings = settings(IntegratorKind::Path, "all");
-    let mut session = Session::new(&scene, settings, &with_threads(2)).expect("the film is small");
+    let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(2))
+        .expect("the film is small");
     assert!(!session.step(&StopOnce(AtomicU64::new(0))));
     assert!(session.film().passes().is_empty());
 }
@@ -182,15 +196,20 @@ fn parts_in_any_order_are_the_whole() {
     ] {
         let settings = settings(integrator, rule);
         let resources = with_threads(2);
-        let mut session =
-            Session::new(&scene, settings.clone(), &resources).expect("the film is small");
+        let mut session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
+            .expect("the film is small");
         let [whole, a, b, c] = [0..7, 4..7, 0..1, 1..4].map(|range| part(&mut session, range));
         let parts = [a, b, c];
         let mut merged = parts[0].clone();
         merged.merge(&parts[2]).expect("other passes");
         // Another session renders the missing pass.
-        let mut session =
-            Session::new(&scene, settings.clone(), &with_threads(1)).expect("the film is small");
+        let mut session = Session::new(
+            &scene.scene,
+            &scene.view,
+            settings.clone(),
+            &with_threads(1),
+        )
+        .expect("the film is small");
         session
             .add_film(merged.clone())
             .expect("nothing was rendered");
@@ -221,8 +240,9 @@ fn check_replays(integrator: IntegratorKind) {
     let scene = common::room(0.1);
     let settings = settings(integrator, "budget:2");
     let resources = with_threads(1);
-    let session = Session::new(&scene, settings.clone(), &resources).expect("the film is small");
-    let film = scene.film();
+    let session = Session::new(&scene.scene, &scene.view, settings.clone(), &resources)
+        .expect("the film is small");
+    let film = scene.view.film();
     let mut again = Film::new(film.clone(), u64::MAX).expect("the film is small");
     for pass in 0..2 {
         let buffer = PassBuffer::new(film, again.layers()).expect("the film is small");
@@ -239,7 +259,11 @@ fn check_replays(integrator: IntegratorKind) {
         }
         again.add_pass(pass, &buffer);
     }
-    assert!(again == render(&scene, &settings, 2, &resources).expect("the film is small"));
+    assert!(
+        again
+            == render(&scene.scene, &scene.view, &settings, 2, &resources)
+                .expect("the film is small")
+    );
     assert!(session.replay([8, 0], 0).is_none());
 }
 
@@ -252,7 +276,7 @@ fn other_seeds_and_samplers_are_other_images() {
         ..first.clone()
     };
     let film = |settings: &Settings| {
-        render(&scene, settings, 1, &with_threads(1)).expect("the film is small")
+        render(&scene.scene, &scene.view, settings, 1, &with_threads(1)).expect("the film is small")
     };
     assert!(film(&first) != film(&other));
 }
@@ -271,7 +295,8 @@ fn a_million_passes_take_no_memory_and_lose_nothing() {
     builder.light(Light::Infinite(InfiniteLight::constant(radiance)));
     let scene = builder.build().expect("the scene is valid");
     let settings = settings(IntegratorKind::Path, "all");
-    let mut session = Session::new(&scene, settings, &with_threads(1)).expect("the film is small");
+    let mut session = Session::new(&scene.scene, &scene.view, settings, &with_threads(1))
+        .expect("the film is small");
     let mut before = None;
     while session.next_pass() < 1_000_000 {
         session.step(&());

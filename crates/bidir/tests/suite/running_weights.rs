@@ -3,8 +3,8 @@
 
 use crate::common;
 use crate::common::walks::{for_some_pairs, some_emission, some_inclusion, some_proposals};
+use crate::common::{Shot, ShotBuilder};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings, Perspective, PerspectiveSettings};
-use bidir::film::{FilmSettings, Filter};
 use bidir::light::{DistantLight, InfiniteLight, Light, LightPoint, PointLight};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::{
@@ -12,7 +12,6 @@ use bidir::path::{
     PathContext, PathDensities, PathRoulette, PathSettings, RunningSums, Strategies, Subpath,
     Vertex, sample_next_event,
 };
-use bidir::scene::{Scene, SceneBuilder};
 use bidir::shape::Shape;
 
 /// Both forms take the same densities, and sum in f64; weights are f32.
@@ -95,10 +94,10 @@ impl Comparison {
     }
 
     fn compare_light_images(&mut self, context: &PathContext<'_>, light: &[Vertex]) {
-        let lens = context.scene.camera().sample_lens(|| Vec2::new(0.3, 0.8));
+        let lens = context.view.camera().sample_lens(|| Vec2::new(0.3, 0.8));
         let lens = Vertex::camera(&lens);
         for s in 1..=light.len() {
-            if !(light[s - 1].is_infinite && lens.is_infinite) {
+            if !(light[s - 1].locus.is_infinite() && lens.locus.is_infinite()) {
                 self.compare_connection(context, &light[..s], std::slice::from_ref(&lens));
             }
         }
@@ -171,7 +170,7 @@ fn describe(settings: &PathSettings) -> String {
 }
 
 #[track_caller]
-fn check(scene: &Scene, pairs: u64) {
+fn check(scene: &Shot, pairs: u64) {
     let (mut comparison, mut least) = (Comparison::default(), 0);
     let proposals = some_proposals(scene);
     let emission = some_emission(scene);
@@ -222,9 +221,8 @@ fn check(scene: &Scene, pairs: u64) {
 
 /// A floor, a wall, balls of smooth glass, smooth metal and smooth varnish, under lights of all
 /// kinds, `unit` times the size it has at 1.
-fn yard(unit: f32, camera: Camera) -> Scene {
-    let mut builder = SceneBuilder::new(FilmSettings::new([8; 2], Filter::default()));
-    builder.camera(camera);
+fn yard(unit: f32, camera: Camera) -> Shot {
+    let mut builder = ShotBuilder::new(camera, 8);
     let [grey, glass, metal, varnish] = [
         common::diffuse([0.7, 0.6, 0.5]),
         common::glass(0.0),

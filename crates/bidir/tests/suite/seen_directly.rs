@@ -1,5 +1,6 @@
 //! Light that is seen directly: hits of the light, and its light image.
 
+use crate::common::Shot;
 use crate::common::{builder, emission, metal, sphere};
 use bidir::camera::{Camera, Orthographic, OrthographicSettings};
 use bidir::driver::{Resources, Settings, render};
@@ -8,19 +9,25 @@ use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, Vec2, Vec3};
 use bidir::path::MisHeuristic;
-use bidir::scene::Scene;
 
 const BIDIRECTIONAL: [IntegratorKind; 2] = [IntegratorKind::Bdpt, IntegratorKind::Lvc];
 
 /// One pass, whose light subpaths are few.
-fn picture(scene: &Scene, integrator: IntegratorKind, mis: MisHeuristic, seed: u64) -> Picture {
+fn picture(scene: &Shot, integrator: IntegratorKind, mis: MisHeuristic, seed: u64) -> Picture {
     let mut settings = Settings {
         seed,
         ..Settings::default()
     };
     settings.set_integrator(integrator);
     settings.path.mis = mis;
-    let film = render(scene, &settings, 1, &Resources::default()).expect("a small film");
+    let film = render(
+        &scene.scene,
+        &scene.view,
+        &settings,
+        1,
+        &Resources::default(),
+    )
+    .expect("a small film");
     film.develop()
 }
 

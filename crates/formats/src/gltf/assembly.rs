@@ -8,7 +8,7 @@ use super::outside::{self, Extent};
 use super::place::{GltfFault, Place};
 use super::{SETTINGS, light, mesh, view};
 use crate::error::ErrorKind;
-use crate::import::{self, Size, VertexError};
+use crate::import::{self, Gathered, Size, VertexError};
 use crate::limits;
 use bidir::light::Light;
 use bidir::math::Affine3A;
@@ -44,7 +44,7 @@ type MeshKey = (usize, Vec<u32>);
 
 impl<'a> Builder<'a> {
     /// Reads everything and puts it in its place.
-    pub(super) fn gather(context: &mut Context<'a>) -> Result<Assembly, GltfFault> {
+    pub(super) fn gather(context: &mut Context<'a>) -> Gathered<Place> {
         let document = context.document;
         document.start_counting(context.log.stored());
         let nodes = Nodes::of(document, context.layout.render_from_world())?;
@@ -54,7 +54,7 @@ impl<'a> Builder<'a> {
         let mut builder = Self {
             document,
             nodes,
-            assembly: Assembly::new(context, film, SETTINGS, view.eye()),
+            assembly: Assembly::new(context, SETTINGS, view.eye()),
             materials: Materials::default(),
             extent: Extent::NONE,
             places: 0,
@@ -70,8 +70,8 @@ impl<'a> Builder<'a> {
         assembly.summary.materials = builder.materials.count();
         assembly.summary.textures = document.root.textures.len();
         let camera = view.camera(resolution, world_from_camera)?;
-        assembly.builder.camera(camera);
-        Ok(assembly)
+        let view = Context::view(camera, film)?;
+        Ok((assembly, view))
     }
 
     /// Adds all meshes: those with joints where these put them, all others by their uses.

@@ -5,11 +5,11 @@ use super::precision::{self, VertexErrors};
 use super::{Context, Document, Layout, SceneSettings, Summary, Survey, VertexError};
 use crate::error::ErrorKind;
 use crate::source::Fault;
-use bidir::film::FilmSettings;
 use bidir::light::Light;
 use bidir::scene::{Emission, MaterialId, ObjectId, Scene, SceneBuilder, SceneError};
 use bidir::shape::Shape;
 use bidir::texture::FloatTexture;
+use bidir::view::View;
 use glam::{DAffine3, DVec3};
 
 /// A scene with the places `P` of its parts in the file.
@@ -62,6 +62,7 @@ impl SharedObject {
 /// A scene that was built.
 pub(super) struct Built<P> {
     pub(super) scene: Scene,
+    pub(super) view: View,
     pub(super) settings: SceneSettings,
     pub(super) lamps: Vec<Placed<P>>,
     pub(super) summary: Summary,
@@ -71,11 +72,10 @@ impl<P: Clone> Assembly<P> {
     /// An empty scene, seen from `eye`. None: where the camera stands depends on the scene.
     pub(crate) fn new<D: Document>(
         context: &Context<'_, D>,
-        film: FilmSettings,
         settings: SceneSettings,
         eye: Option<DVec3>,
     ) -> Self {
-        let mut builder = SceneBuilder::new(film);
+        let mut builder = SceneBuilder::new();
         builder.space(context.layout.space);
         if let Some(isa) = context.options.isa {
             builder.isa(isa);
@@ -197,9 +197,10 @@ impl<P: Clone> Assembly<P> {
         }
     }
 
-    /// Builds the scene.
+    /// Builds the scene, which `view` sees.
     pub(super) fn finish<D: Document<Place = P>>(
         self,
+        view: View,
         context: &mut Context<'_, D>,
     ) -> Result<Built<P>, Fault<P>> {
         if let Some((place, message)) = self.vertex_errors.warning() {
@@ -224,6 +225,7 @@ impl<P: Clone> Assembly<P> {
         }
         Ok(Built {
             scene,
+            view,
             settings: self.settings,
             lamps: self.lamps,
             summary: self.summary,

@@ -31,11 +31,13 @@ use crate::files::Files;
 use crate::limits;
 use crate::source::Fault;
 use assembly::Built;
+use bidir::camera::Camera;
 use bidir::driver::Settings;
-use bidir::film::{Aov, Layers};
+use bidir::film::{Aov, FilmSettings, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
+use bidir::view::View;
 use log::Strictness;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -66,6 +68,8 @@ pub(crate) trait Document {
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
+    /// The camera of the file, and its film.
+    pub view: View,
     /// The settings of a render, by the file.
     pub settings: SceneSettings,
     /// The warnings, each as `place: message`. Places are `file:line:column` in pbrt,
@@ -178,6 +182,11 @@ impl<D: Document> Context<'_, D> {
         }
     }
 
+    /// The view of the scene by this camera.
+    pub(crate) fn view(camera: Camera, film: FilmSettings) -> Result<View, Fault<D::Place>> {
+        View::new(camera, film).map_err(|error| Fault::scene(D::TOP, error.to_string()))
+    }
+
     /// Refuses more primitives, or vertices of meshes, than the caller wants, or than the files have
     /// the bytes for.
     pub(crate) fn check_size(&self, count: u64, place: &D::Place) -> Result<(), Fault<D::Place>> {
@@ -202,12 +211,15 @@ fn check<P: Clone>(count: u64, most: u64, things: &str, place: &P) -> Result<(),
     Err(fault.with_hint("instances share the memory of their object, unless it emits"))
 }
 
+/// The scene of a file in the making, and the view of it.
+pub(crate) type Gathered<P> = Result<(Assembly<P>, View), Fault<P>>;
+
 /// Builds the scene that `gather` puts together.
 pub(crate) fn load<'a, D: Document>(
     document: &'a D,
     options: &'a LoadOptions,
     log: Log<D::Place>,
-    gather: impl Fn(&mut Context<'a, D>) -> Result<Assembly<D::Place>, Fault<D::Place>>,
+    gather: impl Fn(&mut Context<'a, D>) -> Gathered<D::Place>,
 ) -> Result<Loaded> {
     let mut context = Context {
         document,
@@ -227,6 +239,7 @@ pub(crate) fn load<'a, D: Document>(
     Ok(Loaded {
         lamps: lamp::unhittable(&built.scene, &built.lamps, text),
         scene: built.scene,
+        view: built.view,
         settings: built.settings,
         warnings: log.texts(text, |_| true),
         refused: log.texts(text, |message| log.substitutes.contains(message)),
@@ -240,17 +253,17 @@ pub(crate) fn load<'a, D: Document>(
 /// Gathers everything in the world, or once more where the layout of the scene places it.
 fn build<'a, D: Document>(
     context: &mut Context<'a, D>,
-    gather: impl Fn(&mut Context<'a, D>) -> Result<Assembly<D::Place>, Fault<D::Place>>,
+    gather: impl Fn(&mut Context<'a, D>) -> Gathered<D::Place>,
 ) -> Result<Built<D::Place>, Fault<D::Place>> {
     let log = context.log.clone();
-    let mut assembly = gather(context)?;
+    let (mut assembly, mut view) = gather(context)?;
     assembly.check_vertices()?;
     let layout = assembly.layout();
     if layout != context.layout {
         drop(assembly);
         context.layout = layout;
         context.log = log;
-        assembly = gather(context)?;
+        (assembly, view) = gather(context)?;
     }
-    assembly.finish(context)
+    assembly.finish(view, context)
 }

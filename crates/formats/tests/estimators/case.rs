@@ -1,10 +1,9 @@
 //! A torture scene and its number of passes.
 
-use crate::statistics::{Replicates, WHOLE, check_agree, replicates};
+use crate::statistics::{Replicates, Shown, WHOLE, check_agree, replicates};
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
 use bidir::path::PathSettings;
-use bidir::scene::Scene;
 use bidir_formats::pbrt::{Crop, LoadOptions, Loaded, load};
 use std::path::Path;
 
@@ -18,7 +17,7 @@ pub(crate) const QUARTERS: &[usize] = &[WHOLE, 8];
 /// A scene, the maximum depth of its file, and the passes of all replicates.
 #[derive(Clone, Copy)]
 pub(crate) struct Case<'a> {
-    scene: &'a Scene,
+    shown: Shown<'a>,
     max_depth: u32,
     passes: u64,
     seed: u64,
@@ -43,7 +42,10 @@ pub(crate) fn open_part(name: &str, crop: Option<Crop>) -> Loaded {
 impl<'a> Case<'a> {
     pub(crate) fn new(loaded: &'a Loaded, passes: u64) -> Self {
         Self {
-            scene: &loaded.scene,
+            shown: Shown {
+                scene: &loaded.scene,
+                view: &loaded.view,
+            },
             max_depth: loaded.settings.max_depth,
             passes,
             seed: 0,
@@ -94,7 +96,7 @@ impl<'a> Case<'a> {
             IntegratorKind::Path | IntegratorKind::Light | IntegratorKind::Auto => 2 * self.passes,
             IntegratorKind::Bdpt | IntegratorKind::Lvc => self.passes,
         };
-        replicates(self.scene, &settings, passes)
+        replicates(self.shown, &settings, passes)
     }
 
     pub(crate) fn bdpt(&self, change: impl Fn(&mut Settings)) -> Replicates {

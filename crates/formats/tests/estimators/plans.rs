@@ -4,9 +4,9 @@
 use crate::case::open;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::{CandidateCount, IntegratorKind};
-use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use bidir::settings::{Choice, Request};
+use bidir_formats::scene::Loaded;
 
 #[test]
 fn under_a_sky_paths_begin_at_the_camera() {
@@ -26,14 +26,14 @@ fn indirect_light_has_shared_subpaths() {
 /// Default candidates are those of the plan or of the estimator, and explicit ones stay.
 #[test]
 fn default_candidates_depend_on_the_estimator() {
-    let scene = open("narrow-spot.pbrt").scene;
+    let loaded = open("narrow-spot.pbrt");
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |candidates| {
             let request = Request {
                 candidates,
                 ..Request::default()
             };
-            session(&scene, integrator, &request)
+            session(&loaded, integrator, &request)
         };
         let named = CandidateCount::new(5, 2);
         let session = choose(Some(Choice::Fixed(named)));
@@ -45,22 +45,23 @@ fn default_candidates_depend_on_the_estimator() {
     }
 }
 
-fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, request: &Request) -> Session<'a> {
+fn session<'a>(loaded: &'a Loaded, integrator: IntegratorKind, request: &Request) -> Session<'a> {
     let settings = request.apply(&Settings::new(integrator));
-    Session::new(scene, settings, &Resources::default()).expect("the film is small")
+    Session::new(&loaded.scene, &loaded.view, settings, &Resources::default())
+        .expect("the film is small")
 }
 
 /// The default choice of shadow rays is that of the estimator, and an explicit one stays.
 #[test]
 fn the_default_choice_of_shadow_rays_depends_on_the_estimator() {
-    let scene = open("narrow-spot.pbrt").scene;
+    let loaded = open("narrow-spot.pbrt");
     for (name, integrator) in IntegratorKind::NAMES {
         let choose = |shadow_rays| {
             let request = Request {
                 shadow_rays,
                 ..Request::default()
             };
-            session(&scene, integrator, &request)
+            session(&loaded, integrator, &request)
         };
         assert_eq!(
             choose(Some(Choice::Fixed(ShadowRays::PerPair)))
@@ -87,13 +88,14 @@ fn the_default_choice_of_shadow_rays_depends_on_the_estimator() {
 
 #[track_caller]
 fn check(name: &str, expected: IntegratorKind) {
-    let scene = open(name).scene;
+    let loaded = open(name);
     for seed in 0..2 {
         let settings = Settings {
             seed,
             ..Settings::new(IntegratorKind::Auto)
         };
-        let session = Session::new(&scene, settings, &Resources::default()).expect("a small film");
+        let session = Session::new(&loaded.scene, &loaded.view, settings, &Resources::default())
+            .expect("a small film");
         let plan = session.training().and_then(|training| training.plan);
         let plan = plan.expect("auto finds one");
         assert_eq!(plan.integrator, expected, "{name}, seed {seed}: {plan}");

@@ -13,7 +13,6 @@ use bidir::driver::Settings;
 use bidir::integrator::{IntegratorKind, Journal, Link, LvcSettings, Sample, Workspace};
 use bidir::path::{Connections, PathContext};
 use bidir::sampler::{Domain, Sampler};
-use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -90,15 +89,13 @@ fn of_method(
 ) -> Result<Contributions, ExperimentError> {
     let settings = loaded.bidirectional(method, "contributions")?;
     let passes = (0..spp).into_par_iter();
-    let passes: Vec<_> = passes
-        .map(|pass| terms(&loaded.scene, &settings, pass))
-        .collect();
+    let passes: Vec<_> = passes.map(|pass| terms(loaded, &settings, pass)).collect();
     let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {
         let pass = |terms: &Vec<[f64; 2]>| sorted(terms.iter().map(which).collect());
         passes.iter().map(pass).collect()
     };
     let [weighted, unweighted] = [sorted(|term| term[1]), sorted(|term| term[0])];
-    let samples = loaded.scene.film().crop.area() as f64;
+    let samples = loaded.view.film().crop.area() as f64;
     let both = weighted.iter().zip(&unweighted);
     let pass = |(weighted, unweighted): (&Vec<f64>, &Vec<f64>)| {
         let numbers = [weighted, unweighted].map(|values| figures(values, samples));
@@ -143,11 +140,13 @@ fn figures(values: &[f64], samples: f64) -> [f64; FIGURES.len() / 2] {
 }
 
 /// Takes one sample of every pixel; returns the terms of its connections, without and with weight.
-fn terms(scene: &Scene, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
-    let film = scene.film();
+fn terms(loaded: &LoadedScene<'_>, settings: &Settings, pass: u64) -> Vec<[f64; 2]> {
+    let LoadedScene { scene, view, .. } = loaded;
+    let film = view.film();
     let sampler = Sampler::new(settings.sampler, settings.seed);
     let context = PathContext {
         scene,
+        view,
         settings: &settings.path,
         wavelengths: scene.color().sample_wavelengths(0.5),
         connections: Connections::ONE_SUBPATH,

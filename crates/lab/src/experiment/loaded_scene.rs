@@ -8,6 +8,7 @@ use bidir::driver::{Resources, Session, Settings};
 use bidir::film::Layers;
 use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
+use bidir::view::View;
 use formats::scene::{Files, LoadOptions};
 use std::path::PathBuf;
 
@@ -15,6 +16,7 @@ use std::path::PathBuf;
 pub(super) struct LoadedScene<'a> {
     pub(super) spec: &'a SceneSpec,
     pub(super) scene: Scene,
+    pub(super) view: View,
     /// The settings of the file, over the defaults.
     pub(super) settings: Settings,
     pub(super) digest: String,
@@ -61,6 +63,7 @@ impl<'a> LoadedScene<'a> {
         Ok(Self {
             spec,
             scene: loaded.scene,
+            view: loaded.view,
             // The experiment sets the seeds, and needs no layers.
             settings: Settings {
                 seed: 0,
@@ -118,7 +121,7 @@ impl<'a> LoadedScene<'a> {
             threads,
             ..Resources::default()
         };
-        let session = Session::new(&self.scene, settings, &resources);
+        let session = Session::new(&self.scene, &self.view, settings, &resources);
         session.map_err(|error| ExperimentError::Render {
             scene: self.spec.name.clone(),
             error,
@@ -127,7 +130,7 @@ impl<'a> LoadedScene<'a> {
 
     /// Returns width and height of the images. Unit: pixels.
     pub(super) fn size(&self) -> [usize; 2] {
-        let crop = self.scene.film().crop;
+        let crop = self.view.film().crop;
         [crop.width() as usize, crop.height() as usize]
     }
 

@@ -154,7 +154,7 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
 fn load(loaded: &LoadedScene<'_>, folder: &Path, name: Option<&str>) -> Result<Reference> {
     let of_scene = |error| failed(loaded, error);
     let reference = references::Reference::load(folder).map_err(of_scene)?;
-    let checked = reference.check(&loaded.digest, loaded.scene.film());
+    let checked = reference.check(&loaded.digest, loaded.view.film());
     checked.map_err(of_scene)?;
     new(loaded, reference, name)
 }
@@ -274,6 +274,7 @@ fn make(
         name: &loaded.spec.file,
         digest: &loaded.digest,
         scene: &loaded.scene,
+        view: &loaded.view,
     };
     let resources = Resources {
         threads,
@@ -307,7 +308,7 @@ impl<'a> Watch<'a> {
     fn new(loaded: &'a LoadedScene<'_>, plan: &Plan, observer: &'a mut dyn Observer) -> Self {
         Self {
             scene: &loaded.spec.name,
-            samples_per_pass: loaded.scene.film().crop.area().max(1),
+            samples_per_pass: loaded.view.film().crop.area().max(1),
             passes: 2 * plan.rounded_spp(),
             samples: AtomicU64::new(0),
             observer: Mutex::new(observer),

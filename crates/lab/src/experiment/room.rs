@@ -208,7 +208,14 @@ mod tests {
         let loaded = load_from(&room.name(), &options, &room.files()).unwrap();
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
         let settings = Settings::new(IntegratorKind::Bdpt);
-        let film = render(&loaded.scene, &settings, 256, &Resources::default()).unwrap();
+        let film = render(
+            &loaded.scene,
+            &loaded.view,
+            &settings,
+            256,
+            &Resources::default(),
+        )
+        .unwrap();
         (loaded.summary.primitives, film.develop().pixels)
     }
 

@@ -14,6 +14,7 @@ use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::settings::Request;
+use bidir::view::View;
 use formats::film::{Developed, FilmHeader, SceneIdentity, SettingsText, metadata};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -43,8 +44,10 @@ pub struct Subject<'a> {
     pub name: &'a str,
     /// The hash of everything read for it, as text.
     pub digest: &'a str,
-    /// The scene; the reference has its film.
+    /// The scene.
     pub scene: &'a Scene,
+    /// The view of it; the reference has its film.
+    pub view: &'a View,
 }
 
 impl Subject<'_> {
@@ -52,7 +55,7 @@ impl Subject<'_> {
         SceneIdentity {
             name: self.name,
             digest: self.digest,
-            film: self.scene.film(),
+            film: self.view.film(),
         }
     }
 }

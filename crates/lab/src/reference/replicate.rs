@@ -87,7 +87,7 @@ impl Estimator<'_> {
         let untrained = self.subject.identity().header(settings, None);
         let earlier = self.earlier(path, &untrained)?;
         if let Some(file) = &earlier {
-            let area = self.subject.scene.film().crop.area();
+            let area = self.subject.view.film().crop.area();
             (host.found)(file.header.passes.len() * area);
         }
         match earlier {
@@ -126,7 +126,12 @@ impl Estimator<'_> {
     ) -> Result<Option<FilmFile>, Error> {
         let start = host.progress.nanoseconds();
         let since = |start| Duration::from_nanos(host.progress.nanoseconds().saturating_sub(start));
-        let mut session = Session::new(self.subject.scene, settings.clone(), self.resources)?;
+        let mut session = Session::new(
+            self.subject.scene,
+            self.subject.view,
+            settings.clone(),
+            self.resources,
+        )?;
         let header = self.subject.identity();
         let header = header.header(settings, session.training());
         let before = earlier.as_ref().map(|file| file.header.clone());

@@ -66,6 +66,7 @@ impl Workplace {
             name: "room.pbrt",
             digest: &self.digest,
             scene: &self.loaded.scene,
+            view: &self.loaded.view,
         };
         let resources = Resources {
             threads: 1,
@@ -112,7 +113,7 @@ fn estimators_that_agree_make_a_reference() {
     assert!(crate::image::identical(&loaded.variance, &made.variance));
     assert_eq!(loaded.provenance.estimators, made.provenance.estimators);
     loaded
-        .check(&place.digest, place.loaded.scene.film())
+        .check(&place.digest, place.loaded.view.film())
         .unwrap();
     for (record, light) in made.provenance.estimators.iter().zip([true, false]) {
         assert_eq!((record.spp, record.replicates), (256, REPLICATES));
@@ -237,12 +238,12 @@ fn another_scene_and_another_film_are_refused() {
     let refused = |text: &str| {
         let other = scene(text);
         let digest = other.digest.to_string();
-        let error = reference.check(&digest, other.scene.film());
+        let error = reference.check(&digest, other.view.film());
         error.unwrap_err().to_string()
     };
     let changed = refused(&SCENE.replace("9 8 7", "9 8 8"));
     assert!(changed.contains("one that has changed since"), "{changed}");
-    let mut film = place.loaded.scene.film().clone();
+    let mut film = place.loaded.view.film().clone();
     film.crop.max[1] = 7;
     let error = reference.check(&place.digest, &film).unwrap_err();
     assert!(

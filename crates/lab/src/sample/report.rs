@@ -59,7 +59,7 @@ impl SampleReport {
             model: scene.color(),
             wavelengths: replay.wavelengths,
         };
-        let view = View::new(scene, &workspace.camera);
+        let view = View::new(session, &workspace.camera);
         let Terms {
             hits,
             candidates,
@@ -83,7 +83,7 @@ impl SampleReport {
             candidates,
             zeros: replay.zeros.iter().map(ToString::to_string).collect(),
             light_image,
-            light_paths: scene.film().light_paths(),
+            light_paths: session.view().film().light_paths(),
             light_subpaths: session.light_subpaths(),
             rays: workspace.stats.rays.total(),
             dropped: workspace.stats.dropped,

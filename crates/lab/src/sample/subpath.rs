@@ -2,9 +2,11 @@
 
 use super::report::Color;
 use bidir::camera::{Camera, LensSample};
+use bidir::driver::Session;
+use bidir::locus::Locus;
 use bidir::math::{Vec2, Vec3};
 use bidir::path::{Subpath, Vertex, VertexKind};
-use bidir::scene::{RenderSpace, Scene, SegmentEnd};
+use bidir::scene::RenderSpace;
 use bidir::spectrum::Rgb;
 use serde::Serialize;
 
@@ -47,8 +49,8 @@ impl Place {
     pub(super) fn eye(camera: &Camera) -> Self {
         let lens = middle_of_lens(camera);
         Self {
-            is_infinite: lens.is_infinite,
-            ..Self::finite(lens.point)
+            is_infinite: lens.locus.is_infinite(),
+            ..Self::finite(lens.locus.point)
         }
     }
 
@@ -76,26 +78,24 @@ fn middle_of_lens(camera: &Camera) -> LensSample {
 pub(super) struct View<'a> {
     space: RenderSpace,
     camera: &'a Camera,
-    lens: LensSample,
+    lens: Locus,
 }
 
 impl<'a> View<'a> {
     /// From the lens point of `subpath`, so that what its ray hits lies in its pixel; without a
     /// camera subpath, from the middle of the lens.
-    pub(super) fn new(scene: &'a Scene, subpath: &Subpath) -> Self {
-        let camera = scene.camera();
-        let middle = middle_of_lens(camera);
-        let point = subpath.vertices.first().map_or(middle.point, |y0| y0.point);
-        let lens = LensSample { point, ..middle };
+    pub(super) fn new(session: &'a Session<'_>, subpath: &Subpath) -> Self {
+        let camera = session.view().camera();
+        let middle = || middle_of_lens(camera).locus;
         Self {
-            space: *scene.space(),
+            space: *session.scene().space(),
             camera,
-            lens,
+            lens: subpath.vertices.first().map_or_else(middle, |y0| y0.locus),
         }
     }
 
-    pub(super) fn end(&self, end: &SegmentEnd) -> Place {
-        self.place(end.point, end.is_infinite)
+    pub(super) fn end(&self, end: &Locus) -> Place {
+        self.place(end.point, end.is_infinite())
     }
 
     fn place(&self, point: Vec3, is_infinite: bool) -> Place {
@@ -114,7 +114,7 @@ impl<'a> View<'a> {
     }
 
     fn raster(&self, point: Vec3, is_infinite: bool) -> Option<Vec2> {
-        match (self.lens.is_infinite, is_infinite) {
+        match (self.lens.is_infinite(), is_infinite) {
             // Rays of one direction see no other direction.
             (true, true) => None,
             (true, false) => self.camera.raster(point, -self.lens.point),
@@ -149,8 +149,8 @@ impl VertexReport {
         };
         Self {
             kind,
-            place: view.place(vertex.point, vertex.is_infinite),
-            normal: vertex.n_g.to_array(),
+            place: view.end(&vertex.locus),
+            normal: vertex.locus.n_g.to_array(),
             is_delta: vertex.is_delta() || vertex.went_by_delta,
             light: vertex.light,
             beta: color.rgb(vertex.beta),

@@ -1,19 +1,18 @@
 use super::SampleReport;
 use bidir::driver::{Resources, Session, Settings};
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
-use formats::scene::{Files, LoadOptions, load_from};
+use formats::scene::{Files, LoadOptions, Loaded, load_from};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A scene in 12 x 8 pixels: a floor, a wall, a sphere, a lamp and a sky.
-pub(super) fn scene(camera: &str) -> Scene {
+pub(super) fn scene(camera: &str) -> Loaded {
     scene_at(camera, 0.0)
 }
 
 /// The same moved along x.
-fn scene_at(camera: &str, x: f64) -> Scene {
+fn scene_at(camera: &str, x: f64) -> Loaded {
     let text = format!(
         r#"
 LookAt 0 1 -4  0 1 0  0 1 0
@@ -39,13 +38,17 @@ AttributeEnd
 }
 
 /// The scene that is written as `text`.
-pub(super) fn load(text: &str) -> Scene {
+pub(super) fn load(text: &str) -> Loaded {
     let files = Files::only([(PathBuf::from("s.pbrt"), Arc::from(text.as_bytes()))].into());
     let loaded = load_from(Path::new("s.pbrt"), &LoadOptions::default(), &files);
-    loaded.expect("the scene is valid").scene
+    loaded.expect("the scene is valid")
 }
 
-pub(super) fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &str) -> Session<'a> {
+pub(super) fn session<'a>(
+    loaded: &'a Loaded,
+    integrator: IntegratorKind,
+    rule: &str,
+) -> Session<'a> {
     let settings = Settings {
         shadow_rays: rule.parse().expect("a rule"),
         ..Settings::new(integrator)
@@ -54,12 +57,12 @@ pub(super) fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &s
         threads: 1,
         ..Resources::default()
     };
-    Session::new(scene, settings, &resources).expect("the film is small")
+    Session::new(&loaded.scene, &loaded.view, settings, &resources).expect("the film is small")
 }
 
 /// The reports of every pixel of the first passes.
 pub(super) fn reports(session: &Session<'_>, passes: u64) -> Vec<SampleReport> {
-    let [width, height] = session.scene().film().resolution;
+    let [width, height] = session.view().film().resolution;
     let pixels = (0..width).flat_map(|x| (0..height).map(move |y| [x, y]));
     let samples = pixels.flat_map(|pixel| (0..passes).map(move |pass| (pixel, pass)));
     let report = |(pixel, pass)| {
@@ -107,7 +110,7 @@ fn the_first_hit_is_seen_in_the_pixel() {
 fn positions_are_those_of_the_world() {
     let x = 1_048_576.0;
     let scene = scene_at(CAMERAS[0], x);
-    assert_eq!(scene.space().origin.x.to_bits(), x.to_bits());
+    assert_eq!(scene.scene.space().origin.x.to_bits(), x.to_bits());
     let session = session(&scene, IntegratorKind::Bdpt, "all");
     let mut count = 0;
     for report in reports(&session, 1) {
@@ -117,7 +120,7 @@ fn positions_are_those_of_the_world() {
             assert!((f64::from(found) - x).abs() < 2.5 && y < 4.0, "{found} {y}");
             count += 1;
         }
-        assert!(report.drawing(&scene, "s.pbrt").contains("<svg"));
+        assert!(report.drawing(&session, "s.pbrt").contains("<svg"));
     }
     assert!(count > 96, "{count}");
 }

@@ -7,6 +7,7 @@ use bidir::film::{FilmSettings, PixelRect};
 use bidir::math::{Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
 use bidir::scene::{Chances, RenderSpace, Scene};
+use bidir::view::{EmptyCrop, View};
 use std::time::{Duration, Instant};
 
 /// The time after which a camera that does not move stands still.
@@ -20,8 +21,8 @@ const REACH: [f32; 2] = [1e-4, 1e3];
 #[derive(Debug)]
 pub(super) struct CameraControl {
     space: RenderSpace,
-    home: Camera,
-    film: FilmSettings,
+    /// The scene's own view.
+    home: View,
     camera: Camera,
     /// The point in the middle of the scene's own picture, in the axes of the camera.
     home_target: Vec3,
@@ -40,13 +41,12 @@ pub(super) type Refusal = String;
 
 impl CameraControl {
     /// The scene's own view.
-    pub(super) fn new(scene: &Scene) -> Self {
-        let (camera, film) = (*scene.camera(), scene.film().clone());
-        let target = target(scene);
+    pub(super) fn new(scene: &Scene, home: View) -> Self {
+        let camera = *home.camera();
+        let target = target(scene, &home);
         Self {
             space: *scene.space(),
-            home: camera,
-            film,
+            home,
             camera,
             home_target: target,
             target,
@@ -72,15 +72,16 @@ impl CameraControl {
         Some(REST.saturating_sub(moved.elapsed()))
     }
 
-    /// The camera and the film that are rendered now.
-    pub(super) fn current(&self) -> (Camera, FilmSettings) {
+    /// The view that is rendered now.
+    pub(super) fn current(&self) -> Result<View, EmptyCrop> {
+        let film = self.home.film();
         if !self.is_preview() {
-            return (self.camera, self.film.clone());
+            return self.home.moved(self.camera, film.clone());
         }
-        let film = coarse(&self.film);
-        let [new, old] = [film.resolution, self.film.resolution]
+        let coarse = coarse(film);
+        let [new, old] = [coarse.resolution, film.resolution]
             .map(|[width, height]| Vec2::new(width as f32, height as f32));
-        (self.camera.resized(new / old), film)
+        self.home.moved(self.camera.resized(new / old), coarse)
     }
 
     /// The status of the camera.
@@ -101,7 +102,7 @@ impl CameraControl {
     }
 
     fn is_elsewhere(&self) -> bool {
-        self.camera.pose() != self.home.pose()
+        self.camera.pose() != self.home.camera().pose()
     }
 
     /// The view in words that no other view has. None: it is the scene's own.
@@ -114,7 +115,7 @@ impl CameraControl {
 
     /// Back to the scene's own view, in full at once.
     pub(super) fn go_home(&mut self) {
-        self.camera = self.home;
+        self.camera = *self.home.camera();
         self.target = self.home_target;
         self.moved = None;
     }
@@ -137,7 +138,7 @@ impl CameraControl {
     /// To `factor` times the distance of the target.
     pub(super) fn dolly(&mut self, factor: f32) -> Result<(), Refusal> {
         self.check_is_flat("dolly")?;
-        if matches!(self.camera, Camera::Orthographic(_)) {
+        if self.camera.is_parallel() {
             return Err(
                 "parallel rays show the same from any distance: `pan` moves them".to_owned(),
             );
@@ -207,8 +208,8 @@ impl CameraControl {
 
 /// The point in the middle of the picture, in the axes of the camera; where nothing is there, one as far
 /// as the middle of the scene.
-fn target(scene: &Scene) -> Vec3 {
-    let (camera, film) = (scene.camera(), scene.film());
+fn target(scene: &Scene, view: &View) -> Vec3 {
+    let (camera, film) = (view.camera(), view.film());
     let pose = camera.pose();
     let [width, height] = film.resolution.map(|side| side as f32);
     let (origin, direction) = match camera {
@@ -257,10 +258,15 @@ mod tests {
 
     /// The view of nothing but a sky.
     fn view(camera: Camera) -> CameraControl {
-        let mut builder = SceneBuilder::new(film());
-        builder.camera(camera);
+        view_in(RenderSpace::WORLD, camera)
+    }
+
+    fn view_in(space: RenderSpace, camera: Camera) -> CameraControl {
+        let mut builder = SceneBuilder::new();
+        builder.space(space);
         builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-        CameraControl::new(&builder.build().unwrap())
+        let view = View::new(camera, film()).unwrap();
+        CameraControl::new(&builder.build().unwrap(), view)
     }
 
     #[test]
@@ -301,15 +307,12 @@ mod tests {
             let size = Vec2::splat(SIDE);
             Spherical::new(&pose, size, SphericalMapping::EqualArea).unwrap()
         };
-        let mut builder = SceneBuilder::new(film());
-        builder.space(RenderSpace {
+        let space = RenderSpace {
             origin: DVec3::new(1e6, 0.0, 0.0),
             unit: 4.0,
-        });
+        };
         let pose = Affine3A::from_translation(Vec3::new(1.0, 2.0, 3.0));
-        builder.camera(Camera::Spherical(camera(pose)));
-        builder.light(Light::Infinite(InfiniteLight::constant([1.0; 3])));
-        let status = CameraControl::new(&builder.build().unwrap()).status();
+        let status = view_in(space, Camera::Spherical(camera(pose))).status();
         let moved = [1e6 + 4.0, 8.0, 12.0];
         assert_eq!(status.origin.map(f32::to_bits), moved.map(f32::to_bits));
         assert!(status.target[2] > 12.0, "{:?}", status.target);

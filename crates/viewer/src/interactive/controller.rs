@@ -12,6 +12,7 @@ use bidir::film::{Aov, Layers};
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
 use bidir::settings::Choice;
+use bidir::view::View;
 use formats::film::{FilmHeader, SceneIdentity, program};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -51,7 +52,7 @@ impl RenderController {
         first.layers = with_inspected(&first.layers);
         Self {
             queue,
-            camera: CameraControl::new(&settings.scene),
+            camera: CameraControl::new(&settings.scene, settings.view),
             name: settings.name,
             digest: settings.digest,
             scene: settings.scene,
@@ -161,7 +162,6 @@ impl RenderController {
     pub(super) fn begin(&mut self) {
         self.is_stale = false;
         self.generation += 1;
-        // They share the scene, which changes.
         self.slots.clear();
         if self.wanted.len() == 1 {
             self.queue.state().show(LaneId::B, None);
@@ -183,19 +183,15 @@ impl RenderController {
         self.publish();
     }
 
-    fn make_slots(&mut self) -> Result<Vec<RenderSlot>, String> {
-        let (camera, film) = self.camera.current();
-        let scene = Arc::get_mut(&mut self.scene).ok_or("the scene is in use")?;
-        scene
-            .set_view(camera, film)
-            .map_err(|error| error.to_string())?;
+    fn make_slots(&self) -> Result<Vec<RenderSlot>, String> {
+        let view = self.camera.current().map_err(|error| error.to_string())?;
         let wanted = LaneId::ALL.into_iter().zip(&self.wanted);
         wanted
-            .map(|(lane, wanted)| self.slot(lane, wanted))
+            .map(|(lane, wanted)| self.slot(lane, wanted, &view))
             .collect()
     }
 
-    fn slot(&self, lane: LaneId, wanted: &Settings) -> Result<RenderSlot, String> {
+    fn slot(&self, lane: LaneId, wanted: &Settings, view: &View) -> Result<RenderSlot, String> {
         let course = Course {
             generation: self.generation,
             preview: self.camera.is_preview(),
@@ -206,7 +202,8 @@ impl RenderController {
         } else {
             wanted.clone()
         };
-        let session = Session::new(Arc::clone(&self.scene), settings.clone(), &self.resources)
+        let scene = Arc::clone(&self.scene);
+        let session = Session::new(scene, view, settings.clone(), &self.resources)
             .map_err(|error| error.to_string())?;
         Ok(RenderSlot {
             header: self.header(&settings, &session),
@@ -220,7 +217,7 @@ impl RenderController {
         let identity = SceneIdentity {
             name: &self.name,
             digest: &self.digest,
-            film: self.scene.film(),
+            film: session.view().film(),
         };
         let header = identity.header(wanted, session.training());
         let Some(view) = self.camera.text() else {

@@ -16,6 +16,7 @@ use bidir::driver::Settings;
 use bidir::path::PathRoulette;
 use bidir::scene::Scene;
 use bidir::settings::Choice;
+use bidir::view::View;
 use controller::RenderController;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,6 +31,8 @@ pub struct InteractiveSettings {
     pub digest: String,
     /// The scene.
     pub scene: Arc<Scene>,
+    /// Its own view.
+    pub view: View,
     /// The settings of the first lane.
     pub settings: Settings,
     /// Russian roulette for any estimator. None: the default of each.

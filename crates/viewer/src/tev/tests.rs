@@ -5,6 +5,7 @@ use bidir::film::{FilmSettings, Filter};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{Affine3A, Vec2};
 use bidir::scene::{Scene, SceneBuilder};
+use bidir::view::View;
 use std::io::Read;
 use std::net::{TcpListener, TcpStream};
 
@@ -31,11 +32,10 @@ fn addresses_are_as_people_write_them() {
     }
 }
 
-/// A sky, of which a crop is rendered.
-fn scene() -> Scene {
+/// A crop of a film.
+fn view() -> View {
     let mut film = FilmSettings::new([8, 6], Filter::default());
     (film.crop.min, film.crop.max) = ([2, 1], [7, 4]);
-    let mut builder = SceneBuilder::new(film);
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
         resolution: Vec2::new(8.0, 6.0),
@@ -43,13 +43,18 @@ fn scene() -> Scene {
         lens_radius: 0.0,
         focal_distance: 1.0,
     });
-    builder.camera(Camera::Perspective(camera.unwrap()));
+    View::new(Camera::Perspective(camera.unwrap()), film).unwrap()
+}
+
+/// A sky.
+fn scene() -> Scene {
+    let mut builder = SceneBuilder::new();
     builder.light(Light::Infinite(InfiniteLight::constant([0.1, 0.7, 2.0])));
     builder.build().unwrap()
 }
 
 fn session(scene: &Scene) -> Session<'_> {
-    Session::new(scene, Settings::default(), &Resources::default()).unwrap()
+    Session::new(scene, &view(), Settings::default(), &Resources::default()).unwrap()
 }
 
 fn tev_at(listener: &TcpListener) -> Tev {

@@ -144,7 +144,7 @@ pub(super) async fn sample(
     let resolution = site.client.state().status().film.resolution;
     let report = site.query(lane, move |subject| {
         let session = subject.session;
-        if session.scene().film().resolution != resolution {
+        if session.view().film().resolution != resolution {
             return Err(Refusal::now(
                 "the camera is moving: try again when the image is complete",
             ));

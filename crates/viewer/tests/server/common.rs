@@ -2,10 +2,10 @@
 
 use bidir::driver::Settings;
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
 use bidir_viewer::interactive::{InteractiveRender, InteractiveSettings};
 use bidir_viewer::web::{Server, listen};
 use bidir_viewer::{Status, request_queue};
+use formats::scene::Loaded;
 use serde_json::Value;
 use std::fs;
 use std::io::{Read, Write};
@@ -48,8 +48,8 @@ pub fn settings() -> Settings {
     settings
 }
 
-/// The scene, with its digest.
-pub fn scene(size: Option<[u32; 2]>) -> (Scene, String) {
+/// The scene.
+pub fn scene(size: Option<[u32; 2]>) -> Loaded {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("room.pbrt");
     fs::write(&path, SCENE).unwrap();
@@ -57,8 +57,7 @@ pub fn scene(size: Option<[u32; 2]>) -> (Scene, String) {
         resolution: size,
         ..formats::scene::LoadOptions::default()
     };
-    let loaded = formats::scene::load(&path, &options).unwrap();
-    (loaded.scene, loaded.digest.to_string())
+    formats::scene::load(&path, &options).unwrap()
 }
 
 /// A render with its server.
@@ -85,14 +84,17 @@ impl Place {
         let folder = tempfile::tempdir().unwrap();
         let listener: TcpListener = listen(address.parse().unwrap(), 0).unwrap();
         let port = listener.local_addr().unwrap().port();
-        let (scene, digest) = scene(size);
-        let (queue, client) =
-            request_queue(Status::interactive("somewhere/room.pbrt", scene.film()));
+        let loaded = scene(size);
+        let (queue, client) = request_queue(Status::interactive(
+            "somewhere/room.pbrt",
+            loaded.view.film(),
+        ));
         let server = Server::start(listener, client).unwrap();
         let render = InteractiveSettings {
             name: "somewhere/room.pbrt".into(),
-            digest,
-            scene: scene.into(),
+            digest: loaded.digest.to_string(),
+            scene: loaded.scene.into(),
+            view: loaded.view,
             settings: settings(),
             roulette: None,
             threads: 1,

@@ -1,6 +1,7 @@
 use crate::common::{Place, SIZE, scene, settings};
 use bidir::driver::{Resources, render};
 use formats::image::{Format, decode, decode_layers};
+use formats::scene::Loaded;
 use std::fs;
 
 /// A place whose two passes are done.
@@ -20,7 +21,8 @@ fn the_picture_is_that_of_a_render_bit_for_bit() {
         answer.head
     );
     let image = decode(Format::Exr, &answer.body, None).unwrap();
-    let film = render(&scene(None).0, &settings(), 2, &Resources::default()).unwrap();
+    let Loaded { scene, view, .. } = scene(None);
+    let film = render(&scene, &view, &settings(), 2, &Resources::default()).unwrap();
     let picture = film.develop();
     let expected: Vec<u32> = picture
         .pixels

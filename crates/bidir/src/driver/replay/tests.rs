@@ -10,13 +10,13 @@ use crate::scene::{Emission, Scene, SceneBuilder};
 use crate::select::ShadowRays;
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::ColorTexture;
+use crate::view::View;
 
 const SIZE: u32 = 6;
 
 /// Two spheres, a third that emits, and a sky, through a filter that reaches over two pixels.
-fn scene() -> Scene {
+fn view() -> View {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
-    let mut builder = SceneBuilder::new(FilmSettings::new([SIZE; 2], filter));
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
         resolution: Vec2::splat(SIZE as f32),
@@ -24,7 +24,12 @@ fn scene() -> Scene {
         lens_radius: 0.05,
         focal_distance: 3.0,
     });
-    builder.camera(Camera::Perspective(camera.expect("a rigid camera")));
+    let camera = Camera::Perspective(camera.expect("a rigid camera"));
+    View::new(camera, FilmSettings::new([SIZE; 2], filter)).expect("the film is not empty")
+}
+
+fn scene() -> Scene {
+    let mut builder = SceneBuilder::new();
     let red = builder.material(Material::Diffuse {
         reflectance: ColorTexture::Constant([0.8, 0.5, 0.2]),
     });
@@ -54,7 +59,7 @@ fn session<'a>(scene: &'a Scene, integrator: IntegratorKind, rule: &str) -> Sess
         threads: 1,
         ..Resources::default()
     };
-    Session::new(scene, settings, &resources).expect("the film is small")
+    Session::new(scene, &view(), settings, &resources).expect("the film is small")
 }
 
 /// Every sample of a pass, with its pixel.

@@ -42,7 +42,7 @@ impl Session<'_> {
 
     /// How many light subpaths a pass has.
     pub fn light_subpaths(&self) -> u64 {
-        let pixels = self.scene.film().light_paths();
+        let pixels = self.view.film().light_paths();
         pixels.div_ceil(self.samples_per_subpath())
     }
 
@@ -55,7 +55,7 @@ impl Session<'_> {
         pass: u64,
         workspace: &mut Workspace,
     ) -> Option<BroughtLight> {
-        let pixels = self.scene.film().crop.area();
+        let pixels = self.view.film().crop.area();
         let size = group_size(pixels);
         let begin = place / size * size;
         let mut own = None;

@@ -4,6 +4,7 @@ use super::survey::Survey;
 use super::{Settings, Training, plan};
 use crate::integrator::IntegratorKind;
 use crate::scene::Scene;
+use crate::view::View;
 
 /// How long training may take. A host that has no time for it renders with the results of a few samples: with more
 /// noise, but of the same image.
@@ -26,7 +27,11 @@ pub(super) type IsLate<'a> = &'a (dyn Fn() -> bool + Sync);
 pub(super) struct Late;
 
 /// The settings with everything decided that they leave open, and what a few samples found.
-pub(super) fn short(scene: &Scene, settings: Settings) -> (Settings, Option<Training>) {
+pub(super) fn short(
+    scene: &Scene,
+    view: &View,
+    settings: Settings,
+) -> (Settings, Option<Training>) {
     let mut settings = settings;
     let is_open = settings.integrator == IntegratorKind::Auto;
     let plan = is_open.then(|| plan::BDPT.keeping(&settings));
@@ -39,8 +44,8 @@ pub(super) fn short(scene: &Scene, settings: Settings) -> (Settings, Option<Trai
     let training = Training {
         plan,
         is_short: true,
-        ..Training::of(&Survey::short(scene, &settings))
+        ..Training::of(&Survey::short(scene, view, &settings))
     };
-    training.bound_cache(scene, &mut settings);
+    training.bound_cache(view, &mut settings);
     (settings, Some(training))
 }

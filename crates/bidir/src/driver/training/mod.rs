@@ -29,6 +29,7 @@ use crate::path::{Cells, Connections, LightProposals, MisCount};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::RayCounts;
+use crate::view::View;
 use blocks::Blocks;
 use choice::Judge;
 use effort::{IsLate, Late};
@@ -74,26 +75,29 @@ pub struct Training {
 /// to be.
 pub(super) fn prepare(
     scene: &Scene,
+    view: &View,
     settings: Settings,
     effort: Effort<'_>,
 ) -> (Settings, Option<Training>) {
     let is_late: IsLate<'_> = match effort {
         Effort::Whole => &|| false,
         Effort::Until(is_late) => is_late,
-        Effort::Short => return effort::short(scene, settings),
+        Effort::Short => return effort::short(scene, view, settings),
     };
     let task = Task {
         scene,
+        view,
         settings: &settings,
         is_late,
     };
-    train(task).unwrap_or_else(|Late| effort::short(scene, settings))
+    train(task).unwrap_or_else(|Late| effort::short(scene, view, settings))
 }
 
 /// The scene and the settings that training is for.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     scene: &'a Scene,
+    view: &'a View,
     settings: &'a Settings,
     is_late: IsLate<'a>,
 }
@@ -108,7 +112,7 @@ fn train(task: Task<'_>) -> Result<(Settings, Option<Training>), Late> {
         return Ok((settings, None));
     }
     let training = Training::run(task.with(&settings))?;
-    training.bound_cache(task.scene, &mut settings);
+    training.bound_cache(task.view, &mut settings);
     Ok((settings, Some(training)))
 }
 
@@ -145,7 +149,7 @@ impl Training {
             training.choose(task)?.unwrap_or(default)
         };
         if plan.is_shared() {
-            let pixels = scene.film().crop.area();
+            let pixels = task.view.film().crop.area();
             plan.samples_per_subpath =
                 training.samples_per_subpath(pixels, plan.samples_per_subpath);
         }
@@ -159,7 +163,7 @@ impl Training {
             task,
             training: self,
         };
-        let (mut tried, blocks) = (trials.run()?, Blocks::new(task.scene.film().crop));
+        let (mut tried, blocks) = (trials.run()?, Blocks::new(task.view.film().crop));
         let first = Judge::new(&blocks, task.settings, &tried);
         let (close, shared) = (first.close(), first.best_shared());
         trials.run_more(&close, &mut tried)?;
@@ -197,9 +201,9 @@ impl Training {
     }
 
     /// Lets so few light subpaths be in a cache that it stays small.
-    fn bound_cache(&self, scene: &Scene, settings: &mut Settings) {
+    fn bound_cache(&self, view: &View, settings: &mut Settings) {
         if settings.integrator == IntegratorKind::Lvc {
-            let (pixels, wanted) = (scene.film().crop.area(), settings.lvc.samples_per_subpath);
+            let (pixels, wanted) = (view.film().crop.area(), settings.lvc.samples_per_subpath);
             settings.lvc.samples_per_subpath = self.samples_per_subpath(pixels, wanted);
         }
     }
@@ -305,6 +309,7 @@ impl Training {
     fn probe<'a>(&'a self, task: Task<'a>, proposals: &'a LightProposals) -> Probe<'a> {
         Probe {
             scene: task.scene,
+            view: task.view,
             settings: task.settings,
             connections: Connections {
                 proposals: Some(proposals),

@@ -10,6 +10,7 @@ use crate::integrator::{
 use crate::path::{Connections, LightPointChoice, PathRoulette};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
+use crate::view::View;
 use std::fmt;
 
 #[cfg(test)]
@@ -132,9 +133,9 @@ impl Plan {
 
     /// True where it makes all light paths that the settings ask for, and misses none that another
     /// plan finds.
-    fn is_possible(&self, scene: &Scene, settings: &Settings) -> bool {
+    fn is_possible(&self, scene: &Scene, view: &View, settings: &Settings) -> bool {
         let missing = |integrator| {
-            let spots = blind_spots(scene, integrator).into_iter();
+            let spots = blind_spots(scene, view, integrator).into_iter();
             spots
                 .filter(|spot| spot.is_missing())
                 .collect::<Vec<BlindSpot>>()
@@ -195,7 +196,7 @@ impl Trials<'_> {
             scene, settings, ..
         } = self.task;
         let mut plans = open_plans(settings);
-        plans.retain(|plan| plan.is_possible(scene, settings));
+        plans.retain(|plan| plan.is_possible(scene, self.task.view, settings));
         let attempt = |plan| Ok((plan, self.attempt(&plan, 0, self.pixels())?));
         plans.into_iter().map(attempt).collect()
     }
@@ -221,6 +222,7 @@ impl Trials<'_> {
         let settings = plan.apply(self.task.settings);
         let probe = Probe {
             scene: self.task.scene,
+            view: self.task.view,
             settings: &settings,
             is_late: self.task.is_late,
             connections: plan.connections(&settings, self.training),

@@ -9,6 +9,7 @@ use crate::path::{Connections, PathContext};
 use crate::sampler::{Domain, Sampler};
 use crate::scene::Scene;
 use crate::stats::Stats;
+use crate::view::View;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -16,6 +17,7 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub(super) struct Probe<'a> {
     pub(super) scene: &'a Scene,
+    pub(super) view: &'a View,
     pub(super) settings: &'a Settings,
     pub(super) connections: Connections<'a>,
     /// Whether training is given up, asked before each group.
@@ -64,7 +66,7 @@ pub(super) fn landed<'a>(
     workspace: &'a Workspace,
 ) -> impl Iterator<Item = Landed> + 'a {
     workspace.splats.iter().filter_map(|splat| {
-        let (pixel, part) = context.scene.film().pick_pixel(splat.place)?;
+        let (pixel, part) = context.view.film().pick_pixel(splat.place)?;
         let value = context.luminance(splat.contribution.value) * part;
         Some(Landed {
             pixel,
@@ -135,7 +137,7 @@ impl Probe<'_> {
 
     /// Sample number `number` of training: spread over the film, with random numbers of its own.
     pub(super) fn sample(&self, number: u64) -> Sample {
-        let crop = self.scene.film().crop;
+        let crop = self.view.film().crop;
         let sampler = Sampler::new(self.settings.sampler, self.settings.seed);
         let (round, place) = {
             let number = number - self.first;
@@ -154,7 +156,13 @@ impl Probe<'_> {
     }
 
     pub(super) fn context(&self, sample: &Sample) -> PathContext<'_> {
-        path_context(self.scene, self.settings, self.connections, sample)
+        path_context(
+            self.scene,
+            self.view,
+            self.settings,
+            self.connections,
+            sample,
+        )
     }
 }
 
@@ -162,7 +170,7 @@ impl Probe<'_> {
 mod tests {
     use super::*;
     use crate::driver::training::blocks::{BLOCKS, Blocks};
-    use crate::driver::training::trial::tests::lamp;
+    use crate::driver::training::trial::tests::{lamp, view};
     use crate::film::PixelRect;
     use crate::sampler::{Dimension, Purpose};
 
@@ -186,10 +194,11 @@ mod tests {
     #[test]
     fn light_subpaths_of_many_samples_are_one_after_the_other() {
         let max = [16; 2];
-        let (scene, settings) = (lamp(PixelRect { min: [0; 2], max }), Settings::default());
+        let (scene, settings) = (lamp(), Settings::default());
         let light = |samples_per_subpath, number| {
             let probe = Probe {
                 scene: &scene,
+                view: &view(PixelRect { min: [0; 2], max }),
                 settings: &settings,
                 connections: Connections {
                     samples_per_subpath,

@@ -12,6 +12,7 @@ use crate::path::{Cells, Connections, PairSums, PathContext};
 use crate::scene::Scene;
 use crate::select::ShadowRays;
 use crate::stats::Stats;
+use crate::view::View;
 
 /// Samples seldom cost so much where the length of paths is limited, or surfaces absorb something. Unit: as
 /// [`work`].
@@ -57,9 +58,10 @@ impl Survey {
     }
 
     /// A few samples, which take no time.
-    pub(super) fn short(scene: &Scene, settings: &Settings) -> Self {
+    pub(super) fn short(scene: &Scene, view: &View, settings: &Settings) -> Self {
         let task = Task {
             scene,
+            view,
             settings,
             is_late: &|| false,
         };
@@ -103,7 +105,7 @@ impl Survey {
         self.light.extend(connectable.filter_map(vertex));
         let camera = workspace.camera.vertices.iter().skip(1);
         let camera = camera.filter(|y| !y.is_delta());
-        self.camera.extend(camera.map(|y| y.point));
+        self.camera.extend(camera.map(|y| y.locus.point));
     }
 
     /// Cells that suit the vertices.
@@ -128,6 +130,7 @@ impl<'a> Full<'a> {
     fn new(task: Task<'a>) -> Self {
         let probe = Probe {
             scene: task.scene,
+            view: task.view,
             settings: task.settings,
             connections: Connections::ONE_SUBPATH,
             is_late: task.is_late,
@@ -164,7 +167,7 @@ impl<'a> Full<'a> {
         self.integrator.sample(&context, &sample, workspace);
         let splats: f64 = landed(&context, workspace).map(|splat| splat.value).sum();
         let own = f64::from(context.luminance(workspace.value));
-        let pixels = context.scene.film().crop.area() as f64;
+        let pixels = context.view.film().crop.area() as f64;
         survey.luminance += own + splats / pixels;
         survey.keep_vertices(&context, workspace);
     }
@@ -173,14 +176,13 @@ impl<'a> Full<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{Camera, Perspective, PerspectiveSettings};
-    use crate::driver::training::trial::tests::lamp;
+    use crate::driver::training::trial::tests::{lamp, view};
     use crate::driver::{Resources, Session};
     use crate::film::PixelRect;
     use crate::film::{FilmSettings, Filter};
     use crate::light::{Light, PointLight};
     use crate::material::Material;
-    use crate::math::{Affine3A, Vec2};
+    use crate::math::Affine3A;
     use crate::path::{MAX_VERTICES, PathSettings};
     use crate::scene::SceneBuilder;
     use crate::shape::{Orientation, Shape, Sphere};
@@ -189,15 +191,7 @@ mod tests {
 
     /// A camera and a lamp in a white sphere: no walk ends before it is as long as any may be.
     fn white_room() -> Scene {
-        let mut builder = SceneBuilder::new(FilmSettings::new([8; 2], Filter::default()));
-        let camera = Perspective::new(&PerspectiveSettings {
-            world_from_camera: Affine3A::IDENTITY,
-            resolution: Vec2::splat(8.0),
-            screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
-            lens_radius: 0.0,
-            focal_distance: 1.0,
-        });
-        builder.camera(Camera::Perspective(camera.expect("the map is rigid")));
+        let mut builder = SceneBuilder::new();
         let white = builder.material(Material::Diffuse {
             reflectance: ColorTexture::Constant([1.0; 3]),
         });
@@ -212,7 +206,10 @@ mod tests {
 
     #[test]
     fn where_walks_do_not_end_samples_and_training_do() {
-        let scene = white_room();
+        let (scene, view) = (
+            white_room(),
+            crate::testing::view(FilmSettings::new([8; 2], Filter::default())),
+        );
         let settings = Settings {
             path: PathSettings {
                 max_depth: None,
@@ -223,6 +220,7 @@ mod tests {
         let count = 4;
         let task = Task {
             scene: &scene,
+            view: &view,
             settings: &settings,
             is_late: &|| false,
         };
@@ -239,7 +237,8 @@ mod tests {
     /// Compares the mean of training with that of the image by these strategies.
     #[track_caller]
     fn check_mean(strategies: &str, tolerance: f32) {
-        let scene = lamp(PixelRect {
+        let scene = lamp();
+        let view = view(PixelRect {
             min: [7, 2],
             max: [9, 4],
         });
@@ -248,8 +247,8 @@ mod tests {
             ..Settings::default()
         };
         settings.path.strategies = strategies.parse().expect("a list of strategies");
-        let mut session =
-            Session::new(&scene, settings, &Resources::default()).expect("the film is small");
+        let mut session = Session::new(&scene, &view, settings, &Resources::default())
+            .expect("the film is small");
         let trained = session.training().map(|training| training.mean_luminance);
         while session.film().passes().len() < 4096 && session.step(&()) {}
         let pixels = session.film().develop().pixels;

@@ -1,16 +1,20 @@
 use super::*;
 use crate::driver::{Resources, Session};
 use crate::film::PixelRect;
-use trial::tests::sphere;
+use trial::tests::{sphere, view};
 
 /// What `auto` renders a black sphere with.
 fn planned(z: f32, radiance: Option<[f32; 3]>) -> IntegratorKind {
-    let max = [16; 2];
-    let scene = sphere(PixelRect { min: [0; 2], max }, z, radiance);
+    let view = view(PixelRect {
+        min: [0; 2],
+        max: [16; 2],
+    });
+    let scene = sphere(z, radiance);
     let mut settings = Settings::default();
     settings.set_integrator(IntegratorKind::Auto);
     let task = Task {
         scene: &scene,
+        view: &view,
         settings: &settings,
         is_late: &|| false,
     };
@@ -30,9 +34,12 @@ fn without_lights_and_where_none_is_found_there_is_a_plan() {
 /// A thread keeps the subpaths of 2048 samples: of the longest ones there are fewer.
 #[test]
 fn long_light_subpaths_are_few() {
-    let max = [16; 2];
-    let scene = sphere(PixelRect { min: [0; 2], max }, 3.0, None);
-    let mut training = Training::of(&Survey::short(&scene, &Settings::default()));
+    let view = view(PixelRect {
+        min: [0; 2],
+        max: [16; 2],
+    });
+    let scene = sphere(3.0, None);
+    let mut training = Training::of(&Survey::short(&scene, &view, &Settings::default()));
     for (rays, expected) in [(5.0, 2), (128.0, 2), (200.0, 4), (1023.0, 16)] {
         training.subpath_rays = rays;
         let samples = training.samples_per_subpath(1 << 20, SamplesPerSubpath::default());
@@ -43,11 +50,14 @@ fn long_light_subpaths_are_few() {
 
 /// A pass of a sphere with some effort, and whether training was cut short.
 fn rendered(integrator: IntegratorKind, effort: Effort<'_>) -> (Vec<[u32; 3]>, bool) {
-    let max = [16; 2];
-    let scene = sphere(PixelRect { min: [0; 2], max }, 3.0, Some([2.0; 3]));
+    let view = view(PixelRect {
+        min: [0; 2],
+        max: [16; 2],
+    });
+    let scene = sphere(3.0, Some([2.0; 3]));
     let mut settings = Settings::default();
     settings.set_integrator(integrator);
-    let session = Session::with_effort(&scene, settings, &Resources::default(), effort);
+    let session = Session::with_effort(&scene, &view, settings, &Resources::default(), effort);
     let mut session = session.expect("the film is small");
     session.step(&());
     let pixels = session.film().develop().pixels;

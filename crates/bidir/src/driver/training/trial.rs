@@ -141,7 +141,7 @@ impl Witness for Trying<'_> {
     fn sample(&mut self, context: &PathContext<'_>, sample: &Sample, workspace: &Workspace) {
         // Those of a light subpath of its own.
         self.add_splats(context, workspace);
-        let crop = &context.scene.film().crop;
+        let crop = &context.view.film().crop;
         let [x, top] = sample.pixel.map(i64::from);
         let Some(index) = crop.index(x, top) else {
             return;
@@ -169,7 +169,7 @@ impl Trial {
             lvc,
             ..
         } = probe.settings;
-        let blocks = Blocks::new(probe.scene.film().crop);
+        let blocks = Blocks::new(probe.view.film().crop);
         let samples = THIRDS * probe.pixels;
         let count = samples / probe.extent.group();
         let groups = groups(count, probe.is_late, |group, workspace| {

@@ -5,11 +5,11 @@
 //! strategies for it and none of them is in the list.
 
 use super::IntegratorKind;
-use crate::camera::Camera;
 use crate::light::Light;
 use crate::material::Material;
 use crate::path::{MAX_VERTICES, PathSettings, Strategies};
 use crate::scene::Scene;
+use crate::view::View;
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -69,6 +69,7 @@ fn words(range: &RangeInclusive<usize>) -> String {
 /// the integrator does not use the list.
 pub fn lost_light(
     scene: &Scene,
+    view: &View,
     integrator: IntegratorKind,
     settings: &PathSettings,
 ) -> Option<LostLight> {
@@ -79,7 +80,7 @@ pub fn lost_light(
     if let Some(all) = no_path(integrator, settings) {
         return Some(all);
     }
-    let kinds = kinds(scene);
+    let kinds = kinds(scene, view);
     let lost = |edges: &[bool]| kinds.iter().any(|kind| kind.is_lost(list, edges));
     let most = settings.max_vertices();
     let lengths: Vec<_> = (2..=most).filter(|&n| lost(&vec![true; n])).collect();
@@ -160,8 +161,8 @@ impl LightKind {
 }
 
 /// The kinds of lights of a scene, each once.
-fn kinds(scene: &Scene) -> Vec<LightKind> {
-    let is_parallel = matches!(scene.camera(), Camera::Orthographic(_));
+fn kinds(scene: &Scene, view: &View) -> Vec<LightKind> {
+    let is_parallel = view.camera().is_parallel();
     let mut kinds = Vec::new();
     for light in scene.lights() {
         let kind = match light {
@@ -212,7 +213,7 @@ fn ranges(numbers: &[usize]) -> Vec<RangeInclusive<usize>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{diffuse, metal, point, scene, sky};
+    use super::super::tests::{diffuse, metal, point, scene, sky, view};
     use super::*;
 
     fn lost(scene: &Scene, list: &str, max_depth: u32) -> Option<String> {
@@ -221,7 +222,7 @@ mod tests {
             max_depth: (max_depth > 0).then_some(max_depth),
             ..PathSettings::default()
         };
-        lost_light(scene, IntegratorKind::Bdpt, &settings).map(|lost| lost.to_string())
+        lost_light(scene, &view(), IntegratorKind::Bdpt, &settings).map(|lost| lost.to_string())
     }
 
     #[track_caller]
@@ -326,7 +327,7 @@ mod tests {
             ..PathSettings::default()
         };
         for (_, integrator) in IntegratorKind::NAMES {
-            let lost = lost_light(&scene, integrator, &settings);
+            let lost = lost_light(&scene, &view(), integrator, &settings);
             assert_eq!(lost.is_some(), integrator.has_candidates());
         }
     }

@@ -1,26 +1,17 @@
 //! Blind spots against what the estimators make of small scenes.
 
 use super::*;
-use crate::camera::{Perspective, PerspectiveSettings};
 use crate::film::{FilmSettings, Filter};
 use crate::light::{InfiniteLight, PointLight};
 use crate::material::{ConductorIndex, Mixture, PrincipledMaterial, Roughness, ScaledFloat};
-use crate::math::{Affine3A, Vec2, Vec3};
+use crate::math::{Affine3A, Vec3};
 use crate::scene::SceneBuilder;
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::{ColorTexture, FloatTexture};
 use std::sync::Arc;
 
 pub(super) fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
-    let mut builder = SceneBuilder::new(FilmSettings::new([1, 1], Filter::default()));
-    let camera = Perspective::new(&PerspectiveSettings {
-        world_from_camera: Affine3A::IDENTITY,
-        resolution: Vec2::ONE,
-        screen: [Vec2::new(-1.0, 1.0), Vec2::new(1.0, -1.0)],
-        lens_radius: 0.0,
-        focal_distance: 1.0,
-    });
-    builder.camera(Camera::Perspective(camera.unwrap()));
+    let mut builder = SceneBuilder::new();
     for material in materials {
         let material = builder.material(material.clone());
         let ball = Sphere::new(Affine3A::IDENTITY, 1.0, Orientation::Natural);
@@ -32,6 +23,11 @@ pub(super) fn scene(materials: &[Material], lights: Vec<Light>) -> Scene {
         builder.light(light);
     }
     builder.build().unwrap()
+}
+
+/// A pixel that sees it.
+pub(super) fn view() -> View {
+    crate::testing::view(FilmSettings::new([1, 1], Filter::default()))
 }
 
 pub(super) fn diffuse() -> Material {
@@ -66,7 +62,7 @@ pub(super) fn sky() -> Light {
 fn where_nothing_is_specular_all_is_seen() {
     let scene = scene(&[diffuse(), metal(0.2)], vec![point(), sky()]);
     for (_, integrator) in IntegratorKind::NAMES {
-        assert_eq!(blind_spots(&scene, integrator), []);
+        assert_eq!(blind_spots(&scene, &view(), integrator), []);
     }
 }
 
@@ -77,14 +73,14 @@ fn lights_that_rays_hit_are_noisy_where_others_are_missing() {
         SeenBySpecular,
     };
     let both = scene(&[diffuse(), metal(0.0)], vec![point(), sky()]);
-    let of = |integrator| blind_spots(&both, integrator);
+    let of = |integrator| blind_spots(&both, &view(), integrator);
     assert_eq!(of(IntegratorKind::Path), [Caustics, ChanceCaustics]);
     assert_eq!(of(IntegratorKind::Light), [SeenBySpecular]);
     let bidirectional = [CausticsSeenBySpecular, ChanceCausticsSeenBySpecular];
     assert_eq!(of(IntegratorKind::Bdpt), bidirectional);
     let lit_by_sky = scene(&[metal(0.0)], vec![sky()]);
     assert_eq!(
-        blind_spots(&lit_by_sky, IntegratorKind::Bdpt),
+        blind_spots(&lit_by_sky, &view(), IntegratorKind::Bdpt),
         [ChanceCausticsSeenBySpecular]
     );
     assert!(Caustics.is_missing() && !ChanceCaustics.is_missing());
@@ -107,7 +103,7 @@ fn what_is_rarely_specular_is_a_blind_spot() {
     };
     for material in [thinly_coated(), Material::Mix(rarely.into())] {
         let scene = scene(&[diffuse(), material], vec![point()]);
-        let spots = blind_spots(&scene, IntegratorKind::Path);
+        let spots = blind_spots(&scene, &view(), IntegratorKind::Path);
         assert_eq!(spots, [BlindSpot::Caustics]);
     }
 }
@@ -120,7 +116,7 @@ fn light_is_missing_where_paths_are_long_enough_for_it() {
             max_depth: Some(depth),
             ..PathSettings::default()
         };
-        missing_light(&scene, integrator, &settings)
+        missing_light(&scene, &view(), integrator, &settings)
     };
     // L S D E has two scattering events.
     assert_eq!(of(IntegratorKind::Path, 1), []);

@@ -21,9 +21,9 @@ pub(crate) use cache::{LightCache, connectable};
 
 use super::bdpt::{choose_and_trace, hits, light_images, next_events, offer};
 use super::{CandidateCount, Integrator, Link, Sample, SharedLight, Term, Workspace};
+use crate::locus::Locus;
 use crate::path::{Connections, JoinedPath, PathContext, Strategy};
 use crate::sampler::{Dimension, Purpose};
-use crate::scene::SegmentEnd;
 use crate::select::{LightVertex, Selector};
 use crate::spectrum::Spectrum;
 use crate::stats::Stage;
@@ -143,7 +143,7 @@ impl Lvc {
         workspace: &mut Workspace,
         t: usize,
         draw: Draw,
-    ) -> Option<(Term, [SegmentEnd; 2])> {
+    ) -> Option<(Term, [Locus; 2])> {
         let Workspace {
             camera,
             weights,
@@ -168,7 +168,7 @@ impl Lvc {
             contribution: contribution * share as f32,
             weight: weights.weight_of_cached(context, &path, shares),
         };
-        let ends = [light[s - 1].segment_end(), camera[t - 1].segment_end()];
+        let ends = [light[s - 1].locus, camera[t - 1].locus];
         Some((term, ends))
     }
 }

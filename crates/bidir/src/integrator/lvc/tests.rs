@@ -2,6 +2,7 @@
 
 use super::cache::LightCache;
 use crate::camera::LensSample;
+use crate::locus::Locus;
 use crate::math::Vec3;
 use crate::path::{
     Cell, Cells, LightPointChoice, LightProposals, PairSums, RunningSums, Subpath, Vertex,
@@ -14,10 +15,8 @@ const DRAWS: u32 = 1 << 20;
 /// A vertex in a cell.
 fn vertex(cell: Cell) -> Vertex {
     let lens = LensSample {
-        point: Vec3::ZERO,
-        n_g: Vec3::Z,
+        locus: Locus::on_surface(Vec3::ZERO, Vec3::Z, 0.0),
         pdf: 1.0,
-        is_infinite: false,
     };
     Vertex {
         cell,

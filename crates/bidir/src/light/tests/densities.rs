@@ -18,14 +18,14 @@ fn directions(light: &Light) -> Domain {
 
 /// Local directions around the normal of a surface; world directions where there is none.
 fn frame(at: &LightPoint) -> Frame {
-    if at.n_g == Vec3::ZERO {
+    if at.locus.n_g == Vec3::ZERO {
         Frame {
             x: Vec3::X,
             y: Vec3::Y,
             z: Vec3::Z,
         }
     } else {
-        Frame::from_z(at.n_g)
+        Frame::from_z(at.locus.n_g)
     }
 }
 
@@ -110,7 +110,7 @@ fn environments_are_drawn_by_the_density() {
     };
     let mut battery = Battery::new("environments");
     let to_square =
-        |at: &LightPoint| direction_to_square(turn().transpose() * at.point).extend(0.0);
+        |at: &LightPoint| direction_to_square(turn().transpose() * at.locus.point).extend(0.0);
     let direction = |p: Vec3| LightPoint::at_infinity(turn() * square_to_direction(p.truncate()));
     let lights = [
         ("image", environment()),
@@ -149,7 +149,7 @@ fn environments_are_drawn_by_luminance() {
     let cross_section = PI * sqr(context.radius);
     for sample in samples("luminance", 2000) {
         let at = LightPoint::at_infinity(warp::uniform_sphere(numbers(&sample).0));
-        let expected = luminance(light.emitted(&context, &at, -at.point)) * cross_section;
+        let expected = luminance(light.emitted(&context, &at, -at.locus.point)) * cross_section;
         let power = light.power(&context);
         check_close(
             light.pdf_position(&context, &at),
@@ -180,7 +180,8 @@ fn on_mesh(mesh: &Mesh, p: Vec3) -> (LightPoint, f32) {
 fn on_square(mesh: &Mesh, at: &LightPoint) -> Vec3 {
     let [a, b, c] = mesh.triangle(at.primitive as usize);
     let normal = (b - a).cross(c - a);
-    let barycentric = |edge: Vec3| normal.dot(edge.cross(at.point - a)) / normal.length_squared();
+    let barycentric =
+        |edge: Vec3| normal.dot(edge.cross(at.locus.point - a)) / normal.length_squared();
     let (b1, b2) = (-barycentric(c - a), barycentric(b - a));
     let x = (b1 + b2).clamp(0.0, 1.0);
     let y = if x > 0.0 { b2 / x } else { 0.0 };

@@ -21,11 +21,11 @@ fn check_emission(light: &Light, context: &LightContext<'_>, drawn: &EmissionSam
         1e-4,
         case,
     );
-    let has_surface = at.n_g.length_squared() > 0.5;
+    let has_surface = at.locus.n_g.length_squared() > 0.5;
     assert_eq!(has_surface, matches!(light, Light::Area(_)), "{case}");
-    assert_eq!(at.is_infinite, light.is_infinite(), "{case}");
+    assert_eq!(at.locus.is_infinite(), light.is_infinite(), "{case}");
     let cos = if has_surface {
-        at.n_g.dot(drawn.direction).abs()
+        at.locus.n_g.dot(drawn.direction).abs()
     } else {
         1.0
     };
@@ -39,7 +39,7 @@ fn check_emission(light: &Light, context: &LightContext<'_>, drawn: &EmissionSam
     }
     if !light.is_infinite() {
         assert!(
-            (drawn.origin - at.point).length() <= 0.0,
+            (drawn.origin - at.locus.point).length() <= 0.0,
             "{case}: leaves somewhere else"
         );
     }
@@ -95,7 +95,7 @@ fn rays_from_infinity_start_outside_the_scene() {
                 .sample_emission(&context, u_position, u_direction)
                 .unwrap();
             assert!(
-                (drawn.direction + drawn.from.at.point).length() < 1e-5,
+                (drawn.direction + drawn.from.at.locus.point).length() < 1e-5,
                 "{name}"
             );
             let offset = drawn.origin - context.centre;
@@ -123,9 +123,13 @@ fn sides_that_do_not_emit_are_dark() {
         let at = &drawn.at;
         let bright = |w: Vec3| light.emitted(&context, at, w)[1] > 0.0;
         let drawable = |w: Vec3| light.pdf_direction(&context, at, w) > 0.0;
-        assert!(bright(at.n_g) && drawable(at.n_g), "{name}");
+        assert!(bright(at.locus.n_g) && drawable(at.locus.n_g), "{name}");
         let both = name.ends_with("both sides");
-        assert_eq!((bright(-at.n_g), drawable(-at.n_g)), (both, both), "{name}");
+        assert_eq!(
+            (bright(-at.locus.n_g), drawable(-at.locus.n_g)),
+            (both, both),
+            "{name}"
+        );
     }
 }
 

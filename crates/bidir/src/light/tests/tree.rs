@@ -178,7 +178,7 @@ fn whatever_lights_a_receiver_can_be_drawn() {
                 if !drawn.pdf.is_finite() {
                     return false;
                 }
-                let w = drawn.at.direction_from(point).normalize();
+                let w = drawn.at.locus.direction_from(point).normalize();
                 let emitted = light.emitted(&context, &drawn.at, -w);
                 n.dot(w) > 0.0 && emitted.iter().any(|&lane| lane > 0.0)
             });

@@ -29,7 +29,15 @@ use bidir::film::Film;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::spectrum::Rgb;
+use bidir::view::View;
 use t_test::{Moments, RandomNumbers, corrected, p_value};
+
+/// A scene, and the view of it that is rendered.
+#[derive(Clone, Copy)]
+pub(crate) struct Shown<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) view: &'a View,
+}
 
 /// Replicates of each estimator.
 const REPLICATES: usize = 32;
@@ -55,37 +63,42 @@ pub(crate) struct Replicates {
 
 /// Renders the replicates of an estimator, which share `passes`. Other seeds in `settings` give other
 /// replicates.
-pub(crate) fn replicates(scene: &Scene, settings: &Settings, passes: u64) -> Replicates {
-    replicates_of(scene, settings, passes, |film| film.develop().pixels)
+pub(crate) fn replicates<'a>(
+    shown: impl Into<Shown<'a>>,
+    settings: &Settings,
+    passes: u64,
+) -> Replicates {
+    replicates_of(shown, settings, passes, |film| film.develop().pixels)
 }
 
 /// The same, of an image that `develop` makes of a film, pixel by pixel.
-pub(crate) fn replicates_of(
-    scene: &Scene,
+pub(crate) fn replicates_of<'a>(
+    shown: impl Into<Shown<'a>>,
     settings: &Settings,
     passes: u64,
     develop: impl Fn(&Film) -> Vec<Rgb>,
 ) -> Replicates {
-    let [replicates] = replicates_of_each(scene, settings, passes, |film| [develop(film)]);
+    let [replicates] = replicates_of_each(shown, settings, passes, |film| [develop(film)]);
     replicates
 }
 
 /// The same, of several images of each film.
-pub(crate) fn replicates_of_each<const N: usize>(
-    scene: &Scene,
+pub(crate) fn replicates_of_each<'a, const N: usize>(
+    shown: impl Into<Shown<'a>>,
     settings: &Settings,
     passes: u64,
     develop: impl Fn(&Film) -> [Vec<Rgb>; N],
 ) -> [Replicates; N] {
     let passes = (passes * effort()).div_ceil(REPLICATES as u64);
-    let crop = scene.film().crop;
+    let shown = shown.into();
+    let crop = shown.view.film().crop;
     let mut of_each = [(); N].map(|()| Replicates {
         width: crop.width() as usize,
         height: crop.height() as usize,
         pictures: Vec::with_capacity(REPLICATES),
     });
     for number in 0..SESSIONS as u64 {
-        let mut session = session(scene, settings, number);
+        let mut session = session(shown, settings, number);
         for replicate in 0..(REPLICATES / SESSIONS) as u64 {
             session.start_at(replicate * STRIDE);
             for _ in 0..passes {
@@ -102,7 +115,7 @@ pub(crate) fn replicates_of_each<const N: usize>(
 }
 
 /// The session with this number, of independent samples.
-fn session<'a>(scene: &'a Scene, settings: &Settings, number: u64) -> Session<'a> {
+fn session<'a>(shown: Shown<'a>, settings: &Settings, number: u64) -> Session<'a> {
     let seed = settings.seed.wrapping_mul(1000).wrapping_add(first_seed());
     let settings = Settings {
         seed: seed.wrapping_mul(1000) + number,
@@ -114,7 +127,7 @@ fn session<'a>(scene: &'a Scene, settings: &Settings, number: u64) -> Session<'a
         threads: 1,
         ..Resources::default()
     };
-    Session::new(scene, settings, &resources).expect("the film is small")
+    Session::new(shown.scene, shown.view, settings, &resources).expect("the film is small")
 }
 
 impl Replicates {

@@ -17,7 +17,8 @@ fn layers_have_the_same_bits_in_any_order() {
             threads: 3,
             ..Resources::default()
         };
-        let mut session = Session::new(&scene, settings, &resources).expect("the film is small");
+        let mut session = Session::new(&scene.scene, &scene.view, settings, &resources)
+            .expect("the film is small");
         let [mut merged, first] = [2, 0].map(|start| {
             session.start_at(start);
             (0..2).for_each(|_| assert!(session.step(&())));

@@ -1,9 +1,9 @@
 //! A room with three lamps, which can be lit one by one.
 
+use crate::common::Shot;
 use crate::common::{builder, diffuse, emission, quad, sphere};
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::Vec3;
-use bidir::scene::Scene;
 use bidir::shape::Shape;
 
 /// A group of lights of the lit room.
@@ -15,7 +15,7 @@ pub(crate) enum Lamp {
 }
 
 /// A room without a front wall, seen from outside, of which some lamps are on.
-pub(crate) fn lit_room(size: u32, lamps: &[Lamp]) -> Scene {
+pub(crate) fn lit_room(size: u32, lamps: &[Lamp]) -> Shot {
     let mut builder = builder(size, 0.0);
     let wall = builder.material(diffuse([0.7, 0.5, 0.3]));
     let back = quad(Vec3::new(-2.0, -2.0, 2.0), Vec3::Y * 4.0, Vec3::X * 4.0);

@@ -7,10 +7,10 @@ mod lit_room;
 mod plane;
 mod strategies;
 
+use crate::common::Shot;
 use bidir::driver::{Resources, Settings, render};
 use bidir::film::{Aov, Film, LayerImage, Layers};
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
 
 /// Everything that is known of the first surface, and how it was rendered but for the time.
 pub(crate) const FEATURES: [Aov; 9] = [
@@ -32,12 +32,12 @@ pub(crate) fn settings(integrator: IntegratorKind, layers: Layers) -> Settings {
     }
 }
 
-pub(crate) fn film(scene: &Scene, settings: &Settings, passes: u64, threads: usize) -> Film {
+pub(crate) fn film(scene: &Shot, settings: &Settings, passes: u64, threads: usize) -> Film {
     let resources = Resources {
         threads,
         ..Resources::default()
     };
-    render(scene, settings, passes, &resources).expect("the film is small")
+    render(&scene.scene, &scene.view, settings, passes, &resources).expect("the film is small")
 }
 
 pub(crate) fn layer<'a>(images: &'a [LayerImage], name: &str, channel: &str) -> &'a LayerImage {

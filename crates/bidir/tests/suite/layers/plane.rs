@@ -1,24 +1,25 @@
 //! Features of a plane, all of which are known, and what pixels cost.
 
 use super::{FEATURES, film, layer, settings};
+use crate::common::Shot;
 use crate::common::{add_walls, builder, diffuse, quad, tilt};
 use bidir::driver::{Progress, Resources, Session};
 use bidir::film::{Aov, LayerImage, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::light::{InfiniteLight, Light};
 use bidir::math::{DVec3, Vec3};
-use bidir::scene::{RenderSpace, Scene};
+use bidir::scene::RenderSpace;
 use bidir::shape::Shape;
 use bidir::spectrum::Rgb;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A plane at z = 1 that covers the left five eighths of the view of a camera at z = -1.8.
-fn plane() -> Scene {
+fn plane() -> Shot {
     plane_in(RenderSpace::WORLD)
 }
 
 /// The same where these numbers are those of another space.
-fn plane_in(space: RenderSpace) -> Scene {
+fn plane_in(space: RenderSpace) -> Shot {
     let mut builder = builder(4, 0.0);
     builder.space(space);
     let material = builder.material(diffuse([0.8, 0.4, 0.2]));
@@ -168,7 +169,8 @@ fn time_is_looked_at_where_it_is_kept() {
             threads: 1,
             ..Resources::default()
         };
-        let mut session = Session::new(&scene, settings, &resources).expect("the film is small");
+        let mut session = Session::new(&scene.scene, &scene.view, settings, &resources)
+            .expect("the film is small");
         let clock = Clock::default();
         (0..3).for_each(|_| assert!(session.step(&clock)));
         assert_eq!(clock.0.into_inner(), looks * 1_000_000);

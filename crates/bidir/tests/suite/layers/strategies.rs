@@ -2,13 +2,13 @@
 
 use super::lit_room::{LAMPS, lit_room};
 use super::{film, settings};
+use crate::common::Shot;
 use crate::common::statistics::{WHOLE, check_agree, replicates, replicates_of};
 use bidir::driver::{Resources, Session, Settings};
 use bidir::film::{Film, Layers};
 use bidir::integrator::{CandidateCount, IntegratorKind, LvcSettings, SamplesPerSubpath};
 use bidir::path::Strategy;
 use bidir::sampler::SamplerKind;
-use bidir::scene::Scene;
 use bidir::select::ShadowRays;
 use bidir::spectrum::{Rgb, luminance};
 
@@ -70,8 +70,13 @@ fn what_has_all_the_weight_is_its_raw_image() {
 }
 
 /// The film of each of so many passes, rendered one by one.
-fn passes(scene: &Scene, settings: &Settings, count: u64) -> Vec<Film> {
-    let session = Session::new(scene, settings.clone(), &Resources::default());
+fn passes(scene: &Shot, settings: &Settings, count: u64) -> Vec<Film> {
+    let session = Session::new(
+        &scene.scene,
+        &scene.view,
+        settings.clone(),
+        &Resources::default(),
+    );
     let mut session = session.expect("the film is small");
     let pass = |pass| {
         session.start_at(pass);
@@ -105,13 +110,13 @@ fn mean_and_variance(films: &[Film], strategy: Strategy) -> [f64; 2] {
 /// Compares what a session tells of each strategy with its films, pass by pass. Variances of light
 /// images, whose paths meet in pixels, may be wrong by the part `tolerance`.
 #[track_caller]
-fn check_moments(scene: &Scene, settings: Settings, count: u64, tolerance: f64) {
+fn check_moments(scene: &Shot, settings: Settings, count: u64, tolerance: f64) {
     let settings = Settings {
         sampler: SamplerKind::Independent,
         ..settings
     };
     let films = passes(scene, &settings, count);
-    let session = Session::new(scene, settings, &Resources::default());
+    let session = Session::new(&scene.scene, &scene.view, settings, &Resources::default());
     let mut session = session.expect("the film is small");
     (0..count).for_each(|_| assert!(session.step(&())));
     for told in session.strategy_moments() {
@@ -165,7 +170,7 @@ fn counters_do_not_depend_on_threads() {
             threads,
             ..Resources::default()
         };
-        let session = Session::new(&scene, with_raw("all"), &resources);
+        let session = Session::new(&scene.scene, &scene.view, with_raw("all"), &resources);
         let mut session = session.expect("the film is small");
         (0..4).for_each(|_| assert!(session.step(&())));
         session.stats().clone()

@@ -3,7 +3,7 @@ use crate::pbrt::Loaded;
 use bidir::light::Light;
 use bidir::math::{DVec3, Vec2, Vec3};
 use bidir::sampler::{Domain, Sampler, SamplerKind};
-use bidir::scene::{Chances, Scene};
+use bidir::scene::Chances;
 use serde_json::json;
 
 /// Five corners of a fan or a zigzag.
@@ -274,22 +274,26 @@ fn placed(translation: [f64; 3], scale: f64) -> Loaded {
 
 #[test]
 fn nodes_that_are_far_away_keep_their_shape() {
-    let scene = placed([0.1, -3e6, 1e7], 1.0).scene;
+    let Loaded { scene, view, .. } = placed([0.1, -3e6, 1e7], 1.0);
     let (space, bounds) = (scene.space(), scene.bvh().bounds());
     assert!(bounds.max.length() < 3.0, "{bounds:?}");
     let world = |p| space.world_point(p) - DVec3::new(0.1, -3e6, 1e7);
     assert!(world(bounds.min).length() < 1e-6, "{bounds:?}");
-    assert!((world(scene.camera().pose().origin) - DVec3::Z * 3.0).length() < 1e-6);
+    assert!((world(view.camera().pose().origin) - DVec3::Z * 3.0).length() < 1e-6);
 }
 
 #[test]
 fn what_is_seen_of_a_tiny_or_huge_file_is_the_same() {
-    let [unit, tiny, huge] = [1.0, 1e-9, 1e9].map(|scale| placed([0.0; 3], scale).scene);
-    assert_eq!(unit.space().unit.to_bits(), 1.0f64.to_bits());
-    for (scene, scale) in [(&tiny, 1e-9), (&huge, 1e9)] {
+    let [unit, tiny, huge] = [1.0, 1e-9, 1e9].map(|scale| placed([0.0; 3], scale));
+    assert_eq!(unit.scene.space().unit.to_bits(), 1.0f64.to_bits());
+    for (loaded, scale) in [(&tiny, 1e-9), (&huge, 1e9)] {
+        let scene = &loaded.scene;
         assert_ne!(scene.space().unit.to_bits(), 1.0f64.to_bits());
-        let raster = |scene: &Scene| scene.camera().raster(scene.bvh().bounds().max, Vec3::NEG_Z);
-        let [found, expected] = [scene, &unit].map(|scene| raster(scene).unwrap());
+        let raster = |Loaded { scene, view, .. }: &Loaded| {
+            let corner = scene.bvh().bounds().max;
+            view.camera().raster(corner, Vec3::NEG_Z)
+        };
+        let [found, expected] = [loaded, &unit].map(|loaded| raster(loaded).unwrap());
         assert!(found.distance(expected) < 1e-2, "{found} {expected}");
         let Light::Point(light) = scene.light(0) else {
             panic!("the light is a point");

@@ -11,9 +11,9 @@ use crate::image::encode_png;
 use crate::pbrt::{Crop, LoadOptions, Loaded};
 use bidir::bsdf::Wall;
 use bidir::light::{Light, LightPoint};
+use bidir::locus::Locus;
 use bidir::material::{Bitangent, Material, PrincipledMaterial, Relief};
 use bidir::math::{Vec2, Vec3};
-use bidir::scene::SegmentEnd;
 use bidir::texture::TexturePoint;
 use serde_json::{Value, json};
 
@@ -198,12 +198,7 @@ fn extensions_of_materials_are_read() {
 
 /// The visible part of the triangle.
 fn met(loaded: &Loaded) -> f32 {
-    let end = |z: f32| SegmentEnd {
-        point: Vec3::new(0.1, 0.1, z),
-        n_g: Vec3::ZERO,
-        error: 0.0,
-        is_infinite: false,
-    };
+    let end = |z: f32| Locus::in_space(Vec3::new(0.1, 0.1, z));
     1.0 - loaded.scene.transmittance(&end(1.0), &end(-1.0))
 }
 
@@ -244,8 +239,8 @@ fn emission_is_of_the_front_unless_both_sides_are_asked_for() {
         let loaded = draft.load().unwrap();
         let light = loaded.scene.light(0);
         let at = LightPoint {
-            n_g: Vec3::Z,
-            ..LightPoint::in_space(Vec3::ZERO)
+            locus: Locus::on_surface(Vec3::ZERO, Vec3::Z, 0.0),
+            primitive: 0,
         };
         let context = loaded.scene.light_context();
         assert_eq!(light.emitted(&context, &at, Vec3::Z), [4.0, 8.0, 0.0]);
@@ -265,8 +260,8 @@ fn emissive_textures_are_pictures_that_shine() {
         ([0.1, 0.8], [0.0, 0.0, 4.0]),
     ] {
         let at = LightPoint {
-            n_g: Vec3::Z,
-            ..LightPoint::in_space(Vec3::new(x, y, 0.0))
+            locus: Locus::on_surface(Vec3::new(x, y, 0.0), Vec3::Z, 0.0),
+            primitive: 0,
         };
         let context = loaded.scene.light_context();
         let found = loaded.scene.light(0).emitted(&context, &at, Vec3::Z);
@@ -346,9 +341,9 @@ fn with_camera(camera: &Value) -> Draft {
 
 /// The raster position of the direction towards `point`, as part of the film.
 pub(super) fn seen(loaded: &Loaded, point: Vec3) -> Vec2 {
-    let camera = loaded.scene.camera();
-    let eye = camera.sample_lens(|| Vec2::ZERO).point;
-    let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
+    let camera = loaded.view.camera();
+    let eye = camera.sample_lens(|| Vec2::ZERO).locus.point;
+    let [width, height] = loaded.view.film().resolution.map(|side| side as f32);
     camera.raster(eye, (point - eye).normalize()).unwrap() / Vec2::new(width, height)
 }
 
@@ -358,7 +353,7 @@ fn cameras_look_along_minus_z_with_their_vertical_angle() {
     let draft = with_camera(&json!({ "type": "perspective", "perspective":
         { "yfov": angle, "aspectRatio": 1.5, "znear": 0.1 } }));
     let loaded = draft.load().unwrap();
-    assert_eq!(loaded.scene.film().resolution, [1080, 720]);
+    assert_eq!(loaded.view.film().resolution, [1080, 720]);
     assert!(seen(&loaded, Vec3::ZERO).distance(Vec2::splat(0.5)) < 1e-5);
     assert!(seen(&loaded, Vec3::Y * 2.0).distance(Vec2::new(0.5, 0.0)) < 1e-5);
     assert!(seen(&loaded, Vec3::X * 3.0).distance(Vec2::new(1.0, 0.5)) < 1e-5);
@@ -413,10 +408,10 @@ fn orthographic_cameras_see_parallel_rays() {
     let draft = with_camera(&json!({ "type": "orthographic", "orthographic":
         { "xmag": 3, "ymag": 2, "znear": 0.1, "zfar": 9 } }));
     let loaded = draft.load().unwrap();
-    assert_eq!(loaded.scene.film().resolution, [1080, 720]);
+    assert_eq!(loaded.view.film().resolution, [1080, 720]);
     let at = |loaded: &Loaded, point: Vec3| {
-        let [width, height] = loaded.scene.film().resolution.map(|side| side as f32);
-        let raster = loaded.scene.camera().raster(point, -Vec3::Z).unwrap();
+        let [width, height] = loaded.view.film().resolution.map(|side| side as f32);
+        let raster = loaded.view.camera().raster(point, -Vec3::Z).unwrap();
         raster / Vec2::new(width, height)
     };
     for depth in [0.0, -70.0] {
@@ -445,7 +440,7 @@ fn crops_are_parts_of_the_film() {
         ..LoadOptions::default()
     };
     let loaded = load_bytes("a.gltf", &draft.gltf(), &options).unwrap();
-    assert_eq!(loaded.scene.film().crop.max, [640, 720]);
+    assert_eq!(loaded.view.film().crop.max, [640, 720]);
     let options = LoadOptions {
         crop: Some(Crop::Pixels([5000, 6000, 0, 10])),
         ..options

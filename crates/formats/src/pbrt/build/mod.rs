@@ -29,7 +29,7 @@ mod texture_class;
 use super::scene::{Entity, SceneDescription, ShapeDescription};
 use crate::error::Result;
 use crate::files::Files;
-use crate::import::{self, LoadOptions, Loaded, SharedObject, Size, Survey};
+use crate::import::{self, Gathered, LoadOptions, Loaded, SharedObject, Size, Survey};
 use crate::source::{Fault, Span};
 use bidir::scene::{Emission, MaterialId};
 use bidir::shape::Shape;
@@ -82,21 +82,20 @@ enum Destination<'a> {
 
 impl<'a> Builder<'a> {
     /// Reads everything and puts it in its place.
-    fn gather(context: &mut Context<'a>) -> Result<Assembly, Fault> {
+    fn gather(context: &mut Context<'a>) -> Gathered<Span> {
         let description = context.document;
         let lens = camera::read(context)?;
         let film = film::build(context, &lens)?;
         let settings = settings::build(context, &film)?;
         let camera = lens.camera(film.settings.resolution, film.own_resolution)?;
+        let view = Context::view(camera, film.settings)?;
+        let view = view.with_filtering(settings::texture_filtering(description)?);
         let mut builder = Self {
-            assembly: Assembly::new(context, film.settings, settings, Some(lens.eye)),
+            assembly: Assembly::new(context, settings, Some(lens.eye)),
             textures: Textures::new(description),
             materials: Vec::new(),
             last_emission: None,
         };
-        let scene = &mut builder.assembly.builder;
-        scene.camera(camera);
-        scene.texture_filtering(settings::texture_filtering(description)?);
         builder.add_materials(context)?;
         let from_world = [context.layout.render_from_world()];
         for shape in &description.shapes {
@@ -105,7 +104,7 @@ impl<'a> Builder<'a> {
         builder.add_objects(context)?;
         builder.textures.check_unused(context)?;
         builder.add_lights(context)?;
-        Ok(builder.assembly)
+        Ok((builder.assembly, view))
     }
 
     fn add_materials(&mut self, context: &mut Context<'_>) -> Result<(), Fault> {

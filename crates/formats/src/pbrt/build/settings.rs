@@ -9,7 +9,7 @@ use crate::pbrt::scene::SceneDescription;
 use crate::source::Fault;
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
-use bidir::scene::TextureFiltering;
+use bidir::view::TextureFiltering;
 
 /// Everything that is neither scene nor film.
 pub(super) fn build(context: &mut Context<'_>, film: &BuiltFilm) -> Result<SceneSettings, Fault> {

@@ -16,8 +16,9 @@ use super::SampleReport;
 use super::subpath::Place;
 use crate::markup::{Element, element};
 use crate::number::number;
+use bidir::camera::Camera;
+use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
-use bidir::scene::Scene;
 use bidir::spectrum::luminance;
 use figure::{Ray, Walk};
 use shapes::{circle, polyline, px, rectangle, text};
@@ -51,10 +52,10 @@ struct Figure {
 }
 
 impl Figure {
-    fn new(report: &SampleReport, scene: &Scene) -> Self {
+    fn new(report: &SampleReport, eye: &Camera) -> Self {
         let mut camera = Walk::new("camera", 'y', &report.camera);
         if camera.places.is_empty() {
-            camera.places.push(Place::eye(scene.camera()));
+            camera.places.push(Place::eye(eye));
         }
         Self {
             rays: Ray::all(report, camera.places[0]),
@@ -113,11 +114,11 @@ impl Figure {
 }
 
 impl SampleReport {
-    /// The sample as a picture in the format SVG; `scene` is the one that it was taken in, and `name`
-    /// what it is called.
-    pub fn drawing(&self, scene: &Scene, name: &str) -> String {
-        let figure = Figure::new(self, scene);
-        let views = View::both(scene, &figure.points(), PLAN);
+    /// The sample as a picture in the format SVG; `session` took it, and `name` is the
+    /// title of its scene.
+    pub fn drawing(&self, session: &Session<'_>, name: &str) -> String {
+        let figure = Figure::new(self, session.view().camera());
+        let views = View::both(session, &figure.points(), PLAN);
         let below = views[1].corner + views[1].size();
         let height = below.y.max(LEGEND.y + 10.0 * ROW) + MARGIN;
         let picture = element("svg")

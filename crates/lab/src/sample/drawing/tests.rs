@@ -1,7 +1,7 @@
 use super::super::tests::{CAMERAS, load, reports, scene, session};
 use super::SampleReport;
+use bidir::driver::Session;
 use bidir::integrator::IntegratorKind;
-use bidir::scene::Scene;
 use roxmltree::{Document, Node};
 
 /// Elements of `document` with this name.
@@ -27,11 +27,11 @@ fn rays<'a>(document: &'a Document<'_>) -> Vec<(&'a str, Node<'a, 'a>)> {
 
 /// Checks the parts that every drawing has; returns the numbers of solid, dashed and dotted rays.
 #[track_caller]
-fn check(report: &SampleReport, scene: &Scene) -> [usize; 3] {
-    let drawing = report.drawing(scene, "a <b> & \"c\"\u{1}");
+fn check(report: &SampleReport, session: &Session<'_>) -> [usize; 3] {
+    let drawing = report.drawing(session, "a <b> & \"c\"\u{1}");
     assert_eq!(
         drawing,
-        report.drawing(scene, "a <b> & \"c\"\u{1}"),
+        report.drawing(session, "a <b> & \"c\"\u{1}"),
         "other bytes"
     );
     let document = Document::parse(&drawing).expect("well-formed XML");
@@ -129,7 +129,7 @@ fn every_candidate_is_drawn_as_what_became_of_it() {
             let reports = reports(&session, 2);
             let several = reports.iter().filter(|r| r.candidates.len() > 1);
             for report in several.step_by(3).take(6) {
-                let found = check(report, &scene);
+                let found = check(report, &session);
                 (0..3).for_each(|i| counts[i] += found[i]);
             }
         }
@@ -143,7 +143,7 @@ fn all_integrators_have_drawings() {
     for (_, integrator) in IntegratorKind::NAMES {
         let session = session(&scene, integrator, "all");
         for report in reports(&session, 1).iter().step_by(47) {
-            check(report, &scene);
+            check(report, &session);
         }
     }
 }
@@ -155,8 +155,8 @@ fn a_walk_into_the_sky_ends_in_an_arrow() {
     let scene = load(text);
     let session = session(&scene, IntegratorKind::Bdpt, "all");
     for report in reports(&session, 2) {
-        check(&report, &scene);
-        let drawing = report.drawing(&scene, "sky");
+        check(&report, &session);
+        let drawing = report.drawing(&session, "sky");
         let document = Document::parse(&drawing).unwrap();
         let lines = all(&document, "polyline");
         let arrows = lines.filter(|line| line.attribute("class") == Some("track escape"));
@@ -173,7 +173,7 @@ fn what_has_no_extent_is_drawn() {
     let session = session(&empty, IntegratorKind::Bdpt, "all");
     for report in reports(&session, 1) {
         assert!(report.light.vertices.is_empty() && report.candidates.is_empty());
-        check(&report, &empty);
+        check(&report, &session);
     }
 }
 
@@ -186,8 +186,12 @@ fn a_lamp_that_is_hit_is_counted() {
     let session = session(&scene, IntegratorKind::Path, "all");
     let report = &reports(&session, 1)[0];
     assert_eq!((report.hits.len(), report.candidates.len()), (1, 0));
-    check(report, &scene);
-    assert!(report.drawing(&scene, "lamp").contains("1 hits of lights"));
+    check(report, &session);
+    assert!(
+        report
+            .drawing(&session, "lamp")
+            .contains("1 hits of lights")
+    );
 }
 
 #[test]
@@ -197,7 +201,7 @@ fn edges_of_the_scene_are_drawn() {
     let reports = reports(&session, 1);
     // Of a sample that is as large as the scene both views show the whole scene.
     let largest = reports.iter().max_by_key(|report| report.candidates.len());
-    let drawing = largest.unwrap().drawing(&scene, "scene");
+    let drawing = largest.unwrap().drawing(&session, "scene");
     let document = Document::parse(&drawing).unwrap();
     let edges: Vec<_> = all(&document, "path")
         .map(|path| path.attribute("d").unwrap())

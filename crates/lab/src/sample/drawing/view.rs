@@ -5,6 +5,7 @@ use super::shapes::{rectangle, text};
 use crate::markup::{Element, element};
 use crate::number::number;
 use bidir::camera::Pose;
+use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
 use bidir::scene::Scene;
 
@@ -35,12 +36,13 @@ pub(super) struct View<'a> {
 
 impl<'a> View<'a> {
     /// Plan and elevation, one below the other from `corner`, around the points of a sample.
-    pub(super) fn both(scene: &'a Scene, points: &[Vec3], mut corner: Vec2) -> [Self; 2] {
+    pub(super) fn both(session: &'a Session<'_>, points: &[Vec3], mut corner: Vec2) -> [Self; 2] {
+        let scene = session.scene();
         let bounds = scene.bvh().bounds();
         let whole = around(&[bounds.min, bounds.max]);
         let sample = around(points).or(whole).unwrap_or_default();
         let shown = with_surroundings(sample, whole.unwrap_or(sample));
-        let [right, up, depth] = axes(&scene.camera().pose(), sample[1] - sample[0]);
+        let [right, up, depth] = axes(&session.view().camera().pose(), sample[1] - sample[0]);
         let mut views = [depth, up].map(|up| Self::new(scene, [right, up], [sample, shown]));
         let scales = views.each_ref().map(|v| (LARGEST / v.extent).min_element());
         for view in &mut views {
@@ -181,7 +183,7 @@ mod tests {
         let [right, up, depth] = axes(&pose(Vec3::Y, -Vec3::Z), Vec3::new(5.0, 2.0, 1.0));
         assert_eq!([right, up, depth], [Vec3::X, Vec3::Y, -Vec3::Z]);
         assert_eq!(axis_name(depth), "\u{2212}z");
-        let scene = scene(CAMERAS[0]);
+        let scene = scene(CAMERAS[0]).scene;
         let boxes = [[Vec3::ZERO, Vec3::ONE]; 2];
         let [plan, elevation] = [depth, up].map(|up| View::new(&scene, [right, up], boxes));
         assert_eq!((plan.away(), elevation.away()), (-up, depth));

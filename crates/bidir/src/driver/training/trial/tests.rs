@@ -9,6 +9,7 @@ use crate::path::Connections;
 use crate::scene::{Emission, Scene, SceneBuilder};
 use crate::shape::{Orientation, Shape, Sphere};
 use crate::texture::ColorTexture;
+use crate::view::View;
 
 /// Blocks of a pixel each.
 pub(in crate::driver::training) fn square() -> Blocks {
@@ -110,21 +111,14 @@ fn light_images_tell_of_the_second_moment_of_path_tracing() {
     }
 }
 
-/// A black lamp before nothing, of which these pixels of 16 x 16 are rendered.
-pub(in crate::driver::training) fn lamp(crop: PixelRect) -> Scene {
-    sphere(crop, 3.0, Some([2.0; 3]))
+/// A black lamp before nothing.
+pub(in crate::driver::training) fn lamp() -> Scene {
+    sphere(3.0, Some([2.0; 3]))
 }
 
-/// A black sphere of this radiance, at this place before the camera.
-pub(in crate::driver::training) fn sphere(
-    crop: PixelRect,
-    z: f32,
-    radiance: Option<[f32; 3]>,
-) -> Scene {
+/// A view of the lamp, of which these pixels of 16 x 16 are rendered.
+pub(in crate::driver::training) fn view(crop: PixelRect) -> View {
     let filter = Filter::new(FilterKind::Triangle, Vec2::splat(1.0));
-    let mut film = FilmSettings::new([16; 2], filter);
-    film.crop = crop;
-    let mut builder = SceneBuilder::new(film);
     let camera = Perspective::new(&PerspectiveSettings {
         world_from_camera: Affine3A::IDENTITY,
         resolution: Vec2::splat(16.0),
@@ -132,7 +126,17 @@ pub(in crate::driver::training) fn sphere(
         lens_radius: 0.1,
         focal_distance: 2.0,
     });
-    builder.camera(Camera::Perspective(camera.expect("a rigid camera")));
+    let film = FilmSettings {
+        crop,
+        ..FilmSettings::new([16; 2], filter)
+    };
+    let camera = Camera::Perspective(camera.expect("a rigid camera"));
+    View::new(camera, film).expect("the film is not empty")
+}
+
+/// A black sphere of this radiance, at this place before the camera.
+pub(in crate::driver::training) fn sphere(z: f32, radiance: Option<[f32; 3]>) -> Scene {
+    let mut builder = SceneBuilder::new();
     let black = builder.material(Material::Diffuse {
         reflectance: ColorTexture::Constant([0.0; 3]),
     });
@@ -153,7 +157,8 @@ fn two_of_three_samples_share_their_camera_ray() {
     let probe = Probe {
         is_late: &|| false,
         extent: Extent::new(1.0, 1e9),
-        scene: &lamp(PixelRect {
+        scene: &lamp(),
+        view: &view(PixelRect {
             min: [0; 2],
             max: [16; 2],
         }),

@@ -10,13 +10,13 @@ fn the_caller_may_choose_size_and_crop() {
         resolution: Some([80, 40]),
         ..STRICT
     };
-    let film = load_text(text, &options).scene.film().clone();
+    let film = load_text(text, &options).view.film().clone();
     assert_eq!((film.crop.min, film.crop.max), ([20, 0], [40, 20]));
     let options = LoadOptions {
         crop: Some(Crop::Pixels([1, 3, 2, 900])),
         ..STRICT
     };
-    let film = load_text(text, &options).scene.film().clone();
+    let film = load_text(text, &options).view.film().clone();
     assert_eq!((film.crop.min, film.crop.max), ([1, 2], [3, 20]));
 }
 
@@ -114,5 +114,5 @@ fn an_infinite_exposure_is_refused_with_its_place() {
         "s.pbrt:1:8: the exposure is not a finite number: inf seconds · iso 1e2 / 100",
     );
     let text = "Film \"rgb\" \"float iso\" 3e38 WorldBegin";
-    assert!(load_text(text, &STRICT).scene.film().exposure.is_finite());
+    assert!(load_text(text, &STRICT).view.film().exposure.is_finite());
 }

@@ -2,17 +2,18 @@
 //! errors of vertices.
 
 use super::{LENIENT, STRICT, load_text, refusal};
+use crate::import::Loaded;
 use bidir::camera::Camera;
 use bidir::light::Light;
 use bidir::material::Relief;
 use bidir::math::{DVec3, Vec2, Vec3};
-use bidir::scene::{RenderSpace, Scene};
+use bidir::scene::RenderSpace;
 use bidir::shape::Shape;
 use bidir::texture::TexturePoint;
 
 /// Returns a scene of a quad, 2 units wide, a sphere and `more`, moved by `place`, and a camera moved by the
 /// inverse, `away`.
-fn scene(away: &str, place: &str, more: &str) -> Scene {
+fn scene(away: &str, place: &str, more: &str) -> Loaded {
     let text = format!(
         "LookAt 0 1 -4 0 1 0 0 1 0 {away} Camera \"perspective\" \"float lensradius\" 0.25
          WorldBegin {place} {more}
@@ -20,15 +21,15 @@ fn scene(away: &str, place: &str, more: &str) -> Scene {
          \"point3 P\" [-1 0 0 -1 2 0 1 2 0 1 0 0]
          Translate 0 0 1 Shape \"sphere\" \"float radius\" 0.5"
     );
-    load_text(&text, &STRICT).scene
+    load_text(&text, &STRICT)
 }
 
-fn moved(by: [f64; 3], more: &str) -> Scene {
+fn moved(by: [f64; 3], more: &str) -> Loaded {
     let text = |[x, y, z]: [f64; 3]| format!("Translate {x} {y} {z}");
     scene(&text(by.map(|x| -x)), &text(by), more)
 }
 
-fn scaled(by: f64, more: &str) -> Scene {
+fn scaled(by: f64, more: &str) -> Loaded {
     let text = |by: f64| format!("Scale {by} {by} {by}");
     scene(&text(1.0 / by), &text(by), more)
 }
@@ -44,7 +45,7 @@ fn check_near(actual: DVec3, expected: [f64; 3], error: f64) {
 #[test]
 fn a_distant_scene_keeps_its_shape() {
     for by in [[1e7, 0.0, 0.0], [1e4, -3e6, 7e5]] {
-        let scene = moved(by, "");
+        let Loaded { scene, view, .. } = moved(by, "");
         let space = scene.space();
         assert_eq!(space.unit.to_bits(), 1.0f64.to_bits());
         let of_world = |[x, y, z]: [f64; 3]| [by[0] + x, by[1] + y, by[2] + z];
@@ -55,7 +56,7 @@ fn a_distant_scene_keeps_its_shape() {
             let world = space.world_point(mesh.positions[vertex]);
             check_near(world, of_world(expected), 1e-6);
         }
-        let eye = space.world_point(scene.camera().pose().origin);
+        let eye = space.world_point(view.camera().pose().origin);
         check_near(eye, of_world([0.0, 1.0, -4.0]), 1e-6);
         let bounds = scene.bvh().bounds();
         check_near(
@@ -69,9 +70,9 @@ fn a_distant_scene_keeps_its_shape() {
 
 #[test]
 fn a_scene_at_the_origin_stays_as_it_is() {
-    assert_eq!(*moved([0.0; 3], "").space(), RenderSpace::WORLD);
-    assert_eq!(*moved([50.0; 3], "").space(), RenderSpace::WORLD);
-    assert_eq!(*scaled(1e3, "").space(), RenderSpace::WORLD);
+    assert_eq!(*moved([0.0; 3], "").scene.space(), RenderSpace::WORLD);
+    assert_eq!(*moved([50.0; 3], "").scene.space(), RenderSpace::WORLD);
+    assert_eq!(*scaled(1e3, "").scene.space(), RenderSpace::WORLD);
 }
 
 #[test]
@@ -80,7 +81,7 @@ fn lengths_and_intensities_follow_the_unit() {
          Texture \"h\" \"float\" \"constant\" \"float value\" 0.5
          Material \"diffuse\" \"texture displacement\" \"h\"";
     for by in [1e-12, 1e10] {
-        let scene = scaled(by, more);
+        let Loaded { scene, view, .. } = scaled(by, more);
         let unit = scene.space().unit;
         assert_ne!(unit.to_bits(), 1.0f64.to_bits());
         assert!(libm::frexp(unit).0.to_bits() == 0.5f64.to_bits(), "{unit}");
@@ -96,10 +97,10 @@ fn lengths_and_intensities_follow_the_unit() {
         };
         let at = TexturePoint::of_parameters(Vec2::ZERO);
         assert!((f64::from(height.eval(&at)) * unit - 0.5).abs() < 1e-6);
-        let Camera::Perspective(_) = scene.camera() else {
+        let Camera::Perspective(_) = view.camera() else {
             panic!("the camera is one of perspective");
         };
-        let lens = |x| scene.camera().sample_lens(|| Vec2::new(x, 0.5)).point;
+        let lens = |x| view.camera().sample_lens(|| Vec2::new(x, 0.5)).locus.point;
         let radius = scene.space().world_length(lens(1.0).distance(lens(0.5)));
         assert!(
             (f64::from(radius) / (0.25 * by) - 1.0).abs() < 1e-4,

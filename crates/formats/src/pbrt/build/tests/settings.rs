@@ -7,8 +7,8 @@ use bidir::sampler::SamplerKind;
 #[test]
 fn settings_come_from_the_file_or_the_format() {
     let defaults = load_text("WorldBegin", &STRICT);
-    assert_eq!(defaults.scene.film().resolution, [1280, 720]);
-    assert_eq!(defaults.scene.film().filter.radius(), Vec2::splat(1.5));
+    assert_eq!(defaults.view.film().resolution, [1280, 720]);
+    assert_eq!(defaults.view.film().filter.radius(), Vec2::splat(1.5));
     let expected = SceneSettings {
         integrator: IntegratorKind::Path,
         max_depth: 5,
@@ -36,7 +36,7 @@ fn settings_come_from_the_file_or_the_format() {
         aovs: Vec::new(),
     };
     assert_eq!(loaded.settings, expected);
-    let film = loaded.scene.film();
+    let film = loaded.view.film();
     assert_eq!((film.crop.min, film.crop.max), ([20, 0], [40, 8]));
     assert!((film.exposure - 6.0).abs() < 1e-6);
 }
@@ -45,10 +45,9 @@ fn settings_come_from_the_file_or_the_format() {
 fn the_camera_looks_along_z_and_fov_spans_the_shorter_side() {
     let text = "LookAt 1 2 3 1 2 9 0 1 0 Camera \"perspective\" \"float fov\" 90\n\
         Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100 WorldBegin";
-    let scene = load_text(text, &STRICT).scene;
+    let view = load_text(text, &STRICT).view;
     let toward = |x: f32, y: f32| {
-        scene
-            .camera()
+        view.camera()
             .sample_ray(Vec2::new(x, y), || Vec2::splat(0.5))
             .direction
     };

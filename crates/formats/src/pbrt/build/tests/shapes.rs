@@ -107,12 +107,12 @@ fn emits_to_the_front(world_text: &str) -> bool {
     let at = sample.from.at;
     // The normal at a hit agrees with that of the sampled point.
     let shape = &scene.shapes()[0];
-    let surface = shape.surface_point(0, Vec2::splat(0.3), at.point);
-    assert!(surface.n_g.dot(at.n_g) > 0.0);
+    let surface = shape.surface_point(0, Vec2::splat(0.3), at.locus.point);
+    assert!(surface.n_g.dot(at.locus.n_g) > 0.0);
     let radiance = |w: Vec3| light.emitted(&lights, &at, w)[0] > 0.0;
     assert!(radiance(sample.direction) && !radiance(-sample.direction));
     match shape {
-        Shape::Sphere(_) => sample.direction.dot(at.point) > 0.0,
+        Shape::Sphere(_) => sample.direction.dot(at.locus.point) > 0.0,
         _ => sample.direction.z > 0.0,
     }
 }

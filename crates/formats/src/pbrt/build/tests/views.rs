@@ -7,7 +7,7 @@ use bidir::math::Vec3;
 
 fn camera(text: &str) -> Camera {
     *load_text(&format!("{text} WorldBegin"), &STRICT)
-        .scene
+        .view
         .camera()
 }
 
@@ -50,7 +50,7 @@ fn spherical_cameras_have_the_filter_of_a_pixel() {
          PixelFilter \"gaussian\" WorldBegin",
         &STRICT,
     );
-    assert!(loaded.scene.film().filter.radius().max_element() <= 0.5);
+    assert!(loaded.view.film().filter.radius().max_element() <= 0.5);
     assert_eq!(
         loaded.warnings,
         [
@@ -73,7 +73,7 @@ fn spherical_cameras_have_the_filter_of_a_pixel() {
 fn a_sensor_has_white_balance_and_a_limit() {
     let film = |text: &str| {
         let text = format!("Film \"rgb\" \"float iso\" 200 {text} WorldBegin");
-        load_text(&text, &STRICT).scene.film().clone()
+        load_text(&text, &STRICT).view.film().clone()
     };
     assert!(film("").sensor.balance.is_none() && film("").sensor.limit.is_none());
     let warm = film("\"float whitebalance\" 3200");

@@ -1,6 +1,6 @@
 //! Strategies (s, t) by name: which way a path is made, and which ways take part.
 
-use crate::names::{as_text, named};
+use crate::names::as_text;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
@@ -36,47 +36,6 @@ impl Serialize for Strategy {
         serializer.collect_str(self)
     }
 }
-
-/// The light point of next-event estimation (s = 1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightPointChoice {
-    /// Each camera vertex draws its own.
-    #[default]
-    Fresh,
-    /// All use the start of the light subpath, as in \[Lafortune93\].
-    Shared,
-}
-
-named!(LightPointChoice {
-    "fresh" => Fresh,
-    "shared" => Shared,
-});
-
-impl LightPointChoice {
-    /// The fewest light vertices of connections that use a light subpath.
-    #[inline]
-    pub fn first_walked(self) -> usize {
-        match self {
-            Self::Fresh => 2,
-            Self::Shared => 1,
-        }
-    }
-}
-
-/// The choice of the light in next-event estimation (s = 1) with a point of its own.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightChoiceKind {
-    /// By power, as light subpaths do.
-    Power,
-    /// By a tree that knows the receiver \[Conty18\].
-    #[default]
-    Tree,
-}
-
-named!(LightChoiceKind {
-    "power" => Power,
-    "tree" => Tree,
-});
 
 /// Adds or removes the strategies that match it; a missing number matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -38,14 +38,14 @@ pub fn to_f64(fixed: i128, scale: i32) -> f64 {
 /// A sum that threads add to without a lock: the low limb carries into the high one. It may be
 /// read only when no thread adds.
 #[derive(Debug, Default)]
-pub(super) struct FixedSum {
+pub(crate) struct FixedSum {
     low: AtomicU64,
     high: AtomicU64,
 }
 
 impl FixedSum {
     #[inline]
-    pub(super) fn add(&self, value: i128) {
+    pub(crate) fn add(&self, value: i128) {
         let (low, high) = (value as u64, (value >> 64) as u64);
         let before = self.low.fetch_add(low, Ordering::Relaxed);
         let carry = u64::from(before.checked_add(low).is_none());
@@ -56,13 +56,13 @@ impl FixedSum {
     }
 
     #[inline]
-    pub(super) fn get(&self) -> i128 {
+    pub(crate) fn get(&self) -> i128 {
         let high = i128::from(self.high.load(Ordering::Relaxed) as i64);
         (high << 64) | i128::from(self.low.load(Ordering::Relaxed))
     }
 
     #[inline]
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         *self = Self::default();
     }
 }

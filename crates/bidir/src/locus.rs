@@ -1,0 +1,94 @@
+//! Places that paths go through: points of surfaces and in space, and directions to infinity.
+
+use crate::math::Vec3;
+
+/// The kind of a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LocusKind {
+    /// A point of a surface or of a lens, which has a normal.
+    Surface,
+    /// A point in space.
+    Space,
+    /// A place at infinity.
+    Infinity,
+}
+
+/// A place that a path goes through.
+#[derive(Clone, Copy, Debug)]
+pub struct Locus {
+    /// The point; for a place at infinity the unit direction towards it.
+    pub point: Vec3,
+    /// The geometric normal, unit; zero where there is no surface.
+    pub n_g: Vec3,
+    /// A bound of the distance between `point` and the surface that the intersector sees.
+    pub error: f32,
+    /// The kind.
+    pub kind: LocusKind,
+}
+
+impl Locus {
+    /// A point of a surface.
+    #[inline]
+    pub fn on_surface(point: Vec3, n_g: Vec3, error: f32) -> Self {
+        Self {
+            point,
+            n_g,
+            error,
+            kind: LocusKind::Surface,
+        }
+    }
+
+    /// A point in space.
+    #[inline]
+    pub fn in_space(point: Vec3) -> Self {
+        Self {
+            point,
+            n_g: Vec3::ZERO,
+            error: 0.0,
+            kind: LocusKind::Space,
+        }
+    }
+
+    /// The place at infinity that the unit `direction` points to.
+    #[inline]
+    pub fn at_infinity(direction: Vec3) -> Self {
+        Self {
+            kind: LocusKind::Infinity,
+            ..Self::in_space(direction)
+        }
+    }
+
+    /// True for a place at infinity.
+    #[inline]
+    pub fn is_infinite(&self) -> bool {
+        self.kind == LocusKind::Infinity
+    }
+
+    /// |cosθ| between the normal and `w`; 1 where there is no surface.
+    #[inline]
+    pub fn abs_cos(&self, w: Vec3) -> f32 {
+        match self.kind {
+            LocusKind::Surface => self.n_g.dot(w).abs(),
+            LocusKind::Space | LocusKind::Infinity => 1.0,
+        }
+    }
+
+    /// The origin of a ray along `w` that does not meet the surface of this place: pushed off by the error
+    /// to the side that `w` leaves to.
+    #[inline]
+    pub fn ray_origin(&self, w: Vec3) -> Vec3 {
+        let n_g = self.n_g;
+        let distance = self.error * (n_g.x.abs() + n_g.y.abs() + n_g.z.abs());
+        self.point + n_g * distance.copysign(n_g.dot(w))
+    }
+
+    /// The direction to this place from the point `from`, of any length.
+    #[inline]
+    pub fn direction_from(&self, from: Vec3) -> Vec3 {
+        if self.is_infinite() {
+            self.point
+        } else {
+            self.point - from
+        }
+    }
+}
