@@ -1,6 +1,6 @@
 //! The parsers of `lab`.
 
-use lab::experiment::{Experiment, analysis};
+use lab::experiment::Experiment;
 use lab::report::{self, Report};
 use lab::results::Results;
 use std::path::Path;
@@ -27,7 +27,9 @@ fn results(bytes: &[u8]) {
     let Ok(results) = serde_json::from_slice::<Results>(bytes) else {
         return;
     };
-    let _ = analysis::sections(&results);
+    let text = "[[scene]]\nfile = \"a.pbrt\"\nreference-spp = 1\n[[method]]\nname = \"a\"\n[[budget]]\nrays = 9\n";
+    let experiment = Experiment::read(text, Path::new("a.toml"));
+    let _ = experiment.map(|experiment| experiment.sections(&results));
     let _ = report::html(&Report {
         results: &results,
         tables: &[],

@@ -149,7 +149,7 @@ class Session:
         strategy_layers: int = 0,
         threads: int = 0,
         training: int | None = None,
-        _budget: _Budget | None = None,
+        _of_render: tuple[int | None, float | None] = (None, None),
     ) -> None:
         """Start a render; only training, if the integrator has any, is done here.
 
@@ -175,7 +175,8 @@ class Session:
             raise SettingsError(f"threads: {threads} is below 0")
         if training is not None and training < 0:
             raise SettingsError(f"training: {training} is below 0")
-        limits = _TrainingLimits(training, *(_budget.of_training if _budget else (None, None)))
+        # Training takes at most a tenth of the passes and seconds of the render.
+        limits = _TrainingLimits(training, *_of_render)
         self._native = _bidir.Session(self.scene._native, native, threads, limits)
         self._stopping = "fixed"
 
@@ -293,7 +294,7 @@ def render(
     limit = spp if spp is not None else None if open_end else scene.spp
     if limit is not None and limit < 1:
         raise SettingsError(f"spp: {limit} is below 1")
-    budget = _Budget(limit, time, noise)
+    begin = clock.monotonic()
     earlier = _earlier(checkpoint)
     session = Session(
         scene,
@@ -304,13 +305,16 @@ def render(
         strategy_layers=strategy_layers,
         threads=threads,
         training=None if earlier is None else _training(earlier),
-        _budget=budget if earlier is None else None,
+        _of_render=(limit, time) if earlier is None else (None, None),
     )
+    limits = {"spp": limit, "time": time, "noise": noise}
     keeper = _Keeper(session, checkpoint, earlier, checkpoint_every, limit)
+    rendered = 0
     with Reporter(progress, limit, session.next_pass) as reporter:
         try:
-            while budget.allows(session):
+            while not (end := session._native.reached(limits, rendered, clock.monotonic() - begin)):
                 session.step()
+                rendered += 1
                 reporter.advance(1)
                 keeper.now_and_then()
         except KeyboardInterrupt as error:
@@ -319,7 +323,7 @@ def render(
             image = session.snapshot() if session.passes else None
             done = session.next_pass
             raise RenderInterruptedError(f"stopped after {done} passes", image) from error
-    session._stopping = budget.stopping
+    session._stopping = end
     keeper.save()
     return session.snapshot()
 
@@ -341,41 +345,6 @@ class _TrainingLimits(NamedTuple):
     samples: int | None
     passes: int | None
     time: float | None
-
-
-class _Budget:
-    """The limits of a render: decides if another pass is rendered; there is always a first one."""
-
-    def __init__(self, spp: int | None, time: float | None, noise: float | None) -> None:
-        self._spp, self._time, self._noise = spp, time, noise
-        self._begin = clock.monotonic()
-        self._rendered = 0
-        self.stopping = "fixed"
-
-    @property
-    def of_training(self) -> tuple[int | None, float | None]:
-        """Passes and seconds of the render, of which training takes at most a tenth."""
-        return self._spp, self._time
-
-    def allows(self, session: Session) -> bool:
-        passes = session.next_pass
-        if self._spp is not None and passes >= self._spp:
-            return False
-        if self._is_over():
-            self.stopping = "time"
-            return False
-        if self._noise is not None and session._native.looks_at_noise and session.noise <= self._noise:
-            self.stopping = "noise"
-            return False
-        self._rendered += 1
-        return True
-
-    def _is_over(self) -> bool:
-        if self._time is None or self._rendered == 0:
-            return False
-        elapsed = clock.monotonic() - self._begin
-        # The next pass is expected to take the mean time of earlier ones.
-        return elapsed + elapsed / max(self._rendered, 1) > self._time
 
 
 class _Keeper:

@@ -3,7 +3,6 @@
 use crate::args::RenderArgs;
 use crate::console::{Console, Display, LineFormat, say};
 use crate::exit::{Exit, Failure};
-use crate::film_header;
 use crate::progress::write_openjd;
 use crate::scene_io::{FilmHeader, LoadedScene};
 use crate::signals::Signals;
@@ -35,7 +34,7 @@ impl TrainingLimits {
         earlier: Option<&FilmHeader>,
     ) -> Self {
         if let Some(earlier) = earlier {
-            let samples = film_header::training_samples(earlier).unwrap_or(u64::MAX);
+            let samples = formats::film::training_samples(earlier).unwrap_or(u64::MAX);
             return Self { samples, end: None };
         }
         Self {

@@ -3,7 +3,6 @@
 use crate::args::LongArgs;
 use crate::exit::{Exit, Failure};
 use crate::film;
-use crate::film_header;
 use crate::lock::{self, FilmLock};
 use crate::scene_io::{self, FilmFile, FilmHeader, Stopping};
 use bidir::driver::Session;
@@ -75,7 +74,7 @@ impl Checkpoint {
         let Some(file) = &self.film else {
             return Ok(());
         };
-        self.check_render(header, &film_header::untrained(&file.header))?;
+        self.check_render(header, &formats::film::untrained(&file.header))?;
         let others = file.header.passes.difference(&PassSet::from(requested));
         if others.is_empty() {
             return Ok(());
@@ -215,7 +214,7 @@ impl CheckpointWriter {
         if let Some(earlier) = self.unchanged(session) {
             return earlier.clone();
         }
-        let now = film_header::of_run(&self.header, session, self.start.elapsed());
+        let now = formats::film::of_run(&self.header, session, self.start.elapsed());
         let earlier = self.earlier.as_ref();
         let all = earlier.map_or(now.clone(), |earlier| now.joined(earlier));
         FilmHeader { stopping, ..all }.of(session.film())

@@ -79,7 +79,7 @@ fn compare_all(
     name: &Path,
     console: Console,
 ) -> Result<Vec<Comparison>, Failure> {
-    let reference = Noisy::reference(name, console)?;
+    let reference = Noisy::reference(name)?;
     let mut independence = Independence::default();
     let mut warnings = Vec::new();
     let comparisons = images

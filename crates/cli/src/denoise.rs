@@ -11,7 +11,6 @@ use crate::scene_io::{self, Developed, IMAGES, ImageFormat, Layers};
 use bidir::driver::Threads;
 use bidir::film::LayerImage;
 use denoise::{DenoiseError, Denoiser, Input};
-use lab::image::Pixels;
 use std::path::Path;
 
 const COLOR: [&str; 3] = ["R", "G", "B"];
@@ -147,11 +146,7 @@ pub(crate) fn run(args: &DenoiseArgs) -> Result<Exit, Failure> {
     let clean = filter.apply(layers.size(), &noisy, guides.albedo.as_deref(), normal)?;
     let by = filter.description(&names);
     if format == ImageFormat::Png {
-        let picture = Pixels {
-            size: layers.size(),
-            data: clean,
-        };
-        scene_io::write_screen(&args.output, &picture)?;
+        formats::image::write_png(&args.output, layers.size(), &clean)?;
     } else {
         layers.set_triples(COLOR, &clean)?;
         layers.set_triples(NOISY, &noisy)?;

@@ -183,8 +183,7 @@ fn execute(
 fn failure(error: ExperimentError) -> Failure {
     let exit = match &error {
         ExperimentError::Description(_)
-        | ExperimentError::Pyramid { .. }
-        | ExperimentError::Contributions { .. }
+        | ExperimentError::NotBidirectional { .. }
         | ExperimentError::NoReference(_)
         | ExperimentError::Strategies { .. }
         | ExperimentError::NoEffect { .. } => Exit::Scene,

@@ -3,7 +3,6 @@
 use crate::args::{FilmCommand, MergeArgs, MissingArgs, Part};
 use crate::console::{Console, print, print_json, say};
 use crate::exit::{Exit, Failure};
-use crate::film_header;
 use crate::lock::FilmLock;
 use crate::output;
 use crate::scene_io::{self, Developed, FilmFile, FilmHeader, IMAGES};
@@ -45,7 +44,7 @@ fn print_header(header: &FilmHeader) -> Result<Exit, Failure> {
     ];
     let lines = lines.map(|(name, value)| format!("{name:10}{}\n", printable(&value)));
     let settings = header.settings.clone().into_iter();
-    let texts = settings.chain(film_header::counts_by_name(header));
+    let texts = settings.chain(formats::film::counts_by_name(header));
     let texts = texts.map(|(name, value)| {
         let [name, value] = [&name, &value].map(|text| printable(text));
         format!("  {name:21}{value}\n")
@@ -76,7 +75,7 @@ fn write_image(
     header: &FilmHeader,
     film: &bidir::film::Film,
 ) -> Result<(), Failure> {
-    let (developed, metadata) = (Developed::new(film), film_header::metadata(header));
+    let (developed, metadata) = (Developed::new(film), formats::film::metadata(header));
     scene_io::write_picture(output, film.settings(), &developed, &metadata)
 }
 

@@ -13,7 +13,6 @@ mod exit;
 mod experiment;
 mod farm;
 mod film;
-mod film_header;
 mod info;
 mod lock;
 mod markdown;

@@ -101,8 +101,10 @@ impl Outputs {
         if let Some(exr) = &self.exr {
             developed.write_exr(exr, film, metadata)?;
         }
-        let png = self.png.as_ref();
-        png.map_or(Ok(()), |png| scene_io::write_png(png, &developed.picture))
+        if let Some(png) = &self.png {
+            developed.write_png(png)?;
+        }
+        Ok(())
     }
 
     /// Returns the names of the files.

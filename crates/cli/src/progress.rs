@@ -6,9 +6,8 @@
 use crate::args::{self, TalkArgs};
 use crate::console::{Display, LineFormat, print, say};
 use crate::exit::Failure;
-use crate::settings::Budget;
 use crate::signals::Signals;
-use bidir::driver::Progress;
+use bidir::driver::{Budget, Progress};
 use formats::printable;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -354,10 +353,8 @@ mod tests {
     fn earlier_samples_and_training_do_not_shorten_the_time_left() {
         let signals = Signals::watch().unwrap();
         let budget = Budget {
-            first: 0,
             passes: Some(10),
-            time: None,
-            noise: None,
+            ..Budget::default()
         };
         let ago = |seconds| Instant::now().checked_sub(Duration::from_secs(seconds));
         let clock = Clock {

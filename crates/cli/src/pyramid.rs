@@ -2,7 +2,6 @@
 //! ([`lab::pyramid`]).
 
 use crate::exit::Failure;
-use crate::film_header;
 use crate::scene_io::FilmHeader;
 use bidir::film::Film;
 use std::path::{Path, PathBuf};
@@ -22,7 +21,7 @@ pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
 
 /// Writes what `film`, which has this header, keeps of strategies.
 pub(crate) fn write(file: &Path, film: &Film, header: &FilmHeader) -> Result<(), Failure> {
-    let metadata = film_header::metadata(header);
+    let metadata = formats::film::metadata(header);
     let developed = lab::pyramid::developed(film);
     developed.write_exr(file, film.settings(), &metadata)?;
     Ok(())

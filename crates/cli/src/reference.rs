@@ -7,12 +7,12 @@ use crate::exit::{Exit, Failure};
 use crate::lock::FilmLock;
 use crate::progress::{Clock, Reporter};
 use crate::scene_io::{self, LoadedScene};
-use crate::settings::{self, Budget};
+use crate::settings;
 use crate::signals::Signals;
 use crate::threads;
-use bidir::driver::{Progress, Resources, SessionError};
+use bidir::driver::{Budget, Resources, SessionError};
 use bidir::film::PixelRect;
-use lab::reference::{self, Error, FILMS, Host, Made, Plan, Provenance, Reference, Subject};
+use lab::reference::{self, Error, FILMS, Host, Plan, Provenance, Reference, Subject};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -167,18 +167,20 @@ impl Job<'_> {
             ..Resources::default()
         };
         let display = self.console.display(self.args.talk);
-        let watcher = Watcher {
-            reporter: Reporter::new(display, self.signals, self.clock()),
-            signals: self.signals,
+        let reporter = Reporter::new(display, self.signals, self.clock());
+        let host = Host {
+            progress: &reporter,
+            should_end: &|| self.signals.exit().is_some(),
+            found: &|samples| reporter.add_earlier(samples),
         };
-        let made = reference::make(self.folder, &subject, &self.plan, &resources, &watcher);
-        if let Ok(Made::Whole(_)) = made {
-            watcher.reporter.complete();
+        let made = reference::make(self.folder, &subject, &self.plan, &resources, host);
+        if let Ok(Some(_)) = made {
+            reporter.complete();
         }
-        watcher.reporter.finish();
+        reporter.finish();
         match made.map_err(failure)? {
-            Made::Whole(reference) => Ok(self.report(&reference)),
-            Made::Stopped => Ok(self.stopped()),
+            Some(reference) => Ok(self.report(&reference)),
+            None => Ok(self.stopped()),
         }
     }
 
@@ -201,10 +203,8 @@ impl Job<'_> {
         let start = Instant::now();
         Clock {
             budget: Budget {
-                first: 0,
                 passes: Some(self.plan.rounded_spp().saturating_mul(2)),
-                time: None,
-                noise: None,
+                ..Budget::default()
             },
             samples_per_pass: self.loaded.view.film().crop.area(),
             start,
@@ -244,40 +244,12 @@ impl Job<'_> {
             &agreement.blocks
         };
         let [left, top, right, bottom] = worst.block;
-        let channel = ["red", "green", "blue"][worst.channel % 3];
-        let means = worst.means.map(|mean| mean.unwrap_or(f64::NAN));
-        let [a, b] = means;
+        let ([a, b], channel) = (worst.means, worst.channel_name());
         self.console.warning(format_args!(
             "the estimators disagree, most in {channel} of the pixels {left},{top} to \
              {right},{bottom}: {a:.6e} and {b:.6e}; do not use this as ground truth"
         ));
         Exit::Validation
-    }
-}
-
-/// Reports progress, and forwards signals.
-struct Watcher<'a> {
-    reporter: Reporter<'a>,
-    signals: &'a Signals,
-}
-
-impl Progress for Watcher<'_> {
-    fn advance(&self, samples: u64) {
-        self.reporter.advance(samples);
-    }
-
-    fn nanoseconds(&self) -> u64 {
-        self.reporter.nanoseconds()
-    }
-}
-
-impl Host for Watcher<'_> {
-    fn should_end(&self) -> bool {
-        self.signals.exit().is_some()
-    }
-
-    fn found(&self, samples: u64) {
-        self.reporter.add_earlier(samples);
     }
 }
 

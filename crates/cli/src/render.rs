@@ -6,20 +6,18 @@ use crate::checkpoint::{Checkpoint, CheckpointWriter};
 use crate::console::{Console, json, say};
 use crate::denoise::Filter;
 use crate::exit::{Exit, Failure};
-use crate::film_header;
 use crate::output::{self, Outputs};
 use crate::progress::{Clock, Reporter};
 use crate::pyramid;
 use crate::replay;
 use crate::scene_io::{self, Developed, FilmHeader, LoadedScene, MetadataValue, Stopping};
 use crate::serve::{self, Show};
-use crate::settings::{self, Budget};
+use crate::settings;
 use crate::signals::Signals;
 use crate::stats::{Course, Report, Summary, listed};
 use crate::threads;
-use bidir::driver::{Session, Settings};
+use bidir::driver::{Limit, Session, Settings, Spent};
 use bidir::integrator::{IntegratorKind, blind_spots};
-use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use viewer::web::Server;
 use viewer::{RenderMonitor, RequestQueue, Status};
@@ -108,9 +106,9 @@ impl Job<'_> {
         load: Duration,
         server: Option<(Server, RequestQueue)>,
     ) -> Result<Exit, Failure> {
-        let budget = Budget::new(&self.args.budget, &self.args.long, self.loaded.spp)?;
+        let budget = settings::budget(&self.args.budget, &self.args.long, self.loaded.spp)?;
         let name = self.args.scene.scene.display().to_string();
-        let header = |training| film_header::header(&name, self.loaded, self.settings, training);
+        let header = |training| self.loaded.header(&name, self.settings, training);
         if let Some(checkpoint) = &checkpoint {
             checkpoint.check(&header(None), budget.range())?;
         }
@@ -162,18 +160,16 @@ impl Job<'_> {
         saved?;
         written?;
         let summary = || {
-            let is_denoised = self.filter.is_some();
-            Summary::new(
-                &session,
-                budget,
-                course,
-                [output::is_part(self.args), is_denoised],
-            )
+            let mut summary = Summary::new(&session, budget, course);
+            let is_part = output::is_part(self.args);
+            summary.part = is_part.then(|| session.film().passes().to_string());
+            summary.is_denoised = self.filter.is_some();
+            summary
         };
         self.print_end(&summary, &report, &writer, end);
         Ok(match end {
             End::Signal(exit) => self.exit(exit),
-            End::Passes | End::Time | End::Noise => Exit::Done,
+            End::Limit(_) => Exit::Done,
         })
     }
 
@@ -207,16 +203,17 @@ impl Job<'_> {
         let reporter = Reporter::new(display, self.signals, clock).after(before);
         let mut rendered = 0_u64;
         let end = loop {
-            let passes = session.next_pass() - budget.first;
-            // A pass is expected to take the average time of the earlier ones.
-            let expected = clock.first_pass.elapsed().div_f64(rendered.max(1) as f64);
-            let (elapsed, signal) = (clock.start.elapsed(), self.signals.exit());
-            let next = next_pass(budget, passes, rendered, elapsed, expected, signal);
-            if let ControlFlow::Break(end) = next {
-                break end;
+            let spent = Spent {
+                passes: rendered,
+                total: clock.start.elapsed(),
+                rendering: clock.first_pass.elapsed(),
+            };
+            // A signal has no effect on a render that is complete.
+            if let Some(limit) = budget.reached(session, spent) {
+                break End::Limit(limit);
             }
-            if budget.looks_at_noise(passes) && is_below(budget.noise, session) {
-                break End::Noise;
+            if let Some(exit) = self.signals.exit() {
+                break End::Signal(exit);
             }
             let begun = Instant::now();
             session.step(&reporter);
@@ -255,7 +252,7 @@ impl Job<'_> {
 
     fn write_image(&self, session: &Session<'_>, header: &FilmHeader) -> Result<(), Failure> {
         let film = session.film();
-        let (mut developed, mut metadata) = (Developed::new(film), film_header::metadata(header));
+        let (mut developed, mut metadata) = (Developed::new(film), formats::film::metadata(header));
         // If denoising fails, the noisy image is written before the error is returned.
         let cleaned = self.filter.map_or(Ok(()), |filter| {
             let text = MetadataValue::Text(filter.clean(&mut developed)?);
@@ -325,12 +322,8 @@ impl Job<'_> {
 /// The reason why a render ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum End {
-    /// All passes are done.
-    Passes,
-    /// The time is used up.
-    Time,
-    /// The relative error is low enough.
-    Noise,
+    /// A limit of the budget is reached.
+    Limit(Limit),
     /// A signal arrived; the command ends with this exit.
     Signal(Exit),
 }
@@ -338,74 +331,8 @@ enum End {
 impl End {
     fn stopping(self) -> Stopping {
         match self {
-            Self::Passes => Stopping::Fixed,
-            Self::Noise => Stopping::Noise,
-            Self::Time | Self::Signal(_) => Stopping::Time,
+            Self::Limit(limit) => limit.into(),
+            Self::Signal(_) => Stopping::Time,
         }
-    }
-}
-
-/// Decides whether to render another pass after `passes`, of which this run `rendered` some, if a pass is
-/// `expected` to take that long. A signal has no effect on a render that is complete.
-fn next_pass(
-    budget: Budget,
-    passes: u64,
-    rendered: u64,
-    elapsed: Duration,
-    expected: Duration,
-    signal: Option<Exit>,
-) -> ControlFlow<End> {
-    if budget.passes.is_some_and(|most| passes >= most) {
-        return ControlFlow::Break(End::Passes);
-    }
-    if !budget.has_time(rendered, elapsed, expected) {
-        return ControlFlow::Break(End::Time);
-    }
-    match signal {
-        Some(exit) => ControlFlow::Break(End::Signal(exit)),
-        None => ControlFlow::Continue(()),
-    }
-}
-
-/// Returns true if the image's relative error is at most `noise`.
-fn is_below(noise: Option<f64>, session: &Session<'_>) -> bool {
-    noise.is_some_and(|most| session.noise() <= most)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const BUDGET: Budget = Budget {
-        first: 0,
-        passes: Some(9),
-        time: Some(Duration::from_secs(10)),
-        noise: None,
-    };
-
-    #[track_caller]
-    fn check(passes: u64, elapsed: u64, expected: u64, end: End) {
-        let [elapsed, expected] = [elapsed, expected].map(Duration::from_secs);
-        let signal = Some(Exit::Interrupted);
-        let next = next_pass(BUDGET, passes, passes, elapsed, expected, signal);
-        assert_eq!(next, ControlFlow::Break(end));
-    }
-
-    #[test]
-    fn a_signal_stops_only_an_incomplete_render() {
-        check(0, 0, 0, End::Signal(Exit::Interrupted));
-        check(1, 4, 4, End::Signal(Exit::Interrupted));
-        // There is no time for another pass, or all are done.
-        check(2, 8, 4, End::Time);
-        check(9, 1, 1, End::Passes);
-    }
-
-    #[test]
-    fn every_run_renders_a_pass_however_long_training_took() {
-        let (elapsed, expected) = (Duration::from_secs(20), Duration::ZERO);
-        let next = |passes, rendered| next_pass(BUDGET, passes, rendered, elapsed, expected, None);
-        assert_eq!(next(5, 0), ControlFlow::Continue(()));
-        assert_eq!(next(6, 1), ControlFlow::Break(End::Time));
-        assert_eq!(next(9, 0), ControlFlow::Break(End::Passes));
     }
 }

@@ -3,11 +3,12 @@
 use crate::args::{FilmArgs, SceneArgs};
 use crate::console::Console;
 use crate::exit::{Exit, Failure};
-use bidir::driver::Settings;
-use bidir::film::{self, FilmSettings, Picture};
+use bidir::driver::{Settings, Training};
+use bidir::film::FilmSettings;
 use bidir::scene::Scene;
 use bidir::view::View;
 use formats::ErrorKind;
+use formats::film::SceneIdentity;
 use formats::image::{ExrImage, ExrLayer, Format};
 use formats::outputs::Output;
 use formats::scene::{Crop, Lamp, LoadOptions, Summary};
@@ -58,21 +59,13 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
     };
     let loaded =
         formats::scene::load(&args.scene, &options).map_err(|error| refused(&args.scene, error))?;
-    let mut settings = Settings {
-        integrator: loaded.settings.integrator,
-        sampler: loaded.settings.sampler,
-        seed: loaded.settings.seed.unwrap_or_default(),
-        ..Settings::default()
-    };
-    settings.path.max_depth = Some(loaded.settings.max_depth);
-    settings.layers = film::Layers::new(&loaded.settings.aovs, &[], 0);
     let mut warnings = loaded.warnings;
     warnings.extend(film.and_then(|film| crop_warning(film, &loaded.view)));
     warnings.extend(light_warning(&loaded.scene));
     Ok(LoadedScene {
         scene: Arc::new(loaded.scene),
         view: loaded.view,
-        settings,
+        settings: loaded.settings.render_settings(),
         spp: loaded.settings.samples_per_pixel.into(),
         output: loaded.settings.output.map(PathBuf::from),
         warnings,
@@ -85,6 +78,21 @@ pub(crate) fn load(args: &SceneArgs, film: Option<&FilmArgs>) -> Result<LoadedSc
 }
 
 impl LoadedScene {
+    /// Returns the header of an empty film of this scene, whose file is `name`.
+    pub(crate) fn header(
+        &self,
+        name: &str,
+        settings: &Settings,
+        training: Option<&Training>,
+    ) -> FilmHeader {
+        let scene = SceneIdentity {
+            name,
+            digest: &self.digest,
+            film: self.view.film(),
+        };
+        scene.header(settings, training)
+    }
+
     /// Prints the warnings, of which there are `others` more; with `--strict` they are errors.
     pub(crate) fn print_warnings(
         &self,
@@ -201,18 +209,6 @@ pub(crate) struct Variance {
     pub(crate) freedom: f64,
 }
 
-/// Writes a picture as PNG.
-pub(crate) fn write_png(path: &Path, picture: &Picture) -> Result<(), Failure> {
-    let size = [picture.width as u32, picture.height as u32];
-    Ok(formats::image::write_png(path, size, &picture.pixels)?)
-}
-
-/// Writes the colours of a screen as PNG. Range: `[0, 1]`, linear.
-pub(crate) fn write_screen(path: &Path, pixels: &Pixels) -> Result<(), Failure> {
-    let size = pixels.size.map(|side| side as u32);
-    Ok(formats::image::write_png(path, size, &pixels.data)?)
-}
-
 /// Writes errors as they are to an EXR with the channel Y, or as colours up to `full` to a PNG.
 pub(crate) fn write_error_map(
     path: &Path,
@@ -221,20 +217,18 @@ pub(crate) fn write_error_map(
     metadata: &[(String, MetadataValue)],
 ) -> Result<(), Failure> {
     if Format::of(path) != Some(Format::Exr) {
-        return write_screen(path, &errors.false_color(full));
+        let colors = errors.false_color(full);
+        return Ok(formats::image::write_png(path, colors.size, &colors.data)?);
     }
-    let [width, height] = errors.size;
     let data: Vec<f32> = errors.data.iter().map(|&error| error as f32).collect();
-    let layer = ExrLayer {
+    let layers = [ExrLayer {
         name: "",
         channels: &["Y"],
         data: &data,
-    };
+    }];
     let image = ExrImage {
-        resolution: errors.size,
-        crop: [0, 0, width, height],
-        layers: &[layer],
         metadata,
+        ..ExrImage::whole(errors.size, &layers)
     };
     Ok(formats::image::write_exr(path, &image)?)
 }
@@ -248,7 +242,7 @@ pub(crate) fn write_picture(
 ) -> Result<(), Failure> {
     match image_format(path, IMAGES)? {
         ImageFormat::Exr => Ok(developed.write_exr(path, film, metadata)?),
-        ImageFormat::Png => write_png(path, &developed.picture),
+        ImageFormat::Png => Ok(developed.write_png(path)?),
     }
 }
 

@@ -4,8 +4,7 @@ mod parts;
 mod summary;
 
 use crate::scene_io::Stopping;
-use crate::settings::Budget;
-use bidir::driver::Session;
+use bidir::driver::{Budget, Session};
 use bidir::film::Film;
 use bidir::stats::{Dropped, StrategyCounts};
 use formats::film::SettingsText;
@@ -86,7 +85,10 @@ impl Report {
             resolution: film.resolution,
             crop: [left, top, right, bottom],
             settings: SettingsText::from(session.settings()),
-            budget: BudgetReport::from(budget),
+            budget: BudgetReport {
+                spp: budget.passes,
+                seconds: budget.time.map(|time| time.as_secs_f64()),
+            },
             threads: session.threads(),
             isa: bvh.isa().to_string(),
             spp: session.film().passes().len(),
@@ -97,7 +99,10 @@ impl Report {
             samples: stats.samples,
             samples_per_second: stats.samples as f64 / seconds,
             stages: StagesReport::new(session.stage_times()),
-            rays: RayReport::new(stats, training),
+            rays: RayReport {
+                of_image: stats.rays,
+                training: training.map_or(0, |training| training.rays.total()),
+            },
             connection_rays_per_sample: per_sample(stats.rays.connection, stats.samples),
             connection_blocked: stats.connections_blocked,
             light_image_blocked: stats.light_image_blocked,

@@ -57,7 +57,7 @@ pub(crate) fn run(args: &TonemapArgs) -> Result<Exit, Failure> {
             .operator
             .apply(color.map(|channel| expose(channel, scale)));
     }
-    scene_io::write_screen(&args.output, &image)?;
+    formats::image::write_png(&args.output, image.size, &image.data)?;
     say(format_args!("wrote {}", args.output.display()));
     Ok(Exit::Done)
 }

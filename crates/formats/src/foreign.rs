@@ -34,81 +34,61 @@ enum Hint {
 }
 
 const FORMATS: &str = "bidir reads pbrt-v4 (.pbrt) and glTF 2.0 (.gltf, .glb)";
-const BY_BLENDER: Hint =
-    Hint::Text("import it into Blender and export it as glTF 2.0 (docs/guide/blender.md)");
 
-const BLENDER: Kind = Kind {
-    name: "a Blender file",
-    hint: Hint::Text("export it as glTF 2.0 (docs/guide/blender.md)"),
-};
+const BLENDER: Kind = with_text(
+    "a Blender file",
+    "export it as glTF 2.0 (docs/guide/blender.md)",
+);
 const FBX: Kind = by_blender("an FBX file");
 const USD: Kind = by_blender("a USD file");
 const OBJ: Kind = by_blender("a Wavefront OBJ file");
 const COLLADA: Kind = by_blender("a COLLADA file");
-const MITSUBA: Kind = Kind {
-    name: "a Mitsuba scene",
-    hint: Hint::Formats,
-};
-const TUNGSTEN: Kind = Kind {
-    name: "a Tungsten scene",
-    hint: Hint::Formats,
-};
-const XML: Kind = Kind {
-    name: "an XML file",
-    hint: Hint::Formats,
-};
-const JSON: Kind = Kind {
-    name: "a JSON file",
-    hint: Hint::Formats,
-};
-const PLY: Kind = Kind {
-    name: "a PLY mesh",
-    hint: Hint::Text("name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE\""),
-};
-const IMAGE: Kind = Kind {
-    name: "an image",
-    hint: Hint::Text(
-        "`bidir view`, `info` and `render` take scenes; `tonemap` and `compare` take images",
-    ),
-};
-const FILM: Kind = Kind {
-    name: "a film file",
-    hint: Hint::Text("`bidir film develop` makes an image of it"),
-};
-const ARCHIVE: Kind = Kind {
-    name: "an archive",
-    hint: Hint::Text("unpack it, and name the scene in it"),
-};
-const EXPERIMENT: Kind = Kind {
-    name: "a TOML file",
-    hint: Hint::Text("`bidir experiment` takes descriptions of experiments"),
-};
-const GLB: Kind = Kind {
-    name: "a binary glTF file",
-    hint: Hint::Rename("glb"),
-};
-const GLTF: Kind = Kind {
-    name: "a glTF file",
-    hint: Hint::Rename("gltf"),
-};
-const PBRT: Kind = Kind {
-    name: "a pbrt scene",
-    hint: Hint::Rename("pbrt"),
-};
-const BINARY: Kind = Kind {
-    name: "a binary file, not a scene",
-    hint: Hint::Formats,
-};
-const OTHER: Kind = Kind {
-    name: "not a scene",
-    hint: Hint::Formats,
-};
+const MITSUBA: Kind = other("a Mitsuba scene");
+const TUNGSTEN: Kind = other("a Tungsten scene");
+const XML: Kind = other("an XML file");
+const JSON: Kind = other("a JSON file");
+const PLY: Kind = with_text(
+    "a PLY mesh",
+    "name it in a scene: Shape \"plymesh\" \"string filename\" \"FILE\"",
+);
+const IMAGE: Kind = with_text(
+    "an image",
+    "`bidir view`, `info` and `render` take scenes; `tonemap` and `compare` take images",
+);
+const FILM: Kind = with_text("a film file", "`bidir film develop` makes an image of it");
+const ARCHIVE: Kind = with_text("an archive", "unpack it, and name the scene in it");
+const EXPERIMENT: Kind = with_text(
+    "a TOML file",
+    "`bidir experiment` takes descriptions of experiments",
+);
+const GLB: Kind = misnamed("a binary glTF file", "glb");
+const GLTF: Kind = misnamed("a glTF file", "gltf");
+const PBRT: Kind = misnamed("a pbrt scene", "pbrt");
+const BINARY: Kind = other("a binary file, not a scene");
+const OTHER: Kind = other("not a scene");
 
+const fn kind(name: &'static str, hint: Hint) -> Kind {
+    Kind { name, hint }
+}
+
+const fn with_text(name: &'static str, hint: &'static str) -> Kind {
+    kind(name, Hint::Text(hint))
+}
+
+/// A scene of another format that Blender reads.
 const fn by_blender(name: &'static str) -> Kind {
-    Kind {
-        name,
-        hint: BY_BLENDER,
-    }
+    let hint = "import it into Blender and export it as glTF 2.0 (docs/guide/blender.md)";
+    with_text(name, hint)
+}
+
+/// A scene or file without a way to import it.
+const fn other(name: &'static str) -> Kind {
+    kind(name, Hint::Formats)
+}
+
+/// A scene with the ending of another format.
+const fn misnamed(name: &'static str, ending: &'static str) -> Kind {
+    kind(name, Hint::Rename(ending))
 }
 
 /// First bytes that identify a format.
@@ -215,16 +195,11 @@ pub(crate) fn check_gltf(path: &Path, bytes: &[u8]) -> Result<()> {
     let kind = by_magic(head, None).or_else(|| by_text(text, None));
     let kind = kind.or_else(|| first_word(text).is_some_and(is_directive).then_some(PBRT));
     let kind = kind.or_else(|| is_binary(head).then_some(BINARY));
-    let empty = Kind {
-        name: "an empty file",
-        hint: Hint::Formats,
+    let otherwise = match text {
+        "" => "an empty file",
+        _ => "not a glTF file: it begins with neither `glTF` nor `{`",
     };
-    let plain = Kind {
-        name: "not a glTF file: it begins with neither `glTF` nor `{`",
-        hint: Hint::Formats,
-    };
-    let other = if text.is_empty() { empty } else { plain };
-    Err(refusal(path, kind.unwrap_or(other)))
+    Err(refusal(path, kind.unwrap_or(other(otherwise))))
 }
 
 fn refusal(path: &Path, kind: Kind) -> Error {

@@ -21,6 +21,7 @@ pub mod flip;
 pub mod image;
 mod markup;
 pub mod metric;
+mod number;
 pub mod pyramid;
 pub mod reference;
 pub mod report;

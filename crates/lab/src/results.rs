@@ -95,6 +95,24 @@ pub enum BudgetKind {
     Seconds,
 }
 
+impl BudgetKind {
+    /// Every kind with its name in descriptions.
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("samples", Self::Samples),
+        ("rays", Self::Rays),
+        ("seconds", Self::Seconds),
+    ];
+
+    /// Returns the name of the measure of its cost, with the unit.
+    pub fn cost(self) -> &'static str {
+        match self {
+            Self::Samples => "samples per pixel",
+            Self::Rays => "rays per pixel",
+            Self::Seconds => "seconds",
+        }
+    }
+}
+
 /// A budget, which a render uses up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BudgetInfo {
@@ -330,6 +348,13 @@ pub struct Axis {
     pub label: String,
     /// The scale.
     pub scale: Scale,
+}
+
+impl Axis {
+    pub(crate) fn new(label: impl Into<String>, scale: Scale) -> Self {
+        let label = label.into();
+        Self { label, scale }
+    }
 }
 
 /// The style of a plot's series.

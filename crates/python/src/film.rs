@@ -3,11 +3,11 @@
 use crate::error::{of_file, raise};
 use crate::scene::Scene;
 use crate::wait::beside;
-use bidir::film::{LayerImage, PassSet, Picture};
+use bidir::film::PassSet;
 use formats::film::{
-    FilmFile, FilmHeader, counts_by_name, decode, encode, is_film, metadata, read, write,
+    self, FilmFile, FilmHeader, counts_by_name, decode, encode, is_film, metadata, read, write,
 };
-use formats::image::{ExrImage, ExrLayer, Format, write_exr, write_png};
+use formats::image::{Format, write_png};
 use formats::outputs::{self, Output};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -167,12 +167,12 @@ impl Film {
         let film = &self.file.film;
         let written = match Format::of(&path) {
             Some(Format::Exr) => beside(py, || {
-                let (picture, layers) = (film.develop(), film.develop_layers());
-                self.write_exr(&path, &picture, &layers)
+                let metadata = metadata(&self.file.header);
+                film::Developed::new(film).write_exr(&path, film.settings(), &metadata)
             }),
             Some(Format::Png) => beside(py, || {
                 let picture = film.develop();
-                let size = [picture.width as u32, picture.height as u32];
+                let size = [picture.width, picture.height];
                 write_png(&path, size, &picture.pixels)
             }),
             _ => {
@@ -234,35 +234,5 @@ impl Film {
     #[getter]
     fn noise(&self, py: Python<'_>) -> f64 {
         beside(py, || self.file.film.develop().relative_error())
-    }
-}
-
-impl Film {
-    fn write_exr(
-        &self,
-        path: &Path,
-        picture: &Picture,
-        layers: &[LayerImage],
-    ) -> formats::Result<()> {
-        let settings = self.file.film.settings();
-        let (min, max) = (settings.crop.min, settings.crop.max);
-        let own = ExrLayer {
-            name: "",
-            channels: &["R", "G", "B"],
-            data: picture.pixels.as_flattened(),
-        };
-        let others = layers.iter().map(|layer| ExrLayer {
-            name: &layer.name,
-            channels: layer.channels,
-            data: &layer.data,
-        });
-        let all: Vec<_> = std::iter::once(own).chain(others).collect();
-        let image = ExrImage {
-            resolution: settings.resolution.map(|side| side as usize),
-            crop: [min[0], min[1], max[0], max[1]].map(|edge| edge as usize),
-            layers: &all,
-            metadata: &metadata(&self.file.header),
-        };
-        write_exr(path, &image)
     }
 }

@@ -51,22 +51,10 @@ pub(crate) fn write_image(
     let pixels = pixels(py, size, data)?;
     let written = match Format::of(&path) {
         Some(Format::Exr) => beside(py, || {
-            let layer = ExrLayer {
-                name: "",
-                channels: &["R", "G", "B"],
-                data: pixels.data.as_flattened(),
-            };
-            let image = ExrImage {
-                resolution: size,
-                crop: [0, 0, size[0], size[1]],
-                layers: &[layer],
-                metadata: &[],
-            };
-            write_exr(&path, &image)
+            let layers = [ExrLayer::rgb("", &pixels.data)];
+            write_exr(&path, &ExrImage::whole(size, &layers))
         }),
-        Some(Format::Png) => beside(py, || {
-            write_png(&path, size.map(|side| side as u32), &pixels.data)
-        }),
+        Some(Format::Png) => beside(py, || write_png(&path, size, &pixels.data)),
         _ => {
             let message = format!(
                 "cannot write `{}`: output images are .exr or .png",

@@ -2,7 +2,6 @@
 
 use crate::error::of_file;
 use crate::film::{Inputs, absolute};
-use crate::settings;
 use crate::wait::wait_silently;
 use bidir::driver::Settings;
 use bidir::view::View;
@@ -84,7 +83,7 @@ impl Scene {
         let loaded = wait_silently(py, |_| load_from(&path, &options, &files))?;
         let loaded = loaded.map_err(|error| of_file(py, &error))?;
         Ok(Self {
-            settings: settings::of_scene(&loaded.settings),
+            settings: loaded.settings.render_settings(),
             shared: Arc::new(loaded.scene),
             view: loaded.view,
             name: path.display().to_string(),

@@ -5,7 +5,7 @@ use crate::film::{Film, Inputs};
 use crate::scene::Scene;
 use crate::settings::{Requested, resolve, threads_of, warn};
 use crate::wait::{Stop, wait_silently};
-use bidir::driver::{self, Effort, Progress, Resources};
+use bidir::driver::{self, Budget, Effort, Progress, Resources, Spent};
 use bidir::film::FilmError;
 use formats::film::{FilmFile, FilmHeader, SceneIdentity, Stopping, of_run};
 use pyo3::prelude::*;
@@ -19,6 +19,28 @@ pub(crate) struct Session {
     /// The state, shared by Python threads.
     state: Mutex<State>,
     threads: usize,
+}
+
+/// The limits of a render.
+#[derive(Clone, Copy, FromPyObject)]
+struct Limits {
+    #[pyo3(item)]
+    spp: Option<u64>,
+    /// Unit: seconds.
+    #[pyo3(item)]
+    time: Option<f64>,
+    #[pyo3(item)]
+    noise: Option<f64>,
+}
+
+/// Returns a time as near to `seconds` as there is.
+fn duration(seconds: f64) -> Duration {
+    let nearest = if seconds > 0.0 {
+        Duration::MAX
+    } else {
+        Duration::ZERO
+    };
+    Duration::try_from_secs_f64(seconds).unwrap_or(nearest)
 }
 
 struct State {
@@ -248,10 +270,28 @@ impl Session {
         self.with(py, |state| state.session.noise())
     }
 
-    /// Returns true if a render with a noise target checks the noise before the next pass.
-    #[getter]
-    fn looks_at_noise(&self, py: Python<'_>) -> bool {
-        driver::Session::looks_at_noise(self.next_pass(py))
+    /// Returns the rule that ends a render with these limits before its next pass; None if there is one.
+    /// `rendered`: the passes so far, which took `seconds`.
+    fn reached(
+        &self,
+        py: Python<'_>,
+        limits: Limits,
+        rendered: u64,
+        seconds: f64,
+    ) -> Option<&'static str> {
+        let budget = Budget {
+            first: 0,
+            passes: limits.spp,
+            time: limits.time.map(duration),
+            noise: limits.noise,
+        };
+        let spent = Spent {
+            passes: rendered,
+            total: duration(seconds),
+            rendering: duration(seconds),
+        };
+        let limit = self.with(py, |state| budget.reached(&state.session, spent));
+        limit.map(|limit| Stopping::from(limit).name())
     }
 
     /// Returns the number of threads.

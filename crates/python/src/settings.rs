@@ -6,7 +6,6 @@ use bidir::film::{Aov, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::names::UnknownName;
 use bidir::settings::Request;
-use formats::scene::SceneSettings;
 use pyo3::exceptions::PyRuntimeWarning;
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -14,18 +13,6 @@ use std::ffi::CString;
 
 /// Settings as texts by name.
 pub(crate) type Texts = BTreeMap<String, String>;
-
-/// Returns the settings of a scene file, over the defaults.
-pub(crate) fn of_scene(scene: &SceneSettings) -> Settings {
-    let mut settings = Settings {
-        sampler: scene.sampler,
-        seed: scene.seed.unwrap_or_default(),
-        layers: Layers::new(&scene.aovs, &[], 0),
-        ..Settings::new(scene.integrator)
-    };
-    settings.path.max_depth = Some(scene.max_depth);
-    settings
-}
 
 /// The settings of a render that a caller requests.
 #[derive(FromPyObject)]

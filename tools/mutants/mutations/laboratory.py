@@ -68,9 +68,9 @@ LABORATORY = [
     ),
     (
         "ratios of other seeds",
-        "crates/lab/src/experiment/analysis/mod.rs",
-        "b.iter().find(|b| b.seed == a.seed)?",
-        "b.iter().find(|b| b.seed != a.seed)?",
+        "crates/lab/src/experiment/claims/judge.rs",
+        "Some((*seed, *value, *other.get(seed)?))",
+        "Some((*seed, *value, *other.get(&(seed ^ 1))?))",
         lab("analysis"),
     ),
     (

@@ -5,8 +5,9 @@
 //! (settings, next pass, film, counters) and nothing hidden. Whatever the number of threads, the
 //! same passes give the same bits.
 //!
-//! A host that wants a time budget looks at its own clock between passes: there is none here.
+//! A host that wants a time budget tells [`Budget`] its own time between passes: there is no clock here.
 
+mod budget;
 mod deposit;
 mod features;
 mod replay;
@@ -17,6 +18,7 @@ mod training;
 mod variance;
 
 pub use crate::settings::Settings;
+pub use budget::{Budget, Limit, Spent};
 pub use replay::{Landing, Replay, ReplayedTerm, Selection};
 pub use session::{SceneHandle, Session};
 pub use threads::{Shortage, Threads, stand_alone, start_pool};

@@ -1,12 +1,11 @@
 //! Tests whether a difference of images with variances is more than noise.
 
-use crate::console::Console;
 use crate::exit::Failure;
 use crate::reference;
 use crate::scene_io::{self, Variance};
 use lab::image::Pixels;
-use lab::reference::{Comparison, Reference};
-use lab::statistics::{Estimated, z_test};
+use lab::reference::Reference;
+use lab::statistics::{Difference, Estimated, z_test};
 use serde::Serialize;
 use std::path::Path;
 
@@ -33,14 +32,11 @@ impl Noisy {
     }
 
     /// Reads an image, or the folder of a reference.
-    pub(super) fn reference(path: &Path, console: Console) -> Result<Self, Failure> {
+    pub(super) fn reference(path: &Path) -> Result<Self, Failure> {
         if !path.is_dir() {
             return Self::read(path);
         }
         let reference = Reference::load(path).map_err(reference::failure)?;
-        if let Some(warning) = reference.warning() {
-            console.warning(warning);
-        }
         let freedom = reference.estimated().freedom;
         let estimator = &reference.provenance.estimators[0];
         let integrator = estimator.settings.get("integrator").cloned();
@@ -82,17 +78,9 @@ pub(super) struct Significance {
     /// The side of a block. Unit: pixels.
     block: usize,
     /// The test of single pixels.
-    pub(super) pixels: Verdict,
+    pub(super) pixels: Difference,
     /// The test of blocks.
-    pub(super) blocks: Verdict,
-}
-
-/// The result of a test: the number of pixels or blocks, and the largest difference.
-#[derive(Debug, Serialize)]
-pub(super) struct Verdict {
-    tests: usize,
-    #[serde(flatten)]
-    worst: Comparison,
+    pub(super) blocks: Difference,
 }
 
 impl Significance {
@@ -101,35 +89,22 @@ impl Significance {
         let [a, b] = [a.estimated()?, b.estimated()?];
         let [width, height] = a.mean.size;
         let block = width.max(height).div_ceil(BLOCKS);
-        let test = |block| {
-            let result = z_test(&a, &b, block)?;
-            let (tests, worst) = (result.tests, Comparison::from(&result));
-            Some(Verdict { tests, worst })
-        };
         Some(Self {
             block,
-            pixels: test(1)?,
-            blocks: test(block)?,
+            pixels: z_test(&a, &b, 1)?,
+            blocks: z_test(&a, &b, block)?,
         })
     }
 }
 
-impl Verdict {
-    /// Returns the verdict in one line.
-    pub(super) fn text(&self) -> String {
-        let Comparison {
-            p,
-            block: [left, top, right, bottom],
-            channel,
-            deviations,
-            ..
-        } = &self.worst;
-        let channel = ["red", "green", "blue"][channel % 3];
-        let deviations = deviations.unwrap_or(f64::INFINITY).abs();
-        format!(
-            "p {p:.3e} of {} tests; most at {left},{top} to {right},{bottom} in {channel}, \
-             {deviations:.2} standard errors",
-            self.tests
-        )
-    }
+/// Returns the result of a test in one line.
+pub(super) fn text(found: &Difference) -> String {
+    let Difference { p, tests, .. } = found;
+    let [left, top, right, bottom] = found.block;
+    let channel = found.channel_name();
+    let deviations = found.deviations.abs();
+    format!(
+        "p {p:.3e} of {tests} tests; most at {left},{top} to {right},{bottom} in {channel}, \
+         {deviations:.2} standard errors"
+    )
 }

@@ -1,6 +1,6 @@
 //! The results of a comparison, as text and as JSON.
 
-use super::noise::Significance;
+use super::noise::{self, Significance};
 use crate::exit::{Exit, Failure};
 use lab::image::{Pixels, identical};
 use lab::statistics::{Interval, mean_interval};
@@ -191,8 +191,8 @@ impl Comparison {
         lines.add("identical", self.identical.text());
         lines.add_resampled(self.resampled, self.size);
         if let Some(significance) = &self.significance {
-            lines.add("z_pixels", &significance.pixels.text());
-            lines.add("z_blocks", &significance.blocks.text());
+            lines.add("z_pixels", &noise::text(&significance.pixels));
+            lines.add("z_blocks", &noise::text(&significance.blocks));
         }
         lines.text
     }

@@ -1,25 +1,16 @@
 //! The parts of a report, as JSON has them. Numbers that are not finite become null.
 
-use crate::settings::Budget;
-use bidir::driver::{Session, Training};
+use bidir::driver::Session;
 use bidir::path::Strategy;
-use bidir::stats::{RayCounts, Stage, StageTimes, Stats, StrategyCounts};
+use bidir::stats::{RayCounts, Stage, StageTimes, StrategyCounts};
 use lab::pyramid::Figures;
 use serde::Serialize;
 
+/// The limits of a render.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct BudgetReport {
-    spp: Option<u64>,
-    seconds: Option<f64>,
-}
-
-impl From<Budget> for BudgetReport {
-    fn from(budget: Budget) -> Self {
-        Self {
-            spp: budget.passes,
-            seconds: budget.time.map(|time| time.as_secs_f64()),
-        }
-    }
+    pub(super) spp: Option<u64>,
+    pub(super) seconds: Option<f64>,
 }
 
 /// The rays of a render.
@@ -29,15 +20,6 @@ pub(super) struct RayReport {
     pub(super) of_image: RayCounts,
     /// Not in the sum.
     pub(super) training: u64,
-}
-
-impl RayReport {
-    pub(super) fn new(stats: &Stats, training: Option<&Training>) -> Self {
-        Self {
-            of_image: stats.rays,
-            training: training.map_or(0, |training| training.rays.total()),
-        }
-    }
 }
 
 /// The time of samples by stage, from those that were measured.

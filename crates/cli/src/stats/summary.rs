@@ -1,8 +1,7 @@
 //! The lines that a render ends with.
 
 use super::Course;
-use crate::settings::Budget;
-use bidir::driver::{Plan, Session};
+use bidir::driver::{Budget, Plan, Session};
 use bidir::integrator::IntegratorKind;
 use std::time::Duration;
 
@@ -19,7 +18,7 @@ pub(crate) struct Summary {
     /// The number of passes to reach. None: there is no limit.
     wanted: Option<u64>,
     /// The passes as ranges, for a part of a render.
-    part: Option<String>,
+    pub(crate) part: Option<String>,
     /// Width and height of a crop.
     crop: Option<[u32; 2]>,
     time: Duration,
@@ -27,20 +26,16 @@ pub(crate) struct Summary {
     error: Option<f64>,
     /// True where `--noise` asks for an error that too few passes cannot give.
     lacks_error: bool,
-    is_denoised: bool,
+    /// True if the error is that of the image before denoising.
+    pub(crate) is_denoised: bool,
     plan: Option<Plan>,
     /// The samples of training, where it was limited.
     trained: Option<u64>,
 }
 
 impl Summary {
-    /// The summary of the render of `session`, which is a part of one where `is_part`.
-    pub(crate) fn new(
-        session: &Session<'_>,
-        budget: Budget,
-        course: Course,
-        [is_part, is_denoised]: [bool; 2],
-    ) -> Self {
+    /// The summary of the render of `session`; the caller says if it is denoised, or a part of a render.
+    pub(crate) fn new(session: &Session<'_>, budget: Budget, course: Course) -> Self {
         let film = session.film();
         let (passes, settings) = (film.passes(), film.settings());
         let crop = settings.crop;
@@ -51,12 +46,12 @@ impl Summary {
             passes: passes.len(),
             rendered: session.stats().samples / crop.area().max(1),
             wanted: budget.passes,
-            part: is_part.then(|| passes.to_string()),
+            part: None,
             crop: (size != settings.resolution).then_some(size),
             time: course.render,
             error: error.filter(|error| error.is_finite() && *error > 0.0),
             lacks_error: budget.noise.is_some() && passes.len() < LEAST_PASSES,
-            is_denoised,
+            is_denoised: false,
             plan: training.and_then(|training| training.plan),
             trained: training.and_then(|training| training.is_short.then_some(training.samples)),
         }

@@ -90,6 +90,27 @@ fn a_gltf_file_is_rendered_with_auto_unless_another_integrator_is_named() {
 }
 
 #[test]
+fn the_integrator_of_a_scene_has_the_defaults_of_the_flag() {
+    let place = Workplace::new();
+    place.write("room.gltf", GLTF);
+    let scene = place.read("room.pbrt");
+    place.write("path.pbrt", &scene.replace("\"bdpt\"", "\"path\""));
+    for (file, integrator) in [
+        ("room.gltf", "auto"),
+        ("room.pbrt", "bdpt"),
+        ("path.pbrt", "path"),
+    ] {
+        let identity = |flag: &str| {
+            let render = format!("render {file} --size 16x12 --spp 1 -o a.exr {flag}");
+            place.run(&render).expect(0);
+            place.attributes("a.exr")["bidir/identity"].clone()
+        };
+        let named = identity(&format!("--integrator {integrator}"));
+        assert_eq!(identity(""), named, "{file}");
+    }
+}
+
+#[test]
 fn a_scene_with_path_gets_a_hint_at_auto_if_light_is_missing() {
     const NOTE: &str = "note: rendered with `path`, as the scene asks; try --integrator auto";
     let place = Workplace::new();

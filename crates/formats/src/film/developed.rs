@@ -33,6 +33,12 @@ impl Developed {
         image::write_exr(path, &Self::exr(film, &self.exr_layers(), metadata))
     }
 
+    /// Writes the picture as PNG for the screen, without layers.
+    pub fn write_png(&self, path: &Path) -> Result<()> {
+        let size = [self.picture.width, self.picture.height];
+        image::write_png(path, size, &self.picture.pixels)
+    }
+
     /// Encodes the EXR that [`write_exr`](Self::write_exr) writes.
     pub fn encode_exr(
         &self,
@@ -57,11 +63,7 @@ impl Developed {
     }
 
     fn exr_layers(&self) -> Vec<ExrLayer<'_>> {
-        let picture = ExrLayer {
-            name: "",
-            channels: &["R", "G", "B"],
-            data: self.picture.pixels.as_flattened(),
-        };
+        let picture = ExrLayer::rgb("", &self.picture.pixels);
         let others = self.layers.iter().map(|layer| ExrLayer {
             name: &layer.name,
             channels: layer.channels,

@@ -3,6 +3,7 @@
 use super::broken;
 use super::layers::LayerNames;
 use crate::error::Result;
+use bidir::driver::Limit;
 use bidir::film::{Film, FilmSettings, Filter, Layers, PassSet, PixelRect};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -30,6 +31,16 @@ impl Stopping {
             Self::Fixed => "fixed",
             Self::Time => "time",
             Self::Noise => "noise",
+        }
+    }
+}
+
+impl From<Limit> for Stopping {
+    fn from(limit: Limit) -> Self {
+        match limit {
+            Limit::Passes => Self::Fixed,
+            Limit::Time => Self::Time,
+            Limit::Noise => Self::Noise,
         }
     }
 }

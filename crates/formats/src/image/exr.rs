@@ -22,6 +22,17 @@ pub struct ExrLayer<'a> {
     pub data: &'a [f32],
 }
 
+impl<'a> ExrLayer<'a> {
+    /// Makes a layer of colours, row by row from the top left.
+    pub fn rgb(name: &'a str, pixels: &'a [[f32; 3]]) -> Self {
+        Self {
+            name,
+            channels: &["R", "G", "B"],
+            data: pixels.as_flattened(),
+        }
+    }
+}
+
 /// The value of an attribute.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MetadataValue {
@@ -44,6 +55,18 @@ pub struct ExrImage<'a> {
     pub layers: &'a [ExrLayer<'a>],
     /// Further attributes by name.
     pub metadata: &'a [(String, MetadataValue)],
+}
+
+impl<'a> ExrImage<'a> {
+    /// Makes a whole picture of this width and height without attributes.
+    pub fn whole(size: [usize; 2], layers: &'a [ExrLayer<'a>]) -> Self {
+        Self {
+            resolution: size,
+            crop: [0, 0, size[0], size[1]],
+            layers,
+            metadata: &[],
+        }
+    }
 }
 
 /// Writes an EXR of 32-bit numbers with Rec. 709 primaries. Equal images give equal bytes.

@@ -8,7 +8,8 @@ use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
 
 /// Writes linear colours, encoded by [`encode_png`].
-pub fn write_png(path: &Path, size: [u32; 2], pixels: &[[f32; 3]]) -> Result<()> {
+pub fn write_png(path: &Path, size: [usize; 2], pixels: &[[f32; 3]]) -> Result<()> {
+    let size = size.map(|side| side as u32);
     let encoded = encode_png(size, pixels).map_err(|error| error.in_file(path))?;
     file::replace(path, &encoded)
 }

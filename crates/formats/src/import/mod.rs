@@ -32,7 +32,8 @@ use crate::limits;
 use crate::source::Fault;
 use assembly::Built;
 use bidir::camera::Camera;
-use bidir::film::{Aov, FilmSettings};
+use bidir::driver::Settings;
+use bidir::film::{Aov, FilmSettings, Layers};
 use bidir::integrator::IntegratorKind;
 use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
@@ -106,6 +107,20 @@ pub struct SceneSettings {
     pub output: Option<String>,
     /// The images that its film has beside the picture.
     pub aovs: Vec<Aov>,
+}
+
+impl SceneSettings {
+    /// Returns the settings of a render as the scene asks for them, over the defaults of its integrator.
+    pub fn render_settings(&self) -> Settings {
+        let mut settings = Settings {
+            sampler: self.sampler,
+            seed: self.seed.unwrap_or_default(),
+            layers: Layers::new(&self.aovs, &[], 0),
+            ..Settings::new(self.integrator)
+        };
+        settings.path.max_depth = Some(self.max_depth);
+        settings
+    }
 }
 
 /// The parts of a scene.

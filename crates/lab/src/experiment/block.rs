@@ -74,7 +74,7 @@ pub fn prepare(
     observer: &mut dyn Observer,
 ) -> Result<Option<Prepared>> {
     let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &key, observer)?;
+    let mut journal = Journal::start(setup, &key)?;
     let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
         return Ok(None);
     };
@@ -175,7 +175,6 @@ pub fn render_block(
         words: String::new(),
         image: None,
         mse: None,
-        warning: None,
     };
     let mut all = Vec::new();
     for name in &block.methods {

@@ -7,7 +7,7 @@
 
 use super::error::ExperimentError;
 use super::loaded_scene::LoadedScene;
-use super::{Experiment, MethodSpec};
+use super::{Experiment, MethodSpec, is_in};
 use crate::results::Contributions;
 use bidir::driver::Settings;
 use bidir::integrator::{IntegratorKind, Journal, Link, LvcSettings, Sample, Workspace};
@@ -70,8 +70,8 @@ pub(super) fn measure(
     let Some(spec) = &experiment.contributions else {
         return Ok(Vec::new());
     };
-    let is_shown = |name: &String| spec.scenes.is_empty() || spec.scenes.contains(name);
-    let scenes = scenes.iter().filter(|loaded| is_shown(&loaded.spec.name));
+    let scenes = scenes.iter();
+    let scenes = scenes.filter(|loaded| is_in(&spec.scenes, &loaded.spec.name));
     let methods = || {
         let methods = experiment.methods.iter();
         methods.filter(|method| spec.methods.contains(&method.name))
@@ -87,13 +87,7 @@ fn of_method(
     method: &MethodSpec,
     spp: u64,
 ) -> Result<Contributions, ExperimentError> {
-    let settings = method.request.apply(&loaded.settings);
-    if settings.integrator != IntegratorKind::Bdpt {
-        return Err(ExperimentError::Contributions {
-            scene: loaded.spec.name.clone(),
-            method: method.name.clone(),
-        });
-    }
+    let settings = loaded.bidirectional(method, "contributions")?;
     let passes = (0..spp).into_par_iter();
     let passes: Vec<_> = passes.map(|pass| terms(loaded, &settings, pass)).collect();
     let sorted = |which: fn(&[f64; 2]) -> f64| -> Vec<Vec<f64>> {

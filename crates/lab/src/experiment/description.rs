@@ -8,12 +8,11 @@ use super::error::ExperimentError;
 use super::names::{file_name, value_of};
 use super::reader::{Entry, Section, Source};
 use super::settings::{names, no_effect};
-use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, Quick, SceneSpec, Seeds};
+use super::{BudgetSpec, Experiment, MethodSpec, PyramidSpec, Quick, Seeds};
 use crate::metric::Metric;
 use crate::results::BudgetKind;
 use bidir::driver::{Settings, Threads};
 use bidir::integrator::IntegratorKind;
-use bidir::names::nearest;
 use bidir::settings::Request;
 use claims::Names;
 use formats::scene::Files;
@@ -93,12 +92,11 @@ impl Experiment {
         let (scenes, absent) = scene::all(&mut top, folder, &defaults, memory)?;
         let mut names = Names::of_scenes(&scenes, &absent);
         let method = |section: &mut Section<'_>| method(section, &defaults, &names);
-        let methods = all(&mut top, "method", method)?;
+        let methods = all(&mut top, "method", |method| &method.name, method)?;
         names.methods = methods.iter().map(|method| method.name.clone()).collect();
         let budget = |section: &mut Section<'_>| budget(section, &names);
-        let budgets = all(&mut top, "budget", budget)?;
+        let budgets = all(&mut top, "budget", |budget| &budget.name, budget)?;
         names.budgets = budgets.iter().map(|budget| budget.kind).collect();
-        let (shown, shown_spp) = (top.take("pyramid"), top.take("pyramid-spp"));
         let mut experiment = Self {
             title: or(text_of(&mut top, "title")?, "Experiment"),
             description: or(text_of(&mut top, "description")?, ""),
@@ -108,21 +106,14 @@ impl Experiment {
             metrics: metrics(&mut top)?,
             scenes,
             absent,
+            pyramid: pyramid(&mut top, &names, &methods)?,
+            contributions: contributions(&mut top, &names)?,
             methods,
             budgets,
-            pyramid: None,
-            contributions: contributions(&mut top, &names)?,
             claims: Vec::new(),
             tables: Vec::new(),
             quick: quick(&mut top)?,
         };
-        experiment.pyramid = pyramid(shown, shown_spp, &experiment.methods)?;
-        if let (Some(pyramid), scenes) = (
-            &mut experiment.pyramid,
-            list(&mut top, "pyramid-scenes", &names.scenes)?,
-        ) {
-            pyramid.scenes = scenes;
-        }
         experiment.claims = claims::claims(&mut top, &names)?;
         experiment.tables = claims::tables(&mut top, &names, &experiment.claims)?;
         experiment.add_metrics();
@@ -180,35 +171,32 @@ fn quick(top: &mut Section<'_>) -> Result<Quick> {
     Ok(quick)
 }
 
-/// Reads the method whose strategies are rendered, and the samples per pixel.
+/// Reads the method whose strategies are rendered, with samples per pixel and scenes.
 fn pyramid(
-    method: Option<Entry<'_>>,
-    spp: Option<Entry<'_>>,
+    top: &mut Section<'_>,
+    names: &Names,
     methods: &[MethodSpec],
 ) -> Result<Option<PyramidSpec>> {
-    let Some(entry) = method else {
+    let spp = top.take("pyramid-spp");
+    let scenes = list(top, "pyramid-scenes", &names.scenes)?;
+    let Some(entry) = top.take("pyramid") else {
         let fault = |spp: Entry<'_>| spp.fault("`pyramid-spp` needs `pyramid`");
         return spp.map_or(Ok(None), |spp| Err(fault(spp)));
     };
-    let name = entry.text()?;
-    let Some(method) = methods.iter().find(|method| method.name == name) else {
-        let names = methods.iter().map(|method| method.name.as_str());
-        let hint = match nearest(name, names.clone()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("methods are {}", names.collect::<Vec<_>>().join(", ")),
-        };
-        return Err(entry.fault_with(format!("there is no method `{name}`"), hint));
+    let name = claims::known(&entry, &names.methods)?;
+    let is_other = |method: &MethodSpec| {
+        let integrator = method.request.integrator;
+        method.name == name && integrator.is_some_and(|kind| kind != IntegratorKind::Bdpt)
     };
-    let integrator = method.request.integrator;
-    if integrator.is_some_and(|integrator| integrator != IntegratorKind::Bdpt) {
+    if methods.iter().any(is_other) {
         let message = format!("the method `{name}` is not bidirectional");
         let hint = "strategies (s, t) are those of a method whose integrator is \"bdpt\"";
         return Err(entry.fault_with(message, hint.to_owned()));
     }
     Ok(Some(PyramidSpec {
-        method: name.to_owned(),
+        method: name,
         spp: spp.map_or(Ok(PYRAMID_SPP), |spp| spp.whole(2))?,
-        scenes: Vec::new(),
+        scenes,
     }))
 }
 
@@ -274,20 +262,21 @@ fn metrics(top: &mut Section<'_>) -> Result<Vec<Metric>> {
 }
 
 /// Reads all tables `[[key]]`, at least one; their names differ also as parts of file names.
-fn all<'a, T: Named>(
+fn all<'a, T>(
     top: &mut Section<'a>,
     key: &'static str,
+    name_of: fn(&T) -> &str,
     mut read: impl FnMut(&mut Section<'a>) -> Result<T>,
 ) -> Result<Vec<T>> {
     let mut all: Vec<T> = Vec::new();
     for mut section in top.sections(key)? {
         let one = read(&mut section)?;
-        let name = file_name(one.name());
+        let name = file_name(name_of(&one));
         if name.is_empty() {
             return Err(section.fault("a name needs a letter or a digit"));
         }
-        if all.iter().any(|other| file_name(other.name()) == name) {
-            let message = format!("there is another {key} `{}`", one.name());
+        if all.iter().any(|other| file_name(name_of(other)) == name) {
+            let message = format!("there is another {key} `{}`", name_of(&one));
             return Err(section.fault(message));
         }
         all.push(one);
@@ -296,29 +285,6 @@ fn all<'a, T: Named>(
         return Err(top.fault(format!("there is no [[{key}]]")));
     }
     Ok(all)
-}
-
-/// A part of a description with a unique name.
-trait Named {
-    fn name(&self) -> &str;
-}
-
-impl Named for SceneSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-}
-
-impl Named for MethodSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
-}
-
-impl Named for BudgetSpec {
-    fn name(&self) -> &str {
-        &self.name
-    }
 }
 
 /// Reads the settings of a table, by the names of flags; `inherited` is the integrator of `[settings]`.
@@ -368,12 +334,7 @@ fn borrowed(names: &[String]) -> Vec<&str> {
 fn budget(section: &mut Section<'_>, names: &Names) -> Result<BudgetSpec> {
     section.only(&BUDGET, &[])?;
     let name = text_of(section, "name")?;
-    let kinds = [
-        ("samples", BudgetKind::Samples),
-        ("rays", BudgetKind::Rays),
-        ("seconds", BudgetKind::Seconds),
-    ];
-    let given = kinds.map(|(key, kind)| (key, kind, section.take(key)));
+    let given = BudgetKind::NAMES.map(|(key, kind)| (key, kind, section.take(key)));
     let mut given = given
         .into_iter()
         .filter_map(|(key, kind, entry)| Some((key, kind, entry?)));

@@ -84,16 +84,18 @@ pub enum ExperimentError {
         /// The cause.
         error: reference::Error,
     },
-    /// The method of the pyramid is not bidirectional in a scene.
+    /// A method whose strategies or contributions are requested is not bidirectional in a scene.
     #[error(
-        "scene `{scene}`: the strategies of method `{method}` cannot be shown, as it is not \
+        "scene `{scene}`: the {figures} of method `{method}` cannot be measured, as it is not \
          bidirectional there"
     )]
-    Pyramid {
+    NotBidirectional {
         /// The scene.
         scene: String,
         /// The method.
         method: String,
+        /// The requested figures.
+        figures: &'static str,
     },
     /// The strategies of a method sample no path in a scene.
     #[error("scene `{scene}`: method `{method}`: {text}")]
@@ -114,17 +116,6 @@ pub enum ExperimentError {
         method: String,
         /// The setting and the integrator.
         text: String,
-    },
-    /// A method whose contributions are requested is not bidirectional in a scene.
-    #[error(
-        "scene `{scene}`: the contributions of method `{method}` cannot be measured, as it is not \
-         bidirectional there"
-    )]
-    Contributions {
-        /// The scene.
-        scene: String,
-        /// The method.
-        method: String,
     },
     /// A scene shares the reference of an unknown scene, of a later one, or of one with another size.
     #[error("scene `{0}`: `reference-of` names no scene before it that has images of its size")]
@@ -168,9 +159,7 @@ impl ExperimentError {
                  another estimator (`reference-cross-check`), or name a `reference` made by \
                  `bidir reference --estimator … --against …`",
             ),
-            Self::Pyramid { .. } | Self::Contributions { .. } => {
-                Some("give the method integrator = \"bdpt\"")
-            }
+            Self::NotBidirectional { .. } => Some("give the method integrator = \"bdpt\""),
             Self::NoEffect { .. } => Some("set `integrator` in [settings] or in the method"),
             Self::NoScenes(_) => Some("BIDIR_SCENES names the folder that has pbrt-v4/"),
             Self::Size { .. } => Some("give the scene the size of its reference"),

@@ -93,9 +93,9 @@ impl Experiment {
                 // The size of an existing image is fixed.
                 ReferenceSpec::Existing(_) => scene.size = size,
                 ReferenceSpec::Of(_) => scene.size = Some(quick.size(size.unwrap_or([64, 48]))),
-                ReferenceSpec::Make { spp, .. } => {
+                ReferenceSpec::Make(recipe) => {
                     scene.size = Some(quick.size(size.unwrap_or([64, 48])));
-                    *spp = (*spp as f64 * quick.references).ceil() as u64;
+                    recipe.spp = (recipe.spp as f64 * quick.references).ceil() as u64;
                 }
             }
         }
@@ -159,10 +159,8 @@ impl Experiment {
 impl SceneSpec {
     fn extend(&mut self, extent: &Extent) {
         self.size = extent.size.or(self.size);
-        if let (ReferenceSpec::Make { spp, .. }, Some(samples)) =
-            (&mut self.reference, extent.reference_spp)
-        {
-            *spp = samples;
+        if let ReferenceSpec::Make(recipe) = &mut self.reference {
+            recipe.spp = extent.reference_spp.unwrap_or(recipe.spp);
         }
     }
 }

@@ -38,43 +38,10 @@ pub(super) fn identity(
     sha256(text.as_bytes())
 }
 
-/// The name of the cross-check in hashes, which existing folders of results contain.
-const OLD_NAME: &str = "witness";
-
 /// Identifies an existing reference by its pixels, and any other by the way it is made.
 fn reference(spec: &ReferenceSpec, given: Option<&Reference>) -> String {
-    match (given, spec) {
-        (Some(given), _) => format!("pixels {}", digest(&[&given.pixels])),
-        (
-            None,
-            ReferenceSpec::Make {
-                spp,
-                request,
-                cross_check,
-            },
-        ) => format!("Make {{ spp: {spp}, changes: {request:?}, {OLD_NAME}: {cross_check:?} }}"),
-        (None, _) => format!("{spec:?}"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bidir::integrator::IntegratorKind;
-    use bidir::settings::Request;
-
-    #[test]
-    fn made_references_are_identified_as_in_earlier_versions() {
-        let request = Request::default();
-        let expected = format!(
-            "Make {{ spp: 16, changes: {request:?}, witness: Some({:?}) }}",
-            IntegratorKind::Lvc
-        );
-        let spec = ReferenceSpec::Make {
-            spp: 16,
-            request: Box::new(request),
-            cross_check: Some(IntegratorKind::Lvc),
-        };
-        assert_eq!(reference(&spec, None), expected);
+    match given {
+        Some(given) => format!("pixels {}", digest(&[&given.pixels])),
+        None => format!("{spec:?}"),
     }
 }

@@ -4,7 +4,6 @@
 //! `{"pyramid": ...}` with the figures of strategies. Each line has a checksum. Each write replaces the file.
 
 use super::error::ExperimentError;
-use super::observer::{Event, Observer};
 use super::run_set::{Setup, Start};
 use crate::results::{Machine, Pyramid, Record};
 use crate::seal::{self, Seal};
@@ -15,8 +14,6 @@ use std::path::{Path, PathBuf};
 pub(super) const FILE: &str = "records.ndjson";
 /// The version of its format.
 const FORMAT: u32 = 3;
-/// The previous version, whose lines have no checksums.
-const UNSEALED: u32 = 2;
 
 /// The first line.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -73,8 +70,6 @@ struct PyramidLine {
 pub(super) struct Journal {
     path: PathBuf,
     text: String,
-    /// False if it was read from a file without checksums.
-    is_sealed: bool,
     records: Vec<Record>,
     pyramids: Vec<Pyramid>,
 }
@@ -97,7 +92,6 @@ impl Journal {
         Self {
             path: folder.join(FILE),
             text: line(&head),
-            is_sealed: true,
             records: Vec::new(),
             pyramids: Vec::new(),
         }
@@ -151,11 +145,9 @@ impl Journal {
             return self.check(line, 1);
         }
         let head: Option<Head> = serde_json::from_str(line).ok();
-        let is_known = |head: &Head| [UNSEALED, FORMAT].contains(&head.format);
-        let head = head.filter(is_known).ok_or_else(others)?;
-        self.is_sealed = head.format != UNSEALED;
+        let head = head.filter(|head| head.format == FORMAT);
+        let there = head.ok_or_else(others)?.key;
         self.check(line, 1)?;
-        let there = head.key;
         if there.experiment != key.experiment {
             return Err(others());
         }
@@ -176,10 +168,7 @@ impl Journal {
             self.records
                 .push(record.map_err(|_| self.damaged(number, "it is no record"))?);
         }
-        self.text += &match seal::check(line) {
-            Seal::Missing => seal::sealed(line),
-            _ => line.to_owned(),
-        };
+        self.text += line;
         self.text.push('\n');
         Ok(())
     }
@@ -188,8 +177,8 @@ impl Journal {
     fn check(&self, line: &str, number: usize) -> Result<(), ExperimentError> {
         match seal::check(line) {
             Seal::Broken => Err(self.damaged(number, "its checksum is that of another text")),
-            Seal::Missing if self.is_sealed => Err(self.damaged(number, "it has no checksum")),
-            Seal::Missing | Seal::Whole => Ok(()),
+            Seal::Missing => Err(self.damaged(number, "it has no checksum")),
+            Seal::Whole => Ok(()),
         }
     }
 
@@ -199,21 +188,11 @@ impl Journal {
     }
 
     /// Opens or replaces the journal, as the setup asks, when an experiment starts.
-    pub(super) fn start(
-        setup: &Setup,
-        key: &RecordsKey,
-        observer: &mut dyn Observer,
-    ) -> Result<Self, ExperimentError> {
-        if setup.start == Start::Anew {
-            return Self::begin(&setup.folder, key);
+    pub(super) fn start(setup: &Setup, key: &RecordsKey) -> Result<Self, ExperimentError> {
+        match setup.start {
+            Start::Anew => Self::begin(&setup.folder, key),
+            Start::Resume => Self::open(&setup.folder, key),
         }
-        let journal = Self::open(&setup.folder, key)?;
-        if !journal.is_sealed {
-            let path = journal.path.display();
-            let text = format!("{path}: of a version without checksums: damage in it is not seen");
-            observer.notify(Event::Warning(&text));
-        }
-        Ok(journal)
     }
 
     /// Adds a record.
@@ -246,13 +225,13 @@ impl Journal {
 
     /// Returns true if there is a record of the same run.
     pub(super) fn has_like(&self, record: &Record) -> bool {
-        self.records.iter().any(|other| {
-            let key = |record: &Record| {
-                let names = [&record.scene, &record.method, &record.budget].map(String::clone);
-                (record.seed, names)
-            };
-            key(other) == key(record)
-        })
+        let key = |of: &Record| {
+            (
+                of.seed,
+                [&of.scene, &of.method, &of.budget].map(String::clone),
+            )
+        };
+        self.records.iter().any(|other| key(other) == key(record))
     }
 
     pub(super) fn has(&self, run: &super::run::Run<'_>) -> bool {
@@ -268,7 +247,7 @@ fn line(value: &impl Serialize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::json;
 
     const PLACE: &str = "out";
 
@@ -324,25 +303,5 @@ mod tests {
             let is_line = text[..end].ends_with('\n') || text[end..].starts_with('\n');
             assert_eq!(whole.is_ok(), is_line && end > 0, "{end}");
         }
-    }
-
-    #[test]
-    fn records_of_the_previous_version_are_read_and_get_checksums() {
-        let unsealed: Vec<_> = written()
-            .lines()
-            .map(|line| {
-                let mut line: Value = serde_json::from_str(line).unwrap();
-                let object = line.as_object_mut().unwrap();
-                object.remove("checksum");
-                object
-                    .entry("format")
-                    .and_modify(|format| *format = UNSEALED.into());
-                format!("{line}\n")
-            })
-            .collect();
-        let journal = read(unsealed.concat().as_bytes()).unwrap();
-        assert!(!journal.is_sealed && journal.records == [record(1), record(2)]);
-        let sealed = read(journal.text.as_bytes()).unwrap();
-        assert!(sealed.is_sealed && sealed.records == journal.records);
     }
 }

@@ -1,11 +1,12 @@
 //! A scene in memory, and its reference.
 
 use super::error::{ExperimentError, Place};
-use super::observer::{Event, Observer};
 use super::{Experiment, MethodSpec, SceneSource, SceneSpec};
 use crate::image::Pixels;
 use crate::results::SceneInfo;
 use bidir::driver::{Resources, Session, Settings};
+use bidir::film::Layers;
+use bidir::integrator::IntegratorKind;
 use bidir::scene::Scene;
 use bidir::view::View;
 use formats::scene::{Files, LoadOptions};
@@ -37,17 +38,6 @@ pub(super) struct Reference {
     pub(super) image: Option<String>,
     /// Its own mean square error. None: unknown.
     pub(super) mse: Option<f64>,
-    /// A warning about its files.
-    pub(super) warning: Option<String>,
-}
-
-impl Reference {
-    /// Passes its warning on to the observer.
-    pub(super) fn warn(&self, observer: &mut dyn Observer) {
-        if let Some(warning) = &self.warning {
-            observer.notify(Event::Warning(warning));
-        }
-    }
 }
 
 impl<'a> LoadedScene<'a> {
@@ -70,17 +60,16 @@ impl<'a> LoadedScene<'a> {
         };
         let loaded = formats::scene::load_from(&spec.path, &options, files);
         let loaded = loaded.map_err(|error| Place::of_named(spec.file_place.as_ref(), error))?;
-        let mut settings = Settings {
-            sampler: loaded.settings.sampler,
-            ..Settings::default()
-        };
-        settings.set_integrator(loaded.settings.integrator);
-        settings.path.max_depth = Some(loaded.settings.max_depth);
         Ok(Self {
             spec,
             scene: loaded.scene,
             view: loaded.view,
-            settings,
+            // The experiment sets the seeds, and needs no layers.
+            settings: Settings {
+                seed: 0,
+                layers: Layers::default(),
+                ..loaded.settings.render_settings()
+            },
             digest: loaded.digest.to_string(),
             warnings: loaded.warnings,
             files: loaded.files,
@@ -101,6 +90,25 @@ impl<'a> LoadedScene<'a> {
     pub(super) fn has(&self, experiment: &Experiment, method: &MethodSpec) -> bool {
         let mut methods = experiment.methods_in(&self.spec.name);
         methods.any(|other| other.name == method.name)
+    }
+
+    /// Returns the settings of a method here.
+    ///
+    /// Errors: it is not bidirectional, so that it lacks the requested `figures`.
+    pub(super) fn bidirectional(
+        &self,
+        method: &MethodSpec,
+        figures: &'static str,
+    ) -> Result<Settings, ExperimentError> {
+        let settings = method.request.apply(&self.settings);
+        if settings.integrator == IntegratorKind::Bdpt {
+            return Ok(settings);
+        }
+        Err(ExperimentError::NotBidirectional {
+            scene: self.spec.name.clone(),
+            method: method.name.clone(),
+            figures,
+        })
     }
 
     /// Starts a session of this scene.

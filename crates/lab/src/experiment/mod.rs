@@ -202,15 +202,19 @@ pub enum ReferenceSpec {
     Of(String),
     /// A reference that is rendered first and kept in the folder of the results: by `bdpt`, which traces
     /// every connection, and a cross-check by another estimator. If they disagree, it is not used.
-    Make {
-        /// Samples per pixel.
-        spp: u64,
-        /// Settings on which the expectation depends, such as the strategies that take part.
-        request: Box<Request>,
-        /// The integrator of the cross-check. None: `path`, which has the least in common with `bdpt`, or
-        /// `bdpt` with other weights if some strategies are excluded.
-        cross_check: Option<IntegratorKind>,
-    },
+    Make(ReferenceRecipe),
+}
+
+/// The settings of a reference that is rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceRecipe {
+    /// Samples per pixel.
+    pub spp: u64,
+    /// Settings on which the expectation depends, such as the strategies that take part.
+    pub request: Box<Request>,
+    /// The integrator of the cross-check. None: `path`, which has the least in common with `bdpt`, or `bdpt`
+    /// with other weights if some strategies are excluded.
+    pub cross_check: Option<IntegratorKind>,
 }
 
 /// A method: the settings of a render.

@@ -77,6 +77,6 @@ fn given(loaded: &LoadedScene<'_>) -> Vec<PathBuf> {
     match &loaded.spec.reference {
         ReferenceSpec::Existing(path) if path.is_dir() => crate::reference::files(path),
         ReferenceSpec::Existing(path) => vec![path.clone()],
-        ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Vec::new(),
+        ReferenceSpec::Make(_) | ReferenceSpec::Of(_) => Vec::new(),
     }
 }

@@ -9,12 +9,11 @@ use super::loaded_scene::LoadedScene;
 use super::names::file_name;
 use super::observer::{Event, Observer};
 use super::run_set::{End, Setup};
-use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec};
+use super::{Experiment, MethodSpec, PyramidSpec, SceneSpec, is_in};
 use crate::pyramid::{self, Figures};
 use crate::results::{Pyramid, StrategyInfo};
 use bidir::driver::Session;
 use bidir::film::Layers;
-use bidir::integrator::IntegratorKind;
 use formats::scene::Files;
 
 type Result<T> = std::result::Result<T, ExperimentError>;
@@ -72,17 +71,8 @@ pub(super) fn check(experiment: &Experiment, scenes: &[LoadedScene<'_>]) -> Resu
     let Some((spec, method)) = requested(experiment) else {
         return Ok(());
     };
-    let is_other = |loaded: &&LoadedScene<'_>| {
-        method.request.apply(&loaded.settings).integrator != IntegratorKind::Bdpt
-    };
     let mut shown = scenes.iter().filter(|loaded| is_shown(spec, loaded));
-    match shown.find(is_other) {
-        None => Ok(()),
-        Some(loaded) => Err(ExperimentError::Pyramid {
-            scene: loaded.spec.name.clone(),
-            method: method.name.clone(),
-        }),
-    }
+    shown.try_for_each(|loaded| loaded.bidirectional(method, "strategies").map(drop))
 }
 
 /// Returns the description's pyramid with its method.
@@ -94,7 +84,7 @@ fn requested(experiment: &Experiment) -> Option<(&PyramidSpec, &MethodSpec)> {
 
 /// Returns true if the pyramid includes the scene.
 fn is_shown(spec: &PyramidSpec, loaded: &LoadedScene<'_>) -> bool {
-    spec.scenes.is_empty() || spec.scenes.contains(&loaded.spec.name)
+    is_in(&spec.scenes, &loaded.spec.name)
 }
 
 fn runs<'a>(

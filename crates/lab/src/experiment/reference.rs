@@ -7,15 +7,14 @@ use super::observer::{Event, Observer};
 use super::run::write_image;
 use super::run_set::{Ready, Setup};
 use super::settings::texts;
-use super::{Absent, Experiment, Presence, ReferenceSpec};
+use super::{Absent, Experiment, Presence, ReferenceRecipe, ReferenceSpec};
 use crate::image::Pixels;
-use crate::reference::{self as references, Host, Made, Plan, Subject};
+use crate::reference::{self as references, Host, Plan, Subject};
 use crate::seal::sha256;
 use bidir::ESTIMATOR_VERSION;
 use bidir::driver::{Progress, Resources};
 use bidir::integrator::IntegratorKind;
 use bidir::path::{MisHeuristic, Strategies};
-use bidir::settings::Request;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -34,9 +33,8 @@ pub(super) fn given(loaded: &LoadedScene<'_>) -> Result<Option<Reference>> {
             words: format!("the image {}", path.display()),
             image: None,
             mse: stored_mse(path),
-            warning: None,
         })),
-        ReferenceSpec::Make { .. } | ReferenceSpec::Of(_) => Ok(None),
+        ReferenceSpec::Make(_) | ReferenceSpec::Of(_) => Ok(None),
     }
 }
 
@@ -113,16 +111,8 @@ fn obtain(
     observer: &mut dyn Observer,
 ) -> Result<Option<Reference>> {
     match (&loaded.spec.reference, given) {
-        (
-            ReferenceSpec::Make {
-                spp,
-                request,
-                cross_check,
-            },
-            _,
-        ) => {
-            let plan = plan(loaded, *spp, request, *cross_check);
-            make(loaded, &plan, setup, threads, observer)
+        (ReferenceSpec::Make(recipe), _) => {
+            make(loaded, &plan(loaded, recipe), setup, threads, observer)
         }
         (ReferenceSpec::Existing(_), Some(reference)) => copied(loaded, reference, setup).map(Some),
         (ReferenceSpec::Of(_), Some(reference)) => Ok(Some(reference)),
@@ -153,13 +143,9 @@ pub(super) fn written(loaded: &LoadedScene<'_>, setup: &Setup) -> Vec<PathBuf> {
     match &loaded.spec.reference {
         ReferenceSpec::Existing(_) => vec![setup.folder.join(copy(loaded))],
         ReferenceSpec::Of(_) => Vec::new(),
-        ReferenceSpec::Make {
-            spp,
-            request,
-            cross_check,
-        } => {
-            let plan = plan(loaded, *spp, request, *cross_check);
-            references::files(&setup.folder.join(folder(loaded, &plan)))
+        ReferenceSpec::Make(recipe) => {
+            let folder = folder(loaded, &plan(loaded, recipe));
+            references::files(&setup.folder.join(folder))
         }
     }
 }
@@ -180,7 +166,6 @@ fn new(
 ) -> Result<Reference> {
     Ok(Reference {
         mse: reference.mse(),
-        warning: reference.warning(),
         words: reference.provenance.summary(),
         image: name.map(|name| format!("{name}/picture.exr")),
         pixels: finite(reference.picture, &reference.folder, loaded)?,
@@ -240,13 +225,9 @@ fn stored_mse(path: &Path) -> Option<f64> {
 /// the same strategies and other weights: those of the power heuristic. Uniform weights would differ more,
 /// but their variance is infinite near edges, and the skewed mean would fail the test more often than its
 /// level.
-fn plan(
-    loaded: &LoadedScene<'_>,
-    spp: u64,
-    request: &Request,
-    named: Option<IntegratorKind>,
-) -> Plan {
-    let mut plan = Plan::with_defaults(&loaded.settings, spp);
+fn plan(loaded: &LoadedScene<'_>, recipe: &ReferenceRecipe) -> Plan {
+    let (request, named) = (&recipe.request, recipe.cross_check);
+    let mut plan = Plan::with_defaults(&loaded.settings, recipe.spp);
     let of_picture = request.apply(&plan.estimators[0]).path.strategies;
     let has_all = of_picture == Strategies::default();
     let cross_check = named.or((!has_all).then_some(IntegratorKind::Bdpt));
@@ -263,13 +244,7 @@ fn plan(
 
 /// Returns the folder of a reference within that of the results; its name contains a hash of the plan.
 fn folder(loaded: &LoadedScene<'_>, plan: &Plan) -> String {
-    let settings = plan.estimators.each_ref().map(|settings| {
-        // The older name keeps existing folders valid.
-        let mut texts = texts(settings);
-        let start = texts.remove("light-start");
-        texts.extend(start.map(|start| ("emission".to_owned(), start)));
-        texts
-    });
+    let settings = plan.estimators.each_ref().map(texts);
     let [width, height] = loaded.size();
     let identity = format!(
         "{ESTIMATOR_VERSION} {} {width}x{height} {} {settings:?}",
@@ -293,7 +268,6 @@ fn make(
     let name = folder(loaded, plan);
     let path = setup.folder.join(&name);
     if let Ok(reference) = load(loaded, &path, Some(&name)) {
-        reference.warn(observer);
         return Ok(Some(reference));
     }
     let subject = Subject {
@@ -307,13 +281,18 @@ fn make(
         ..Resources::default()
     };
     let watch = Watch::new(loaded, plan, observer);
-    let made = references::make(&path, &subject, plan, &resources, &watch);
-    let Made::Whole(reference) = made.map_err(|error| failed(loaded, error))? else {
+    let host = Host {
+        progress: &watch,
+        should_end: &|| watch.should_end(),
+        found: &|samples| watch.advance(samples),
+    };
+    let made = references::make(&path, &subject, plan, &resources, host);
+    let Some(reference) = made.map_err(|error| failed(loaded, error))? else {
         return Ok(None);
     };
     let usable = reference.provenance.check_usable(&path);
     usable.map_err(|error| failed(loaded, error))?;
-    new(loaded, *reference, Some(&name)).map(Some)
+    new(loaded, reference, Some(&name)).map(Some)
 }
 
 /// Passes the progress of a reference on to an observer.
@@ -336,6 +315,19 @@ impl<'a> Watch<'a> {
         }
     }
 
+    /// Reports the finished passes. Returns true if the observer stops the render.
+    fn should_end(&self) -> bool {
+        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
+        self.with(|observer| {
+            observer.notify(Event::Reference {
+                scene: self.scene,
+                passes,
+                of: self.passes,
+            });
+            observer.should_stop()
+        })
+    }
+
     fn with<T>(&self, ask: impl FnOnce(&mut dyn Observer) -> T) -> T {
         let observer = self.observer.lock();
         ask(*observer.unwrap_or_else(PoisonError::into_inner))
@@ -349,23 +341,5 @@ impl Progress for Watch<'_> {
 
     fn nanoseconds(&self) -> u64 {
         (self.with(|observer| observer.seconds()) * 1e9) as u64
-    }
-}
-
-impl Host for Watch<'_> {
-    fn should_end(&self) -> bool {
-        let passes = self.samples.load(Ordering::Relaxed) / self.samples_per_pass;
-        self.with(|observer| {
-            observer.notify(Event::Reference {
-                scene: self.scene,
-                passes,
-                of: self.passes,
-            });
-            observer.should_stop()
-        })
-    }
-
-    fn found(&self, samples: u64) {
-        self.samples.fetch_add(samples, Ordering::Relaxed);
     }
 }

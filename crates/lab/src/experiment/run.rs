@@ -43,9 +43,10 @@ impl Run<'_> {
     ) -> Result<Option<Rendered>, ExperimentError> {
         let mut settings = self.method.request.apply(&self.scene.settings);
         settings.seed = self.seed;
+        let mut time = Moment::default();
         let begin = Moment::now(observer);
         let mut session = self.scene.session(settings, threads)?;
-        let mut time = Moment::now(observer).minus(begin);
+        time.add_since(begin, observer);
         let training = time;
         while self.allows_another_pass(&session, time.seconds, training.seconds) {
             if observer.should_stop() {
@@ -53,7 +54,7 @@ impl Run<'_> {
             }
             let begin = Moment::now(observer);
             session.step(&());
-            time = time.plus(Moment::now(observer).minus(begin));
+            time.add_since(begin, observer);
         }
         Ok(Some(Rendered {
             picture: session.film().develop(),
@@ -146,6 +147,15 @@ struct Moment {
     processor_seconds: Option<f64>,
 }
 
+impl Default for Moment {
+    fn default() -> Self {
+        Self {
+            seconds: 0.0,
+            processor_seconds: Some(0.0),
+        }
+    }
+}
+
 impl Moment {
     fn now(observer: &dyn Observer) -> Self {
         Self {
@@ -154,20 +164,13 @@ impl Moment {
         }
     }
 
-    fn minus(self, other: Self) -> Self {
-        self.with(other, |a, b| a - b)
-    }
-
-    fn plus(self, other: Self) -> Self {
-        self.with(other, |a, b| a + b)
-    }
-
-    fn with(self, other: Self, operation: fn(f64, f64) -> f64) -> Self {
-        let processors = self.processor_seconds.zip(other.processor_seconds);
-        Self {
-            seconds: operation(self.seconds, other.seconds),
-            processor_seconds: processors.map(|(a, b)| operation(a, b)),
-        }
+    /// Adds the time since `begin`.
+    fn add_since(&mut self, begin: Self, observer: &dyn Observer) {
+        let now = Self::now(observer);
+        self.seconds += now.seconds - begin.seconds;
+        let processors = now.processor_seconds.zip(begin.processor_seconds);
+        let sum = self.processor_seconds.zip(processors);
+        self.processor_seconds = sum.map(|(sum, (now, begin))| sum + now - begin);
     }
 }
 
@@ -225,18 +228,9 @@ fn pixels(picture: &Picture) -> Pixels {
 
 /// Writes an image as EXR.
 pub(super) fn write_image(path: &Path, image: &Pixels) -> Result<(), ExperimentError> {
-    let layer = ExrLayer {
-        name: "",
-        channels: &["R", "G", "B"],
-        data: image.data.as_flattened(),
-    };
-    let exr = ExrImage {
-        resolution: image.size,
-        crop: [0, 0, image.size[0], image.size[1]],
-        layers: &[layer],
-        metadata: &[],
-    };
-    Ok(formats::image::write_exr(path, &exr)?)
+    let layers = [ExrLayer::rgb("", &image.data)];
+    let image = ExrImage::whole(image.size, &layers);
+    Ok(formats::image::write_exr(path, &image)?)
 }
 
 #[cfg(test)]

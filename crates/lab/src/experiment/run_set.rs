@@ -65,7 +65,7 @@ pub struct Outcome {
 /// Renders every run without a record, and writes `results.json`.
 pub fn run(experiment: &Experiment, setup: &Setup, observer: &mut dyn Observer) -> Result<Outcome> {
     let Begun { scenes, given, key } = begin(experiment, setup, observer)?;
-    let mut journal = Journal::start(setup, &key, observer)?;
+    let mut journal = Journal::start(setup, &key)?;
     let Some(ready) = reference::obtain_all(experiment, scenes, given, setup, observer)? else {
         return Ok(Outcome {
             end: End::Stopped,
@@ -156,8 +156,6 @@ pub(super) fn begin<'a>(
     let given = scenes.iter().map(reference::given);
     let given = given.collect::<Result<Vec<_>>>()?;
     outputs::check(experiment, &scenes, setup)?;
-    let found = given.iter().flatten();
-    found.for_each(|reference| reference.warn(observer));
     let key = RecordsKey {
         experiment: identity(experiment, &scenes, &given),
         program: setup.program.clone(),

@@ -28,40 +28,12 @@ pub struct Agreement {
     /// The side of a block. Unit: pixels.
     pub block: usize,
     /// The channel whose film means differ most.
-    pub film: Comparison,
+    pub film: Difference,
     /// The block and channel whose means differ most.
-    pub blocks: Comparison,
+    pub blocks: Difference,
     /// The relative bias of the film's mean, in any channel, that the test detects with probability 1/2.
     /// None: the film is black, or its variance is unknown.
     pub smallest_bias: Option<f64>,
-}
-
-/// The most significant of several comparisons.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Comparison {
-    /// The p-value, corrected for the number of comparisons.
-    pub p: f64,
-    /// Left, top, right and bottom (exclusive) of the block. Unit: pixels from the crop's corner.
-    pub block: [usize; 4],
-    /// Red, green or blue: 0, 1 or 2.
-    pub channel: usize,
-    /// The means of both estimators. None: not finite.
-    pub means: [Option<f64>; 2],
-    /// Their difference. Unit: standard errors. None: not finite.
-    pub deviations: Option<f64>,
-}
-
-impl From<&Difference> for Comparison {
-    fn from(difference: &Difference) -> Self {
-        let finite = |number: f64| Some(number).filter(|number| number.is_finite());
-        Self {
-            p: difference.p,
-            block: difference.block,
-            channel: difference.channel,
-            means: difference.means.map(finite),
-            deviations: finite(difference.deviations),
-        }
-    }
 }
 
 /// Compares the replicates of two estimators. None: there are too few, or no pixels.
@@ -86,8 +58,8 @@ pub(super) fn agreement(a: &[Pixels], b: &[Pixels]) -> Option<Agreement> {
         replicates: a.len(),
         comparisons: film.tests + blocks.tests,
         block,
-        film: Comparison::from(&film),
-        blocks: Comparison::from(&blocks),
+        film,
+        blocks,
         smallest_bias: smallest_bias(a, b, level),
     })
 }

@@ -15,7 +15,7 @@ use bidir::sampler::SamplerKind;
 use bidir::scene::Scene;
 use bidir::settings::Request;
 use bidir::view::View;
-use formats::film::{FilmHeader, SceneIdentity, SettingsText};
+use formats::film::{Developed, FilmHeader, SceneIdentity, SettingsText, metadata};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -26,19 +26,16 @@ const SEEDS: u64 = 1 << 40;
 /// The prefixes of the film names of both estimators.
 const NAMES: [&str; 2] = ["picture", "against"];
 
-/// The host of [`make`]: receives progress, may supply a clock, and can stop it.
-pub trait Host: Progress {
+/// The host of [`make`].
+#[derive(Clone, Copy)]
+pub struct Host<'a> {
+    /// Receives progress, and may supply a clock.
+    pub progress: &'a dyn Progress,
     /// Returns true to stop after the running pass; a later [`make`] continues.
-    fn should_end(&self) -> bool {
-        false
-    }
-
+    pub should_end: &'a dyn Fn() -> bool,
     /// Receives the number of samples in existing films.
-    fn found(&self, _samples: u64) {}
+    pub found: &'a dyn Fn(u64),
 }
-
-/// A host without progress and clock, which never stops.
-impl Host for () {}
 
 /// The scene of a reference.
 #[derive(Clone, Copy)]
@@ -116,19 +113,11 @@ impl Plan {
     }
 }
 
-/// The outcome of [`make`].
-#[derive(Clone, Debug)]
-pub enum Made {
-    /// A complete reference; its provenance contains the agreement of its estimators.
-    Whole(Box<Reference>),
-    /// The host asked to stop: the films are written, and the same call continues.
-    Stopped,
-}
-
 /// Makes a reference in `folder`, which is created if needed. Continues from existing films, with the same
 /// bits as a reference made in a single run.
 ///
-/// A reference whose estimators disagree is also written and returned.
+/// A reference whose estimators disagree is also written and returned. None: the host asked to stop; the films
+/// are written, and the same call continues.
 ///
 /// Errors: a file cannot be read or written or is damaged; a film in the folder belongs to another render or
 /// has more passes than requested; a render cannot start.
@@ -137,29 +126,28 @@ pub fn make(
     subject: &Subject<'_>,
     plan: &Plan,
     resources: &Resources,
-    host: &dyn Host,
-) -> Result<Made, Error> {
+    host: Host<'_>,
+) -> Result<Option<Reference>, Error> {
     let films = folder.join(FILMS);
     std::fs::create_dir_all(&films).map_err(|error| Error::io(&films, error))?;
-    let mut made = Vec::with_capacity(2);
-    for (index, settings) in plan.estimators.iter().enumerate() {
+    let replicates = |index: usize| {
         let estimator = Estimator {
             folder,
             subject,
-            settings: seeded(settings, index as u64),
+            settings: seeded(&plan.estimators[index], index as u64),
             name: NAMES[index],
             passes: plan.passes(),
             resources,
         };
-        match estimator.replicates(host)? {
-            Some(replicates) => made.push(replicates),
-            None => return Ok(Made::Stopped),
-        }
-    }
-    let [first, second] = <[Replicates; 2]>::try_from(made)
-        .unwrap_or_else(|_| unreachable!("there are two estimators"));
-    let reference = finish(folder, subject, plan, [&first, &second])?;
-    Ok(Made::Whole(Box::new(reference)))
+        estimator.replicates(host)
+    };
+    let Some(first) = replicates(0)? else {
+        return Ok(None);
+    };
+    let Some(second) = replicates(1)? else {
+        return Ok(None);
+    };
+    finish(folder, subject, plan, [&first, &second]).map(Some)
 }
 
 /// Returns the paths of all files of a reference in `folder`, existing or not.
@@ -201,7 +189,8 @@ fn finish(
     let mut files = BTreeMap::new();
     for (name, replicates) in [PICTURE, AGAINST].into_iter().zip(made) {
         let path = folder.join(name);
-        picture::write(&path, &replicates.header, &replicates.film)?;
+        let (film, metadata) = (&replicates.film, metadata(&replicates.header));
+        Developed::new(film).write_exr(&path, film.settings(), &metadata)?;
         let bytes = std::fs::read(&path).map_err(|error| Error::io(&path, error))?;
         files.insert(name.to_owned(), sha256(&bytes));
     }

@@ -35,8 +35,8 @@ mod replicate;
 #[cfg(test)]
 mod tests;
 
-pub use agreement::{Agreement, Comparison};
-pub use make::{Host, Made, Plan, Subject, clear, files, make};
+pub use agreement::Agreement;
+pub use make::{Host, Plan, Subject, clear, files, make};
 pub use provenance::{EstimatorRecord, FORMAT, Provenance};
 
 use crate::image::{Pixels, digest};
@@ -177,20 +177,6 @@ impl Reference {
             picture,
             variance,
             provenance,
-        })
-    }
-
-    /// Returns a warning if its files have no checksums, so that damage may go unseen.
-    pub fn warning(&self) -> Option<String> {
-        let folder = self.folder.display();
-        (self.provenance.format == provenance::UNSEALED).then(|| {
-            let lacks = !self.folder.join(AGAINST).is_file();
-            let lacks = if lacks {
-                ", and it has no against.exr"
-            } else {
-                ""
-            };
-            format!("{folder}: of a version without checksums: damage in it may go unseen{lacks}")
         })
     }
 

@@ -1,40 +1,15 @@
-//! The image files of a reference.
+//! The images of a reference.
 
 use super::Error;
 use crate::image::Pixels;
-use bidir::film::{Film, Picture};
-use formats::film::FilmHeader;
-use formats::image::{ExrImage, ExrLayer, read_layers, write_exr};
+use bidir::film::Picture;
+use formats::image::read_layers;
 use std::path::Path;
 
 /// Returns the image and the variances of a developed film.
 pub(super) fn of(picture: Picture) -> [Pixels; 2] {
     let size = [picture.width, picture.height];
     [picture.pixels, picture.variance].map(|data| Pixels { size, data })
-}
-
-/// Writes a film as EXR with its layers.
-pub(super) fn write(path: &Path, header: &FilmHeader, film: &Film) -> Result<(), Error> {
-    let (picture, others) = (film.develop(), film.develop_layers());
-    let layers = others.iter().map(|layer| ExrLayer {
-        name: &layer.name,
-        channels: layer.channels,
-        data: &layer.data,
-    });
-    let picture = ExrLayer {
-        name: "",
-        channels: &["R", "G", "B"],
-        data: picture.pixels.as_flattened(),
-    };
-    let (settings, layers) = (film.settings(), layers.collect::<Vec<_>>());
-    let ([left, top], [right, bottom]) = (settings.crop.min, settings.crop.max);
-    let image = ExrImage {
-        resolution: settings.resolution.map(|side| side as usize),
-        crop: [left, top, right, bottom].map(|edge| edge as usize),
-        layers: &[&[picture], &layers[..]].concat(),
-        metadata: &formats::film::metadata(header),
-    };
-    Ok(write_exr(path, &image)?)
 }
 
 /// Reads an image and its variances.

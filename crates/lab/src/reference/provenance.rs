@@ -15,8 +15,6 @@ use std::path::Path;
 
 /// The version of the format of `provenance.json`.
 pub const FORMAT: u32 = 2;
-/// The previous version, without checksums.
-pub(super) const UNSEALED: u32 = 1;
 
 /// The provenance of a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +40,6 @@ pub struct Provenance {
     /// The SHA-256 of the image and its variances.
     pub picture: String,
     /// The SHA-256 of the image files, by name.
-    #[serde(default)]
     pub files: BTreeMap<String, String>,
 }
 
@@ -114,7 +111,7 @@ impl Provenance {
             ));
         }
         let Format { format } = serde_json::from_str(&text).map_err(damaged)?;
-        if ![FORMAT, UNSEALED].contains(&format) {
+        if format != FORMAT {
             let reason =
                 format!("the reference has format {format}; this program reads format {FORMAT}");
             return Err(Error::Refused {
@@ -122,7 +119,7 @@ impl Provenance {
                 reason,
             });
         }
-        if format != UNSEALED && seal::check(&text) == Seal::Missing {
+        if seal::check(&text) == Seal::Missing {
             return Err(Error::damaged(&path, "it has no checksum"));
         }
         serde_json::from_str(&text).map_err(damaged)

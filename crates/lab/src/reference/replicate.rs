@@ -42,7 +42,7 @@ impl Estimator<'_> {
     }
 
     /// Renders the missing passes of all replicates. None: the host asked to stop.
-    pub(super) fn replicates(&self, host: &dyn Host) -> Result<Option<Replicates>, Error> {
+    pub(super) fn replicates(&self, host: Host<'_>) -> Result<Option<Replicates>, Error> {
         let mut all: Option<Replicates> = None;
         for replicate in 0..REPLICATES {
             let path = self.film(replicate);
@@ -82,12 +82,13 @@ impl Estimator<'_> {
         &self,
         path: &Path,
         settings: &Settings,
-        host: &dyn Host,
+        host: Host<'_>,
     ) -> Result<Option<FilmFile>, Error> {
         let untrained = self.subject.identity().header(settings, None);
         let earlier = self.earlier(path, &untrained)?;
         if let Some(file) = &earlier {
-            host.found(file.header.passes.len() * self.subject.view.film().crop.area());
+            let area = self.subject.view.film().crop.area();
+            (host.found)(file.header.passes.len() * area);
         }
         match earlier {
             Some(file) if file.header.passes.len() == self.passes => Ok(Some(file)),
@@ -121,10 +122,10 @@ impl Estimator<'_> {
         path: &Path,
         settings: &Settings,
         earlier: Option<FilmFile>,
-        host: &dyn Host,
+        host: Host<'_>,
     ) -> Result<Option<FilmFile>, Error> {
-        let start = host.nanoseconds();
-        let since = |start| Duration::from_nanos(host.nanoseconds().saturating_sub(start));
+        let start = host.progress.nanoseconds();
+        let since = |start| Duration::from_nanos(host.progress.nanoseconds().saturating_sub(start));
         let mut session = Session::new(
             self.subject.scene,
             self.subject.view,
@@ -147,7 +148,7 @@ impl Estimator<'_> {
         };
         let mut written = start;
         while session.next_pass() < self.passes {
-            if host.should_end() || !session.step(host) {
+            if (host.should_end)() || !session.step(host.progress) {
                 if !session.film().passes().is_empty() {
                     write(&session, Stopping::Time)?;
                 }
@@ -155,7 +156,7 @@ impl Estimator<'_> {
             }
             if since(written) >= WRITE_EVERY {
                 write(&session, Stopping::Time)?;
-                written = host.nanoseconds();
+                written = host.progress.nanoseconds();
             }
         }
         let header = write(&session, Stopping::Fixed)?;

@@ -31,7 +31,7 @@ use crate::markup::{Element, element, script_json};
 use crate::metric::ErrorMap;
 use crate::results::{Claim, Plot, Results, Table};
 use crate::statistics::RATIOS;
-use half::{base64, half_bytes};
+use half::{base64, halves};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -160,7 +160,7 @@ impl<'a> Data<'a> {
         let coded = |layers: &'a BTreeMap<String, Pixels>| {
             let layers = layers.iter();
             layers
-                .map(|(name, pixels)| (name.as_str(), halves(pixels)))
+                .map(|(name, pixels)| (name.as_str(), halves(&pixels.data)))
                 .collect()
         };
         Self {
@@ -198,14 +198,10 @@ impl<'a> Image<'a> {
             name,
             is_reference: image.kind == ImageKind::Reference,
             size: image.pixels.size,
-            halves: halves(&image.pixels),
+            halves: halves(&image.pixels.data),
             flip: image.flip.as_ref().map(flip_bytes),
         }
     }
-}
-
-fn halves(pixels: &Pixels) -> String {
-    base64(&half_bytes(&pixels.data))
 }
 
 /// A byte for each pixel: 254 for an error of 1, 255 for no number.

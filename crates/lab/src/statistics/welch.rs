@@ -20,6 +20,7 @@ use super::students_t;
 use crate::blocks::{Blocks, Tally};
 use crate::image::Pixels;
 use rayon::prelude::*;
+use serde::{Deserialize, Deserializer, Serialize};
 use statrs::distribution::ContinuousCDF;
 
 /// The size of a block that covers any image.
@@ -39,21 +40,43 @@ pub struct Estimated<'a> {
     pub freedom: f64,
 }
 
-/// The most significant difference of two images.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The most significant difference of two images. In JSON, which lacks such numbers, infinities and NaN are
+/// null.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
+    /// The number of tests: three channels of every block.
+    #[serde(default)]
+    pub tests: usize,
     /// The p-value, corrected for the number of tests.
     pub p: f64,
-    /// The number of tests: three channels of every block.
-    pub tests: usize,
     /// Left, top, right and bottom (exclusive) of the block. Unit: pixels.
     pub block: [usize; 4],
     /// Red, green or blue: 0, 1 or 2.
     pub channel: usize,
     /// The means of both images over the block.
+    #[serde(deserialize_with = "numbers")]
     pub means: [f64; 2],
     /// Their difference. Unit: standard errors.
+    #[serde(deserialize_with = "number")]
     pub deviations: f64,
+}
+
+impl Difference {
+    /// Returns the name of the channel.
+    pub fn channel_name(&self) -> &'static str {
+        ["red", "green", "blue"][self.channel % 3]
+    }
+}
+
+/// Reads a number; null is NaN.
+fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
+}
+
+/// Reads two numbers; null is NaN.
+fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+    let numbers = <[Option<f64>; 2]>::deserialize(from)?;
+    Ok(numbers.map(|number| number.unwrap_or(f64::NAN)))
 }
 
 /// Compares images with variances, in blocks of `block` × `block` pixels.
@@ -171,8 +194,8 @@ fn worst(blocks: Blocks, a: &[Moments], b: &[Moments]) -> Option<Difference> {
     let smallest = tests.iter().enumerate();
     let (index, &(p, deviations)) = smallest.min_by(|x, y| x.1.0.total_cmp(&y.1.0))?;
     Some(Difference {
-        p: corrected(p, tests.len()),
         tests: tests.len(),
+        p: corrected(p, tests.len()),
         block: blocks.place(index),
         channel: index % 3,
         means: [a[index].mean, b[index].mean],

@@ -48,24 +48,21 @@ struct Screen {
 /// Reads the camera, or returns the format's default.
 pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
     let Some(camera) = &context.document.camera else {
-        let place = (&*context, &Transforms::default());
-        return Ok(CameraSettings::default_at(SourceMap::BEGINNING, place));
+        let transforms = Transforms::default();
+        return Ok(CameraSettings::default_at(
+            SourceMap::BEGINNING,
+            context,
+            &transforms,
+        ));
     };
     if camera.transforms.is_animated() {
-        context.unsupported(
-            camera.entity.span,
-            "a moving camera",
-            "its first position is used",
-        )?;
+        let span = camera.entity.span;
+        context.unsupported(span, "a moving camera", "its first position is used")?;
     }
-    if let Some(medium) = &camera.medium.outside {
-        context.unsupported(
-            medium.span,
-            "a participating medium",
-            "vacuum is used instead",
-        )?;
-    }
-    let mut reader = Reader::new(&camera.entity);
+    context.refuse_medium(camera.medium.outside.as_ref())?;
+    let span = camera.entity.span;
+    let default = CameraSettings::default_at(span, context, &camera.transforms);
+    let mut reader = Reader::new(context, &camera.entity);
     let view = match camera.entity.kind.as_str() {
         "perspective" => View::Perspective {
             fov: reader.float_within("fov", 90.0, [1e-3, 179.999])?,
@@ -80,9 +77,8 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
         }
         kind => {
             let what = format!("the camera `{kind}`");
-            context.unsupported(camera.entity.span, &what, "`perspective` is used instead")?;
-            let place = (&*context, &camera.transforms);
-            return Ok(CameraSettings::default_at(camera.entity.span, place));
+            (reader.context).unsupported(span, &what, "`perspective` is used instead")?;
+            return Ok(default);
         }
     };
     let exposure_time = exposure_time(&mut reader)?;
@@ -90,11 +86,11 @@ pub(super) fn read(context: &mut Context<'_>) -> Result<CameraSettings, Fault> {
     Ok(CameraSettings {
         exposure_time,
         view,
-        ..CameraSettings::default_at(camera.entity.span, (context, &camera.transforms))
+        ..default
     })
 }
 
-fn exposure_time(reader: &mut Reader<'_>) -> Result<f32, Fault> {
+fn exposure_time(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
     let open = reader.float("shutteropen", 0.0)?;
     let close = reader.float("shutterclose", 1.0)?;
     if close > open {
@@ -104,7 +100,7 @@ fn exposure_time(reader: &mut Reader<'_>) -> Result<f32, Fault> {
     Err(Fault::scene(reader.span(), message))
 }
 
-fn mapping(reader: &mut Reader<'_>) -> Result<SphericalMapping, Fault> {
+fn mapping(reader: &mut Reader<'_, '_>) -> Result<SphericalMapping, Fault> {
     match reader.string("mapping")? {
         None | Some(("equalarea", _)) => Ok(SphericalMapping::EqualArea),
         Some(("equirectangular", _)) => Ok(SphericalMapping::Equirectangular),
@@ -116,7 +112,7 @@ fn mapping(reader: &mut Reader<'_>) -> Result<SphericalMapping, Fault> {
 }
 
 impl Screen {
-    fn read(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+    fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
         let window = reader.floats(ParameterType::Float, "screenwindow");
         let span = reader.span();
         let wrong = |_| Fault::scene(span, "`screenwindow` needs left, right, bottom and top");
@@ -147,7 +143,7 @@ impl Screen {
 
 impl CameraSettings {
     /// Returns the format's default camera with a transformation.
-    fn default_at(span: Span, (context, camera_from_world): (&Context<'_>, &Transforms)) -> Self {
+    fn default_at(span: Span, context: &Context<'_>, camera_from_world: &Transforms) -> Self {
         let world_from_camera = camera_from_world.inverse();
         Self {
             exposure_time: 1.0,

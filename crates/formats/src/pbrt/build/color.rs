@@ -1,6 +1,5 @@
 //! Converts colours of any type to linear Rec. 709.
 
-use super::context::Context;
 use super::reader::{Reader, three};
 use super::spectral;
 use crate::error::ErrorKind;
@@ -34,15 +33,14 @@ impl Purpose {
 
 /// Reads a colour given as `rgb`, `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     name: &'static str,
     purpose: Purpose,
 ) -> Result<Option<Rgb>, Fault> {
     if let Some(parameter) = reader.find(ParameterType::Rgb, name) {
         return rgb(parameter, purpose).map(Some);
     }
-    let Some((spectrum, parameter)) = spectral::read(context, reader, name)? else {
+    let Some((spectrum, parameter)) = spectral::read(reader, name)? else {
         return Ok(None);
     };
     of_spectrum(&spectrum, parameter, purpose).map(Some)

@@ -32,8 +32,8 @@ pub(super) struct AreaEmission {
 
 impl AreaEmission {
     pub(super) fn read(context: &mut Context<'_>, entity: &Entity) -> Result<Self, Fault> {
-        let mut reader = Reader::new(entity);
-        let radiance = color::read(context, &mut reader, "L", Purpose::Illuminant)?;
+        let mut reader = Reader::new(context, entity);
+        let radiance = color::read(&mut reader, "L", Purpose::Illuminant)?;
         let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
         let power = reader.optional_float("power")?.filter(|&power| power > 0.0);
         let sides = if reader.bool("twosided", false)? {
@@ -41,7 +41,7 @@ impl AreaEmission {
         } else {
             EmissionSides::Front
         };
-        let pattern = pattern(context, &mut reader)?;
+        let pattern = pattern(&mut reader)?;
         if radiance.is_some() && pattern.is_some() {
             let message = "an area light has `L` or `filename`, not both";
             return Err(Fault::scene(reader.span(), message));
@@ -108,14 +108,11 @@ impl AreaEmission {
 }
 
 /// Reads the image of a light over its shape. None: the emission is uniform.
-fn pattern(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Option<(ColorTexture, f32)>, Fault> {
+fn pattern(reader: &mut Reader<'_, '_>) -> Result<Option<(ColorTexture, f32)>, Fault> {
     let Some((name, span)) = reader.string("filename")? else {
         return Ok(None);
     };
-    let image = light::radiance_image(context, name, span)?;
+    let image = light::radiance_image(reader.context, name, span)?;
     let texels = image.texels().iter().copied();
     let brightest = texels.clone().flatten().fold(0.0, f32::max);
     color::check_emission(span, [brightest; 3])?;

@@ -34,27 +34,25 @@ pub(super) fn build(
     let default = default_film();
     let film = context.document.film.as_ref().unwrap_or(&default);
     let span = film.entity.span;
-    let mut reader = Reader::new(&film.entity);
     if film.color_space != ColorSpace::Srgb {
-        context.warn(
-            span,
-            "the image has the primaries of sRGB, not those of its `ColorSpace`",
-        );
+        let message = "the image has the primaries of sRGB, not those of its `ColorSpace`";
+        context.warn(span, message);
     }
-    let aovs = film_kind(context, &mut reader, &film.entity)?;
+    let mut reader = Reader::new(context, &film.entity);
+    let aovs = film_kind(&mut reader, &film.entity)?;
     let own = [
         reader.integer("xresolution", 1280, 1)?,
         reader.integer("yresolution", 720, 1)?,
     ];
-    let resolution = context.options.resolution(own, span)?;
+    let resolution = reader.context.options.resolution(own, span)?;
     let mut settings = FilmSettings::new(resolution, filter);
     let described = read_crop(&mut reader, own, resolution)?;
-    settings.crop = context.options.crop(described, resolution, span)?;
+    settings.crop = reader.context.options.crop(described, resolution, span)?;
     settings.exposure = exposure(&mut reader, camera)?;
-    settings.sensor = sensor::build(context, &mut reader, settings.exposure)?;
+    settings.sensor = sensor::build(&mut reader, settings.exposure)?;
     let output = reader.string("filename")?.map(|(name, _)| name.to_owned());
-    reader.ignore(context, ParameterType::Bool, "savefp16");
-    reader.ignore(context, ParameterType::Float, "diagonal");
+    reader.ignore(ParameterType::Bool, "savefp16");
+    reader.ignore(ParameterType::Float, "diagonal");
     reader.finish()?;
     warn_of_stretching(context, span, own, resolution);
     Ok(BuiltFilm {
@@ -78,7 +76,7 @@ fn default_film() -> FilmDescription {
 }
 
 /// The factor of light.
-fn exposure(reader: &mut Reader<'_>, camera: &CameraSettings) -> Result<f32, Fault> {
+fn exposure(reader: &mut Reader<'_, '_>, camera: &CameraSettings) -> Result<f32, Fault> {
     let iso = reader.float_within("iso", 100.0, [0.0, f32::MAX])?;
     let exposure = camera.exposure_time * iso / 100.0;
     if exposure.is_finite() {
@@ -116,11 +114,7 @@ const GBUFFER: [Aov; 5] = [
 ];
 
 /// Returns the layers of this type of film.
-fn film_kind(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    film: &Entity,
-) -> Result<Vec<Aov>, Fault> {
+fn film_kind(reader: &mut Reader<'_, '_>, film: &Entity) -> Result<Vec<Aov>, Fault> {
     match film.kind.as_str() {
         "rgb" => Ok(Vec::new()),
         "gbuffer" => {
@@ -128,10 +122,8 @@ fn film_kind(
             match space.map_or(("camera", film.span), |space| space) {
                 ("world", _) => {}
                 ("camera", span) => {
-                    context.warn(
-                        span,
-                        "positions and normals of the image are in world space",
-                    );
+                    let message = "positions and normals of the image are in world space";
+                    reader.context.warn(span, message);
                 }
                 (name, span) => {
                     let message = format!("unknown coordinate system `{}`", shorten(name));
@@ -139,21 +131,16 @@ fn film_kind(
                     return Err(fault.with_nearest(name, ["camera", "world"]));
                 }
             }
-            context.warn(
-                film.span,
-                "the image has no channels `dzdx`, `dzdy`, `u` and `v`",
-            );
+            let message = "the image has no channels `dzdx`, `dzdy`, `u` and `v`";
+            reader.context.warn(film.span, message);
             Ok(GBUFFER.to_vec())
         }
         kind => {
-            context.unsupported(
-                film.span,
-                &format!("the film `{kind}`"),
-                "`rgb` is used instead",
-            )?;
-            reader.ignore(context, ParameterType::Integer, "nbuckets");
-            reader.ignore(context, ParameterType::Float, "lambdamin");
-            reader.ignore(context, ParameterType::Float, "lambdamax");
+            let what = format!("the film `{kind}`");
+            (reader.context).unsupported(film.span, &what, "`rgb` is used instead")?;
+            reader.ignore(ParameterType::Integer, "nbuckets");
+            reader.ignore(ParameterType::Float, "lambdamin");
+            reader.ignore(ParameterType::Float, "lambdamax");
             Ok(Vec::new())
         }
     }
@@ -162,7 +149,7 @@ fn film_kind(
 /// Reads `cropwindow`, else `pixelbounds`, which counts pixels of the film's `own` resolution. None: the
 /// file has neither.
 fn read_crop(
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     own: [u32; 2],
     resolution: [u32; 2],
 ) -> Result<Option<Crop>, Fault> {

@@ -31,7 +31,7 @@ pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Resul
         let kind = FilterKind::Gaussian { sigma: 0.5 };
         return Ok(Filter::new(kind, Vec2::splat(1.5)));
     };
-    let mut reader = Reader::new(entity);
+    let mut reader = Reader::new(context, entity);
     let (kind, radius) = read_kind(&mut reader, entity)?;
     let radius = Vec2::new(
         reader.float_within("xradius", radius, RADII)?,
@@ -56,7 +56,7 @@ pub(super) fn build(context: &mut Context<'_>, camera: &CameraSettings) -> Resul
 }
 
 /// Reads the kind of a filter. Returns it with its default radius.
-fn read_kind(reader: &mut Reader<'_>, entity: &Entity) -> Result<(FilterKind, f32), Fault> {
+fn read_kind(reader: &mut Reader<'_, '_>, entity: &Entity) -> Result<(FilterKind, f32), Fault> {
     Ok(match entity.kind.as_str() {
         "box" => (FilterKind::Box, 0.5),
         "triangle" => (FilterKind::Triangle, 2.0),

@@ -10,7 +10,7 @@ use crate::source::Fault;
 const LONGEST: usize = 64;
 
 /// Reads the name of the light's group. None: the light is in the default group of its kind.
-pub(super) fn read(reader: &mut Reader<'_>) -> Result<Option<String>, Fault> {
+pub(super) fn read(reader: &mut Reader<'_, '_>) -> Result<Option<String>, Fault> {
     let Some((name, span)) = reader.string("lightgroup")? else {
         return Ok(None);
     };

@@ -32,9 +32,8 @@ pub(super) struct ImageFile {
 
 impl ImageSettings {
     pub(super) fn read(
-        context: &mut Context<'_>,
         texture: &TextureDescription,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
     ) -> Result<Self, Fault> {
         let Some((name, span)) = reader.string("filename")? else {
             return Err(Fault::scene(
@@ -53,14 +52,14 @@ impl ImageSettings {
             Change::Scale(scale)
         };
         let wrap = read_wrap(reader)?;
-        let filter = read_filter(context, reader)?;
-        reader.ignore(context, ParameterType::Float, "maxanisotropy");
+        let filter = read_filter(reader)?;
+        reader.ignore(ParameterType::Float, "maxanisotropy");
         let file = ImageFile {
-            path: context.document.resolve(name),
+            path: reader.context.document.resolve(name),
             span,
             encoding,
         };
-        let mapping = mapping::read(context, texture, reader)?;
+        let mapping = mapping::read(texture, reader)?;
         Ok(Self {
             file,
             change,
@@ -112,7 +111,7 @@ fn parse_encoding(name: &str, span: Span) -> Result<Encoding, Fault> {
     }
 }
 
-fn read_wrap(reader: &mut Reader<'_>) -> Result<Wrap, Fault> {
+fn read_wrap(reader: &mut Reader<'_, '_>) -> Result<Wrap, Fault> {
     let Some((name, span)) = reader.string("wrap")? else {
         return Ok(Wrap::all(Beyond::Repeat));
     };
@@ -128,7 +127,7 @@ fn read_wrap(reader: &mut Reader<'_>) -> Result<Wrap, Fault> {
     }
 }
 
-fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<ImageFilter, Fault> {
+fn read_filter(reader: &mut Reader<'_, '_>) -> Result<ImageFilter, Fault> {
     let Some((name, span)) = reader.string("filter")? else {
         return Ok(ImageFilter::Bilinear);
     };
@@ -137,10 +136,8 @@ fn read_filter(context: &mut Context<'_>, reader: &mut Reader<'_>) -> Result<Ima
         "bilinear" => Ok(ImageFilter::Bilinear),
         "trilinear" => Ok(ImageFilter::Trilinear),
         "ewa" | "EWA" => {
-            context.warn(
-                span,
-                format!("the texture filter `{name}` is replaced by `trilinear`"),
-            );
+            let message = format!("the texture filter `{name}` is replaced by `trilinear`");
+            reader.context.warn(span, message);
             Ok(ImageFilter::Trilinear)
         }
         _ => {

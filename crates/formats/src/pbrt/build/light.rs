@@ -21,31 +21,20 @@ pub(super) fn build(
 ) -> Result<Option<(Light, Option<String>)>, Fault> {
     let span = light.entity.span;
     if light.transforms.is_animated() {
-        context.warn(
-            span,
-            "lights cannot move: the first position of the light is used",
-        );
+        let message = "lights cannot move: the first position of the light is used";
+        context.warn(span, message);
     }
-    if let Some(medium) = &light.medium.outside {
-        context.unsupported(
-            medium.span,
-            "a participating medium",
-            "vacuum is used instead",
-        )?;
-    }
+    context.refuse_medium(light.medium.outside.as_ref())?;
     let world_from_light = &light.transforms.start;
-    let mut reader = Reader::new(&light.entity);
+    let mut reader = Reader::new(context, &light.entity);
     let built = match light.entity.kind.as_str() {
-        "point" => Light::Point(point(context, &mut reader, world_from_light)?),
-        "spot" => Light::Spot(spot(context, &mut reader, world_from_light)?),
-        "distant" => Light::Distant(distant(context, &mut reader, world_from_light)?),
-        "infinite" => Light::Infinite(infinite(context, &mut reader, world_from_light)?),
+        "point" => Light::Point(point(&mut reader, world_from_light)?),
+        "spot" => Light::Spot(spot(&mut reader, world_from_light)?),
+        "distant" => Light::Distant(distant(&mut reader, world_from_light)?),
+        "infinite" => Light::Infinite(infinite(&mut reader, world_from_light)?),
         kind => {
-            context.unsupported(
-                span,
-                &format!("the light source `{kind}`"),
-                "it is left out",
-            )?;
+            let what = format!("the light source `{kind}`");
+            (reader.context).unsupported(span, &what, "it is left out")?;
             return Ok(None);
         }
     };
@@ -56,17 +45,17 @@ pub(super) fn build(
 
 /// Reads the colour `name` times `scale`, and times `power` / `per_unit` if the file gives power.
 fn emission(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     name: &'static str,
-    (power, per_unit): (&'static str, f32),
+    power: &'static str,
+    per_unit: f32,
 ) -> Result<Rgb, Fault> {
-    let color = color::read(context, reader, name, Purpose::Illuminant)?.unwrap_or([1.0; 3]);
-    let factor = factor(reader, (power, per_unit))?;
+    let color = color::read(reader, name, Purpose::Illuminant)?.unwrap_or([1.0; 3]);
+    let factor = factor(reader, power, per_unit)?;
     color::check_emission(reader.span(), color.map(|channel| channel * factor))
 }
 
-fn factor(reader: &mut Reader<'_>, (power, per_unit): (&'static str, f32)) -> Result<f32, Fault> {
+fn factor(reader: &mut Reader<'_, '_>, power: &'static str, per_unit: f32) -> Result<f32, Fault> {
     let scale = reader.float_within("scale", 1.0, [0.0, f32::MAX])?;
     let power = reader.optional_float(power)?.filter(|&power| power > 0.0);
     Ok(power.map_or(scale, |power| scale * power / per_unit))
@@ -76,42 +65,31 @@ fn vector(p: [f32; 3]) -> DVec3 {
     DVec3::from(p.map(f64::from))
 }
 
-fn point(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    world_from_light: &DAffine3,
-) -> Result<PointLight, Fault> {
-    let intensity = intensity(context, reader, 4.0 * PI)?;
+fn point(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<PointLight, Fault> {
+    let intensity = intensity(reader, 4.0 * PI)?;
     let from = vector(reader.point3("from", [0.0; 3])?);
     let position = world_from_light.transform_point3(from);
     Ok(PointLight {
-        position: position_of(context, reader.span(), position)?,
+        position: position_of(reader, position)?,
         intensity,
     })
 }
 
 /// Reads the intensity of a point light, whose power is spread over a solid angle.
-fn intensity(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    solid_angle: f32,
-) -> Result<Rgb, Fault> {
-    let intensity = emission(context, reader, "I", ("power", solid_angle))?;
-    Ok(intensity.map(|channel| context.layout.space.intensity(channel)))
+fn intensity(reader: &mut Reader<'_, '_>, solid_angle: f32) -> Result<Rgb, Fault> {
+    let intensity = emission(reader, "I", "power", solid_angle)?;
+    Ok(intensity.map(|channel| reader.context.layout.space.intensity(channel)))
 }
 
 /// Maps a point from the world to the render space.
-fn position_of(context: &Context<'_>, span: Span, world: DVec3) -> Result<Vec3, Fault> {
-    shape::check_point(span, world)?;
-    Ok(context
-        .layout
-        .render_from_world()
-        .transform_point3(world)
-        .as_vec3())
+fn position_of(reader: &Reader<'_, '_>, world: DVec3) -> Result<Vec3, Fault> {
+    shape::check_point(reader.span(), world)?;
+    let from_world = reader.context.layout.render_from_world();
+    Ok(from_world.transform_point3(world).as_vec3())
 }
 
 /// Reads the position of a light and the world direction of its axis.
-fn aim(reader: &mut Reader<'_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
+fn aim(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<(DVec3, Vec3), Fault> {
     let from = vector(reader.point3("from", [0.0; 3])?);
     let to = vector(reader.point3("to", [0.0, 0.0, 1.0])?);
     let direction = world_from_light
@@ -127,28 +105,23 @@ fn aim(reader: &mut Reader<'_>, world_from_light: &DAffine3) -> Result<(DVec3, V
     Ok((world_from_light.transform_point3(from), direction))
 }
 
-fn spot(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    world_from_light: &DAffine3,
-) -> Result<SpotLight, Fault> {
+fn spot(reader: &mut Reader<'_, '_>, world_from_light: &DAffine3) -> Result<SpotLight, Fault> {
     let end = reader.float_within("coneangle", 30.0, [1e-3, 180.0])?;
     let full = (end - reader.float_within("conedeltaangle", 5.0, [0.0, 180.0])?).max(0.0);
     let [full, end] = [full, end].map(f32::to_radians);
     let (cos_full, cos_end) = (libm::cosf(full), libm::cosf(end));
     let solid_angle = 2.0 * PI * ((1.0 - cos_full) + (cos_full - cos_end) / 2.0);
-    let intensity = intensity(context, reader, solid_angle)?;
+    let intensity = intensity(reader, solid_angle)?;
     let (position, axis) = aim(reader, world_from_light)?;
-    let position = position_of(context, reader.span(), position)?;
+    let position = position_of(reader, position)?;
     Ok(SpotLight::new(position, axis, intensity, [full, end]))
 }
 
 fn distant(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     world_from_light: &DAffine3,
 ) -> Result<DistantLight, Fault> {
-    let irradiance = emission(context, reader, "L", ("illuminance", 1.0))?;
+    let irradiance = emission(reader, "L", "illuminance", 1.0)?;
     let (_, direction) = aim(reader, world_from_light)?;
     Ok(DistantLight {
         to_light: -direction,
@@ -157,29 +130,28 @@ fn distant(
 }
 
 fn infinite(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     world_from_light: &DAffine3,
 ) -> Result<InfiniteLight, Fault> {
-    let portal = (ParameterType::Point3, "portal");
-    reader.unsupported(context, portal, "light comes from everywhere")?;
+    let everywhere = "light comes from everywhere";
+    reader.unsupported(ParameterType::Point3, "portal", everywhere)?;
     let Some((name, span)) = reader.string("filename")? else {
         return Ok(InfiniteLight::constant(emission(
-            context,
             reader,
             "L",
-            ("illuminance", PI),
+            "illuminance",
+            PI,
         )?));
     };
-    if color::read(context, reader, "L", Purpose::Illuminant)?.is_some() {
+    if color::read(reader, "L", Purpose::Illuminant)?.is_some() {
         let message = "an infinite light has `L` or `filename`, not both";
         return Err(Fault::scene(reader.span(), message));
     }
-    let image = environment(context, name, span)?;
-    let scale = factor(reader, ("illuminance", illuminance(&image)))?;
+    let image = environment(reader.context, name, span)?;
+    let scale = factor(reader, "illuminance", illuminance(&image))?;
     let brightest = image.texels().iter().flatten().copied().fold(0.0, f32::max);
     color::check_emission(reader.span(), [brightest * scale; 3])?;
-    let rotation = rotation(context, reader.span(), &world_from_light.matrix3)?;
+    let rotation = rotation(reader, &world_from_light.matrix3)?;
     Ok(InfiniteLight::image(image, scale, rotation))
 }
 
@@ -235,7 +207,7 @@ fn illuminance(image: &Image<3>) -> f32 {
 }
 
 /// Returns the rotation or reflection of a map; a uniform scale has no effect on directions.
-fn rotation(context: &mut Context<'_>, span: Span, matrix: &DMat3) -> Result<Mat3, Fault> {
+fn rotation(reader: &mut Reader<'_, '_>, matrix: &DMat3) -> Result<Mat3, Fault> {
     let scale = matrix.x_axis.length();
     let scaled = *matrix * (1.0 / scale);
     let difference = scaled.transpose() * scaled - DMat3::IDENTITY;
@@ -244,7 +216,8 @@ fn rotation(context: &mut Context<'_>, span: Span, matrix: &DMat3) -> Result<Mat
         .iter()
         .any(|entry| entry.abs() > 1e-3)
     {
-        context.unsupported(span, "an environment that is sheared", "it is not rotated")?;
+        let what = "an environment that is sheared";
+        (reader.context).unsupported(reader.span(), what, "it is not rotated")?;
         return Ok(Mat3::IDENTITY);
     }
     Ok(scaled.as_mat3())

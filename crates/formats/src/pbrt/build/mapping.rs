@@ -39,8 +39,9 @@ pub(super) fn space(
 /// Reads a direction of texture space. Returns the unit vector in the world.
 pub(super) fn direction(
     texture: &TextureDescription,
-    reader: &mut Reader<'_>,
-    (name, default): (&'static str, Vec3),
+    reader: &mut Reader<'_, '_>,
+    name: &'static str,
+    default: Vec3,
 ) -> Result<Vec3, Fault> {
     let local = vector(reader, name, default)?;
     let world = texture.transforms.start.transform_vector3(local.as_dvec3());
@@ -53,9 +54,8 @@ pub(super) fn direction(
 
 /// Reads the map from points of a surface to those of a texture of two dimensions.
 pub(super) fn read(
-    context: &mut Context<'_>,
     texture: &TextureDescription,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
 ) -> Result<Mapping, Fault> {
     match reader.string("mapping")? {
         None | Some(("uv", _)) => {
@@ -63,14 +63,14 @@ pub(super) fn read(
             let offset = offset(reader)?;
             Ok(Mapping::Parameters { scale, offset })
         }
-        Some(("spherical", _)) => Ok(Mapping::Spherical(space(context, texture)?)),
-        Some(("cylindrical", _)) => Ok(Mapping::Cylindrical(space(context, texture)?)),
+        Some(("spherical", _)) => Ok(Mapping::Spherical(space(reader.context, texture)?)),
+        Some(("cylindrical", _)) => Ok(Mapping::Cylindrical(space(reader.context, texture)?)),
         Some(("planar", _)) => {
             let vectors = [
                 vector(reader, "v1", Vec3::X)?,
                 vector(reader, "v2", Vec3::Y)?,
             ];
-            let from_world: Affine3A = from_world(context, texture)?.as_affine3a();
+            let from_world: Affine3A = from_world(reader.context, texture)?.as_affine3a();
             Ok(Mapping::planar(&from_world, vectors, offset(reader)?))
         }
         Some((name, span)) => {
@@ -80,14 +80,14 @@ pub(super) fn read(
     }
 }
 
-fn offset(reader: &mut Reader<'_>) -> Result<Vec2, Fault> {
+fn offset(reader: &mut Reader<'_, '_>) -> Result<Vec2, Fault> {
     Ok(Vec2::new(
         reader.float("udelta", 0.0)?,
         reader.float("vdelta", 0.0)?,
     ))
 }
 
-fn vector(reader: &mut Reader<'_>, name: &'static str, default: Vec3) -> Result<Vec3, Fault> {
+fn vector(reader: &mut Reader<'_, '_>, name: &'static str, default: Vec3) -> Result<Vec3, Fault> {
     let values = reader.triple(ParameterType::Vector3, name, default.to_array())?;
     Ok(Vec3::from(values))
 }

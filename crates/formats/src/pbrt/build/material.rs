@@ -10,7 +10,7 @@ use super::texture::Textures;
 use crate::pbrt::known;
 use crate::pbrt::lexer::shorten;
 use crate::pbrt::parameters::{ParameterType, Values};
-use crate::pbrt::scene::{Entity, MaterialDescription};
+use crate::pbrt::scene::MaterialDescription;
 use crate::source::{Fault, Span};
 use bidir::material::{
     Bitangent, CLEAR, CoatSettings, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex,
@@ -56,44 +56,42 @@ impl<'a> Materials<'a> {
         let Some(entity) = described[index].entity.as_ref() else {
             return Ok(Some(grey()));
         };
-        let mut reader = Reader::new(entity);
+        let mut parameters = Parameters {
+            textures,
+            reader: Reader::new(context, entity),
+        };
         let material = match entity.kind.as_str() {
-            "diffuse" => diffuse(context, textures, &mut reader)?,
-            "diffusetransmission" => diffuse_transmission(context, textures, &mut reader)?,
-            "conductor" => conductor(context, textures, &mut reader)?,
-            "dielectric" => dielectric(context, textures, &mut reader)?,
+            "diffuse" => parameters.diffuse()?,
+            "diffusetransmission" => parameters.diffuse_transmission()?,
+            "conductor" => parameters.conductor()?,
+            "dielectric" => parameters.dielectric()?,
             "thindielectric" => Material::ThinDielectric {
-                eta: spectral::read_eta(context, &mut reader, "eta")?,
+                eta: spectral::read_eta(&mut parameters.reader, "eta")?,
             },
-            "coateddiffuse" => coated_diffuse(context, textures, &mut reader)?,
-            "coatedconductor" => coated_conductor(context, textures, &mut reader)?,
+            "coateddiffuse" => parameters.coated_diffuse()?,
+            "coatedconductor" => parameters.coated_conductor()?,
             "mix" => {
-                let material = self.mix(context, textures, index, &mut reader)?;
-                reader.finish()?;
+                let material = self.mix(&mut parameters, index)?;
+                parameters.reader.finish()?;
                 return Ok(Some(material));
             }
             "interface" | "none" | "" => {
-                reader.finish()?;
+                parameters.reader.finish()?;
                 return Ok(None);
             }
-            _ => return substitute(context, textures, entity),
+            kind => return parameters.substitute(kind).map(Some),
         };
-        let relief = relief(context, textures, &mut reader)?;
-        reader.finish()?;
+        let relief = parameters.relief()?;
+        parameters.reader.finish()?;
         Ok(Some(match relief {
             Some(relief) => material.embossed(relief),
             None => material,
         }))
     }
 
-    fn mix(
-        &mut self,
-        context: &mut Context<'_>,
-        textures: &mut Textures<'_>,
-        index: usize,
-        reader: &mut Reader<'_>,
-    ) -> Result<Material, Fault> {
-        let amount = textures.float(context, reader, "amount")?;
+    fn mix(&mut self, from: &mut Parameters<'_, '_, '_>, index: usize) -> Result<Material, Fault> {
+        let amount = from.float("amount", 0.5)?;
+        let reader = &mut from.reader;
         let Some(parameter) = reader.find(ParameterType::String, "materials") else {
             let message = "the parameter `string materials` is missing";
             return Err(Fault::scene(reader.span(), message));
@@ -106,20 +104,19 @@ impl<'a> Materials<'a> {
             return Err(Fault::scene(span, message));
         };
         self.open.push(index);
-        let parts = [first, second].map(|name| self.part(context, textures, name, span));
+        let parts = [first, second].map(|name| self.part(from, name, span));
         self.open.pop();
         let [first, second] = parts;
         Ok(Material::Mix(Arc::new(Mixture {
             materials: [first?, second?],
-            amount: amount.unwrap_or(FloatTexture::Constant(0.5)),
+            amount,
         })))
     }
 
     /// Builds the part `name` of a mixture.
     fn part(
         &mut self,
-        context: &mut Context<'_>,
-        textures: &mut Textures<'_>,
+        from: &mut Parameters<'_, '_, '_>,
         name: &str,
         span: Span,
     ) -> Result<Material, Fault> {
@@ -135,7 +132,8 @@ impl<'a> Materials<'a> {
             let message = format!("mixtures are nested deeper than {DEEPEST}");
             return Err(Fault::scene(span, message));
         }
-        self.build(context, textures, index)?.ok_or_else(|| {
+        let part = self.build(from.reader.context, from.textures, index)?;
+        part.ok_or_else(|| {
             let message = format!("the material `{}` is not a surface", shorten(name));
             Fault::scene(span, message).with_hint("a mixture needs two surfaces")
         })
@@ -151,24 +149,6 @@ fn grey() -> Material {
     }
 }
 
-/// Reads the normal map, or else the bump map, which is a texture of heights.
-fn relief(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Option<Relief>, Fault> {
-    let height = textures.float(context, reader, "displacement")?;
-    let normals = textures.normals(context, reader, "normalmap")?;
-    if let Some(texture) = normals {
-        return Ok(Some(Relief::NormalMap(NormalMap {
-            texture,
-            scale: 1.0,
-            bitangent: Bitangent::RightHanded,
-        })));
-    }
-    Ok(height.map(|height| Relief::Displacement(in_space(height, &context.layout.space))))
-}
-
 /// Converts heights from the world to the unit of a space.
 fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
     if *space == RenderSpace::WORLD {
@@ -178,142 +158,6 @@ fn in_space(height: FloatTexture, space: &RenderSpace) -> FloatTexture {
         texture: height,
         factor: FloatTexture::Constant((1.0 / space.unit) as f32),
     }))
-}
-
-fn diffuse(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    Ok(Material::Diffuse {
-        reflectance: reflectance.unwrap_or(ColorTexture::Constant([0.5; 3])),
-    })
-}
-
-fn diffuse_transmission(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    let quarter = ColorTexture::Constant([0.25; 3]);
-    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    let transmittance = textures.color(context, reader, "transmittance", Purpose::Albedo)?;
-    Ok(Material::DiffuseTransmission {
-        reflectance: reflectance.unwrap_or_else(|| quarter.clone()),
-        transmittance: transmittance.unwrap_or(quarter),
-        scale: reader.float_within("scale", 1.0, [0.0, f32::MAX])?,
-    })
-}
-
-fn conductor(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    Ok(Material::Conductor {
-        index: conductor_index(context, textures, reader, ["eta", "k"])?,
-        roughness: roughness(context, textures, reader, &SURFACE)?,
-    })
-}
-
-/// Reads the index of refraction of a metal, whose parts are called `eta` and `k`.
-fn conductor_index(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-    [eta, k]: [&'static str; 2],
-) -> Result<ConductorIndex, Fault> {
-    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    if let Some(reflectance) = reflectance {
-        let kinds = [
-            ParameterType::Texture,
-            ParameterType::Spectrum,
-            ParameterType::Rgb,
-        ];
-        let mut is_given = |name| kinds.iter().any(|&kind| reader.find(kind, name).is_some());
-        if is_given(eta) || is_given(k) {
-            let message = format!("a conductor has `reflectance` or `{eta}` and `{k}`, not both");
-            return Err(Fault::scene(reader.span(), message));
-        }
-        return Ok(ConductorIndex::Reflectance(reflectance));
-    }
-    if let Some((eta, k)) = spectral::read_metal(context, reader, [eta, k])? {
-        return Ok(ConductorIndex::Complex {
-            eta: ColorTexture::Constant(eta),
-            k: ColorTexture::Constant(k),
-        });
-    }
-    let (of_copper, k_of_copper) = spectral::copper();
-    let mut part = |name, copper| -> Result<ColorTexture, Fault> {
-        let given = textures.color(context, reader, name, Purpose::Unbounded)?;
-        Ok(given.unwrap_or(ColorTexture::Constant(copper)))
-    };
-    Ok(ConductorIndex::Complex {
-        eta: part(eta, of_copper)?,
-        k: part(k, k_of_copper)?,
-    })
-}
-
-fn dielectric(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    let eta = spectral::read_eta(context, reader, "eta")?;
-    Ok(Material::Dielectric {
-        eta,
-        roughness: roughness(context, textures, reader, &SURFACE)?,
-    })
-}
-
-fn coated_diffuse(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    let reflectance = textures.color(context, reader, "reflectance", Purpose::Albedo)?;
-    let coat = coat(context, textures, reader, ("eta", &SURFACE))?;
-    let reflectance = reflectance.unwrap_or(ColorTexture::Constant([0.5; 3]));
-    Ok(Material::CoatedDiffuse(CoatedDiffuseMaterial::new(
-        coat,
-        reflectance,
-    )))
-}
-
-fn coated_conductor(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<Material, Fault> {
-    let names = ["conductor.eta", "conductor.k"];
-    let index = conductor_index(context, textures, reader, names)?;
-    let of_metal = roughness(context, textures, reader, &METAL)?;
-    let coat = coat(context, textures, reader, ("interface.eta", &INTERFACE))?;
-    Ok(Material::CoatedConductor(CoatedConductorMaterial::new(
-        coat, index, of_metal,
-    )))
-}
-
-/// Reads a layer, whose index and roughness have these names.
-fn coat(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-    (eta, names): (&'static str, &[&'static str; 3]),
-) -> Result<CoatSettings, Fault> {
-    let thickness = textures.float(context, reader, "thickness")?;
-    let albedo = textures.color(context, reader, "albedo", Purpose::Albedo)?;
-    let g = textures.float(context, reader, "g")?;
-    reader.ignore(context, ParameterType::Integer, "maxdepth");
-    reader.ignore(context, ParameterType::Integer, "nsamples");
-    Ok(CoatSettings {
-        eta: spectral::read_eta(context, reader, eta)?,
-        roughness: roughness(context, textures, reader, names)?,
-        thickness: thickness.unwrap_or(FloatTexture::Constant(0.01)),
-        albedo: albedo.unwrap_or(CLEAR),
-        g: g.unwrap_or(FloatTexture::Constant(0.0)),
-    })
 }
 
 /// The names of a roughness: in both directions, along u, along v.
@@ -331,41 +175,181 @@ const METAL: [&str; 3] = [
     "conductor.vroughness",
 ];
 
-fn roughness(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    reader: &mut Reader<'_>,
-    [both, u, v]: &[&'static str; 3],
-) -> Result<Roughness, Fault> {
-    let both = textures.float(context, reader, both)?;
-    let both = both.unwrap_or(FloatTexture::Constant(0.0));
-    let u = textures.float(context, reader, u)?;
-    let v = textures.float(context, reader, v)?;
-    let mapping = if reader.bool("remaproughness", true)? {
-        RoughnessMapping::SquareRoot
-    } else {
-        RoughnessMapping::Identity
-    };
-    Ok(Roughness {
-        u: u.unwrap_or_else(|| both.clone()),
-        v: v.unwrap_or(both),
-        mapping,
-    })
+/// The parameters of a material, with the textures that they may name.
+struct Parameters<'a, 'd, 'c> {
+    textures: &'a mut Textures<'d>,
+    reader: Reader<'a, 'c>,
 }
 
-/// Returns the substitute of a material that is not supported, whose parameters are not checked.
-fn substitute(
-    context: &mut Context<'_>,
-    textures: &mut Textures<'_>,
-    entity: &Entity,
-) -> Result<Option<Material>, Fault> {
-    let what = format!("the material `{}`", entity.kind);
-    let mut accept = |substitute| context.unsupported(entity.span, &what, substitute);
-    let mut reader = Reader::new(entity);
-    if entity.kind == "subsurface" {
-        accept("`diffuse` with its reflectance is used instead")?;
-        return diffuse(context, textures, &mut reader).map(Some);
+impl Parameters<'_, '_, '_> {
+    /// Reads a number or the name of a texture.
+    fn float(&mut self, name: &'static str, default: f32) -> Result<FloatTexture, Fault> {
+        let given = self.textures.float(&mut self.reader, name)?;
+        Ok(given.unwrap_or(FloatTexture::Constant(default)))
     }
-    accept("`diffuse` with reflectance 0.5 is used instead")?;
-    Ok(Some(grey()))
+
+    /// Reads a colour between 0 and 1 or the name of a texture. None: the file has none.
+    fn optional_albedo(&mut self, name: &'static str) -> Result<Option<ColorTexture>, Fault> {
+        self.textures.color(&mut self.reader, name, Purpose::Albedo)
+    }
+
+    /// Reads a colour between 0 and 1 or the name of a texture; by default it is grey.
+    fn albedo(&mut self, name: &'static str, default: f32) -> Result<ColorTexture, Fault> {
+        let given = self.optional_albedo(name)?;
+        Ok(given.unwrap_or(ColorTexture::Constant([default; 3])))
+    }
+
+    /// Reads the normal map, or else the bump map, which is a texture of heights.
+    fn relief(&mut self) -> Result<Option<Relief>, Fault> {
+        let height = self.textures.float(&mut self.reader, "displacement")?;
+        let normals = self.textures.normals(&mut self.reader, "normalmap")?;
+        if let Some(texture) = normals {
+            return Ok(Some(Relief::NormalMap(NormalMap {
+                texture,
+                scale: 1.0,
+                bitangent: Bitangent::RightHanded,
+            })));
+        }
+        let space = &self.reader.context.layout.space;
+        Ok(height.map(|height| Relief::Displacement(in_space(height, space))))
+    }
+
+    fn diffuse(&mut self) -> Result<Material, Fault> {
+        Ok(Material::Diffuse {
+            reflectance: self.albedo("reflectance", 0.5)?,
+        })
+    }
+
+    fn diffuse_transmission(&mut self) -> Result<Material, Fault> {
+        Ok(Material::DiffuseTransmission {
+            reflectance: self.albedo("reflectance", 0.25)?,
+            transmittance: self.albedo("transmittance", 0.25)?,
+            scale: self.reader.float_within("scale", 1.0, [0.0, f32::MAX])?,
+        })
+    }
+
+    fn conductor(&mut self) -> Result<Material, Fault> {
+        Ok(Material::Conductor {
+            index: self.conductor_index("eta", "k")?,
+            roughness: self.roughness(&SURFACE)?,
+        })
+    }
+
+    /// Reads the index of refraction of a metal, whose parts are called `eta` and `k`.
+    fn conductor_index(
+        &mut self,
+        eta: &'static str,
+        k: &'static str,
+    ) -> Result<ConductorIndex, Fault> {
+        if let Some(reflectance) = self.optional_albedo("reflectance")? {
+            let kinds = [
+                ParameterType::Texture,
+                ParameterType::Spectrum,
+                ParameterType::Rgb,
+            ];
+            let reader = &mut self.reader;
+            let mut is_given = |name| kinds.iter().any(|&kind| reader.find(kind, name).is_some());
+            if is_given(eta) || is_given(k) {
+                let message =
+                    format!("a conductor has `reflectance` or `{eta}` and `{k}`, not both");
+                return Err(Fault::scene(self.reader.span(), message));
+            }
+            return Ok(ConductorIndex::Reflectance(reflectance));
+        }
+        if let Some((eta, k)) = spectral::read_metal(&mut self.reader, eta, k)? {
+            return Ok(ConductorIndex::Complex {
+                eta: ColorTexture::Constant(eta),
+                k: ColorTexture::Constant(k),
+            });
+        }
+        let (of_copper, k_of_copper) = spectral::copper();
+        let mut part = |name, copper| -> Result<ColorTexture, Fault> {
+            let reader = &mut self.reader;
+            let given = self.textures.color(reader, name, Purpose::Unbounded)?;
+            Ok(given.unwrap_or(ColorTexture::Constant(copper)))
+        };
+        Ok(ConductorIndex::Complex {
+            eta: part(eta, of_copper)?,
+            k: part(k, k_of_copper)?,
+        })
+    }
+
+    fn dielectric(&mut self) -> Result<Material, Fault> {
+        Ok(Material::Dielectric {
+            eta: spectral::read_eta(&mut self.reader, "eta")?,
+            roughness: self.roughness(&SURFACE)?,
+        })
+    }
+
+    fn coated_diffuse(&mut self) -> Result<Material, Fault> {
+        let reflectance = self.albedo("reflectance", 0.5)?;
+        let coat = self.coat("eta", &SURFACE)?;
+        let material = CoatedDiffuseMaterial::new(coat, reflectance);
+        Ok(Material::CoatedDiffuse(material))
+    }
+
+    fn coated_conductor(&mut self) -> Result<Material, Fault> {
+        let index = self.conductor_index("conductor.eta", "conductor.k")?;
+        let of_metal = self.roughness(&METAL)?;
+        let coat = self.coat("interface.eta", &INTERFACE)?;
+        let material = CoatedConductorMaterial::new(coat, index, of_metal);
+        Ok(Material::CoatedConductor(material))
+    }
+
+    /// Reads a layer, whose index and roughness have these names.
+    fn coat(
+        &mut self,
+        eta: &'static str,
+        roughness: &[&'static str; 3],
+    ) -> Result<CoatSettings, Fault> {
+        let thickness = self.float("thickness", 0.01)?;
+        let albedo = self.optional_albedo("albedo")?;
+        let g = self.float("g", 0.0)?;
+        self.reader.ignore(ParameterType::Integer, "maxdepth");
+        self.reader.ignore(ParameterType::Integer, "nsamples");
+        Ok(CoatSettings {
+            eta: spectral::read_eta(&mut self.reader, eta)?,
+            roughness: self.roughness(roughness)?,
+            thickness,
+            albedo: albedo.unwrap_or(CLEAR),
+            g,
+        })
+    }
+
+    fn roughness(&mut self, [both, u, v]: &[&'static str; 3]) -> Result<Roughness, Fault> {
+        let both = self.float(both, 0.0)?;
+        let u = self.textures.float(&mut self.reader, u)?;
+        let v = self.textures.float(&mut self.reader, v)?;
+        let mapping = if self.reader.bool("remaproughness", true)? {
+            RoughnessMapping::SquareRoot
+        } else {
+            RoughnessMapping::Identity
+        };
+        Ok(Roughness {
+            u: u.unwrap_or_else(|| both.clone()),
+            v: v.unwrap_or(both),
+            mapping,
+        })
+    }
+
+    /// Returns the substitute of a material that is not supported, whose parameters are not checked.
+    fn substitute(&mut self, kind: &str) -> Result<Material, Fault> {
+        let span = self.reader.span();
+        let what = format!("the material `{kind}`");
+        let context = &mut *self.reader.context;
+        if kind == "subsurface" {
+            context.unsupported(
+                span,
+                &what,
+                "`diffuse` with its reflectance is used instead",
+            )?;
+            return self.diffuse();
+        }
+        context.unsupported(
+            span,
+            &what,
+            "`diffuse` with reflectance 0.5 is used instead",
+        )?;
+        Ok(grey())
+    }
 }

@@ -11,10 +11,7 @@ use crate::ply::PlyMesh;
 use crate::source::Fault;
 use glam::DVec3;
 
-pub(super) fn ply_mesh(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<PlyMesh, Fault> {
+pub(super) fn ply_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     let Some((name, span)) = reader.string("filename")? else {
         return Err(Fault::scene(
             reader.span(),
@@ -22,15 +19,15 @@ pub(super) fn ply_mesh(
         ));
     };
     let flat = "the mesh stays as it is";
-    reader.unsupported(context, (ParameterType::Texture, "displacement"), flat)?;
-    reader.ignore(context, ParameterType::Float, "edgelength");
-    let path = context.document.resolve(name);
-    let mesh = context.read_mesh(&path, span)?;
+    reader.unsupported(ParameterType::Texture, "displacement", flat)?;
+    reader.ignore(ParameterType::Float, "edgelength");
+    let path = reader.context.document.resolve(name);
+    let mesh = reader.context.read_mesh(&path, span)?;
     if mesh.skipped_faces > 0 {
         let count = mesh.skipped_faces;
         let message =
             format!("{count} faces are neither triangles nor quadrilaterals and are left out");
-        context.warn(span, message);
+        reader.context.warn(span, message);
     }
     Ok(mesh)
 }
@@ -43,7 +40,7 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn read(reader: &mut Reader<'_>) -> Result<Self, Fault> {
+    fn read(reader: &mut Reader<'_, '_>) -> Result<Self, Fault> {
         let positions = positions(reader)?;
         let normals = triples(reader.floats(ParameterType::Normal, "N"));
         let uvs = reader
@@ -66,7 +63,7 @@ impl Vertices {
     }
 }
 
-fn positions(reader: &mut Reader<'_>) -> Result<Vec<[f32; 3]>, Fault> {
+fn positions(reader: &mut Reader<'_, '_>) -> Result<Vec<[f32; 3]>, Fault> {
     let positions = triples(reader.floats(ParameterType::Point3, "P"));
     if positions.is_empty() {
         let message = "the parameter `point3 P` is missing or empty";
@@ -75,14 +72,11 @@ fn positions(reader: &mut Reader<'_>) -> Result<Vec<[f32; 3]>, Fault> {
     Ok(positions)
 }
 
-pub(super) fn triangle_mesh(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<PlyMesh, Fault> {
+pub(super) fn triangle_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     let vertices = Vertices::read(reader)?;
-    let triangles = faces(context, reader, vertices.positions.len())?;
-    reader.ignore(context, ParameterType::Vector3, "S");
-    reader.ignore(context, ParameterType::Integer, "faceIndices");
+    let triangles = faces(reader, vertices.positions.len())?;
+    reader.ignore(ParameterType::Vector3, "S");
+    reader.ignore(ParameterType::Integer, "faceIndices");
     Ok(PlyMesh {
         positions: vertices.positions,
         normals: vertices.normals,
@@ -92,39 +86,33 @@ pub(super) fn triangle_mesh(
     })
 }
 
-pub(super) fn patch_mesh(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<PlyMesh, Fault> {
+pub(super) fn patch_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     let vertices = Vertices::read(reader)?;
-    let patches = faces(context, reader, vertices.positions.len())?;
-    reader.ignore(context, ParameterType::Integer, "faceIndices");
+    let patches = faces(reader, vertices.positions.len())?;
+    reader.ignore(ParameterType::Integer, "faceIndices");
     // It guides sampling in the reference program, and does not change the emission.
-    reader.ignore(context, ParameterType::String, "emissionfilename");
+    reader.ignore(ParameterType::String, "emissionfilename");
     let mesh = PatchMesh {
         positions: vertices.positions,
         normals: vertices.normals,
         uvs: vertices.uvs,
         patches,
     };
-    context.check_size(mesh.vertices(), &reader.span())?;
+    reader.context.check_size(mesh.vertices(), &reader.span())?;
     Ok(mesh.triangulated())
 }
 
-pub(super) fn subdivided_mesh(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-) -> Result<PlyMesh, Fault> {
+pub(super) fn subdivided_mesh(reader: &mut Reader<'_, '_>) -> Result<PlyMesh, Fault> {
     let positions = positions(reader)?;
-    let triangles = faces::<3>(context, reader, positions.len())?;
+    let triangles = faces::<3>(reader, positions.len())?;
     let levels = reader.integer("levels", 3, 0)?;
-    reader.ignore(context, ParameterType::String, "scheme");
+    reader.ignore(ParameterType::String, "scheme");
     if levels > MOST_LEVELS {
         let message = format!("{levels} steps of subdivision are too many: at most {MOST_LEVELS}");
         return Err(Fault::new(ErrorKind::Limit, reader.span(), message));
     }
     let count = (triangles.len() as u64) << (2 * levels);
-    context.check_size(count, &reader.span())?;
+    reader.context.check_size(count, &reader.span())?;
     let points = positions.iter().map(|p| DVec3::from(p.map(f64::from)));
     let control = ControlMesh {
         points: points.collect(),
@@ -149,12 +137,11 @@ fn triples(values: Option<&[f32]>) -> Vec<[f32; 3]> {
 
 /// Reads faces of `N` corners; without a list, the vertices are one face.
 fn faces<const N: usize>(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
+    reader: &mut Reader<'_, '_>,
     vertices: usize,
 ) -> Result<Vec<[u32; N]>, Fault> {
     match reader.find(ParameterType::Integer, "indices") {
-        Some(parameter) => listed_faces(context, parameter, vertices),
+        Some(parameter) => listed_faces(reader.context, parameter, vertices),
         None if vertices == N => Ok(vec![std::array::from_fn(|corner| corner as u32)]),
         None => {
             let message = "the parameter `integer indices` is missing";

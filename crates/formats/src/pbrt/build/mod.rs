@@ -261,14 +261,7 @@ fn refuse_motion_and_media(
         context.unsupported(span, "a moving shape", "its first position is used")?;
     }
     let medium = &shape.medium;
-    if let Some(medium) = medium.inside.as_ref().or(medium.outside.as_ref()) {
-        context.unsupported(
-            medium.span,
-            "a participating medium",
-            "vacuum is used instead",
-        )?;
-    }
-    Ok(())
+    context.refuse_medium(medium.inside.as_ref().or(medium.outside.as_ref()))
 }
 
 /// The shape in the space of `place`.

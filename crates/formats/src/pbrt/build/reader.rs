@@ -9,14 +9,17 @@ use crate::text::number;
 
 /// Reads the parameters of one entity. Parameters that are never read are unknown, and are errors when
 /// the reader [finishes](Self::finish).
-pub(super) struct Reader<'a> {
+pub(super) struct Reader<'a, 'c> {
+    /// Reads the files that parameters name, and takes warnings.
+    pub(super) context: &'a mut Context<'c>,
     entity: &'a Entity,
     read: Vec<(ParameterType, &'static str)>,
 }
 
-impl<'a> Reader<'a> {
-    pub(super) fn new(entity: &'a Entity) -> Self {
+impl<'a, 'c> Reader<'a, 'c> {
+    pub(super) fn new(context: &'a mut Context<'c>, entity: &'a Entity) -> Self {
         Self {
+            context,
             entity,
             read: Vec::new(),
         }
@@ -179,32 +182,25 @@ impl<'a> Reader<'a> {
     }
 
     /// Warns of a parameter of the format that has no effect here.
-    pub(super) fn ignore(
-        &mut self,
-        context: &mut Context<'_>,
-        kind: ParameterType,
-        name: &'static str,
-    ) {
+    pub(super) fn ignore(&mut self, kind: ParameterType, name: &'static str) {
         if let Some(parameter) = self.find(kind, name) {
             let message = format!("the parameter `{} {name}` has no effect here", kind.word());
-            context.warn(parameter.span, message);
+            self.context.warn(parameter.span, message);
         }
     }
 
     /// Refuses a parameter of the format that the renderer does not support.
     pub(super) fn unsupported(
         &mut self,
-        context: &mut Context<'_>,
-        (kind, name): (ParameterType, &'static str),
+        kind: ParameterType,
+        name: &'static str,
         substitute: &str,
     ) -> Result<(), Fault> {
-        match self.find(kind, name) {
-            None => Ok(()),
-            Some(parameter) => {
-                let what = format!("the parameter `{} {name}`", kind.word());
-                context.unsupported(parameter.span, &what, substitute)
-            }
-        }
+        let Some(parameter) = self.find(kind, name) else {
+            return Ok(());
+        };
+        let what = format!("the parameter `{} {name}`", kind.word());
+        self.context.unsupported(parameter.span, &what, substitute)
     }
 
     /// Refuses parameters that were not read.

@@ -1,6 +1,5 @@
 //! The film's sensor, which converts light to pixel values.
 
-use super::context::Context;
 use super::reader::Reader;
 use crate::pbrt::known::SENSORS;
 use crate::source::Fault;
@@ -14,26 +13,22 @@ const WHITES: [f32; 2] = [1000.0, 25000.0];
 const COOLEST_DAYLIGHT: f32 = 4000.0;
 
 /// Reads the sensor parameters that all films have. `exposure` is applied after the sensor.
-pub(super) fn build(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    exposure: f32,
-) -> Result<Sensor, Fault> {
+pub(super) fn build(reader: &mut Reader<'_, '_>, exposure: f32) -> Result<Sensor, Fault> {
     if let Some((name, span)) = reader.string("sensor")? {
         SENSORS.check(name, span)?;
         if name != "cie1931" {
             let what = format!("the sensor `{name}`");
-            context.unsupported(span, &what, "`cie1931` is used instead")?;
+            (reader.context).unsupported(span, &what, "`cie1931` is used instead")?;
         }
     }
     Ok(Sensor {
         balance: balance(reader)?,
-        limit: limit(context, reader, exposure)?,
+        limit: limit(reader, exposure)?,
     })
 }
 
 /// Returns the matrix that maps light of the file's colour temperature to white.
-fn balance(reader: &mut Reader<'_>) -> Result<Option<bidir::math::Mat3>, Fault> {
+fn balance(reader: &mut Reader<'_, '_>) -> Result<Option<bidir::math::Mat3>, Fault> {
     if reader.float("whitebalance", 0.0)? == 0.0 {
         return Ok(None);
     }
@@ -47,11 +42,7 @@ fn balance(reader: &mut Reader<'_>) -> Result<Option<bidir::math::Mat3>, Fault> 
 }
 
 /// Returns the largest value of a sample. None: there is no limit.
-fn limit(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    exposure: f32,
-) -> Result<Option<f32>, Fault> {
+fn limit(reader: &mut Reader<'_, '_>, exposure: f32) -> Result<Option<f32>, Fault> {
     let Some(most) = reader.optional_float("maxcomponentvalue")? else {
         return Ok(None);
     };
@@ -64,6 +55,6 @@ fn limit(
          the integrator",
         number(most)
     );
-    context.warn(reader.span(), message);
+    reader.context.warn(reader.span(), message);
     Ok(Some(most / exposure))
 }

@@ -71,10 +71,10 @@ fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
     let Some(entity) = &context.document.sampler else {
         return Ok(());
     };
-    let mut reader = Reader::new(entity);
+    let mut reader = Reader::new(context, entity);
     settings.samples_per_pixel = match entity.kind.as_str() {
         "stratified" => {
-            reader.ignore(context, ParameterType::Bool, "jitter");
+            reader.ignore(ParameterType::Bool, "jitter");
             let (x, y) = (
                 reader.integer("xsamples", 4, 1)?,
                 reader.integer("ysamples", 4, 1)?,
@@ -86,15 +86,13 @@ fn sampler(context: &mut Context<'_>, settings: &mut SceneSettings) -> Result<()
             reader.integer("pixelsamples", 4, 1)?
         }
         _ => {
-            reader.ignore(context, ParameterType::String, "randomization");
+            reader.ignore(ParameterType::String, "randomization");
             reader.integer("pixelsamples", 16, 1)?
         }
     };
     if !matches!(entity.kind.as_str(), "independent" | "sobol") {
-        context.warn(
-            entity.span,
-            format!("the sampler `{}` is replaced by `sobol`", entity.kind),
-        );
+        let message = format!("the sampler `{}` is replaced by `sobol`", entity.kind);
+        reader.context.warn(entity.span, message);
     }
     if let Some(seed) = reader.optional_integer("seed")? {
         settings.seed = Some(u64::from(seed.unsigned_abs()));
@@ -106,7 +104,7 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
     let Some(entity) = &context.document.integrator else {
         return Ok((IntegratorKind::Path, 5));
     };
-    let mut reader = Reader::new(entity);
+    let mut reader = Reader::new(context, entity);
     let max_depth = reader.integer("maxdepth", 5, 0)?;
     let kind = match entity.kind.as_str() {
         "path" | "volpath" => IntegratorKind::Path,
@@ -118,24 +116,21 @@ fn integrator(context: &mut Context<'_>) -> Result<(IntegratorKind, u32), Fault>
                 "mlt" | "sppm" => ("`bdpt` is used instead", IntegratorKind::Bdpt),
                 _ => ("`path` is used instead", IntegratorKind::Path),
             };
-            context.unsupported(
-                entity.span,
-                &format!("the integrator `{name}`"),
-                substitute.0,
-            )?;
+            let what = format!("the integrator `{name}`");
+            (reader.context).unsupported(entity.span, &what, substitute.0)?;
             return Ok((substitute.1, max_depth));
         }
     };
     if entity.kind != "lightpath" {
-        reader.ignore(context, ParameterType::String, "lightsampler");
+        reader.ignore(ParameterType::String, "lightsampler");
         if reader.bool("regularize", false)? {
             let what = "the parameter `bool regularize`";
-            context.unsupported(entity.span, what, "nothing is regularised")?;
+            (reader.context).unsupported(entity.span, what, "nothing is regularised")?;
         }
     }
     if entity.kind == "bdpt" {
-        reader.ignore(context, ParameterType::Bool, "visualizestrategies");
-        reader.ignore(context, ParameterType::Bool, "visualizeweights");
+        reader.ignore(ParameterType::Bool, "visualizestrategies");
+        reader.ignore(ParameterType::Bool, "visualizeweights");
     }
     reader.finish()?;
     Ok((kind, max_depth))

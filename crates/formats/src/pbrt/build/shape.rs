@@ -33,12 +33,12 @@ impl Geometry {
         shape: &ShapeDescription,
     ) -> Result<Option<(Self, Option<FloatTexture>)>, Fault> {
         let entity = &shape.entity;
-        let mut reader = Reader::new(entity);
+        let mut reader = Reader::new(context, entity);
         let geometry = match entity.kind.as_str() {
-            "trianglemesh" => Self::Mesh(mesh::triangle_mesh(context, &mut reader)?),
-            "plymesh" => Self::Mesh(mesh::ply_mesh(context, &mut reader)?),
-            "bilinearmesh" => Self::Mesh(mesh::patch_mesh(context, &mut reader)?),
-            "loopsubdiv" => Self::Mesh(mesh::subdivided_mesh(context, &mut reader)?),
+            "trianglemesh" => Self::Mesh(mesh::triangle_mesh(&mut reader)?),
+            "plymesh" => Self::Mesh(mesh::ply_mesh(&mut reader)?),
+            "bilinearmesh" => Self::Mesh(mesh::patch_mesh(&mut reader)?),
+            "loopsubdiv" => Self::Mesh(mesh::subdivided_mesh(&mut reader)?),
             "sphere" => {
                 let radius = reader.float_within("radius", 1.0, [f32::MIN_POSITIVE, f32::MAX])?;
                 let z = [
@@ -59,15 +59,12 @@ impl Geometry {
                 Self::Disk(height, [inner, radius], phi_max(&mut reader)?)
             }
             kind => {
-                context.unsupported(
-                    entity.span,
-                    &format!("the shape `{kind}`"),
-                    "it is left out",
-                )?;
+                let what = format!("the shape `{kind}`");
+                (reader.context).unsupported(entity.span, &what, "it is left out")?;
                 return Ok(None);
             }
         };
-        let alpha = textures.float(context, &mut reader, "alpha")?;
+        let alpha = textures.float(&mut reader, "alpha")?;
         reader.finish()?;
         Ok(Some((geometry, alpha)))
     }
@@ -227,7 +224,7 @@ fn opposite(orientation: Orientation) -> Orientation {
     }
 }
 
-fn phi_max(reader: &mut Reader<'_>) -> Result<f32, Fault> {
+fn phi_max(reader: &mut Reader<'_, '_>) -> Result<f32, Fault> {
     Ok(reader
         .float_within("phimax", 360.0, [0.0, 360.0])?
         .to_radians())

@@ -18,12 +18,11 @@ const D_LINE: f64 = 587.56;
 
 /// Reads a parameter given as `spectrum` or `blackbody`. None: the file has none.
 pub(super) fn read<'a>(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'a>,
+    reader: &mut Reader<'a, '_>,
     name: &'static str,
 ) -> Result<Option<(Spectrum, &'a Parameter)>, Fault> {
     if let Some(parameter) = reader.find(ParameterType::Spectrum, name) {
-        return Ok(Some((spectrum(context, parameter)?, parameter)));
+        return Ok(Some((spectrum(reader.context, parameter)?, parameter)));
     }
     let Some(parameter) = reader.find(ParameterType::Blackbody, name) else {
         return Ok(None);
@@ -83,16 +82,16 @@ fn named(context: &mut Context<'_>, parameter: &Parameter, name: &str) -> Result
 /// Reads the index of refraction of a metal from the spectra `eta` and `k`, by default those of copper.
 /// None: one of them is not a spectrum.
 pub(super) fn read_metal(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    [eta, k]: [&'static str; 2],
+    reader: &mut Reader<'_, '_>,
+    eta: &'static str,
+    k: &'static str,
 ) -> Result<Option<(Rgb, Rgb)>, Fault> {
     let mut part = |name, copper| -> Result<Option<Spectrum>, Fault> {
         let is_color = reader.find(ParameterType::Rgb, name).is_some();
         if is_color || reader.find(ParameterType::Texture, name).is_some() {
             return Ok(None);
         }
-        let given = read(context, reader, name)?;
+        let given = read(reader, name)?;
         Ok(given.map_or_else(|| spectra::named(copper), |(given, _)| Some(given)))
     };
     let parts = (part(eta, "metal-Cu-eta")?, part(k, "metal-Cu-k")?);
@@ -113,25 +112,21 @@ pub(super) fn copper() -> (Rgb, Rgb) {
 
 /// Reads the index of refraction `name` of a dielectric: a number, or the value of a spectrum at the d
 /// line.
-pub(super) fn read_eta(
-    context: &mut Context<'_>,
-    reader: &mut Reader<'_>,
-    name: &'static str,
-) -> Result<f32, Fault> {
+pub(super) fn read_eta(reader: &mut Reader<'_, '_>, name: &'static str) -> Result<f32, Fault> {
     if let Some(eta) = reader.optional_float(name)? {
         return positive(reader, name, eta);
     }
-    let Some((spectrum, parameter)) = read(context, reader, name)? else {
+    let Some((spectrum, parameter)) = read(reader, name)? else {
         return Ok(1.5);
     };
     let eta = spectrum.at(D_LINE) as f32;
     let message =
         format!("`{name}` has no dispersion here: the index is {eta:.4} at every wavelength");
-    context.warn(parameter.value_span, message);
+    reader.context.warn(parameter.value_span, message);
     positive(reader, name, eta)
 }
 
-fn positive(reader: &Reader<'_>, name: &str, eta: f32) -> Result<f32, Fault> {
+fn positive(reader: &Reader<'_, '_>, name: &str, eta: f32) -> Result<f32, Fault> {
     if eta > 0.0 {
         Ok(eta)
     } else {

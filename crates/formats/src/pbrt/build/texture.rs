@@ -45,8 +45,7 @@ pub(super) trait Element: Value + 'static {
 
     /// Reads a constant. None: the file has none.
     fn read(
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<Self>, Fault>;
@@ -69,8 +68,7 @@ impl Element for f32 {
     }
 
     fn read(
-        _: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         _: Purpose,
     ) -> Result<Option<Self>, Fault> {
@@ -98,12 +96,11 @@ impl Element for Rgb {
     }
 
     fn read(
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<Self>, Fault> {
-        color::read(context, reader, name, purpose)
+        color::read(reader, name, purpose)
     }
 
     fn image(
@@ -147,56 +144,51 @@ impl<'a> Textures<'a> {
     /// Reads a colour or the name of a texture. None: the file has none.
     pub(super) fn color(
         &mut self,
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<ColorTexture>, Fault> {
-        self.get(context, reader, name, purpose)
+        self.get(reader, name, purpose)
     }
 
     /// Reads a number or the name of a texture. None: the file has none.
     pub(super) fn float(
         &mut self,
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
     ) -> Result<Option<FloatTexture>, Fault> {
-        self.get(context, reader, name, Purpose::Unbounded)
+        self.get(reader, name, Purpose::Unbounded)
     }
 
     /// Reads a normal map as colours between 0 and 1. None: the file has none.
     pub(super) fn normals(
         &mut self,
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
     ) -> Result<Option<ColorTexture>, Fault> {
         let Some((file, span)) = reader.string(name)? else {
             return Ok(None);
         };
-        let settings = ImageSettings::of_normals(context, file, span);
-        let map = self.files.color(context, &settings)?;
+        let settings = ImageSettings::of_normals(reader.context, file, span);
+        let map = self.files.color(reader.context, &settings)?;
         Ok(Some(ColorTexture::Image(Arc::new(map))))
     }
 
     fn get<T: Element>(
         &mut self,
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<Texture<T>>, Fault> {
-        let operand = self.operand(context, reader, name, purpose)?;
-        let build = |operand| self.resolve(context, operand, purpose);
+        let operand = self.operand(reader, name, purpose)?;
+        let build = |operand| self.resolve(reader.context, operand, purpose);
         operand.map(build).transpose()
     }
 
     /// Reads a value or the name of a texture. None: the file has none.
     pub(super) fn operand<T: Element>(
         &self,
-        context: &mut Context<'_>,
-        reader: &mut Reader<'_>,
+        reader: &mut Reader<'_, '_>,
         name: &'static str,
         purpose: Purpose,
     ) -> Result<Option<Operand<T>>, Fault> {
@@ -205,7 +197,7 @@ impl<'a> Textures<'a> {
                 .find(T::KIND, name, span)
                 .map(Operand::Texture)
                 .map(Some),
-            None => Ok(T::read(context, reader, name, purpose)?.map(Operand::Value)),
+            None => Ok(T::read(reader, name, purpose)?.map(Operand::Value)),
         }
     }
 

@@ -44,10 +44,10 @@ impl<T: Element> Source<T> {
             textures,
             number,
             texture,
-            reader: Reader::new(&texture.entity),
+            reader: Reader::new(context, &texture.entity),
             purpose,
         };
-        let source = class.source(context)?;
+        let source = class.source()?;
         match source {
             Some(source) => {
                 class.reader.finish()?;
@@ -103,83 +103,58 @@ fn pair<T: Element>(
 }
 
 /// A texture whose parameters are being read.
-struct Class<'t, 'a> {
+struct Class<'t, 'a, 'c> {
     textures: &'t Textures<'a>,
     number: usize,
     texture: &'a TextureDescription,
-    reader: Reader<'a>,
+    reader: Reader<'t, 'c>,
     purpose: Purpose,
 }
 
-impl Class<'_, '_> {
+impl Class<'_, '_, '_> {
     /// Reads the parameters of the class. None: the class is not supported and replaced.
-    fn source<T: Element>(
-        &mut self,
-        context: &mut Context<'_>,
-    ) -> Result<Option<Source<T>>, Fault> {
+    fn source<T: Element>(&mut self) -> Result<Option<Source<T>>, Fault> {
         let class = self.texture.entity.kind.as_str();
         Ok(Some(match class {
-            "constant" => Source::Whole(Texture::Constant(self.value(context, "value", 1.0)?)),
-            "imagemap" => Source::Image(ImageSettings::read(
-                context,
-                self.texture,
-                &mut self.reader,
-            )?),
-            "scale" => Source::Scale(
-                self.part(context, "tex", 1.0)?,
-                self.part(context, "scale", 1.0)?,
-            ),
-            "mix" => Source::Mix(self.two(context)?, self.part(context, "amount", 0.5)?),
+            "constant" => Source::Whole(Texture::Constant(self.value("value", 1.0)?)),
+            "imagemap" => Source::Image(ImageSettings::read(self.texture, &mut self.reader)?),
+            "scale" => Source::Scale(self.part("tex", 1.0)?, self.part("scale", 1.0)?),
+            "mix" => Source::Mix(self.two()?, self.part("amount", 0.5)?),
             "directionmix" => {
-                let name = ("dir", Vec3::Y);
-                let direction = mapping::direction(self.texture, &mut self.reader, name)?;
-                Source::DirectionMix(self.two(context)?, direction)
+                let reader = &mut self.reader;
+                let direction = mapping::direction(self.texture, reader, "dir", Vec3::Y)?;
+                Source::DirectionMix(self.two()?, direction)
             }
-            "bilerp" => Source::Whole(self.bilerp(context)?),
+            "bilerp" => Source::Whole(self.bilerp()?),
             "checkerboard" => {
-                let parts = [
-                    self.part(context, "tex1", 1.0)?,
-                    self.part(context, "tex2", 0.0)?,
-                ];
-                Source::Checkerboard(parts, self.cells(context)?)
+                let parts = [self.part("tex1", 1.0)?, self.part("tex2", 0.0)?];
+                Source::Checkerboard(parts, self.cells()?)
             }
             "dots" => {
-                let parts = [
-                    self.part(context, "outside", 0.0)?,
-                    self.part(context, "inside", 1.0)?,
-                ];
-                let mapping = mapping::read(context, self.texture, &mut self.reader)?;
+                let parts = [self.part("outside", 0.0)?, self.part("inside", 1.0)?];
+                let mapping = mapping::read(self.texture, &mut self.reader)?;
                 Source::Dots(parts, mapping)
             }
-            "fbm" | "wrinkled" | "windy" => Source::Whole(self.noise::<T>(context, class)?),
-            "marble" => Source::Whole(self.marble::<T>(context)?),
+            "fbm" | "wrinkled" | "windy" => Source::Whole(self.noise::<T>(class)?),
+            "marble" => Source::Whole(self.marble::<T>()?),
             class => {
                 let what = format!("the texture class `{class}`");
-                context.unsupported(self.texture.entity.span, &what, "0.5 is used instead")?;
+                let span = self.texture.entity.span;
+                (self.reader.context).unsupported(span, &what, "0.5 is used instead")?;
                 return Ok(None);
             }
         }))
     }
 
-    fn value<T: Element>(
-        &mut self,
-        context: &mut Context<'_>,
-        name: &'static str,
-        default: f32,
-    ) -> Result<T, Fault> {
-        let value = T::read(context, &mut self.reader, name, self.purpose)?;
+    fn value<T: Element>(&mut self, name: &'static str, default: f32) -> Result<T, Fault> {
+        let value = T::read(&mut self.reader, name, self.purpose)?;
         Ok(value.unwrap_or(T::splat(default)))
     }
 
-    fn part<T: Element>(
-        &mut self,
-        context: &mut Context<'_>,
-        name: &'static str,
-        default: f32,
-    ) -> Result<Operand<T>, Fault> {
+    fn part<T: Element>(&mut self, name: &'static str, default: f32) -> Result<Operand<T>, Fault> {
         let operand = self
             .textures
-            .operand(context, &mut self.reader, name, self.purpose)?;
+            .operand(&mut self.reader, name, self.purpose)?;
         if let Some(Operand::<T>::Texture(part)) = operand {
             let parameters = &self.texture.entity.parameters;
             let parameter = parameters.get(ParameterType::Texture, name);
@@ -189,29 +164,26 @@ impl Class<'_, '_> {
         Ok(operand.unwrap_or(Operand::Value(T::splat(default))))
     }
 
-    fn two<T: Element>(&mut self, context: &mut Context<'_>) -> Result<[Operand<T>; 2], Fault> {
-        Ok([
-            self.part(context, "tex1", 0.0)?,
-            self.part(context, "tex2", 1.0)?,
-        ])
+    fn two<T: Element>(&mut self) -> Result<[Operand<T>; 2], Fault> {
+        Ok([self.part("tex1", 0.0)?, self.part("tex2", 1.0)?])
     }
 
-    fn bilerp<T: Element>(&mut self, context: &mut Context<'_>) -> Result<Texture<T>, Fault> {
+    fn bilerp<T: Element>(&mut self) -> Result<Texture<T>, Fault> {
         // The first digit is u.
         let corners = [
-            self.value(context, "v00", 0.0)?,
-            self.value(context, "v10", 0.0)?,
-            self.value(context, "v01", 1.0)?,
-            self.value(context, "v11", 1.0)?,
+            self.value("v00", 0.0)?,
+            self.value("v10", 0.0)?,
+            self.value("v01", 1.0)?,
+            self.value("v11", 1.0)?,
         ];
-        let mapping = mapping::read(context, self.texture, &mut self.reader)?;
+        let mapping = mapping::read(self.texture, &mut self.reader)?;
         Ok(Texture::Bilerp(Arc::new(Bilerp { corners, mapping })))
     }
 
-    fn cells(&mut self, context: &mut Context<'_>) -> Result<Cells, Fault> {
+    fn cells(&mut self) -> Result<Cells, Fault> {
         match self.reader.integer("dimension", 2, 0)? {
-            2 => mapping::read(context, self.texture, &mut self.reader).map(Cells::Plane),
-            3 => mapping::space(context, self.texture).map(Cells::Space),
+            2 => mapping::read(self.texture, &mut self.reader).map(Cells::Plane),
+            3 => mapping::space(self.reader.context, self.texture).map(Cells::Space),
             dimension => {
                 let message = format!("a checkerboard has 2 or 3 dimensions, not {dimension}");
                 Err(Fault::scene(self.reader.span(), message))
@@ -233,43 +205,39 @@ impl Class<'_, '_> {
         Err(Fault::new(ErrorKind::Scene, self.reader.span(), message))
     }
 
-    fn noise<T: Element>(
-        &mut self,
-        context: &mut Context<'_>,
-        class: &str,
-    ) -> Result<Texture<T>, Fault> {
+    fn noise<T: Element>(&mut self, class: &str) -> Result<Texture<T>, Fault> {
         self.expect(TextureKind::Float)?;
         let kind = match class {
             "windy" => NoiseKind::Windy,
             class => {
-                let (octaves, roughness) = self.octaves(context)?;
+                let (octaves, roughness) = self.octaves()?;
                 match class {
                     "fbm" => NoiseKind::Fbm { octaves, roughness },
                     _ => NoiseKind::Wrinkled { octaves, roughness },
                 }
             }
         };
-        let space = mapping::space(context, self.texture)?;
+        let space = mapping::space(self.reader.context, self.texture)?;
         Ok(Texture::Noise(Arc::new(Noise { kind, space })))
     }
 
-    fn marble<T: Element>(&mut self, context: &mut Context<'_>) -> Result<Texture<T>, Fault> {
+    fn marble<T: Element>(&mut self) -> Result<Texture<T>, Fault> {
         self.expect(TextureKind::Spectrum)?;
-        let (octaves, roughness) = self.octaves(context)?;
+        let (octaves, roughness) = self.octaves()?;
         Ok(Texture::Marble(Arc::new(Marble {
             octaves,
             roughness,
             scale: self.reader.float("scale", 1.0)?,
             variation: self.reader.float("variation", 0.2)?,
-            space: mapping::space(context, self.texture)?,
+            space: mapping::space(self.reader.context, self.texture)?,
         })))
     }
 
-    fn octaves(&mut self, context: &mut Context<'_>) -> Result<(u32, f32), Fault> {
+    fn octaves(&mut self) -> Result<(u32, f32), Fault> {
         let octaves = self.reader.integer("octaves", 8, 0)?;
         if octaves > MOST_OCTAVES {
             let message = format!("only the first {MOST_OCTAVES} octaves of the noise are used");
-            context.warn(self.reader.span(), message);
+            self.reader.context.warn(self.reader.span(), message);
         }
         let roughness = self.reader.float("roughness", 0.5)?;
         Ok((octaves.min(MOST_OCTAVES), roughness))

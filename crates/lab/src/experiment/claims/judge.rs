@@ -1,9 +1,9 @@
 //! Intervals and verdicts of claims, from records.
 
 use super::measure::{Clock, Measured};
-use super::{ClaimKind, ClaimSpec, Cost, Expected, Measure, Over, Quantity};
+use super::{BudgetChoice, ClaimKind, ClaimSpec, Cost, Expected, Measure, Over, Quantity};
 use crate::experiment::Experiment;
-use crate::experiment::analysis::CONFIDENCE;
+use crate::experiment::analysis::{CONFIDENCE, records_of};
 use crate::results::{BudgetKind, Claim, Record, Results, Verdict};
 use crate::statistics::{Interval, RATIOS, ratio_interval};
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ type BySeed = BTreeMap<u64, f64>;
 /// The records of an experiment, with the description and the clock that evaluate them.
 pub struct Findings<'a> {
     pub(super) experiment: &'a Experiment,
-    pub(super) results: &'a Results,
+    pub(in super::super) results: &'a Results,
     clock: Clock,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Findings<'a> {
         let Some(info) = scenes.find(|info| info.name == scene) else {
             return BySeed::new();
         };
-        let records = self.records(of.budget, scene, method);
+        let records = self.records(&of.budget, scene, method);
         let value = |record: &&Record| {
             let measured = Measured {
                 record,
@@ -64,21 +64,13 @@ impl<'a> Findings<'a> {
         records.iter().filter_map(value).collect()
     }
 
-    /// Returns the records of a method in a scene, of its first budget of this kind there.
-    fn records(&self, kind: Option<BudgetKind>, scene: &str, method: &str) -> Vec<&'a Record> {
-        let of_budget = |name: &str| -> Vec<&'a Record> {
-            let is_one = |record: &&Record| {
-                record.scene == scene && record.method == method && record.budget == name
-            };
-            self.results.records.iter().filter(is_one).collect()
-        };
-        let budgets = self.results.budgets.iter();
-        let mut budgets = budgets.filter(|budget| kind.is_none_or(|kind| budget.kind == kind));
-        let found = budgets.find_map(|budget| {
-            let records = of_budget(&budget.name);
-            (!records.is_empty()).then_some(records)
-        });
-        found.unwrap_or_default()
+    /// Returns the records of a method in a scene, of the first chosen budget that has any there.
+    fn records(&self, choice: &BudgetChoice, scene: &str, method: &str) -> Vec<&'a Record> {
+        let results = self.results;
+        let budgets = results.budgets.iter();
+        let budgets = budgets.filter(|budget| choice.includes(budget));
+        let mut all = budgets.map(|budget| records_of(results, scene, &budget.name, method));
+        all.find(|records| !records.is_empty()).unwrap_or_default()
     }
 
     /// Returns the full amount of the budget with this name, in rays per pixel or in seconds.
@@ -93,10 +85,10 @@ impl<'a> Findings<'a> {
     }
 
     /// Returns the number and its divisor in a scene, for the seeds that have both.
-    fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
+    pub(super) fn pairs(&self, of: &Quantity, scene: &str) -> Vec<(u64, f64, f64)> {
         let own = self.values(of, scene, &of.method);
         let other = match &of.over {
-            Over::Nothing => own.keys().map(|seed| (*seed, 1.0)).collect(),
+            Over::Nothing | Over::MeanInterval => own.keys().map(|seed| (*seed, 1.0)).collect(),
             Over::Number(number) => own.keys().map(|seed| (*seed, *number)).collect(),
             Over::Method(method) => self.values(of, scene, method),
         };
@@ -121,11 +113,16 @@ impl<'a> Findings<'a> {
         ratio_interval(&a, &b, confidence)
     }
 
-    /// Computes the mean over seeds. None: there is no record.
-    pub(super) fn mean(&self, of: &Quantity) -> Option<f64> {
+    /// Returns the number of each seed, without divisor.
+    pub(in super::super) fn numbers(&self, of: &Quantity) -> Vec<f64> {
         let values = self.values(of, &of.scene, &of.method);
-        let sum: f64 = values.values().sum();
-        (!values.is_empty()).then(|| sum / values.len() as f64)
+        values.into_values().collect()
+    }
+
+    /// Computes the mean over seeds. None: there is no record.
+    pub(in super::super) fn mean(&self, of: &Quantity) -> Option<f64> {
+        let values = self.numbers(of);
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// Judges a claim; its tables are left empty.

@@ -53,7 +53,7 @@ pub(super) struct Measured<'a> {
 type Figure = fn(&Measured<'_>) -> Option<f64>;
 
 /// Numbers other than metrics, with their names and units.
-const FIGURES: [(&str, Figure); 11] = [
+const FIGURES: [(&str, Figure); 13] = [
     ("samples per pixel", |of| Some(of.record.spp as f64)),
     ("rays per pixel", |of| {
         Some(of.record.rays.total() as f64 / of.pixels())
@@ -62,6 +62,10 @@ const FIGURES: [(&str, Figure); 11] = [
     ("processor seconds", |of| of.record.processor_seconds),
     ("processor seconds of training", |of| {
         of.record.training_processor_seconds
+    }),
+    ("efficiency by rays", |of| Some(of.record.efficiency_rays)),
+    ("efficiency by time", |of| {
+        Some(of.record.efficiency_seconds)
     }),
     ("nanoseconds per ray", |of| {
         let [time, rays] = [Cost::Time, Cost::Rays].map(|cost| of.without_training(cost));

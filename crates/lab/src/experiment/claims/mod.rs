@@ -38,7 +38,7 @@ pub use measure::{Cost, Measure};
 use super::Experiment;
 use super::analysis::{self, Section};
 use crate::metric::Metric;
-use crate::results::{BudgetKind, Claim, Results, Scale};
+use crate::results::{BudgetInfo, BudgetKind, Claim, Results, Scale};
 
 /// The range stated for a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,8 +80,8 @@ pub enum ClaimKind {
 pub struct Quantity {
     /// The number taken from each record.
     pub measure: Measure,
-    /// The kind of the records' budget. None: the method's first budget.
-    pub budget: Option<BudgetKind>,
+    /// The budget of the records.
+    pub budget: BudgetChoice,
     /// The scene.
     pub scene: String,
     /// The method.
@@ -92,11 +92,34 @@ pub struct Quantity {
     pub than: Option<String>,
 }
 
+/// The choice of a budget among those with records of a method.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BudgetChoice {
+    /// The first one.
+    First,
+    /// The first one of this kind.
+    Kind(BudgetKind),
+    /// The one with this name.
+    Named(String),
+}
+
+impl BudgetChoice {
+    fn includes(&self, budget: &BudgetInfo) -> bool {
+        match self {
+            Self::First => true,
+            Self::Kind(kind) => budget.kind == *kind,
+            Self::Named(name) => budget.name == *name,
+        }
+    }
+}
+
 /// The divisor of a number; ratios are paired by seed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Over {
     /// No divisor: the mean over seeds, without an interval.
     Nothing,
+    /// No divisor: the mean over seeds, with its interval.
+    MeanInterval,
     /// A number; 1 gives the geometric mean with its interval.
     Number(f64),
     /// The same measure of another method.
@@ -192,10 +215,10 @@ impl Experiment {
 
     /// Makes the tables of the description that belong to no claim, or the default tables if it has none.
     pub fn sections(&self, results: &Results) -> Vec<Section> {
-        if self.tables.is_empty() {
-            return analysis::sections(results);
-        }
         let findings = Findings::new(self, results);
+        if self.tables.is_empty() {
+            return analysis::sections(&findings);
+        }
         let mut sections: Vec<Section> = Vec::new();
         for table in &self.tables {
             let TablePlace::Section(title) = &table.place else {

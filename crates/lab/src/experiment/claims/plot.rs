@@ -5,16 +5,12 @@ use crate::results::{Axis, Cell, Contributions, Plot, PlotKind, Scale, Series, T
 
 /// Plots columns of a table as curves.
 pub(super) fn curves(spec: &PlotSpec, table: &Table) -> Plot {
-    let axis = |label: &str, scale| Axis {
-        label: label.to_owned(),
-        scale,
-    };
     let series = spec.curves.iter();
     Plot {
         caption: table.caption.clone(),
         kind: PlotKind::Lines,
-        x: axis(&table.columns[spec.x], spec.x_scale),
-        y: axis(&spec.label, spec.y_scale),
+        x: Axis::new(&table.columns[spec.x], spec.x_scale),
+        y: Axis::new(&spec.label, spec.y_scale),
         series: series.map(|column| curve(table, spec.x, *column)).collect(),
     }
 }
@@ -42,16 +38,12 @@ fn number(cell: &Cell) -> Option<(f64, Option<[f64; 2]>)> {
 
 /// Plots the contributions measured in the rows of a table as bars, named by the first column.
 pub(super) fn histogram(label: &str, spec: &TableSpec, all: &[Contributions]) -> Plot {
-    let linear = |label: &str| Axis {
-        label: label.to_owned(),
-        scale: Scale::Linear,
-    };
     let bars = spec.rows.iter().filter_map(|row| bars(row, all));
     Plot {
         caption: spec.caption.clone(),
         kind: PlotKind::Histogram,
-        x: linear(label),
-        y: linear("part of all"),
+        x: Axis::new(label, Scale::Linear),
+        y: Axis::new("part of all", Scale::Linear),
         series: bars.collect(),
     }
 }

@@ -4,7 +4,7 @@ use super::plot::{curves, histogram};
 use super::{CellSpec, Findings, Over, Quantity, TableSpec};
 use crate::experiment::analysis::CONFIDENCE;
 use crate::results::{Cell, Plot, Table};
-use crate::statistics::Interval;
+use crate::statistics::{Interval, mean_interval};
 
 impl Findings<'_> {
     /// Adds a table and its plots; rows without a measured number are left out.
@@ -41,18 +41,35 @@ impl Findings<'_> {
         }
     }
 
-    /// Computes a mean, or a ratio with its interval; the ratio of a measured method to itself is 1.
-    fn number(&self, of: &Quantity) -> Cell {
+    /// Computes a mean, or a ratio with its interval; the ratio of a measured method to itself is 1, and that of
+    /// a single seed has no interval.
+    pub(in super::super) fn number(&self, of: &Quantity) -> Cell {
         let is_itself = |method: &String| *method == of.method && of.than.is_none();
         let found = match &of.over {
             Over::Method(method) if is_itself(method) => self.mean(of).map(|_| Cell::Number(1.0)),
             Over::Nothing if of.than.is_none() => self.mean(of).map(Cell::Number),
-            _ => self.interval(of, CONFIDENCE).map(interval),
+            Over::MeanInterval => mean_interval(&self.numbers(of), CONFIDENCE)
+                .map(Cell::from)
+                .or_else(|| self.mean(of).map(Cell::Number)),
+            _ => self
+                .interval(of, CONFIDENCE)
+                .map(Cell::from)
+                .or_else(|| self.single_ratio(of).map(Cell::Number)),
         };
         found.unwrap_or_else(|| Cell::Text("–".to_owned()))
     }
+
+    /// Returns the ratio of the only seed. None: there are none or several, or the divisor is not positive.
+    fn single_ratio(&self, of: &Quantity) -> Option<f64> {
+        match self.pairs(of, &of.scene)[..] {
+            [(_, value, divisor)] if divisor > 0.0 && of.than.is_none() => Some(value / divisor),
+            _ => None,
+        }
+    }
 }
 
-fn interval(Interval { value, low, high }: Interval) -> Cell {
-    Cell::Interval { value, low, high }
+impl From<Interval> for Cell {
+    fn from(Interval { value, low, high }: Interval) -> Self {
+        Self::Interval { value, low, high }
+    }
 }

@@ -162,7 +162,7 @@ fn a_failed_part_decides_a_claim_and_a_missing_part_leaves_it_open() {
 fn value(findings: &Findings<'_>, measure: &str, budget: BudgetKind) -> f64 {
     let quantity = Quantity {
         measure: measure.parse().unwrap(),
-        budget: Some(budget),
+        budget: BudgetChoice::Kind(budget),
         scene: "A".to_owned(),
         method: "all".to_owned(),
         over: Over::Method("one".to_owned()),

@@ -1,8 +1,8 @@
 //! Claims and tables of a description.
 
 use super::super::claims::{
-    CellSpec, ClaimKind, ClaimSpec, Expected, Measure, Over, PlotSpec, Quantity, TablePlace,
-    TableSpec,
+    BudgetChoice, CellSpec, ClaimKind, ClaimSpec, Expected, Measure, Over, PlotSpec, Quantity,
+    TablePlace, TableSpec,
 };
 use super::super::error::ExperimentError;
 use super::super::expand::Binding;
@@ -41,12 +41,6 @@ const TABLE: [&str; 7] = [
 ];
 const COLUMN: [&str; 3] = ["head", "value", "for"];
 const PLOT: [&str; 4] = ["x", "curves", "label", "log"];
-const KINDS: [(&str, BudgetKind); 3] = [
-    ("samples", BudgetKind::Samples),
-    ("rays", BudgetKind::Rays),
-    ("seconds", BudgetKind::Seconds),
-];
-
 /// The names that quantities can refer to.
 #[derive(Default)]
 pub(super) struct Names {
@@ -81,10 +75,10 @@ pub(super) fn known(entry: &Entry<'_>, names: &[String]) -> Result<String> {
 fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     let measure = section.need("measure")?.read(str::parse::<Measure>)?;
     let budget = section.take("budget");
-    let budget = budget.map(|entry| {
-        let kind = entry.read(|name| value_of(&KINDS, name))?;
+    let budget = budget.map_or(Ok(BudgetChoice::First), |entry| {
+        let kind = entry.read(|name| value_of(&BudgetKind::NAMES, name))?;
         if names.budgets.contains(&kind) {
-            Ok(kind)
+            Ok(BudgetChoice::Kind(kind))
         } else {
             Err(entry.fault("no [[budget]] is of this kind"))
         }
@@ -101,7 +95,7 @@ fn quantity(section: &mut Section<'_>, names: &Names) -> Result<Quantity> {
     let than = section.take("than");
     Ok(Quantity {
         measure,
-        budget: budget.transpose()?,
+        budget: budget?,
         scene: known(&section.need("scene")?, &names.scenes)?,
         method,
         over,

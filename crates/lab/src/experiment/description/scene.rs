@@ -3,7 +3,9 @@
 use super::super::error::{ExperimentError, Place};
 use super::super::names::value_of;
 use super::super::reader::{Entry, Section};
-use super::super::{Absent, Lamp, Presence, ReferenceSpec, Room, SceneSource, SceneSpec};
+use super::super::{
+    Absent, Lamp, Presence, ReferenceRecipe, ReferenceSpec, Room, SceneSource, SceneSpec,
+};
 use super::{or, size, text_of};
 use bidir::integrator::IntegratorKind;
 use bidir::settings::Request;
@@ -47,7 +49,7 @@ pub(super) fn all(
         Ok(scene)
     };
     let (mut there, mut absent) = (Vec::new(), Vec::new());
-    for scene in super::all(top, "scene", read)? {
+    for scene in super::all(top, "scene", |scene| &scene.name, read)? {
         match absence(&scene) {
             None => there.push(scene),
             Some(reason) => absent.push(Absent {
@@ -223,12 +225,12 @@ fn reference(
             Ok((existing, Some(image.at())))
         }
         (None, Some(spp)) => {
-            let made = ReferenceSpec::Make {
+            let recipe = ReferenceRecipe {
                 spp: spp.whole(1)?,
                 request: Box::new(reference_request(strategies, defaults)?),
                 cross_check: cross_check.as_ref().map(cross_check_of).transpose()?,
             };
-            Ok((made, None))
+            Ok((ReferenceSpec::Make(recipe), None))
         }
         (Some(_), Some(spp)) => {
             Err(spp.fault("`reference` and `reference-spp` exclude each other"))
@@ -245,11 +247,7 @@ fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Resul
         ..Request::default()
     };
     if let Some(entry) = strategies {
-        entry.read(|value| {
-            request
-                .set("strategies", value)
-                .map_err(|error| error.to_string())
-        })?;
+        entry.read(|value| request.set("strategies", value))?;
     }
     Ok(request)
 }
@@ -257,11 +255,7 @@ fn reference_request(strategies: Option<Entry<'_>>, defaults: &Request) -> Resul
 /// Reads the integrator of the cross-check, which is not that of the reference.
 fn cross_check_of(entry: &Entry<'_>) -> Result<IntegratorKind> {
     let mut request = Request::default();
-    entry.read(|value| {
-        request
-            .set("integrator", value)
-            .map_err(|error| error.to_string())
-    })?;
+    entry.read(|value| request.set("integrator", value))?;
     match request.integrator {
         Some(IntegratorKind::Bdpt | IntegratorKind::Auto) | None => Err(entry.fault_with(
             "an estimator cannot cross-check itself".to_owned(),

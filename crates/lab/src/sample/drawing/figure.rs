@@ -3,10 +3,10 @@
 use super::super::SampleReport;
 use super::super::subpath::{Place, SubpathReport};
 use super::super::term::TermReport;
-use super::number::number;
 use super::shapes::{circle, polyline, px, text};
 use super::view::View;
 use crate::markup::{Element, element};
+use crate::number::number;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::luminance;
 

@@ -5,7 +5,6 @@
 //! read on light and dark pages, and is the same bytes for the same sample.
 
 mod figure;
-mod number;
 mod outline;
 mod shapes;
 mod view;
@@ -16,12 +15,12 @@ mod tests;
 use super::SampleReport;
 use super::subpath::Place;
 use crate::markup::{Element, element};
+use crate::number::number;
 use bidir::camera::Camera;
 use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};
 use bidir::spectrum::luminance;
 use figure::{Ray, Walk};
-use number::number;
 use shapes::{circle, polyline, px, rectangle, text};
 use view::{LARGEST, View};
 

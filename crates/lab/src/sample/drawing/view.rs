@@ -1,9 +1,9 @@
 //! Plan and elevation: parallel projections along axes of the world, each onto a panel of the page.
 
 use super::super::subpath::Place;
-use super::number::number;
 use super::shapes::{rectangle, text};
 use crate::markup::{Element, element};
+use crate::number::number;
 use bidir::camera::Pose;
 use bidir::driver::Session;
 use bidir::math::{Vec2, Vec3};

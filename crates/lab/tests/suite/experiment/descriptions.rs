@@ -1,5 +1,7 @@
 use super::common::{DESCRIPTION, Workplace};
-use bidir_lab::experiment::{BudgetSpec, Experiment, ExperimentError, ReferenceSpec};
+use bidir_lab::experiment::{
+    BudgetSpec, Experiment, ExperimentError, ReferenceRecipe, ReferenceSpec,
+};
 use bidir_lab::results::BudgetKind;
 
 /// Checks message, place and hint of the error of a description.
@@ -158,13 +160,13 @@ fn the_method_of_a_pyramid_is_bidirectional() {
     let with = |lines: &str| format!("{lines}\n{DESCRIPTION}[[budget]]\nsamples = 2\n");
     check(
         &with("pyramid = \"al\""),
-        ":1:11: there is no method `al`",
-        Some("did you mean `all`?"),
+        ":1:11: there is no `al`: did you mean `all`?",
+        None,
     );
     check(
         &with("pyramid = \"everything\""),
-        ":1:11: there is no method `everything`",
-        Some("methods are all, one"),
+        ":1:11: there is no `everything`: expected all, one",
+        None,
     );
     check(
         &with("pyramid = \"one\"").replace("shadow-rays = \"per-pair\"", "integrator = \"light\""),
@@ -204,11 +206,11 @@ fn methods_inherit_the_common_settings() {
         experiment.budgets,
         [BudgetSpec::new(BudgetKind::Rays, 50.5)]
     );
-    let ReferenceSpec::Make {
+    let ReferenceSpec::Make(ReferenceRecipe {
         spp: 16,
         request,
         cross_check: None,
-    } = &experiment.scenes[0].reference
+    }) = &experiment.scenes[0].reference
     else {
         panic!("{:?}", experiment.scenes);
     };

@@ -111,6 +111,9 @@ fn a_pyramid_of_a_method_that_is_not_bidirectional_is_refused() {
     let description = description().replace(other, &format!("integrator = \"bdpt\"\n{other}"));
     let error = place.run(&description, "out", &mut Watch::default());
     let error = error.unwrap_err();
-    assert!(matches!(error, ExperimentError::Pyramid { .. }), "{error}");
+    assert!(
+        matches!(error, ExperimentError::NotBidirectional { .. }),
+        "{error}"
+    );
     assert_eq!(error.hint(), Some("give the method integrator = \"bdpt\""));
 }

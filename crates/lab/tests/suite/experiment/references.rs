@@ -31,18 +31,8 @@ fn write_changed(
     let layers = read_layers(&place.path("made").join(image)).unwrap();
     let mut pixels = layers.triples(["R", "G", "B"]).unwrap();
     change(&mut pixels);
-    let [width, height] = layers.size();
-    let layer = ExrLayer {
-        name: "",
-        channels: &["R", "G", "B"],
-        data: pixels.as_flattened(),
-    };
-    let image = ExrImage {
-        resolution: [width, height],
-        crop: [0, 0, width, height],
-        layers: &[layer],
-        metadata: &[],
-    };
+    let picture = [ExrLayer::rgb("", &pixels)];
+    let image = ExrImage::whole(layers.size(), &picture);
     write_exr(&place.path(name), &image).unwrap();
 }
 
