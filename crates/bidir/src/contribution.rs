@@ -39,7 +39,7 @@ impl Term {
         self.contribution * self.weight
     }
 
-    /// What the term adds where its shadow ray is certain to be traced and `transmittance` of it arrives.
+    /// The contribution of the term where its shadow ray is certain to be traced and `transmittance` of it arrives.
     #[inline]
     pub fn certain(self, transmittance: f32) -> Contribution {
         Contribution {
@@ -50,7 +50,7 @@ impl Term {
     }
 }
 
-/// What a term adds to an image.
+/// The addend of a term in an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Contribution {
     /// The term.

@@ -21,8 +21,8 @@ PATHS = [
     (
         "area density without the cosine",
         "crates/bidir/src/path/segment.rs",
-        "{ 1.0 } else { cos_b * inverse2 }",
-        "{ 1.0 } else { inverse2 }",
+        "                cos_b * inverse2\n",
+        "                inverse2\n",
         PATH,
     ),
     (
@@ -115,7 +115,7 @@ PATHS = [
     (
         "n_j of the light image is one",
         "crates/bidir/src/path/count.rs",
-        "1 => self.scene.film().light_paths() as f64 / samples_per_subpath,",
+        "1 => self.view.film().light_paths() as f64 / samples_per_subpath,",
         "1 => 1.0,",
         PATH,
     ),
@@ -151,18 +151,24 @@ PATHS = [
     (
         "sum of the group in place of C/pi",
         "crates/bidir/src/integrator/bdpt.rs",
-        "        let contribution = candidate.contribution(chosen.prob);",
-        "        // Right in every grey image, wrong in colour.\n"
-        "        let contribution = {\n"
+        "            let contribution = Contribution {\n"
+        "                term,\n"
+        "                prob: chosen.prob,\n"
+        "                transmittance,\n"
+        "            };\n",
+        "            // Right in every grey image, wrong in colour.\n"
+        "            let contribution = {\n"
         "            let candidates = &workspace.candidates;\n"
         "            let score = |i: usize| candidates[i].score;\n"
         "            let all: f32 = (0..candidates.len()).map(score).sum();\n"
-        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.value);\n"
+        "            let sum = candidates.iter().fold(Spectrum::ZERO, |sum, c| sum + c.term.value());\n"
         "            let part = score(chosen.candidate as usize) / chosen.prob as f32 / all;\n"
-        "            super::Contribution {\n"
-        "                value: sum * part,\n"
-        "                ..candidate.contribution(chosen.prob)\n"
-        "            }\n"
+        "            let term = Term {\n"
+        "                contribution: sum * part,\n"
+        "                weight: 1.0,\n"
+        "                ..term\n"
+        "            };\n"
+        "            term.certain(transmittance)\n"
         "        };",
         estimators("every_choice_of_shadow_rays"),
     ),
@@ -253,7 +259,7 @@ PATHS = [
     (
         "a plan for lights where there are none",
         "crates/bidir/src/driver/training/plan.rs",
-        "let has_lights = !scene.lights().is_empty();",
+        "let has_lights = !task.scene.lights().is_empty();",
         "let has_lights = true;",
         unit("without_lights_and_where_none"),
     ),
@@ -365,8 +371,8 @@ PATHS = [
     (
         "chosen rays not divided by their probability",
         "crates/bidir/src/integrator/bdpt.rs",
-        "candidate.contribution(chosen.prob)",
-        "candidate.contribution(1.0)",
+        "                prob: chosen.prob,\n",
+        "                prob: 1.0,\n",
         analytic("selection_keeps"),
     ),
     (
@@ -457,8 +463,8 @@ PATHS = [
     (
         "splats not weakened by what they pass",
         "crates/bidir/src/integrator/light.rs",
-        "contribution: counted.whole().behind(arrives),",
-        "contribution: counted.whole().behind(arrives.ceil()),",
+        "contribution: term.certain(transmittance),",
+        "contribution: term.certain(transmittance.ceil()),",
         coverage("a_half_transparent_plane"),
     ),
 ]

@@ -12,9 +12,9 @@ PICTURES = [
     ),
     (
         "raw images with the weight",
-        "crates/bidir/src/integrator/workspace.rs",
-        "lane / self.weight",
-        "lane",
+        "crates/bidir/src/contribution.rs",
+        "self.arriving(self.term.contribution)",
+        "self.arriving(self.term.value())",
         layers("a_raw_image"),
     ),
     (
@@ -62,8 +62,8 @@ PICTURES = [
     (
         "depth as the distance from the lens",
         "crates/bidir/src/driver/features.rs",
-        "space.world_length(context.scene.camera().depth(surface.point))",
-        "space.world_length(surface.point.length())",
+        "space.world_length(context.view.camera().depth(surface.locus.point))",
+        "space.world_length(surface.locus.point.length())",
         layers("features"),
     ),
     (
@@ -75,10 +75,10 @@ PICTURES = [
     ),
     (
         "carry lost between the limbs of a sum",
-        "crates/bidir/src/film/fixed.rs",
+        "crates/bidir/src/math/fixed.rs",
         "let high = high.wrapping_add(carry);",
         "",
-        unit("film::fixed"),
+        unit("math::fixed"),
     ),
     (
         "importance without the lens's area",

@@ -21,8 +21,8 @@ SCENES = [
     (
         "positions are those of the space that is rendered in",
         "crates/bidir/src/driver/features.rs",
-        "point: space.world_point(surface.point).as_vec3(),",
-        "point: surface.point,",
+        "point: space.world_point(surface.locus.point).as_vec3(),",
+        "point: surface.locus.point,",
         layers("layers::plane"),
     ),
     # --- scattering models ----------------------------------------------------------------

@@ -10,8 +10,8 @@ TEXTURES = [
     (
         "what a pixel covers told by where the walk came from",
         "crates/bidir/src/path/vertex.rs",
-        "scene.footprint(surface.point)",
-        "scene.footprint(surface.point + wo)",
+        "context.view.footprint(surface.point)",
+        "context.view.footprint(surface.point + wo)",
         relief("a_point_looks_the_same"),
     ),
     (

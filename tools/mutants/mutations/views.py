@@ -6,8 +6,8 @@ VIEWS = [
     (
         "a sky along parallel rays weighed against a connection that cannot be",
         "crates/bidir/src/path/densities.rs",
-        "if x0.is_infinite && x1.is_infinite => 0.0,",
-        "if x0.is_infinite && x1.is_infinite => x0.pdf_fwd,",
+        "if x0.locus.is_infinite() && x1.locus.is_infinite() => 0.0,",
+        "if x0.locus.is_infinite() && x1.locus.is_infinite() => x0.pdf_fwd,",
         ("bidir", "--test suite", "seen_directly::parallel_rays"),
     ),
     (
